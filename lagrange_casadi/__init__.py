@@ -1,0 +1,31 @@
+"""Forces inside a mechanism that must make a given motion: efforts, reactions, and the section forces of every link."""
+
+from . import figures, motion
+from .case import Case, load_case
+from .errors import LagrangeCasadiError
+from .evaluate import evaluate
+from .lagrange import LagrangeSystem
+from .mechanism import Mechanism
+from .scene import Scene, derive
+from .solution import Peak, Solution
+from .store import check, load, save
+from .version import __version__
+
+__all__ = [
+    "Case",
+    "LagrangeCasadiError",
+    "LagrangeSystem",
+    "Mechanism",
+    "Peak",
+    "Scene",
+    "Solution",
+    "__version__",
+    "check",
+    "derive",
+    "evaluate",
+    "figures",
+    "load",
+    "load_case",
+    "motion",
+    "save",
+]

@@ -1,0 +1,75 @@
+"""Cases: a folder with a ``case.py``, or a Python file, whose function ``scene()`` returns a :class:`.Scene`.
+
+A case may also have ``figures()``, which returns how it wants to be drawn, see :mod:`.figures`.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import traceback
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from .errors import CaseError, LagrangeCasadiError
+from .scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A case, loaded: its scene, and the drawings it wants, empty for the usual ones."""
+
+    path: Path
+    scene: Scene
+    figures: Sequence[Any]
+
+    @property
+    def name(self) -> str:
+        """The name of its folder, or of its file."""
+        return (self.path.parent if self.path.name == "case.py" else self.path).stem
+
+
+def load_case(path: str | os.PathLike[str]) -> Case:
+    """Load a case's folder or Python file. Raises :class:`CaseError`; an error of a declaration passes as it is."""
+    given = Path(path)
+    file = given / "case.py" if given.is_dir() else given
+    if not file.is_file():
+        expected = "a folder with a case.py, or a Python file"
+        raise CaseError(f"case {given}: {'has no case.py' if given.is_dir() else 'no such file'}; expected {expected}")
+    if file.suffix != ".py":
+        raise CaseError(f"case {given}: expected a folder with a case.py, or a Python file ending in .py")
+    file = file.resolve()
+    spec = importlib.util.spec_from_file_location(f"case_{file.stem}_{file.parent.name}", file)
+    assert spec is not None
+    assert spec.loader is not None
+    module, execute = importlib.util.module_from_spec(spec), spec.loader.exec_module
+    _guard(given, file, lambda: execute(module))
+    scene = _call(given, file, module, "scene")
+    if not isinstance(scene, Scene):
+        raise CaseError(f"case {given}: scene() returned {type(scene).__name__}, expected a lagrange_casadi.Scene")
+    figures = _call(given, file, module, "figures") if hasattr(module, "figures") else ()
+    return Case(file, scene, tuple(figures))
+
+
+def _call(given: Path, file: Path, module: ModuleType, name: str) -> Any:
+    function = getattr(module, name, None)
+    if not callable(function):
+        raise CaseError(f"case {given}: has no function {name}()")
+    return _guard(given, file, function)
+
+
+def _guard(given: Path, file: Path, action: Any) -> Any:
+    """Run a piece of the case; what it raises becomes one line that names the case's own line."""
+    try:
+        return action()
+    except LagrangeCasadiError:
+        raise
+    except Exception as error:
+        lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(file)]
+        if isinstance(error, SyntaxError):
+            lines = [error.lineno]
+        where = f", line {lines[-1]}" if lines and lines[-1] else ""
+        raise CaseError(f"case {given}{where}: {type(error).__name__}: {' '.join(str(error).split())}") from error

@@ -1,0 +1,64 @@
+"""The command line: one thin file a command, and one place where errors become a line and an exit status."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+import click
+
+from ..errors import LagrangeCasadiError, UnknownNameError
+from ..version import __version__
+from .check import check
+from .info import info
+from .plot import plot
+from .run import run
+
+INTERRUPTED = 130
+
+
+class _Interrupted(Exception):  # noqa: N818 - it is no error
+    """Ctrl-C, taken before click turns it into a line of its own."""
+
+
+class _Commands(click.Group):
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            raise _Interrupted from None
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        if args and not args[0].startswith("-") and args[0] not in self.commands:
+            raise UnknownNameError("command", args[0], self.commands)
+        return super().resolve_command(ctx, args)
+
+
+@click.group(cls=_Commands, commands=[run, plot, info, check], context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="lagrange-casadi")
+def program() -> None:
+    """Efforts, reactions and section forces of a mechanism that must make a given motion."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; the exit status is 0, 2 for a mistake in what was asked, 1 for a computation that failed."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", UserWarning)
+        warnings.showwarning = lambda message, *_args, **_kwargs: click.echo(f"note: {message}", err=True)
+        try:
+            result = program.main(arguments, prog_name="lagrange-casadi", standalone_mode=False)
+        except LagrangeCasadiError as error:
+            return _fail(str(error), error.exit_status)
+        except click.ClickException as error:
+            return _fail(error.format_message() or "nothing to do; see lagrange-casadi --help", error.exit_code)
+        except _Interrupted:
+            return _fail("interrupted; nothing was left half-written", INTERRUPTED)
+        except MemoryError as error:
+            return _fail(f"out of memory: {error or 'fewer instants or ratios fit'}", 1)
+    return result if isinstance(result, int) else 0
+
+
+def _fail(message: str, status: int) -> int:
+    click.echo(f"error: {' '.join(message.split())}", err=True)
+    return status

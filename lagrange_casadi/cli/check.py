@@ -1,0 +1,21 @@
+"""``lagrange-casadi check``: is a file whole and consistent?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from .. import store
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path))
+def check(file: Path) -> int:
+    """Read all of FILE.h5 and verify it: exit status 0 if nothing is wrong with it, else 1."""
+    findings = store.check(file)
+    for finding in findings:
+        click.echo(f"{file}: {finding}", err=True)
+    if not findings:
+        click.echo(f"{file}: whole and consistent")
+    return 1 if findings else 0

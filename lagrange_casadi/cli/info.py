@@ -1,0 +1,68 @@
+"""``lagrange-casadi info``: what a case or a file holds."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import click
+
+from .. import store
+from ..case import load_case
+from ..description import Description, describe
+from ..scene import Scene, derive, outputs
+from ..solution import Solution
+
+
+@click.command()
+@click.argument("target", metavar="CASE|FILE.h5", type=click.Path(path_type=Path))
+@click.option("--want", multiple=True, metavar="OUTPUT", help="Count the instructions of these outputs; default: the case's.")
+def info(target: Path, want: tuple[str, ...]) -> None:
+    """Describe a case (with its instruction count), or a result file."""
+    if target.suffix in (".h5", ".hdf5"):
+        if want:
+            raise click.UsageError("--want goes with a case, not with a file")
+        _describe_file(store.load(target))
+    else:
+        _describe_case(load_case(target).scene, want)
+
+
+def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
+    mechanism = scene.mechanism
+    graph = derive(scene, want or None)
+    _describe_mechanism(describe(mechanism, mechanism.values(), scene.motion))
+    for what, (start, stop, count) in (("t [s]", scene.t), ("xi/l", scene.xi)):
+        click.echo(f"{what}: {start:g} to {stop:g}, {count} points")
+    click.echo(f"outputs: {', '.join(outputs(mechanism))}")
+    click.echo(f"wanted: {', '.join(want or scene.wanted)}")
+    loops = [f"{name} (closed form)" for name in graph.closures] + ([f"{graph.newton.joints} (iterated)"] if graph.newton else [])
+    click.echo(f"loops closed by: {', '.join(loops) or 'none'}")
+    counts = ", ".join(f"{name} {count}" for name, count in graph.instructions.items())
+    click.echo(f"instructions an instant: {sum(graph.instructions.values())} ({counts})")
+
+
+def _describe_file(solution: Solution) -> None:
+    _describe_mechanism(solution.description)
+    provenance = solution.provenance
+    click.echo(f"t [s]: {solution.t[0]:g} to {solution.t[-1]:g}, {solution.t.size} points")
+    click.echo(f"xi/l: {solution.xi[0]:g} to {solution.xi[-1]:g}, {solution.xi.size} points")
+    click.echo(f"backend: {provenance.backend}, {provenance.precision} {provenance.compiler} {provenance.flags}".rstrip())
+    click.echo(f"versions: {', '.join(f'{name} {version}' for name, version in provenance.versions.items())}")
+    click.echo("peaks:")
+    for name in solution.names():
+        peak = solution.peak(name)
+        place = "" if peak.xi is None else f", xi/l = {peak.xi:.4f}"
+        click.echo(f"  {name:<28}{peak.value:>13.6g} {peak.unit:<7} at t = {peak.t:.5g} s{place}")
+
+
+def _describe_mechanism(description: Description) -> None:
+    click.echo(f"mechanism: {description['name']}")
+    for name, p in description["parameters"].items():
+        limits = "" if math.isinf(p["low"]) and math.isinf(p["high"]) else f" (range {p['low']:g} to {p['high']:g})"
+        click.echo(f"  parameter {name} = {p['value']:g} {p['unit']}{limits}")
+    for name, body in description["bodies"].items():
+        size = "point mass" if body["length"] is None else f"link of {body['length']:g} m,"
+        click.echo(f"  {size} {name}: {body['mass']:g} kg".replace("  point mass", "  point mass"))
+    for name, joint in description["joints"].items():
+        ends = " - ".join(f"{p['body']} ({p['x']:g}, {p['y']:g})" for p in (joint["parent"], joint["child"]))
+        click.echo(f"  {joint['kind']} joint {name}: {ends}{', driven' if joint['driven'] else ''}")

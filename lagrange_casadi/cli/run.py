@@ -1,0 +1,66 @@
+"""``lagrange-casadi run``: evaluate a case, store it, draw it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import nullcontext
+from pathlib import Path
+
+import click
+
+from ..case import load_case
+from ..evaluate import BACKENDS, Backend, evaluate
+from ..figures import dump_specs
+from ..publish import check_writable, filling
+from ..scene import Grid
+from ..solution import Solution
+from ..store import save
+from .drawing import draw_with_progress
+from .options import GridType, SettingType, parameters
+
+
+@click.command()
+@click.argument("case", type=click.Path(path_type=Path))
+@click.option("--set", "settings", type=SettingType(), multiple=True, help="Give a parameter another value; repeatable.")
+@click.option("--t", type=GridType(), help="Instants [s]; default: the case's.")
+@click.option("--xi", type=GridType(), help="Section ratios xi/l, within 0 and 1; default: the case's.")
+@click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
+@click.option("--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="Compiled C, or CasADi's machine.")
+@click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>.h5 here.")
+@click.option("--figures", type=click.Path(path_type=Path), help="The figures' folder; default: <case>_figures here.")
+@click.option("--no-figures", is_flag=True, help="Draw nothing.")
+def run(
+    case: Path,
+    settings: Sequence[tuple[str, float]],
+    t: Grid | None,
+    xi: Grid | None,
+    want: Sequence[str],
+    backend: Backend,
+    out: Path | None,
+    figures: Path | None,
+    no_figures: bool,
+) -> None:
+    """Evaluate CASE, a folder with a case.py or a Python file, and write an HDF5 file and figures."""
+    loaded = load_case(case)
+    out = out or Path(f"{loaded.name}.h5")
+    folder = None if no_figures else figures or Path(f"{loaded.name}_figures")
+    check_writable(out)
+    if folder:
+        check_writable(folder, folder=True)
+    solution = evaluate(loaded.scene, parameters=parameters(settings), t=t, xi=xi, wanted=want or None, backend=backend)
+    with filling(folder) if folder else nullcontext() as draft:
+        if draft:
+            draw_with_progress(solution, loaded.figures, draft)
+        save(solution, out, dump_specs(loaded.figures))
+    _report(solution)
+    click.echo(f"wrote {out}" + (f" and the figures in {folder}/" if folder else ""))
+
+
+def _report(solution: Solution) -> None:
+    backend = solution.provenance.backend
+    click.echo(f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {backend}; peaks:")
+    for name in solution.names():
+        if name.startswith(("effort:", "reaction:", "section:")):
+            peak = solution.peak(name)
+            where = f"t = {peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {peak.xi:.4f}")
+            click.echo(f"  {name:<28}{peak.value:>13.6g} {peak.unit:<4} at {where}")

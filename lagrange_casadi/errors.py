@@ -1,0 +1,61 @@
+"""Every exception this package raises on purpose.
+
+A message is one line: it names the offending part, says what was expected and, where there is a list, what is valid.
+``exit_status`` is what the command line returns: 2 for a mistake in what was asked, 1 for a computation that failed.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class LagrangeCasadiError(Exception):
+    """Base of all errors of this package."""
+
+    exit_status = 2
+
+
+class DeclarationError(LagrangeCasadiError):
+    """A mechanism, a motion or a scene is declared in a way that has no meaning."""
+
+
+class UnknownNameError(DeclarationError):
+    """A name that nothing bears; the message lists the names that exist."""
+
+    def __init__(self, kind: str, name: str, valid: Iterable[str]) -> None:
+        names = list(valid)
+        close = difflib.get_close_matches(name, names, n=1)
+        hint = f" (did you mean '{close[0]}'?)" if close else ""
+        listed = ", ".join(names) if names else "none are declared"
+        super().__init__(f"unknown {kind} '{name}'{hint}; valid: {listed}")
+
+
+class ParameterError(LagrangeCasadiError):
+    """A parameter's value is not a number, is out of its range, or makes a part impossible."""
+
+
+class MobilityError(DeclarationError):
+    """The number of drives does not fit the mechanism's degrees of freedom."""
+
+
+class CaseError(LagrangeCasadiError):
+    """A case's file is missing, raises, or has no ``scene``."""
+
+
+class AssemblyError(LagrangeCasadiError):
+    """A loop cannot be closed, or is singular, at some instant of the motion."""
+
+    exit_status = 1
+
+
+class CompilerError(LagrangeCasadiError):
+    """No compiler where one is required, or the compiler refused the emitted C."""
+
+    exit_status = 1
+
+
+class StoreError(LagrangeCasadiError):
+    """A result file cannot be written, or is not a whole file of this schema."""
+
+    exit_status = 1

@@ -1,0 +1,182 @@
+"""A scene over its instants: derive, compile, evaluate, and refuse what is not a result."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import casadi as ca
+import h5py
+import numpy as np
+import numpy.typing as npt
+
+from . import codegen
+from .codegen.compiler import FLAGS
+from .codegen.emit import NEWTON_DONE, NEWTON_STEPS, NOT_CONVERGED, NOT_FINITE, OK
+from .description import describe
+from .errors import AssemblyError, CompilerError, DeclarationError, UnknownNameError
+from .kinematics import describe_coordinate
+from .scene import Grid, Scene, SceneGraph, derive, instants, ratios
+from .section_law import Array
+from .solution import Provenance, Solution
+from .version import __version__
+
+Backend = Literal["auto", "c", "vm"]
+BACKENDS: tuple[Backend, ...] = ("auto", "c", "vm")
+
+_VM_BLOCK = 4096
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """The columns of a scene graph over instants: ``out`` (columns, t) and the status of each instant (t)."""
+
+    out: Array
+    status: npt.NDArray[np.int32]
+
+
+def evaluate(
+    scene: Scene,
+    *,
+    parameters: Mapping[str, float] | None = None,
+    t: Grid | None = None,
+    xi: Grid | None = None,
+    wanted: Sequence[str] | None = None,
+    backend: Backend = "auto",
+) -> Solution:
+    """Evaluate a scene, with its own grids and outputs or with others.
+
+    Parameters
+    ----------
+    parameters
+        Values that replace defaults, by name. Nothing is derived or compiled again for them.
+    t, xi
+        Start, stop and count of the instants [s] and of the section ratios xi/l.
+    wanted
+        Output names.
+    backend
+        ``c`` compiles; ``vm`` runs in CasADi's virtual machine; ``auto`` compiles where there is a compiler, and warns where not.
+
+    Raises :class:`AssemblyError` where a loop does not close at some instant, :class:`CompilerError`, and for mistakes in the
+    arguments :class:`UnknownNameError`, :class:`ParameterError` or :class:`DeclarationError`.
+    """
+    values = scene.mechanism.values(parameters)
+    times = instants("t", scene.t if t is None else t)
+    places = ratios(scene.xi if xi is None else xi)
+    for joint, law in scene.motion.items():
+        low, high = law.span
+        if times[0] < low or times[-1] > high:
+            raise DeclarationError(
+                f"the samples of the motion of joint '{joint}' cover t from {low:g} to {high:g} s, but t from "
+                f"{times[0]:g} to {times[-1]:g} s is asked for"
+            )
+    graph = derive(scene, wanted)
+    table, provenance = run(graph, times, np.array(list(values.values())), backend)
+    _refuse(graph, table, times, list(values.values()))
+    series = {name: table.out[k] for k, name in enumerate(graph.columns) if not name.startswith("closure:")}
+    for name, column in series.items():
+        if _wraps(graph, name):
+            column[:] = np.unwrap(column)
+    description = describe(scene.mechanism, values, scene.motion)
+    return Solution(scene.mechanism.name, times, places, series, description, provenance)
+
+
+def run(graph: SceneGraph, t: Array, p: Array, backend: Backend = "auto") -> tuple[Table, Provenance]:
+    """The columns of a graph at instants ``t`` and parameters ``p``, by the given backend; nothing is checked.
+
+    Raises :class:`CompilerError` where the backend is ``c`` and there is no compiler, or the compiler fails.
+    """
+    if backend not in BACKENDS:
+        raise UnknownNameError("backend", backend, BACKENDS)
+    compiler = None if backend == "vm" else codegen.find_compiler()
+    if compiler is None and backend == "c":
+        raise CompilerError("backend 'c' needs a C compiler: none of $CC, cc, gcc, clang or the Python package ziglang is there")
+    if compiler is None:
+        if backend == "auto":
+            warnings.warn(
+                "no C compiler found ($CC, cc, gcc, clang, ziglang): CasADi's virtual machine serves, slowly", stacklevel=2
+            )
+        return _interpret(graph, t, p), _provenance("vm", "", "")
+    library = codegen.load(codegen.emit(graph), compiler)
+    table = Table(np.empty((len(graph.columns), t.size)), np.empty(t.size, dtype=np.int32))
+    library.evaluate(t, p, np.array(graph.newton.guess if graph.newton else ()), table.out, table.status)
+    return table, _provenance("c", compiler.version, " ".join(FLAGS))
+
+
+def _provenance(backend: str, compiler: str, flags: str) -> Provenance:
+    versions = {
+        "lagrange_casadi": __version__,
+        "casadi": ca.CasadiMeta.version(),
+        "numpy": np.__version__,
+        "h5py": h5py.__version__,
+        "hdf5": h5py.version.hdf5_version,
+    }
+    return Provenance(backend, "double", compiler, flags, versions)
+
+
+def _interpret(graph: SceneGraph, t: Array, p: Array) -> Table:
+    """What the emitted C does, by CasADi's virtual machine."""
+    table = Table(np.empty((len(graph.columns), t.size)), np.full(t.size, OK, dtype=np.int32))
+    guess = np.array(graph.newton.guess) if graph.newton else np.zeros(0)
+    for start in range(0, t.size, _VM_BLOCK):
+        block = slice(start, min(start + _VM_BLOCK, t.size))
+        d, rate, acceleration = (np.atleast_2d(x.full()) for x in graph.motion(t[None, block], p))
+        z = np.zeros((guess.size, d.shape[1]))
+        if graph.newton:
+            for i in range(d.shape[1]):
+                found, converged = _iterate(graph.newton.step, guess, d[:, i], p)
+                guess = found if converged else guess
+                z[:, i] = found
+                if not converged:
+                    table.status[start + i] = NOT_CONVERGED
+        table.out[:, block] = graph.instant(d, rate, acceleration, z, p).full()
+    unclean = ~np.isfinite(table.out).all(axis=0) & (table.status == OK)
+    table.status[unclean] = NOT_FINITE
+    return table
+
+
+def _iterate(step: ca.Function, z: Array, d: Array, p: Array) -> tuple[Array, bool]:
+    for _ in range(NEWTON_STEPS):
+        correction, size = (x.full().ravel() for x in step(z, d, p))
+        if not math.isfinite(size[0]):
+            break
+        z = z + correction
+        if size[0] < NEWTON_DONE:
+            return z, True
+    return z, False
+
+
+def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
+    """Raise for the first instant that has no result, naming the joint and the driven coordinates."""
+    failed = np.flatnonzero(table.status != OK)
+    if not failed.size:
+        return
+    i = int(failed[0])
+    joints = graph.scene.mechanism.joints
+    driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
+    where = ", ".join(
+        describe_coordinate(name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True)
+    )
+    at = f"at t = {t[i]:.6g} s, where {where}"
+    if table.status[i] == NOT_CONVERGED:
+        assert graph.newton is not None
+        raise AssemblyError(f"the loops closed by joints {graph.newton.joints} did not converge {at}")
+    for k, joint in enumerate(graph.closures):
+        if table.out[k, i] < 0.0:
+            raise AssemblyError(f"the loop closed by joint '{joint}' cannot be closed {at}: its links do not reach")
+        if not table.out[k, i] > 0.0:
+            raise AssemblyError(f"the loop closed by joint '{joint}' is at a dead centre {at}: its forces are not determined there")
+    name = next(name for name, value in zip(graph.columns, table.out[:, i], strict=True) if not math.isfinite(value))
+    raise AssemblyError(f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow")
+
+
+def _wraps(graph: SceneGraph, name: str) -> bool:
+    """Whether a column is an angle known up to whole turns."""
+    group, part, *_ = name.split(":")
+    if group == "pose":
+        return name.endswith(":angle")
+    joint = graph.scene.mechanism.joints.get(part)
+    return group == "motion" and joint is not None and joint.coordinate == "angle" and part not in graph.driven

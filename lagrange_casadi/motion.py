@@ -1,0 +1,112 @@
+"""Prescribed motions of driven joints: d(t), d'(t), d''(t).
+
+A law is a frozen object with one method, ``graph(t)``, which returns a CasADi expression of the symbol t; rates come by
+automatic differentiation.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from .errors import DeclarationError
+from .mechanism import Expression
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A law of motion as a function from the symbol t [s] to the coordinate [rad or m].
+
+    ``spline`` tells that the graph needs ``casadi.MX``; ``span`` is the time the law covers.
+    """
+
+    graph: Callable[[Any], Any]
+    spline: bool = False
+    span: tuple[float, float] = (-math.inf, math.inf)
+
+
+def polynomial(*coefficients: Expression) -> Motion:
+    """c0 + c1 t + c2 t^2 + ... (paper eq. 22: ``polynomial(0, Omega0, epsilon0/2)``); numbers or parameters' symbols."""
+    if not coefficients:
+        raise DeclarationError("polynomial: expected at least one coefficient")
+
+    def graph(t: Any) -> Any:
+        value = ca.SX(coefficients[-1])
+        for coefficient in reversed(coefficients[:-1]):
+            value = value * t + coefficient
+        return value
+
+    return Motion(graph)
+
+
+def harmonic(mean: Expression, amplitude: Expression, frequency: Expression, phase: Expression = 0.0) -> Motion:
+    """mean + amplitude sin(2 pi frequency t + phase), the frequency in Hz."""
+    return Motion(lambda t: mean + amplitude * ca.sin(2.0 * math.pi * frequency * t + phase))
+
+
+def expression(law: Callable[[Any], Any]) -> Motion:
+    """Any law: a function that takes the symbol t and returns a ``casadi.SX`` expression of it and of parameters."""
+    if not callable(law):
+        raise DeclarationError(f"expression: expected a function of the symbol t, got {law!r}")
+    return Motion(law)
+
+
+def samples(times: Sequence[float], values: Sequence[float]) -> Motion:
+    """A C2 cubic spline through samples, not-a-knot at its ends; defined between the first and the last time only.
+
+    Raises :class:`DeclarationError` for fewer than four samples, for times that do not increase, or for what is not finite.
+    """
+    t, v = np.asarray(times, dtype=float), np.asarray(values, dtype=float)
+    if t.ndim != 1 or t.shape != v.shape:
+        raise DeclarationError(f"samples: times and values must be two rows of one length, got shapes {t.shape} and {v.shape}")
+    if t.size < 4:
+        raise DeclarationError(f"samples: a cubic spline needs at least 4 samples, got {t.size}")
+    if not (np.isfinite(t).all() and np.isfinite(v).all()):
+        raise DeclarationError("samples: times and values must be finite")
+    if not (np.diff(t) > 0).all():
+        first = int(np.argmin(np.diff(t) > 0))
+        raise DeclarationError(f"samples: times must increase, but sample {first + 1} is at {t[first + 1]:g} after {t[first]:g}")
+    spline = ca.interpolant("spline", "bspline", [t.tolist()], v.tolist())
+    return Motion(lambda time: spline(time), spline=True, span=(float(t[0]), float(t[-1])))
+
+
+def motion_function(laws: Sequence[Motion], parameters: Any) -> Any:
+    """The CasADi function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of several laws.
+
+    Raises :class:`DeclarationError` for a law that is not a scalar expression of t and parameters.
+    """
+    names = (["t", "p"], ["d", "d_rate", "d_acceleration"])
+    t = ca.SX.sym("t")
+    smooth = [None if law.spline else _derivatives(_scalar(law, t), t) for law in laws]
+    if not any(law.spline for law in laws):
+        return ca.Function("motion", [t, parameters], _stack(smooth, ca.SX), *names, {"cse": True})
+    time, p = ca.MX.sym("t"), ca.MX.sym("p", parameters.numel())
+    rows = [
+        _derivatives(law.graph(time), time) if row is None else ca.Function(f"law{i}", [t, parameters], row, {"cse": True})(time, p)
+        for i, (law, row) in enumerate(zip(laws, smooth, strict=True))
+    ]
+    return ca.Function("motion", [time, p], _stack(rows, ca.MX), *names)
+
+
+def _scalar(law: Motion, t: Any) -> Any:
+    try:
+        value = ca.SX(law.graph(t))
+    except NotImplementedError:
+        raise DeclarationError("a motion must be a casadi.SX expression of t; for samples use motion.samples") from None
+    if value.numel() != 1:
+        raise DeclarationError(f"a motion must be a scalar expression of t, got one of shape {value.shape}")
+    return value
+
+
+def _derivatives(value: Any, t: Any) -> list[Any]:
+    rate = ca.densify(ca.jacobian(value, t))
+    return [ca.densify(value), rate, ca.densify(ca.jacobian(rate, t))]
+
+
+def _stack(rows: list[Any], kind: Any) -> list[Any]:
+    return [ca.vertcat(kind(0, 1), *(row[order] for row in rows)) for order in range(3)]

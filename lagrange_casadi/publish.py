@@ -1,0 +1,62 @@
+"""Files that appear whole or not at all: written under another name beside their place, then renamed."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from .errors import StoreError
+
+
+def check_writable(target: Path, *, folder: bool = False) -> None:
+    """Raise :class:`StoreError` where no file (or folder) can be put at ``target``: said before anything is computed."""
+    if not folder and target.is_dir():
+        raise StoreError(f"cannot write {target}: it is a folder")
+    if folder and target.exists() and not target.is_dir():
+        raise StoreError(f"cannot write {target}: it is a file, not a folder")
+    if not target.parent.is_dir():
+        raise StoreError(f"cannot write {target}: folder {target.parent} does not exist")
+    for place in (target.parent, *([target] if target.is_dir() else [])):
+        if not os.access(place, os.W_OK):
+            raise StoreError(f"cannot write {target}: folder {place} is not writable")
+
+
+@contextmanager
+def replacing(target: Path) -> Iterator[Path]:
+    """A temporary file to write, renamed to ``target`` on success and removed on any failure."""
+    check_writable(target)
+    with _failing(target), _beside(target) as work:
+        draft = work / target.name
+        yield draft
+        with draft.open("rb") as written:
+            os.fsync(written.fileno())
+        os.replace(draft, target)
+
+
+@contextmanager
+def filling(folder: Path) -> Iterator[Path]:
+    """A temporary folder to fill, whose files move into ``folder`` on success and are removed on any failure."""
+    check_writable(folder, folder=True)
+    with _failing(folder), _beside(folder) as work:
+        yield work
+        folder.mkdir(exist_ok=True)
+        for draft in sorted(work.iterdir()):
+            os.replace(draft, folder / draft.name)
+
+
+@contextmanager
+def _beside(target: Path) -> Iterator[Path]:
+    with tempfile.TemporaryDirectory(dir=target.parent, prefix=f".{target.name}.") as work:
+        yield Path(work)
+
+
+@contextmanager
+def _failing(target: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        reason = os.strerror(error.errno) if error.errno else " ".join(str(error).split())
+        raise StoreError(f"cannot write {target}: {reason}") from None

@@ -1,0 +1,96 @@
+"""The one table of every output: its name, axes, unit, sign and meaning.
+
+A quantity's full name is ``group:part:member`` (``section:rod:bending``, ``reaction:guide:fy``, ``effort:O``); the same name
+with slashes is its place in the file. Nothing else in the package states a unit or a sign.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+CONVENTIONS = (
+    "SI units; plane x-y; angles in rad, counter-clockwise; a link's axis e runs from its base (xi = 0) to its tip (xi = 1), "
+    "n is 90 deg counter-clockwise of e; section forces are the action of the part towards the tip on the part towards the "
+    "base, resolved on (e, n, z), so axial > 0 is tension and d(bending)/d(xi l) = -shear; a reaction is the action of the "
+    "joint's parent on its child, in ground axes, its moment about the joint's point on the child; an effort is positive "
+    "along its coordinate"
+)
+
+FORCE, MOMENT, LENGTH, ANGLE = "N", "N m", "m", "rad"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One kind of output.
+
+    ``axes`` is ``("t",)`` or ``("t", "xi")``. ``unit`` holds ``{q}`` where it depends on whether the joint's coordinate
+    is an angle (rad) or a slide (m), and ``{Q}`` where it depends on the effort that works on it (N m or N).
+    """
+
+    group: str
+    member: str
+    axes: tuple[str, ...]
+    unit: str
+    long_name: str
+    sign: str = ""
+
+    def unit_for(self, kind: str) -> str:
+        """The unit for a coordinate of the given kind, ``"angle"`` or ``"slide"``."""
+        angular = kind == "angle"
+        return self.unit.format(q=ANGLE if angular else LENGTH, Q=MOMENT if angular else FORCE)
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """What a file says of this quantity, its unit left out."""
+        return {"long_name": self.long_name} | ({"sign": self.sign} if self.sign else {})
+
+
+_ON_INBOARD = "action of the part towards the tip on the part towards the base"
+_ON_CHILD = "action of the parent side on the child side"
+_ALONG = "positive along the joint's coordinate"
+
+QUANTITIES = (
+    Quantity("motion", "", ("t",), "{q}", "coordinate of the joint: child against parent", "counter-clockwise, or along the axis"),
+    Quantity("motion", "rate", ("t",), "{q}/s", "rate of the joint's coordinate"),
+    Quantity("motion", "acceleration", ("t",), "{q}/s^2", "acceleration of the joint's coordinate"),
+    Quantity("pose", "x", ("t",), LENGTH, "place of the base, x"),
+    Quantity("pose", "y", ("t",), LENGTH, "place of the base, y"),
+    Quantity("pose", "angle", ("t",), ANGLE, "direction of the axis, continuous in time", "counter-clockwise from x"),
+    Quantity("effort", "", ("t",), "{Q}", "effort of the drive", _ALONG),
+    Quantity("reaction", "fx", ("t",), FORCE, "reaction of the joint, x", _ON_CHILD),
+    Quantity("reaction", "fy", ("t",), FORCE, "reaction of the joint, y", _ON_CHILD),
+    Quantity("reaction", "mz", ("t",), MOMENT, "moment of the joint about its point on the child", _ON_CHILD),
+    Quantity("section", "axial", ("t", "xi"), FORCE, "axial force", f"tension is positive: {_ON_INBOARD}, along the axis"),
+    Quantity("section", "shear", ("t", "xi"), FORCE, "shear force", f"{_ON_INBOARD}, 90 deg counter-clockwise of the axis"),
+    Quantity("section", "bending", ("t", "xi"), MOMENT, "bending moment", f"{_ON_INBOARD}, counter-clockwise"),
+    Quantity("law", "n0", ("t",), FORCE, "axial force at the tip"),
+    Quantity("law", "n1", ("t",), "m/s^2", "axial force for a unit of the mass mu0 from the section to the tip"),
+    Quantity("law", "n2", ("t",), "1/s^2", "axial force for a unit of the first moment mu1 from the section to the tip"),
+    Quantity("law", "f0", ("t",), FORCE, "shear force at the tip"),
+    Quantity("law", "f1", ("t",), "m/s^2", "shear force for a unit of the mass mu0 from the section to the tip"),
+    Quantity("law", "f2", ("t",), "1/s^2", "shear force for a unit of the first moment mu1 from the section to the tip"),
+    Quantity("law", "m0", ("t",), MOMENT, "bending moment at the tip"),
+)  # fmt: skip
+
+_BY_KEY = {(q.group, q.member): q for q in QUANTITIES}
+
+
+def members(group: str) -> tuple[str, ...]:
+    """The members of a group, in the order of the table."""
+    return tuple(q.member for q in QUANTITIES if q.group == group)
+
+
+def quantity_of(name: str) -> Quantity:
+    """The table's row for a full name such as ``motion:O_rate`` or ``section:rod:law:n0``.
+
+    Raises ``KeyError`` for a name that is none of the table's.
+    """
+    group, *rest = name.split(":")
+    if group == "motion":
+        for member in ("rate", "acceleration"):
+            if rest[0].endswith(f"_{member}"):
+                return _BY_KEY[group, member]
+        return _BY_KEY[group, ""]
+    if group == "effort":
+        return _BY_KEY[group, ""]
+    return _BY_KEY["law" if "law" in rest[1:] else group, rest[-1]]

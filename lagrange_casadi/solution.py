@@ -1,0 +1,204 @@
+"""What an evaluation gives: named arrays over time, section forces over time and xi/l, and peaks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .description import Description
+from .errors import LagrangeCasadiError, UnknownNameError
+from .quantities import quantity_of
+from .section_law import FORCES, Array, SectionLaw
+
+if TYPE_CHECKING:
+    import xarray
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """How the numbers were made. Holds no clock, no user and no path."""
+
+    backend: str
+    precision: str
+    compiler: str
+    flags: str
+    versions: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The value largest in size of a quantity, with its sign, and where it is; ``xi`` is a ratio, None off a link."""
+
+    name: str
+    value: float
+    unit: str
+    t: float
+    xi: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class JointMotion:
+    """Coordinate, rate and acceleration of a joint, each (t,)."""
+
+    value: Array
+    rate: Array
+    acceleration: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Reaction:
+    """Action of the joint's parent on its child, ground axes, each (t,) [N]; ``mz`` [N m] is None where the joint bears none."""
+
+    fx: Array
+    fy: Array
+    mz: Array | None
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """Place of a body's base [m] and direction of its axis [rad], each (t,); ``angle`` is None for a point mass."""
+
+    x: Array
+    y: Array
+    angle: Array | None
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """The forces inside a link. The grids are made when first asked for; the law itself is seven numbers an instant."""
+
+    law: SectionLaw
+    xi: Array
+
+    @cached_property
+    def axial(self) -> Array:
+        """Axial force (t, xi) [N], tension positive."""
+        return self.law.on_grid("axial", self.xi)
+
+    @cached_property
+    def shear(self) -> Array:
+        """Shear force (t, xi) [N]."""
+        return self.law.on_grid("shear", self.xi)
+
+    @cached_property
+    def bending(self) -> Array:
+        """Bending moment (t, xi) [N m]."""
+        return self.law.on_grid("bending", self.xi)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Solution:
+    """The outputs of a scene over its instants.
+
+    ``series`` holds every array over time by full name (``effort:O``, ``reaction:guide:fy``, ``section:rod:law:n0``, ...), each of
+    shape (t,); :mod:`.quantities` says what each means. ``xi`` are the ratios of the section grids.
+    """
+
+    case: str
+    t: Array
+    xi: Array
+    series: Mapping[str, Array]
+    description: Description
+    provenance: Provenance
+
+    def __repr__(self) -> str:
+        return f"<Solution of {self.case}: {self.t.size} instants, {self.xi.size} ratios, {', '.join(self.names())}>"
+
+    def effort(self, joint: str) -> Array:
+        """Effort of the drive at a joint (t,) [N m or N], positive along the joint's coordinate."""
+        return self._find("effort", "drive", joint, "")
+
+    def reaction(self, joint: str) -> Reaction:
+        """Reaction of a joint."""
+        fx, fy = (self._find("reaction", "joint with a reaction", joint, f":{member}") for member in ("fx", "fy"))
+        return Reaction(fx, fy, self.series.get(f"reaction:{joint}:mz"))
+
+    def motion(self, joint: str) -> JointMotion:
+        """Motion of a joint's coordinate."""
+        return JointMotion(*(self._find("motion", "joint with a motion", joint, end) for end in ("", "_rate", "_acceleration")))
+
+    def pose(self, body: str) -> Pose:
+        """Place and direction of a link or point mass."""
+        x, y = (self._find("pose", "body with a pose", body, f":{member}") for member in ("x", "y"))
+        return Pose(x, y, self.series.get(f"pose:{body}:angle"))
+
+    def section(self, link: str) -> Section:
+        """Forces inside a link."""
+        if link not in self._sections:
+            raise UnknownNameError("link with sections", link, self._sections)
+        return self._sections[link]
+
+    @property
+    def links_with_sections(self) -> tuple[str, ...]:
+        """The links whose sections were wanted."""
+        return tuple(self._sections)
+
+    def names(self) -> Iterator[str]:
+        """The full names of all quantities, the coefficients of the laws left out and the section forces in their place."""
+        yield from (name for name in self.series if ":law:" not in name)
+        yield from (f"section:{link}:{force}" for link in self._sections for force in FORCES)
+
+    def unit(self, name: str) -> str:
+        """The unit of a quantity by its full name."""
+        joint = name.split(":")[1].removesuffix("_rate").removesuffix("_acceleration")
+        kind = self.description["joints"].get(joint, {}).get("coordinate") or "angle"
+        return quantity_of(name).unit_for(kind)
+
+    def array(self, name: str) -> Array:
+        """A quantity by its full name: (t,), or (t, xi) for ``section:LINK:FORCE``."""
+        if name in self.series:
+            return self.series[name]
+        if name not in self.names():
+            raise UnknownNameError("quantity", name, self.names())
+        _, link, force = name.split(":")
+        grid: Array = getattr(self._sections[link], force)
+        return grid
+
+    def peak(self, name: str) -> Peak:
+        """The value of a quantity that is largest in size, over the instants; along a link exactly, whatever the grid of xi."""
+        if name not in self.names():
+            raise UnknownNameError("quantity", name, self.names())
+        if name in self.series:
+            values = self.series[name]
+            i = int(np.argmax(np.abs(values)))
+            return Peak(name, float(values[i]), self.unit(name), float(self.t[i]))
+        _, link, force = name.split(":")
+        places, values = self._sections[link].law.extreme(force)
+        i = int(np.argmax(np.abs(values)))
+        return Peak(name, float(values[i]), self.unit(name), float(self.t[i]), float(places[i]))
+
+    def to_xarray(self) -> xarray.Dataset:
+        """All quantities as an ``xarray.Dataset`` over t and xi, with units. Raises where xarray is not installed."""
+        try:
+            import xarray
+        except ImportError:
+            raise LagrangeCasadiError("to_xarray needs xarray; install it with: pip install xarray") from None
+        data = {
+            name: (quantity_of(name).axes, self.array(name), {"units": self.unit(name)} | quantity_of(name).attributes)
+            for name in self.names()
+        }
+        coordinates = {"t": ("t", self.t, {"units": "s"}), "xi": ("xi", self.xi, {"units": "1", "long_name": "ratio xi/l"})}
+        return xarray.Dataset(data, coordinates, {"case": self.case})
+
+    @cached_property
+    def _sections(self) -> dict[str, Section]:
+        laws: dict[str, dict[str, Array]] = {}
+        for name, values in self.series.items():
+            if ":law:" in name:
+                _, link, _, coefficient = name.split(":")
+                laws.setdefault(link, {})[coefficient] = values
+        bodies = self.description["bodies"]
+        return {link: Section(SectionLaw(bodies[link]["length"], bodies[link]["mass"], law), self.xi) for link, law in laws.items()}
+
+    def _find(self, group: str, kind: str, part: str, member: str) -> Array:
+        name = f"{group}:{part}{member}"
+        if name not in self.series:
+            parts = dict.fromkeys(
+                n.split(":")[1] for n in self.series if n.startswith(f"{group}:") and not n.endswith(("_rate", "_acceleration"))
+            )
+            raise UnknownNameError(kind, part, parts)
+        return self.series[name]

@@ -1,0 +1,188 @@
+"""A solution in an HDF5 file, and back: the schema is written down in ``docs/schema.md``.
+
+A file is written under a temporary name beside its place, flushed, stamped ``complete``, and renamed: a reader finds the file of
+before, or the whole new one.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from .description import Description
+from .errors import StoreError
+from .publish import replacing
+from .quantities import CONVENTIONS, QUANTITIES, quantity_of
+from .section_law import FORCES, Array
+from .solution import Provenance, Solution
+
+SCHEMA = "lagrange-casadi"
+SCHEMA_VERSION = 1
+
+_CHUNK_BYTES = 1 << 20
+_AXES = {"t": ("s", "time"), "xi": ("1", "place along a link, ratio xi/l")}
+_PROVENANCE = ("backend", "precision", "compiler", "flags")
+_GRID_TOLERANCE = 1e-12
+
+
+def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") -> None:
+    """Write a solution, replacing the file at ``path`` whole or not at all.
+
+    ``figures`` is kept for :mod:`.figures`, which reads from it how the case wants to be drawn. Raises :class:`StoreError` where
+    the file cannot be written.
+    """
+    target = Path(path)
+    with replacing(target) as draft, h5py.File(draft, "w", track_order=True) as file:
+        _write(file, solution, figures)
+        file.flush()
+        file.attrs["complete"] = True
+
+
+def load(path: str | os.PathLike[str]) -> Solution:
+    """Read a solution. Raises :class:`StoreError` for what is not a whole file of this schema."""
+    with _reading(path) as file:
+        return _read(file)
+
+
+def figure_specs(path: str | os.PathLike[str]) -> str:
+    """How the case wants to be drawn, as it was given to :func:`save`."""
+    with _reading(path) as file:
+        return str(file.attrs["figures"])
+
+
+def check(path: str | os.PathLike[str]) -> list[str]:
+    """What is wrong with a file, one line each; nothing where it is whole and consistent.
+
+    Every dataset is read, so its checksum is verified; every value must be finite, every axis have its scale, every unit and sign
+    be the schema's; and the section grids must be what the laws give, to 1e-12 of their peak.
+    """
+    with _reading(path) as file:
+        try:
+            solution = _read(file)
+            found = [finding for name in solution.names() for finding in _check_dataset(file, solution, name)]
+            for name in solution.series:
+                found += _check_dataset(file, solution, name) if ":law:" in name else []
+        except (OSError, KeyError, ValueError) as error:
+            return [f"damaged: {_one_line(error)}"]
+    return found
+
+
+def _check_dataset(file: h5py.File, solution: Solution, name: str) -> Iterator[str]:
+    place = _place(name)
+    dataset = file[place]
+    quantity = quantity_of(name)
+    expected = tuple({"t": solution.t.size, "xi": solution.xi.size}[axis] for axis in quantity.axes)
+    if dataset.shape != expected:
+        yield f"{place}: shape {dataset.shape}, expected {expected}"
+        return
+    stored = dataset[()]
+    if not np.isfinite(stored).all():
+        yield f"{place}: holds values that are not finite"
+    if dataset.attrs.get("units") != solution.unit(name):
+        yield f"{place}: units {dataset.attrs.get('units')!r}, expected {solution.unit(name)!r}"
+    for key, value in quantity.attributes.items():
+        if dataset.attrs.get(key) != value:
+            yield f"{place}: {key} is not the schema's"
+    for axis, scale in enumerate(quantity.axes):
+        if file[scale] not in dataset.dims[axis].values():
+            yield f"{place}: axis {axis} has no scale /{scale}"
+    if quantity.axes == ("t", "xi"):
+        gap = np.max(np.abs(stored - solution.array(name)), initial=0.0)
+        if gap > _GRID_TOLERANCE * abs(solution.peak(name).value):
+            yield f"{place}: differs from its law by {gap:.3g} {solution.unit(name)}"
+
+
+def _place(name: str) -> str:
+    return name.replace(":", "/")
+
+
+def _write(file: h5py.File, solution: Solution, figures: str) -> None:
+    for axis, values in (("t", solution.t), ("xi", solution.xi)):
+        scale = file.create_dataset(axis, data=values, fletcher32=True)
+        scale.attrs["units"], scale.attrs["long_name"] = _AXES[axis]
+        scale.make_scale(axis)
+    for name, values in solution.series.items():
+        _add(file, solution, name, values)
+    for link in solution.links_with_sections:
+        for force in FORCES:
+            _add(file, solution, f"section:{link}:{force}", solution.section(link).law.on_grid(force, solution.xi))
+    provenance = solution.provenance
+    file.attrs["schema"] = SCHEMA
+    file.attrs["schema_version"] = SCHEMA_VERSION
+    file.attrs["case"] = solution.case
+    file.attrs["conventions"] = CONVENTIONS
+    file.attrs["mechanism"] = json.dumps(solution.description)
+    file.attrs["parameters"] = json.dumps({k: v["value"] for k, v in solution.description["parameters"].items()})
+    file.attrs["versions"] = json.dumps(dict(provenance.versions))
+    for key in _PROVENANCE:
+        file.attrs[key] = getattr(provenance, key)
+    file.attrs["figures"] = figures
+
+
+def _add(file: h5py.File, solution: Solution, name: str, values: Array) -> None:
+    quantity = quantity_of(name)
+    row = values.itemsize * (values.size // values.shape[0])
+    chunks = (min(values.shape[0], max(1, _CHUNK_BYTES // row)), *values.shape[1:])
+    dataset = file.create_dataset(_place(name), data=values, chunks=chunks, fletcher32=True)
+    dataset.attrs["units"] = solution.unit(name)
+    for key, text in quantity.attributes.items():
+        dataset.attrs[key] = text
+    for axis, scale in enumerate(quantity.axes):
+        dataset.dims[axis].attach_scale(file[scale])
+
+
+def _read(file: h5py.File) -> Solution:
+    description = json.loads(file.attrs["mechanism"])
+    series: dict[str, Array] = {}
+
+    def visit(place: str, item: Any) -> None:
+        if isinstance(item, h5py.Dataset) and place not in _AXES:
+            name = place.replace("/", ":")
+            if quantity_of(name).axes == ("t",):
+                series[name] = item[()]
+
+    file.visititems(visit)
+    series = {name: series[name] for name in sorted(series, key=lambda name: _rank(name, description))}
+    backend, precision, compiler, flags = (str(file.attrs[key]) for key in _PROVENANCE)
+    provenance = Provenance(backend, precision, compiler, flags, json.loads(file.attrs["versions"]))
+    return Solution(str(file.attrs["case"]), file["t"][()], file["xi"][()], series, description, provenance)
+
+
+def _rank(name: str, description: Description) -> tuple[int, int, int]:
+    """The place of a quantity among those of a solution: by kind, then by part as declared, then as in the table."""
+    group, part, *_ = name.split(":")
+    parts = [*description["bodies"]] if group in ("pose", "section") else [*description["joints"]]
+    groups = list(dict.fromkeys(q.group for q in QUANTITIES))
+    part = part.removesuffix("_rate").removesuffix("_acceleration") if group == "motion" else part
+    return groups.index(group), parts.index(part), QUANTITIES.index(quantity_of(name))
+
+
+@contextmanager
+def _reading(path: str | os.PathLike[str]) -> Iterator[h5py.File]:
+    if not Path(path).is_file():
+        raise StoreError(f"{path}: no such file")
+    try:
+        file = h5py.File(path, "r")
+    except OSError as error:
+        raise StoreError(f"{path}: not a whole HDF5 file ({_one_line(error)})") from None
+    with file:
+        if file.attrs.get("schema") != SCHEMA:
+            raise StoreError(f"{path}: not a file of {SCHEMA}, its attribute 'schema' is {file.attrs.get('schema')!r}")
+        if file.attrs.get("schema_version") != SCHEMA_VERSION:
+            raise StoreError(
+                f"{path}: schema version {file.attrs.get('schema_version')}, this program reads version {SCHEMA_VERSION}"
+            )
+        if not file.attrs.get("complete", False):
+            raise StoreError(f"{path}: was not written to its end")
+        yield file
+
+
+def _one_line(error: BaseException) -> str:
+    return " ".join(str(error).split())

@@ -1,0 +1,91 @@
+"""The spanning tree of a mechanism: which joints carry the coordinates, and which close loops.
+
+The tree is grown from the ground, always by the joint of the highest rank in reach, then the one nearest the ground, then the
+one declared first. Driven joints rank first, so that a driven motion is a coordinate of its own; then joints that hold a
+direction, so that directions tied together stay one coordinate; then pins; a point mass on a line last, since opening it
+leaves a single equation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from .errors import DeclarationError
+from .mechanism import Body, Joint, Mechanism, Point
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """A joint of the tree; ``reverse`` where the tree runs from the joint's child to its parent."""
+
+    joint: Joint
+    reverse: bool
+
+    @property
+    def near(self) -> Point:
+        """The joint's point on the body nearer the ground."""
+        return self.joint.child if self.reverse else self.joint.parent
+
+    @property
+    def far(self) -> Point:
+        """The joint's point on the body that hangs on it."""
+        return self.joint.parent if self.reverse else self.joint.child
+
+    @property
+    def sign(self) -> int:
+        """1, or -1 where the tree runs against the joint."""
+        return -1 if self.reverse else 1
+
+
+@dataclass(frozen=True, eq=False)
+class Tree:
+    """``branches`` in an order in which each hangs on the ground or on an earlier one; ``closures`` close the loops."""
+
+    branches: tuple[Branch, ...]
+    closures: tuple[Joint, ...]
+
+    def branch_of(self, body: Body) -> Branch:
+        """The joint on which a moving body hangs."""
+        return next(branch for branch in self.branches if branch.far.body is body)
+
+
+def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
+    """The spanning tree of a frozen mechanism whose joints ``driven`` carry a prescribed motion.
+
+    Raises :class:`DeclarationError` for drives that close a loop among themselves, and for a link that only slides on a point.
+    """
+    depth: dict[Body, int] = {mechanism.ground: 0}
+    branches: list[Branch] = []
+    waiting = list(mechanism.joints.values())
+    while reachable := [
+        Branch(joint, joint.parent.body not in depth)
+        for joint in waiting
+        if (joint.parent.body in depth) != (joint.child.body in depth) and _can_carry(joint, joint.parent.body not in depth)
+    ]:
+        best = min(reachable, key=lambda branch: (-_rank(branch.joint, driven), depth[branch.near.body]))
+        depth[best.far.body] = depth[best.near.body] + 1
+        branches.append(best)
+        waiting.remove(best.joint)
+    for body in mechanism.moving:
+        if body not in depth:
+            raise DeclarationError(f"link '{body.name}' only slides on a point; it needs a joint that holds its place")
+    for joint in waiting:
+        if joint.name in driven:
+            raise DeclarationError(
+                f"the drive of joint '{joint.name}' is redundant: the motions of the other driven joints already place its bodies"
+            )
+    return Tree(tuple(branches), tuple(waiting))
+
+
+def _can_carry(joint: Joint, reverse: bool) -> bool:
+    """A point on a line does not place the body that carries the line."""
+    return not (reverse and joint.kind == "prismatic" and not joint.child.body.oriented)
+
+
+def _rank(joint: Joint, driven: Collection[str]) -> int:
+    if joint.name in driven:
+        return 3
+    if joint.holds_direction:
+        return 2
+    return 1 if joint.kind == "revolute" else 0

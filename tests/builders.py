@@ -1,0 +1,131 @@
+"""Mechanisms for tests, and what links the package's declarations to the oracle's."""
+
+from __future__ import annotations
+
+import math
+
+import casadi as ca
+import numpy as np
+import oracle
+
+from lagrange_casadi import Mechanism, Scene, derive
+from lagrange_casadi.mechanism import Link
+from lagrange_casadi.motion import polynomial
+
+MOTION = polynomial(0.2, 3.0, 4.0)
+INSTANT = 0.3
+
+
+def slider_crank(wanted=("all",), mechanism=None, **keywords):
+    """The paper's mechanism, with parameters; or another one with its motion."""
+    keywords = {"posture": {"rod": 0.0}, "t": (0, 0.08, 81), "xi": (0, 1, 11)} | keywords
+    return Scene(mechanism or _slider_crank(), {"O": polynomial(0, 25 * math.pi, math.pi / 200)}, wanted, **keywords)
+
+
+def _slider_crank():
+    m = Mechanism("slider_crank")
+    r, l = m.parameter("r", 0.1, "m"), m.parameter("l", 0.2, "m")
+    crank = m.link("crank", length=r, mass=m.parameter("m1", 0.1, "kg"))
+    rod = m.link("rod", length=l, mass=m.parameter("m2", 0.1, "kg"))
+    slider = m.point_mass("slider", m.parameter("m3", 0.1, "kg"))
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, slider)
+    m.prismatic("guide", m.ground, slider, axis=(1, 0))
+    return m
+
+
+def four_bar(lengths=(0.1, 0.35, 0.25), masses=(0.3, 0.5, 0.4), frame=(0.3, 0.05), rocker=1.5, turned=(False, False), **keywords):
+    """A crank-rocker; ``turned`` swaps parent and child, and the ends of coupler and rocker."""
+    m = Mechanism("four_bar")
+    a, b, c = (m.link(n, length=l, mass=w) for n, l, w in zip("abc", lengths, masses, strict=True))
+    ground = m.ground.at(*frame)
+    m.revolute("O", m.ground, a)
+    near, far = (b.tip, b.base) if turned[0] else (b.base, b.tip)
+    if turned[0]:
+        m.revolute("A", near, a.tip)
+    else:
+        m.revolute("A", a.tip, near)
+    if turned[1]:
+        m.revolute("C", c.tip, ground)
+        m.revolute("B", c.base, far)
+    else:
+        m.revolute("B", far, c.tip)
+        m.revolute("C", ground, c)
+    return Scene(m, {"O": MOTION}, posture={"c": rocker - math.pi if turned[1] else rocker}, t=(INSTANT, 1.0, 2), **keywords)
+
+
+def compare(scene, t=INSTANT, parameters=None, nudge=0.02):
+    """The largest difference between the scene's instant ``t`` and the oracle's, forces relative to the largest force."""
+    graph = derive(scene)
+    m = scene.mechanism
+    values = m.values(parameters)
+    p = list(values.values())
+    driven = np.array([x.full().ravel() for x in graph.motion(t, p)])
+    z = settle(graph, driven[0], p)
+    found = dict(zip(graph.columns, graph.instant(*driven, z, p).full().ravel(), strict=True))
+    solved = oracle_of(m, values).solve(
+        {joint: tuple(driven[:, i]) for i, joint in enumerate(graph.driven)},
+        {b.name: _rough(found, b.name, nudge) for b in m.moving},
+    )
+    size = max((abs(x) for forces in solved.reactions.values() for x in forces), default=0.0) or 1.0
+    gaps = {f"effort:{joint}": (found[f"effort:{joint}"] - effort) / size for joint, effort in solved.efforts.items()}
+    for joint, forces in solved.reactions.items():
+        for member, force in zip(("fx", "fy", "mz"), forces, strict=True):
+            gaps[f"reaction:{joint}:{member}"] = (found.get(f"reaction:{joint}:{member}", 0.0) - force) / size
+    for body in m.moving:
+        q = solved.q[body.name]
+        gaps[f"{body.name} x"] = found[f"pose:{body.name}:x"] - q[0].v
+        gaps[f"{body.name} y"] = found[f"pose:{body.name}:y"] - q[1].v
+        if f"section:{body.name}:law:n0" in found:
+            law = {k: found[f"section:{body.name}:law:{k}"] for k in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")}
+            for u in (0.0, 0.13, 0.5, 0.9, 1.0):
+                mine = section_forces(law, m.number(body.mass, values), m.number(body.length, values), u)
+                for k, (a, b) in enumerate(zip(mine, solved.sections[body.name](u), strict=True)):
+                    gaps[f"section {k} of {body.name} at {u}"] = (a - b) / size
+    worst = max(gaps, key=lambda name: abs(gaps[name]))
+    return worst, abs(gaps[worst])
+
+
+def settle(graph, d, p):
+    """The iterated coordinates at driven coordinates ``d``."""
+    z = ca.DM(graph.newton.guess if graph.newton else [])
+    for _ in range(60 if graph.newton else 0):
+        z += graph.newton.step(z, d, p)[0]
+    return z
+
+
+def section_forces(law, m, l, u):
+    """Axial, shear and bending from a law's coefficients, by the moments of a uniform rod as they are defined."""
+    mu0, mu1, mu2, xi = m * (1 - u), m * l / 2 * (1 - u**2), m * l**2 / 3 * (1 - u**3), u * l
+    return (
+        law["n0"] + law["n1"] * mu0 + law["n2"] * mu1,
+        law["f0"] + law["f1"] * mu0 + law["f2"] * mu1,
+        law["m0"] + law["f0"] * (l - xi) + law["f1"] * (mu1 - xi * mu0) + law["f2"] * (mu2 - xi * mu1),
+    )
+
+
+def oracle_of(m, values):
+    """The oracle of a mechanism: its numbers, and nothing else of the package."""
+
+    def number(expression):
+        return m.number(expression, values)
+
+    def point(p):
+        return p.body.name, number(p.x), number(p.y)
+
+    bodies = [oracle.Body(b.name, number(b.mass), number(b.length) if isinstance(b, Link) else None) for b in m.moving]
+    joints = [
+        oracle.Joint(j.name, j.kind, point(j.parent), point(j.child), (number(j.axis[0]), number(j.axis[1])), number(j.angle))
+        for j in m.joints.values()
+    ]
+    return oracle.Oracle(bodies, joints, (number(m.gravity[0]), number(m.gravity[1])))
+
+
+def _rough(found, body, nudge):
+    size = max(abs(v) for k, v in found.items() if k.startswith("pose:") and not k.endswith("angle")) or 1.0
+    return (
+        found[f"pose:{body}:x"] + nudge * size / 5,
+        found[f"pose:{body}:y"] - nudge * size / 5,
+        found.get(f"pose:{body}:angle", 0.0) + nudge,
+    )

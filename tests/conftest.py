@@ -1,0 +1,35 @@
+"""Fixtures that several test modules share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from lagrange_casadi import evaluate, load_case
+
+CASES = Path(__file__).parent.parent / "cases"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _cache(tmp_path_factory):
+    """Compile into a cache of this session's own."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.fixture(scope="session")
+def slider_crank():
+    """The paper's case."""
+    return load_case(CASES / "slider_crank")
+
+
+@pytest.fixture(scope="session")
+def solution(slider_crank):
+    """The paper's case, evaluated as it stands."""
+    return evaluate(slider_crank.scene)
+
+
+def pytest_addoption(parser):
+    parser.addoption("--update", action="store_true", help="write the generated parts of the documentation anew")

@@ -1,0 +1,58 @@
+"""Loading cases: what a case may be, and what is said of one that is broken."""
+
+import pytest
+
+from lagrange_casadi import load_case
+from lagrange_casadi.errors import CaseError, DeclarationError
+
+GOOD = """
+from lagrange_casadi import Mechanism, Scene, motion
+
+def scene():
+    m = Mechanism("arm")
+    m.revolute("J", m.ground, m.link("a", length=1, mass=1))
+    return Scene(m, {"J": motion.polynomial(0, 1)})
+"""
+
+
+def test_a_folder_or_a_file(tmp_path):
+    (tmp_path / "arm").mkdir()
+    (tmp_path / "arm" / "case.py").write_text(GOOD)
+    (tmp_path / "single.py").write_text(GOOD)
+    assert load_case(tmp_path / "arm").name == "arm"
+    assert load_case(tmp_path / "single.py").name == "single"
+    assert load_case(tmp_path / "arm").figures == ()
+
+
+def test_the_paper_says_what_it_wants_drawn(slider_crank):
+    assert [spec.name[:5] for spec in slider_crank.figures[:9]] == [f"fig{n:02}" for n in range(6, 15)]
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "says"),
+    [
+        ("x = 1\n\ny = 1 / 0\n", CaseError, r"case .*broken\.py, line 3: ZeroDivisionError: division by zero"),
+        ("def scene(:\n", CaseError, r"line 1: SyntaxError"),
+        ("import nonsense_that_is_not_there\n", CaseError, "ModuleNotFoundError"),
+        ("x = 1\n", CaseError, r"has no function scene\(\)"),
+        ("scene = 3\n", CaseError, r"has no function scene\(\)"),
+        ("def scene():\n    return 3\n", CaseError, r"scene\(\) returned int, expected a lagrange_casadi\.Scene"),
+        ("def scene():\n    raise ValueError('two\\nlines')\n", CaseError, r"line 2: ValueError: two lines$"),
+        (GOOD.replace("length=1", "length='x'"), DeclarationError, "link 'a': length must be a number"),
+    ],
+)
+def test_broken_cases_are_one_line(tmp_path, text, error, says):
+    path = tmp_path / "broken.py"
+    path.write_text(text)
+    with pytest.raises(error, match=says):
+        load_case(path)
+
+
+def test_what_is_no_case(tmp_path):
+    with pytest.raises(CaseError, match=r"has no case\.py"):
+        load_case(tmp_path)
+    with pytest.raises(CaseError, match="no such file"):
+        load_case(tmp_path / "nothing")
+    (tmp_path / "x.txt").write_text("")
+    with pytest.raises(CaseError, match=r"a Python file ending in \.py"):
+        load_case(tmp_path / "x.txt")

@@ -1,0 +1,215 @@
+"""The command line: what it writes, and the one line and status of every mistake."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5py
+import pytest
+
+from lagrange_casadi.cli import main
+
+CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_run_writes_the_file_and_the_figures(here, capsys):
+    assert main(["run", str(CASE)]) == 0
+    assert sorted(path.name for path in here.iterdir()) == ["slider_crank.h5", "slider_crank_figures"]
+    figures = sorted(path.stem for path in (here / "slider_crank_figures").iterdir())
+    assert [name[:5] for name in figures[:9]] == [f"fig{n:02}" for n in range(6, 15)]
+    assert figures[9:] == ["mechanism", "rod_maps"]
+    out = capsys.readouterr().out
+    assert "wrote slider_crank.h5 and the figures in slider_crank_figures/" in out
+    assert "section:rod:bending              0.941724 N m  at t = 0.0692 s, xi/l = 0.4527" in out
+
+
+def test_run_takes_options(here):
+    arguments = ["--set", "l=0.25", "--set", "m3=0.2", "--t", "0:0.04:5", "--xi", "0:1:3", "--want", "section:rod"]
+    assert main(["run", str(CASE), *arguments, "--backend", "vm", "--out", "x.h5", "--no-figures"]) == 0
+    assert [path.name for path in here.iterdir()] == ["x.h5"]
+    with h5py.File("x.h5") as h:
+        assert set(h) == {"t", "xi", "section"}
+        assert h["section/rod/bending"].shape == (5, 3)
+        assert h.attrs["backend"] == "vm"
+        assert '"l": 0.25' in h.attrs["parameters"]
+
+
+def test_run_replaces_an_older_file(here):
+    Path("x.h5").write_text("old")
+    assert main(["run", str(CASE), "--t", "0:0.04:5", "--out", "x.h5", "--no-figures"]) == 0
+    assert main(["check", "x.h5"]) == 0
+
+
+def test_plot_draws_what_run_drew(here):
+    assert main(["run", str(CASE), "--t", "0:0.08:41", "--figures", "one"]) == 0
+    assert main(["plot", "slider_crank.h5", "--out", "two"]) == 0
+    for path in Path("one").iterdir():
+        assert path.read_bytes() == (Path("two") / path.name).read_bytes(), path.name
+
+
+def test_info_of_a_case_counts_instructions(capsys):
+    assert main(["info", str(CASE)]) == 0
+    everything = capsys.readouterr().out
+    assert main(["info", str(CASE), "--want", "effort"]) == 0
+    effort = capsys.readouterr().out
+    counts = [int(text.split("instructions an instant: ")[1].split()[0]) for text in (effort, everything)]
+    assert counts[0] < counts[1]
+    assert "outputs: all, effort, motion, reaction:O" in everything
+    assert "loops closed by: guide (closed form)" in everything
+    assert "parameter r = 0.1 m (range 0 to inf)" in everything
+
+
+def test_info_of_a_file(here, capsys):
+    main(["run", str(CASE), "--t", "0:0.08:41", "--no-figures"])
+    capsys.readouterr()
+    assert main(["info", "slider_crank.h5"]) == 0
+    out = capsys.readouterr().out
+    assert "backend: c, double" in out
+    assert "section:rod:bending" in out
+
+
+def test_check_fails_a_damaged_file(here, capsys):
+    main(["run", str(CASE), "--t", "0:0.08:41", "--no-figures"])
+    with h5py.File("slider_crank.h5", "r+") as h:
+        h["section/rod/bending"][3, 4] = 7.0
+    capsys.readouterr()
+    assert main(["check", "slider_crank.h5"]) == 1
+    assert "section/rod/bending: differs from its law" in capsys.readouterr().err
+
+
+BROKEN = {
+    "raises.py": "1 / 0\n",
+    "empty.py": "x = 1\n",
+    "heavy.py": """
+from lagrange_casadi import Mechanism, Scene, motion
+def scene():
+    m = Mechanism("heavy")
+    m.revolute("J", m.ground, m.link("a", length=1, mass=m.parameter("m", 1.0, "kg", low=-10)))
+    return Scene(m, {"J": motion.polynomial(0, 1)})
+""",
+}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "says"),
+    [
+        (["run", "CASE", "--set", "R=1"], 2, "unknown parameter 'R'; valid: r, l, m1, m2, m3"),
+        (["run", "CASE", "--set", "r=big"], 2, "expected NAME=VALUE with a number, as in l=0.25, got 'r=big'"),
+        (["run", "CASE", "--set", "r"], 2, "expected NAME=VALUE"),
+        (["run", "CASE", "--set", "r=nan"], 2, "parameter 'r' must be a finite number, got nan"),
+        (["run", "CASE", "--set", "r=0.1", "--set", "r=0.2"], 2, "parameter 'r' is set twice"),
+        (["run", "CASE", "--set", "m2=-1"], 2, "parameter 'm2' = -1 kg is out of its range [0, inf]"),
+        (["run", "CASE", "--set", "l=0"], 2, "link 'rod': length must be positive, got 0 m"),
+        (["run", "CASE", "--set", "r=0.3"], 1, "closed by joint 'guide' cannot be closed at t = 0.0093 s, where O = 0.73"),
+        (["run", "CASE", "--set", "m1=0", "--set", "m2=0", "--set", "m3=0"], 2, "'slider_crank' is massless"),
+        (["run", "heavy.py", "--set", "m=-1"], 2, "link 'a': mass must not be negative, got -1 kg"),
+        (["run", "CASE", "--want", "torque"], 2, "unknown output 'torque'; valid: all, effort, motion, reaction:O"),
+        (["run", "CASE", "--want", "reaction:X"], 2, "unknown output 'reaction:X'"),
+        (["run", "CASE", "--want", "section:slider"], 2, "'slider' is not a link and has no sections"),
+        (["run", "CASE", "--t", "0:1:0"], 2, "t: COUNT must be a whole number of at least 1, got 0"),
+        (["run", "CASE", "--t", "0:1"], 2, "expected START:STOP:COUNT, as in 0:0.08:801, got '0:1'"),
+        (["run", "CASE", "--t", "1:0:5"], 2, "t: STOP must be after START"),
+        (["run", "CASE", "--xi", "0:2:5"], 2, "ratios xi/l must lie in [0, 1]"),
+        (["run", "CASE", "--backend", "gpu"], 2, "'gpu' is not one of 'auto', 'c', 'vm'"),
+        (["run", "CASE", "--out", "nowhere/x.h5"], 1, "cannot write nowhere/x.h5: folder nowhere does not exist"),
+        (["run", "CASE", "--out", "."], 1, "it is a folder"),
+        (["run", "CASE", "--figures", "raises.py"], 1, "it is a file, not a folder"),
+        (["run", "nothing"], 2, "case nothing: no such file"),
+        (["run", "raises.py"], 2, "case raises.py, line 1: ZeroDivisionError: division by zero"),
+        (["run", "empty.py"], 2, "case empty.py: has no function scene()"),
+        (["run"], 2, "Missing argument 'CASE'"),
+        (["walk"], 2, "unknown command 'walk'; valid: run, plot, info, check"),
+        (["run", "CASE", "--fast"], 2, "No such option"),
+        (["check", "nothing.h5"], 1, "nothing.h5: no such file"),
+        (["check", "raises.py"], 1, "raises.py: not a whole HDF5 file"),
+        (["plot", "raises.py", "--out", "figures"], 1, "not a whole HDF5 file"),
+        (["info", "nothing.h5"], 1, "nothing.h5: no such file"),
+        (["info", "x.h5", "--want", "effort"], 2, "--want goes with a case"),
+    ],
+)
+def test_a_mistake_is_one_line_and_leaves_nothing(here, capfd, arguments, status, says):
+    for name, text in BROKEN.items():
+        (here / name).write_text(text)
+    before = sorted(os.listdir(here))
+    assert main([str(CASE) if word == "CASE" else word for word in arguments]) == status
+    out, err = capfd.readouterr()
+    assert err.startswith("error: ")
+    assert err.count("\n") == 1
+    assert says in err
+    assert out == ""
+    assert sorted(name for name in os.listdir(here) if name != "__pycache__") == before
+
+
+def test_a_failing_compiler_is_one_line(here, capfd, monkeypatch, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("cc")
+    program = folder / "cc"
+    program.write_text('#!/bin/sh\ntest "$1" = --version && exit 0\necho "x.c:1: error: no" >&2\nexit 1\n')
+    program.chmod(0o755)
+    monkeypatch.setenv("CC", str(program))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
+    assert main(["run", str(CASE)]) == 1
+    assert "failed with status 1: x.c:1: error: no (whole message in" in capfd.readouterr().err
+    assert os.listdir(here) == []
+
+
+def test_without_a_compiler_one_line_says_so(here, capfd, monkeypatch):
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setattr("lagrange_casadi.codegen.compiler.shutil.which", lambda _: None)
+    monkeypatch.setattr("lagrange_casadi.codegen.compiler.importlib.util.find_spec", lambda _: None)
+    assert main(["run", str(CASE), "--t", "0:0.08:11", "--no-figures"]) == 0
+    assert capfd.readouterr().err.startswith("note: no C compiler found")
+    assert main(["run", str(CASE), "--backend", "c", "--out", "y.h5", "--no-figures"]) == 1
+    assert "backend 'c' needs a C compiler" in capfd.readouterr().err
+    assert os.listdir(here) == ["slider_crank.h5"]
+
+
+SLOW = """
+import time
+from lagrange_casadi import load_case
+def scene():
+    print("ready", flush=True)
+    return load_case({case!r}).scene
+"""
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.5])
+def test_ctrl_c_is_one_line_and_leaves_nothing(here, tmp_path_factory, delay):
+    """A real interrupt of a real process, which would compute for a long while."""
+    case = tmp_path_factory.mktemp("slow") / "slow.py"
+    case.write_text(SLOW.format(case=str(CASE)))
+    command = [sys.executable, "-m", "lagrange_casadi", "run", str(case), "--t", "0:0.08:10000000", "--backend", "vm"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "ready\n"
+    time.sleep(delay)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert err == "error: interrupted; nothing was left half-written\n"
+    assert out == ""
+    assert os.listdir(here) == []
+
+
+def test_help_and_version(capsys):
+    assert main(["--version"]) == 0
+    assert main(["--help"]) == 0
+    assert main(["run", "--help"]) == 0
+    out = capsys.readouterr().out
+    assert "lagrange-casadi, version" in out
+    assert "--set NAME=VALUE" in out
+
+
+def test_the_module_runs_as_a_program(here):
+    command = [sys.executable, "-m", "lagrange_casadi", "--version"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("lagrange-casadi, version")
+    assert shutil.which("lagrange-casadi")

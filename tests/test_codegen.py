@@ -1,0 +1,180 @@
+"""The emitted C: pedantically clean, reproducible, and the same numbers as the virtual machine."""
+
+import os
+import re
+import shutil
+import stat
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from builders import four_bar, slider_crank
+from test_mobility import truss_platform
+
+from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
+from lagrange_casadi.codegen import compiler
+from lagrange_casadi.errors import CompilerError
+from lagrange_casadi.evaluate import run
+
+
+def spline_arm():
+    m = Mechanism("arm")
+    m.revolute("J", m.ground, m.link("a", length=1, mass=1))
+    return Scene(m, {"J": motion.samples([0, 1, 2, 3], [0, 1, 4, 2])}, t=(0, 3, 4))
+
+
+def without_ends():
+    """The paper's mechanism with every pin a hair's breadth, exactly zero, off the links' ends: no link has a section law."""
+    m = Mechanism("slider_crank")
+    r, l = m.parameter("r", 0.1, "m"), m.parameter("l", 0.2, "m")
+    crank = m.link("crank", length=r, mass=m.parameter("m1", 0.1, "kg"))
+    rod = m.link("rod", length=l, mass=m.parameter("m2", 0.1, "kg"))
+    slider = m.point_mass("slider", m.parameter("m3", 0.1, "kg"))
+    m.revolute("O", m.ground, crank.at(0.0))
+    m.revolute("A", crank.at(r), rod.at(0.0))
+    m.revolute("B", rod.at(l), slider)
+    m.prismatic("guide", m.ground, slider, axis=(1, 0))
+    return slider_crank(wanted=["effort"], mechanism=m)
+
+
+SCENES = {
+    "slider_crank": slider_crank,
+    "effort_alone": lambda: slider_crank(wanted=["effort"]),
+    "four_bar": four_bar,
+    "iterated": truss_platform,
+    "spline": spline_arm,
+}
+PEDANTIC = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter"]
+
+
+@pytest.fixture
+def fresh_cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    return tmp_path / "cache" / "lagrange_casadi"
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_emitted_c_is_pedantically_clean(name, tmp_path):
+    source = tmp_path / "scene.c"
+    source.write_text(codegen.emit(derive(SCENES[name]())))
+    found = codegen.find_compiler()
+    result = subprocess.run(
+        [*found.command, *PEDANTIC, "-c", source, "-o", tmp_path / "scene.o"], capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 0, result.stderr
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
+    scene = SCENES[name]()
+    graph = derive(scene)
+    t, p = np.linspace(*scene.t), np.array(list(scene.mechanism.values().values()))
+    library = codegen.load(codegen.emit(graph), codegen.find_compiler())
+    out, status = np.full((len(graph.columns), t.size), np.nan), np.full(t.size, -1, dtype=np.int32)
+    library.evaluate(t, p, np.array(graph.newton.guess if graph.newton else ()), out, status)
+    assert np.all(status == 0)
+    assert np.isfinite(out).all()
+    machine, _ = run(graph, t, p, "vm")
+    scale = np.max(np.abs(machine.out), axis=1, keepdims=True) + 1e-300
+    assert np.max(np.abs(out - machine.out) / scale) <= (0.0 if name in ("slider_crank", "four_bar") else 1e-13)
+
+
+def test_emission_is_the_same_in_every_process(tmp_path):
+    """Two interpreters with different hash seeds emit the same bytes; no path, no clock."""
+    program = "import sys; sys.path[:0] = {!r}; from builders import slider_crank; from lagrange_casadi import codegen, derive; "
+    program = program.format([str(tmp_path), os.path.dirname(__file__)]) + "print(codegen.emit(derive(slider_crank())))"
+    texts = []
+    for seed in ("1", "2"):
+        environment = os.environ | {"PYTHONHASHSEED": seed}
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, env=environment)
+        texts.append(done.stdout)
+    assert texts[0] == texts[1]
+    assert str(tmp_path) not in texts[0]
+    assert os.path.dirname(__file__) not in texts[0]
+
+
+def test_wanting_the_effort_alone_emits_no_section_term():
+    """One value an instant beside the loop's closure, and the same C as a mechanism that has no section to give."""
+    scene = slider_crank(wanted=["effort"])
+    alone, both = (codegen.emit(derive(scene, wanted)) for wanted in (["effort"], ["effort", "section:rod"]))
+    statements = [len(re.findall(r"\ba\d+=", text)) for text in (alone, both)]
+    assert statements[0] + 20 < statements[1]
+    assert derive(scene).instant.size1_out(0) == 2
+    assert alone == codegen.emit(derive(without_ends()))
+
+
+def test_a_changed_parameter_compiles_nothing(fresh_cache):
+    scene = slider_crank()
+    evaluate(scene, backend="c")
+    before = sorted(fresh_cache.iterdir())
+    evaluate(scene, backend="c", parameters={"l": 0.3, "m2": 1.0}, t=(0, 1, 7))
+    assert sorted(fresh_cache.iterdir()) == before
+    assert [path.suffix for path in before] == [".c", ".so"]
+
+
+def test_several_builds_at_once(fresh_cache):
+    source, found = codegen.emit(derive(slider_crank())), codegen.find_compiler()
+    with ThreadPoolExecutor(8) as pool:
+        paths = list(pool.map(lambda _: compiler.build(source, found), range(8)))
+    assert len(set(paths)) == 1
+    assert sorted(path.suffix for path in fresh_cache.iterdir()) == [".c", ".so"]
+
+
+def test_a_damaged_library_is_built_again(fresh_cache):
+    source, found = codegen.emit(derive(slider_crank())), codegen.find_compiler()
+    path = compiler.build(source, found)
+    path.write_bytes(b"not a library")
+    assert codegen.load(source, found).path == path
+
+
+def fake_compiler(folder, monkeypatch, script):
+    program = folder / "fake-cc"
+    program.write_text(f"#!/bin/sh\n{script}\n")
+    program.chmod(program.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setenv("CC", str(program))
+    return program
+
+
+def test_a_failing_compiler_is_quoted_and_its_message_kept(tmp_path, fresh_cache, monkeypatch):
+    fake_compiler(tmp_path, monkeypatch, 'test "$1" = --version && echo fake 1.0 && exit 0; echo "x.c:1: error: no" >&2; exit 3')
+    with pytest.raises(CompilerError, match=r"fake-cc failed with status 3: x\.c:1: error: no \(whole message in .*\.log\)"):
+        evaluate(slider_crank())
+    assert [path.read_text() for path in fresh_cache.glob("*.log")] == ["x.c:1: error: no\n"]
+    assert not list(fresh_cache.glob("*.so"))
+
+
+def test_cc_that_does_not_run_is_an_error(monkeypatch):
+    monkeypatch.setenv("CC", "/nowhere/cc --wild")
+    with pytest.raises(CompilerError, match=r"\$CC = '/nowhere/cc --wild' does not run"):
+        codegen.find_compiler()
+
+
+def test_cc_may_hold_words(monkeypatch):
+    monkeypatch.setenv("CC", f"{shutil.which('cc') or shutil.which('gcc')} -pipe")
+    assert codegen.find_compiler().command[1:] == ("-pipe",)
+    assert evaluate(slider_crank()).provenance.backend == "c"
+
+
+@pytest.fixture
+def _no_compiler(monkeypatch):
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setattr(compiler.shutil, "which", lambda _: None)
+    monkeypatch.setattr(compiler.importlib.util, "find_spec", lambda _: None)
+
+
+@pytest.mark.usefixtures("_no_compiler")
+def test_without_a_compiler_the_virtual_machine_serves_and_says_so():
+    with pytest.warns(UserWarning, match="no C compiler found"):
+        solution = evaluate(slider_crank())
+    assert solution.provenance.backend == "vm"
+    with pytest.raises(CompilerError, match="backend 'c' needs a C compiler"):
+        evaluate(slider_crank(), backend="c")
+
+
+def test_a_cache_that_cannot_be_written_is_named(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    with pytest.raises(CompilerError, match="cannot write into the cache folder"):
+        evaluate(slider_crank())

@@ -1,0 +1,81 @@
+"""Figures: each spec draws what it says, from the arrays of the solution."""
+
+import numpy as np
+import pytest
+
+from lagrange_casadi import evaluate, figures
+from lagrange_casadi.errors import DeclarationError, StoreError
+from lagrange_casadi.figures import MechanismDrawing, SectionMaps, SpanPlot, TimePlot
+
+
+def curves(figure):
+    return [line.get_xydata() for line in figure.axes[0].get_lines() if len(line.get_xydata()) > 2]
+
+
+def test_time_plot_applies_the_factor(solution):
+    spec = TimePlot("guide", ("reaction:guide:fy",), "guide", factor=-1, note="sign of the paper")
+    figure = spec.draw(solution)
+    (curve,) = curves(figure)
+    np.testing.assert_array_equal(curve, np.column_stack([solution.t, -solution.reaction("guide").fy]))
+    assert figure.axes[0].get_ylabel().endswith("[N]")
+    assert figure.get_supxlabel() == "sign of the paper"
+
+
+def test_time_plot_of_sections(solution):
+    figure = TimePlot("axial", ("section:rod:axial",), xi=(0.25, 0.5)).draw(solution)
+    quarter, half = curves(figure)
+    np.testing.assert_allclose(quarter[:, 1], solution.section("rod").axial[:, 25], rtol=1e-12)
+    np.testing.assert_allclose(half[:, 1], solution.section("rod").axial[:, 50], rtol=1e-12)
+
+
+def test_span_plot_takes_the_nearest_instant(solution):
+    figure = SpanPlot("bending", "section:rod:bending", 0.03004, "bending").draw(solution)
+    np.testing.assert_array_equal(curves(figure)[0][:, 1], solution.section("rod").bending[300])
+    assert "t = 0.03 s" in figure.axes[0].get_title()
+
+
+def test_maps_mark_the_peaks(solution):
+    figure = SectionMaps("maps", "rod").draw(solution)
+    marks = [axes.get_lines()[0].get_xydata()[0] for axes in figure.axes if axes.get_lines()]
+    peaks = [solution.peak(f"section:rod:{force}") for force in ("axial", "shear", "bending")]
+    np.testing.assert_array_equal(marks, [(peak.t, peak.xi) for peak in peaks])
+
+
+def test_drawing_puts_the_links_where_they_are(solution):
+    figure = MechanismDrawing(count=4).draw(solution)
+    assert len(figure.axes) == 4
+    lines = {line.get_label(): line.get_xydata() for line in figure.axes[1].get_lines()}
+    np.testing.assert_allclose(lines["crank"], [(0, 0), (0, 0.1)], atol=1e-5)
+    np.testing.assert_allclose(lines["rod"], [(0, 0.1), (np.sqrt(0.03), 0)], atol=1e-5)
+    np.testing.assert_allclose(lines["slider"], [(np.sqrt(0.03), 0)], atol=1e-5)
+
+
+def test_specs_survive_the_file(slider_crank):
+    assert figures.parse_specs(figures.dump_specs(slider_crank.figures)) == slider_crank.figures
+    assert figures.parse_specs("") == ()
+    with pytest.raises(StoreError, match="attribute 'figures' is damaged"):
+        figures.parse_specs('[{"kind": "pie"}]')
+
+
+def test_what_is_not_there_is_not_drawn(slider_crank, tmp_path):
+    solution = evaluate(slider_crank.scene, wanted=["effort"], t=(0, 0.08, 21))
+    drawn = list(figures.draw(solution, slider_crank.figures, tmp_path))
+    assert [spec.name for spec, path in drawn if path] == ["fig07_torque"]
+    assert [path.name for path in tmp_path.iterdir()] == ["fig07_torque.png"]
+
+
+def test_default_figures_cover_the_solution(solution):
+    names = {spec.name for spec in figures.default_figures(solution)}
+    assert {"motion_O", "motion_guide", "effort_O", "reaction_guide", "section_rod", "section_crank", "mechanism"} <= names
+
+
+def test_the_same_solution_gives_the_same_bytes(solution, tmp_path):
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        list(figures.draw(solution, [SpanPlot("x", "section:rod:bending", 0.03)], tmp_path / name))
+    assert (tmp_path / "one" / "x.png").read_bytes() == (tmp_path / "two" / "x.png").read_bytes()
+
+
+def test_what_is_no_spec_is_named(solution, tmp_path):
+    with pytest.raises(DeclarationError, match=r"figures\(\) must give specs"):
+        list(figures.draw(solution, ["fig"], tmp_path))

@@ -1,0 +1,139 @@
+"""Loops: closure, rates, branches, and what is said where they cannot be closed."""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+from builders import INSTANT, four_bar, slider_crank
+from test_mobility import CASES, block, cross_slide, truss_platform
+
+from lagrange_casadi import Mechanism, Scene, derive, evaluate
+from lagrange_casadi.errors import AssemblyError, DeclarationError, MobilityError
+from lagrange_casadi.linear import LinearSystem
+from lagrange_casadi.motion import polynomial
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_dyad_has_a_closed_form(name):
+    """RRR, RRP, RPR, PRP and a guided point: none of these cases iterates."""
+    assert derive(CASES[name]()).newton is None
+
+
+@pytest.mark.parametrize("scene", [four_bar(), block(), cross_slide(), CASES["inverted_block_carries"]()], ids=str)
+def test_rates_are_the_derivatives_of_positions(scene):
+    """Against differences in time that use positions alone."""
+    h = 1e-4
+    graph = derive(scene, ["motion"])
+    rows = [graph.instant(*graph.motion(INSTANT + k * h, []), [], []).full().ravel() for k in range(-3, 4)]
+    columns = dict(zip(graph.columns, np.unwrap(np.array(rows), axis=0).T, strict=True))
+    for name, values in columns.items():
+        if name.startswith("motion:") and f"{name}_rate" in columns:
+            first = (-values[0] + 9 * values[1] - 45 * values[2] + 45 * values[4] - 9 * values[5] + values[6]) / (60 * h)
+            rate = columns[f"{name}_rate"]
+            second = (-rate[0] + 9 * rate[1] - 45 * rate[2] + 45 * rate[4] - 9 * rate[5] + rate[6]) / (60 * h)
+            assert first == pytest.approx(rate[3], abs=1e-9, rel=1e-9)
+            assert second == pytest.approx(columns[f"{name}_acceleration"][3], abs=1e-8, rel=1e-8)
+
+
+def test_the_posture_chooses_the_branch():
+    for rocker, sign in ((1.5, 1), (-1.5, -1)):
+        solution = evaluate(four_bar(rocker=rocker), wanted=["motion"])
+        assert math.copysign(1, math.sin(solution.pose("c").angle[0])) == sign
+
+
+def test_the_branch_is_asked_for_where_it_is_open():
+    scene = slider_crank(posture={})
+    says = r"joint 'guide' can be assembled in two ways.*rod = .*\(0 deg\).* or rod = .*180 deg.*posture=\{'rod'"
+    with pytest.raises(DeclarationError, match=says):
+        derive(scene)
+
+
+def test_a_posture_between_the_branches_is_no_answer():
+    with pytest.raises(DeclarationError, match="two ways"):
+        derive(slider_crank(posture={"rod": math.pi / 2}))
+
+
+def test_a_loop_that_cannot_close_at_the_start_is_named():
+    with pytest.raises(
+        AssemblyError, match=r"closed by joint 'B' cannot be closed at the start of the motion, where O = 1\.46 rad"
+    ):
+        derive(four_bar(lengths=(0.1, 0.1, 0.1), frame=(1.0, 0.0)))
+
+
+def test_a_loop_that_opens_on_the_way_is_named_with_its_angle():
+    scene = slider_crank(posture={"rod": 0.0})
+    with pytest.raises(AssemblyError, match=r"closed by joint 'guide' cannot be closed at t = 0\.01 s, where O = 0\.785.*\(45\."):
+        evaluate(scene, parameters={"r": 0.3})
+
+
+def test_a_dead_centre_is_named():
+    """r = l and the crank exactly at 90 deg: the rod stands on the guide's normal, and no force is determined."""
+    m = Mechanism("dead")
+    a, b, p = m.link("a", length=1.0, mass=1.0), m.link("b", length=1.0, mass=1.0), m.point_mass("p", 1.0)
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, p)
+    m.prismatic("guide", m.ground, p, axis=(1, 0))
+    scene = Scene(m, {"O": polynomial(0.0, math.pi / 2)}, t=(0, 1, 3), posture={"b": 0.0})
+    with pytest.raises(AssemblyError, match=r"joint 'guide' is at a dead centre at t = 1 s, where O = 1\.5708 rad \(90 deg\)"):
+        evaluate(scene)
+
+
+@pytest.mark.parametrize(("drives", "says"), [((), "1 degree.* and 0 drive"), (("O", "A"), "1 degree.* and 2 drive")])
+def test_drives_must_match_the_freedom(drives, says):
+    base = four_bar()
+    with pytest.raises(MobilityError, match=says):
+        derive(Scene(base.mechanism, {name: polynomial(0.1) for name in drives}))
+
+
+def test_loops_closed_twice_are_refused():
+    """A second coupler parallel to the first leaves the count of freedoms right only if something else is loose."""
+    m = Mechanism("twice")
+    a, b, c, d = (m.link(n, length=1.0, mass=1.0) for n in "abcd")
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.prismatic("P", m.ground.at(0, 1), b, axis=(1, 0))
+    m.revolute("Q", m.ground.at(3, 0), c)
+    m.revolute("R", c.tip, d)
+    with pytest.raises(MobilityError, match="over-determined"):
+        derive(Scene(m, {"O": polynomial(0.5), "P": polynomial(0.1)}, posture={"b": 0.0}))
+
+
+def test_a_loop_without_closed_form_needs_a_posture():
+    base = truss_platform()
+    with pytest.raises(DeclarationError, match=r"have no closed form; give a rough posture of .*leg0"):
+        derive(Scene(base.mechanism, base.motion, posture={"bar0": 0.0}))
+
+
+def test_iteration_follows_the_motion():
+    """Every loop stays closed, on both backends, over the whole motion."""
+    scene = truss_platform()
+    solution = evaluate(scene)
+    for i in range(3):
+        leg, bar = solution.pose(f"leg{i}"), solution.pose(f"bar{i}")
+        length = solution.description["bodies"][f"leg{i}"]["length"]
+        np.testing.assert_allclose(leg.x + length * np.cos(leg.angle), bar.x, atol=1e-15)
+        np.testing.assert_allclose(leg.y + length * np.sin(leg.angle), bar.y, atol=1e-15)
+    machine = evaluate(scene, backend="vm")
+    for name in solution.names():
+        np.testing.assert_allclose(solution.array(name), machine.array(name), rtol=1e-12, atol=1e-12, err_msg=name)
+
+
+@pytest.mark.parametrize("backend", ["c", "vm"])
+def test_a_loop_that_does_not_converge_is_named(backend):
+    """A shaft of 5 m carries the first leg's foot out of reach."""
+    with pytest.raises(AssemblyError, match=r"did not converge at t = 0 s, where O = 0 rad \(0 deg\)"):
+        evaluate(truss_platform(), backend=backend, parameters={"shaft": 5.0})
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 5])
+def test_linear_systems(n):
+    rng = np.random.default_rng(n)
+    matrix, right = rng.normal(size=(n, n)), rng.normal(size=n)
+    symbols = ca.SX.sym("a", n, n)
+    system = LinearSystem.of(symbols)
+    f = ca.Function("f", [symbols], [system.solve(ca.SX(right)), system.solve_transposed(ca.SX(right))])
+    one, two = (x.full().ravel() for x in f(matrix))
+    np.testing.assert_allclose(one, np.linalg.solve(matrix, right), rtol=1e-11)
+    np.testing.assert_allclose(two, np.linalg.solve(matrix.T, right), rtol=1e-11)

@@ -1,0 +1,83 @@
+"""Imports run one way: no module imports one that stands above it."""
+
+import ast
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import lagrange_casadi
+
+PACKAGE = Path(lagrange_casadi.__file__).parent
+ORDER = (
+    "version",
+    "errors",
+    "quantities",
+    "mechanism",
+    "tree",
+    "planar",
+    "lagrange",
+    "multibody",
+    "loops",
+    "linear",
+    "kinematics",
+    "mobility",
+    "motion",
+    "scene",
+    "codegen",
+    "description",
+    "section_law",
+    "solution",
+    "evaluate",
+    "publish",
+    "store",
+    "drawing",
+    "figures",
+    "case",
+    "cli",
+)
+
+
+def modules():
+    for path in sorted(PACKAGE.rglob("*.py")):
+        parts = path.relative_to(PACKAGE).parts
+        if parts[0] not in ("__init__.py", "__main__.py"):
+            yield parts[0].removesuffix(".py"), path
+
+
+def imported(path):
+    """The package's own modules that a file imports, wherever in the file."""
+    depth = len(path.relative_to(PACKAGE).parts)
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.ImportFrom) and node.level == depth:
+            names = [node.module] if node.module else [alias.name for alias in node.names]
+            yield from (name.split(".")[0] for name in names)
+
+
+def test_every_module_has_its_place():
+    assert {name for name, _ in modules()} == set(ORDER)
+
+
+def test_imports_run_downward_only():
+    for name, path in modules():
+        for other in imported(path):
+            assert ORDER.index(other) < ORDER.index(name), f"{path.name} imports {other}"
+
+
+def test_the_engine_knows_no_mechanism():
+    """Nothing under the cases may know the words of one."""
+    words = re.compile(r"\b(crank|rod|slider|rocker|coupler)\b", re.IGNORECASE)
+    for name, path in modules():
+        if name in ("tree", "planar", "multibody", "loops", "kinematics", "mobility", "scene", "codegen", "evaluate"):
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                assert not words.search(line), f"{path.name}:{number}: {line}"
+
+
+def test_matplotlib_waits_until_a_figure_is_drawn():
+    program = "import sys, lagrange_casadi, lagrange_casadi.cli; assert 'matplotlib' not in sys.modules"
+    subprocess.run([sys.executable, "-c", program], check=True)
+
+
+def test_no_file_is_two_things():
+    for _, path in modules():
+        assert len(path.read_text().splitlines()) <= 400, path

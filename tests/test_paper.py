@@ -1,0 +1,222 @@
+"""The printed equations of Nguyen, Petre, Stroe, corrected and as printed.
+
+Every test of a printed formula states the correction it makes and shows that the formula as printed misses by just that. The
+engine is asked at arbitrary theta, theta', theta'' and dimensions, where no term can hide.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from builders import section_forces, slider_crank
+
+from lagrange_casadi import derive
+
+G = 9.81
+
+
+@dataclass(frozen=True)
+class State:
+    """One posture of one slider-crank."""
+
+    r: float
+    l: float
+    m1: float
+    m2: float
+    m3: float
+    angle: float
+    rate: float
+    acceleration: float
+
+    def __post_init__(self):
+        s, c = np.sin(self.angle), np.cos(self.angle)
+        D = self.l**2 - self.r**2 * s**2
+        self.__dict__.update(s=s, c=c, D=D, q=np.sqrt(D))
+
+
+STATES = [
+    State(0.1, 0.2, 0.1, 0.1, 0.1, 0.5, 78.0, 0.03),
+    State(0.13, 0.35, 0.7, 0.4, 1.1, 2.4, -11.0, 53.0),
+    State(0.08, 0.11, 0.3, 0.9, 0.2, -1.2, 6.0, -210.0),
+    State(0.2, 0.9, 0.5, 1.5, 0.6, 4.0, 0.0, 30.0),
+    State(0.2, 0.9, 0.5, 1.5, 0.6, 5.5, 9.0, 0.0),
+]
+
+
+@pytest.fixture(scope="module")
+def graph():
+    return derive(slider_crank())
+
+
+def engine(graph, x):
+    out = graph.instant([x.angle], [x.rate], [x.acceleration], [], [x.r, x.l, x.m1, x.m2, x.m3])
+    return dict(zip(graph.columns, out.full().ravel(), strict=True))
+
+
+def torque_14(x, corrected):
+    """Eq. (14), solved for M."""
+    m1, m2, m3, r, l, s, c, D, q = x.m1, x.m2, x.m3, x.r, x.l, x.s, x.c, x.D, x.q
+    by_acceleration = m1 / 3 + (m2 * l**2 / 3 + m3 * r**2 * s**2) * c**2 / D + (m2 + m3) * s**2 + (m2 + 2 * m3) * r * s**2 * c / q
+    by_rate = (
+        (3 * m2 / 4 + m3) * s * c
+        - (m2 / 2 + m3) * r * s**3 / q
+        + (m2 + 2 * m3) * r * s * c**2 / q
+        + m2 * r**2 * l**2 * s * c**3 / (12 * D**2)
+        + (m2 / 4 + m3) * r**2 * s * c * (c**2 - s**2) / D
+        + (m2 / 2 + m3) * r**3 * s**3 * c**2 / (D * q)
+        - m2 * l**2 * s * c / (12 * D)
+    )
+    if corrected:
+        by_rate += missing_in_14(x)
+    return r**2 * (by_acceleration * x.acceleration + by_rate * x.rate**2) + (m1 + m2) * G * r * c / 2
+
+
+def missing_in_14(x):
+    return (x.m2 / 4 + x.m3) * x.r**4 * x.s**3 * x.c**3 / x.D**2
+
+
+@pytest.mark.parametrize("x", STATES)
+def test_eq_14_active_torque(graph, x):
+    """One term is missing from the bracket of theta'^2: + (m2/4 + m3) r^4 s^3 c^3/D^2."""
+    found = engine(graph, x)["effort:O"]
+    scale = abs(found) + x.r**2 * x.m1 * (x.rate**2 + abs(x.acceleration))
+    assert found == pytest.approx(torque_14(x, corrected=True), abs=1e-14 * scale)
+    miss = x.r**2 * missing_in_14(x) * x.rate**2
+    assert found - torque_14(x, corrected=False) == pytest.approx(miss, abs=1e-13 * scale)
+
+
+def test_eq_14_as_printed_misses_visibly(graph):
+    gaps = [abs(engine(graph, x)["effort:O"] / torque_14(x, corrected=False) - 1) for x in STATES if x.rate]
+    assert max(gaps) > 1e-3
+
+
+def displaced_rod(x, v):
+    """The rod's centre and direction when the guide is displaced by v (paper Fig. 2), exactly."""
+    rise = v - x.r * x.s
+    run = np.sqrt(x.l**2 - rise**2)
+    return np.array([x.r * x.c + run / 2, x.r * x.s + rise / 2]), np.arctan2(rise, run)
+
+
+@pytest.mark.parametrize("x", STATES)
+def test_eq_17_angular_velocity_to_first_order(x):
+    """Eq. (17) is right to first order in v, which is all that eq. (15) needs."""
+    rates = []
+    for v, v_rate in ((1e-5, 0.3), (-1e-5, 0.3)):
+        rise, rise_rate = v - x.r * x.s, v_rate - x.r * x.c * x.rate
+        exact = rise_rate / np.sqrt(x.l**2 - rise**2)
+        printed = (x.D * v_rate + x.r**2 * v * x.rate * x.s * x.c) / (x.D * x.q) - x.r * x.rate * x.c / x.q
+        # What printed leaves out is the coupling of v with v', and v^2.
+        coupling = -v * x.r * x.s * v_rate / (x.D * x.q)
+        rates.append(exact - printed - coupling)
+    assert max(map(abs, rates)) < 1e-8 * (abs(x.rate) + 1) * x.r / x.q**2
+
+
+@pytest.mark.parametrize("x", STATES)
+def test_eq_18_force_function(x):
+    """The rod's centre is at (r s + v)/2; the printed v^2 term is an artefact, and has no slope at v = 0."""
+
+    def printed(v):
+        rod = x.r * x.s / 2 + x.r * v**2 * x.s / (4 * x.D) + v / 2
+        return -x.m1 * G * x.r * x.s / 2 - x.m2 * G * rod - x.m3 * G * v
+
+    def right(v):
+        return -x.m1 * G * x.r * x.s / 2 - x.m2 * G * displaced_rod(x, v)[0][1] - x.m3 * G * v
+
+    v = 1e-3
+    artefact = -x.m2 * G * x.r * v**2 * x.s / (4 * x.D)
+    assert printed(v) - right(v) == pytest.approx(artefact, rel=1e-6)
+    slope = (printed(v) - printed(-v)) / (2 * v)
+    assert slope == pytest.approx(-(x.m2 / 2 + x.m3) * G, rel=1e-12)
+
+
+def guide_19(x, corrected):
+    """Eq. (19), N_B, term by term; the corrections are those listed in the test."""
+    m2, m3, r, l, s, c, D, q = x.m2, x.m3, x.r, x.l, x.s, x.c, x.D, x.q
+    # In short 3 (m2 + 2 m3) r^2 D^2 (s^2 theta'' + s c theta'^2), which only D^2 below turns into a force.
+    first = (
+        3 * m2 * r**6 * s**6 + 6 * m3 * r**6 * s**6 + 3 * m2 * r**2 * l**4 * s**2
+        + 6 * m3 * r**2 * l**4 * s**2 - 6 * m2 * r**4 * l**2 * s**4 - 12 * m3 * r**4 * l**2 * s**4
+    ) * x.acceleration + (
+        3 * m2 * r**6 * s**5 * c + 6 * m3 * r**6 * s**5 * c - 6 * m2 * r**4 * l**2 * s**3 * c
+        - 12 * m3 * r**4 * l**2 * s**3 * c + 3 * m2 * r**2 * l**4 * s * c + 6 * m3 * r**2 * l**4 * s * c
+    ) * x.rate**2  # fmt: skip
+    factor = c if corrected else 1.0
+    second = (
+        (3 * m2 * r**5 * s**4 + 6 * m3 * r**5 * s**4) * factor + m2 * r * l**4 * c
+        - 4 * m2 * r**3 * l**2 * s**2 * c - 6 * m3 * r**3 * l**2 * s**2 * c
+    ) * x.acceleration  # fmt: skip
+    a, b = (4, 6) if corrected else (2, 4)
+    second += (
+        -3 * m2 * r**5 * s**5 - 6 * m3 * r**5 * s**5 + a * m2 * r**3 * l**2 * s + 6 * m3 * r**3 * l**2 * s
+        - m2 * r * l**4 * s - b * m2 * r**3 * l**2 * s * c**2 - 12 * m3 * r**3 * l**2 * s * c**2
+    ) * x.rate**2  # fmt: skip
+    weight = -m2 * G / 2 - m3 * G
+    if corrected:
+        return first / (6 * D**2 * q) - second / (6 * D**2) + weight
+    return first / (6 * D * q) + second / (6 * D) + weight
+
+
+@pytest.mark.parametrize("x", STATES)
+def test_eq_19_guide_force(graph, x):
+    """Corrected: 6 D^2 q and - 6 D^2 below; a factor c with r^5 s^4; 4 and 6 for 2 and 4 with m2 r^3 l^2. N_B = -(reaction, y)."""
+    found = -engine(graph, x)["reaction:guide:fy"]
+    scale = abs(found) + (x.m2 + x.m3) * x.r * (x.rate**2 + abs(x.acceleration))
+    assert found == pytest.approx(guide_19(x, corrected=True), abs=1e-13 * scale)
+    assert abs(found - guide_19(x, corrected=False)) > 1e-3 * scale
+
+
+def axial_21(x, xi, corrected):
+    """Eq. (21), N, as printed but for the last term of gravity."""
+    m2, m3, r, l, s, c, D, q = x.m2, x.m3, x.r, x.l, x.s, x.c, x.D, x.q
+    first = (
+        6 * m2 * r**6 * xi * s**5 * c - 5 * m2 * r**2 * l**5 * s * c - 6 * m3 * r**2 * l**5 * s * c
+        - 3 * m2 * r**6 * l * s**5 * c + 8 * m2 * r**4 * l**3 * s**3 * c + 6 * m3 * r**4 * l**3 * s**3 * c
+        - 12 * m2 * r**4 * l**2 * xi * s**3 * c + 6 * m2 * r**2 * l**4 * xi * s * c
+    ) * x.acceleration + (
+        -6 * m2 * r**6 * xi * s**6 + 3 * m2 * r**6 * l * s**6 - 3 * m2 * r**2 * l**5 * c**2
+        - 6 * m3 * r**2 * l**5 * c**2 + 2 * m2 * r**4 * l**3 * s**2 + 5 * m2 * r**2 * l**5 * s**2
+        + 6 * m3 * r**4 * l**3 * s**2 + 6 * m3 * r**2 * l**5 * s**2 - 10 * m2 * r**4 * l**3 * s**4
+        - 12 * m3 * r**4 * l**3 * s**4 + 3 * m2 * r**2 * l**3 * xi**2 * c**2 - m2 * r**4 * l**3 * s**2 * c**2
+        - 6 * m3 * r**4 * l**3 * s**2 * c**2 - 6 * m2 * r**2 * l**4 * xi * s**2
+        + 12 * m2 * r**4 * l**2 * xi * s**4 - 3 * m2 * r**4 * l * xi**2 * s**2 * c**2
+    ) * x.rate**2  # fmt: skip
+    last = 6 * m2 * G * r * l**4 * s * (xi if corrected else 1.0)
+    first += (
+        6 * m2 * G * r**3 * l**3 * s**3 - 3 * m2 * G * r * l**5 * s + 6 * m2 * G * r**5 * xi * s**5
+        - 3 * m2 * G * r**5 * l * s**5 - 12 * m2 * G * r**3 * l**2 * xi * s**3 + last
+    )  # fmt: skip
+    second = (
+        -12 * m2 * r**5 * l**3 * s**5 + 12 * m3 * r**3 * l**5 * s**3 + 15 * m2 * r**3 * l**5 * s**3
+        - 6 * m3 * r**5 * l**3 * s**5 - 6 * m2 * r * l**7 * s - 6 * m3 * r * l**7 * s
+        - 6 * m2 * r**7 * xi * s**7 + 3 * m2 * r**7 * l * s**7 - 18 * m2 * r**3 * l**4 * xi * s**3
+        + 18 * m2 * r**5 * l**2 * xi * s**5 + 6 * m2 * r * l**6 * xi * s
+    ) * x.acceleration + (
+        -6 * m2 * r * l**7 * c - 6 * m3 * r * l**7 * c + 6 * m2 * r * l**6 * xi * c
+        + 15 * m2 * r**3 * l**5 * s**2 * c + 12 * m3 * r**3 * l**5 * s**2 * c - 12 * m2 * r**5 * l**3 * s**4 * c
+        - 6 * m3 * r**5 * l**3 * s**4 * c - 6 * m2 * r**7 * xi * s**6 * c + 3 * m2 * r**7 * l * s**6 * c
+        - 18 * m2 * r**3 * l**4 * xi * s**2 * c + 18 * m2 * r**5 * l**2 * xi * s**4 * c
+    ) * x.rate**2  # fmt: skip
+    return first / (6 * l**2 * D**2) + second / (6 * l**2 * D**2 * q)
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.1, 0.25, 0.5, 0.9, 1.0])
+@pytest.mark.parametrize("x", STATES)
+def test_eq_21_axial_force(graph, x, ratio):
+    """The last term of gravity needs a factor xi, by its dimension; all else is right. N = -(axial): compression positive."""
+    found = engine(graph, x)
+    law = {k: found[f"section:rod:law:{k}"] for k in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")}
+    axial = -section_forces(law, x.m2, x.l, ratio)[0]
+    scale = (x.m2 + x.m3) * x.r * (x.rate**2 + abs(x.acceleration)) * x.l / x.q + x.m2 * G
+    xi = ratio * x.l
+    assert axial == pytest.approx(axial_21(x, xi, corrected=True), abs=1e-13 * scale)
+    miss = x.m2 * G * x.r * x.l**2 * x.s * (xi - 1.0) / x.D**2
+    assert axial - axial_21(x, xi, corrected=False) == pytest.approx(miss, abs=1e-12 * (scale + abs(miss)))
+    assert abs(miss) > 1e-3 * x.m2 * G * x.r
+
+
+def test_eq_22_motion(solution):
+    """theta = Omega0 t + epsilon0 t^2/2 with Omega0 = 25 pi, epsilon0 = pi/100: about one turn in 0.08 s."""
+    t = solution.t
+    np.testing.assert_allclose(solution.motion("O").value, 25 * np.pi * t + np.pi / 200 * t**2, rtol=1e-15)
+    np.testing.assert_allclose(solution.motion("O").rate, 25 * np.pi + np.pi / 100 * t, rtol=1e-15)
+    np.testing.assert_array_equal(solution.motion("O").acceleration, np.full_like(t, np.pi / 100))

@@ -1,0 +1,47 @@
+"""Files that appear whole or not at all."""
+
+import os
+
+import pytest
+
+from lagrange_casadi.errors import StoreError
+from lagrange_casadi.publish import check_writable, filling, replacing
+
+
+def test_a_folder_keeps_what_else_is_in_it(tmp_path):
+    folder = tmp_path / "figures"
+    folder.mkdir()
+    (folder / "notes.txt").write_text("mine")
+    (folder / "a.png").write_text("old")
+    with filling(folder) as draft:
+        (draft / "a.png").write_text("new")
+    assert {path.name: path.read_text() for path in folder.iterdir()} == {"notes.txt": "mine", "a.png": "new"}
+    assert os.listdir(tmp_path) == ["figures"]
+
+
+def test_a_failure_publishes_nothing(tmp_path):
+    def fail(draft):
+        (draft / "a.png").write_text("new")
+        raise RuntimeError
+
+    with pytest.raises(RuntimeError), filling(tmp_path / "figures") as draft:
+        fail(draft)
+    assert os.listdir(tmp_path) == []
+
+
+def test_replacing_keeps_the_old_until_the_new_is_whole(tmp_path):
+    target = tmp_path / "x.txt"
+    target.write_text("old")
+    with replacing(target) as draft:
+        draft.write_text("new")
+        assert target.read_text() == "old"
+    assert target.read_text() == "new"
+    assert os.listdir(tmp_path) == ["x.txt"]
+
+
+def test_what_is_in_the_way_is_named(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(StoreError, match="it is a file, not a folder"):
+        check_writable(tmp_path / "file", folder=True)
+    with pytest.raises(StoreError, match="it is a folder"):
+        check_writable(tmp_path)

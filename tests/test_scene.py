@@ -1,0 +1,117 @@
+"""Scenes: only what is wanted, and what is refused."""
+
+import pytest
+from builders import four_bar, slider_crank
+
+from lagrange_casadi import Mechanism, Scene, derive
+from lagrange_casadi.errors import DeclarationError, UnknownNameError
+from lagrange_casadi.motion import polynomial
+from lagrange_casadi.scene import instants, outputs, ratios
+
+
+def test_outputs():
+    assert outputs(slider_crank().mechanism) == [
+        "all", "effort", "motion", "reaction:O", "reaction:A", "reaction:B", "reaction:guide", "section:crank", "section:rod",
+    ]  # fmt: skip
+
+
+def groups(graph):
+    return {name.split(":")[0] for name in graph.columns} - {"closure"}
+
+
+@pytest.mark.parametrize(
+    ("wanted", "expected"),
+    [
+        (["effort"], {"effort"}),
+        (["motion"], {"motion", "pose"}),
+        (["reaction:guide"], {"reaction"}),
+        (["section:rod"], {"section"}),
+        (["effort", "section:crank"], {"effort", "section"}),
+    ],
+)
+def test_a_graph_holds_what_is_wanted(wanted, expected):
+    assert groups(derive(slider_crank(), wanted)) == expected
+
+
+def test_what_is_not_wanted_costs_nothing():
+    """The effort alone is a graph without a mobility: as many instructions whether or not the links could be cut."""
+    scene = four_bar()
+    effort, everything = derive(scene, ["effort"]), derive(scene, ["all"])
+    section = derive(scene, ["effort", "section:b"])
+    count = [sum(graph.instructions.values()) for graph in (effort, section, everything)]
+    assert count == sorted(count)
+    assert count[0] < 0.7 * count[2]
+    motion = derive(scene, ["motion"])
+    assert sum(motion.instructions.values()) < count[2]
+
+
+def test_the_order_of_wanting_does_not_matter():
+    one, two = (derive(slider_crank(), wanted) for wanted in (["section:rod", "effort"], ["effort", "section:rod"]))
+    assert one.columns == two.columns
+
+
+def test_loops_are_closed_alike_whatever_is_wanted():
+    """A guide carried by a link that is cut, at the cut side: the closed form does not see the cut."""
+    m = Mechanism("m")
+    a, b, p = m.link("a", length=0.3, mass=1.0), m.link("b", length=1.0, mass=1.0), m.point_mass("p", 1.0)
+    m.revolute("O", m.ground, a)
+    m.revolute("Q", m.ground.at(0, -0.5), b)
+    m.revolute("A", a.tip, p)
+    m.prismatic("P", b.tip, p, axis=(1, 0))
+    scene = Scene(m, {"O": polynomial(0.3, 1.0)}, posture={"b": 1.5}, t=(0, 1, 3))
+    for wanted in (["effort"], ["section:b"], ["all"]):
+        graph = derive(scene, wanted)
+        assert graph.newton is None
+        assert graph.closures == ("P",)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "error", "says"),
+    [
+        (["torque"], UnknownNameError, "unknown output 'torque'; valid: all, effort, motion, reaction:O"),
+        (["section:slider"], DeclarationError, "'slider' is not a link and has no sections; links: crank, rod"),
+        (["reaction:X"], UnknownNameError, "unknown output 'reaction:X'"),
+        ([], DeclarationError, "no output wanted"),
+    ],
+)
+def test_outputs_that_cannot_be(wanted, error, says):
+    with pytest.raises(error, match=says):
+        slider_crank(wanted=wanted)
+
+
+def test_a_link_with_a_joint_off_its_ends_has_no_section():
+    m = Mechanism("m")
+    a = m.link("a", length=1, mass=1)
+    m.revolute("O", m.ground, a)
+    m.revolute("P", a.at(0.5, 0.1), m.point_mass("p", 1))
+    assert "section:a" not in outputs(m)
+    with pytest.raises(DeclarationError, match="joint 'P' sits off the ends of link 'a'"):
+        Scene(m, {"O": polynomial(0)}, ["section:a"])
+
+
+@pytest.mark.parametrize(
+    ("keywords", "says"),
+    [
+        ({"motion": {"X": polynomial(0)}}, "unknown joint in motion 'X'; valid: O, A, B, guide"),
+        ({"motion": {"B": polynomial(0)}}, "joint 'B' cannot be driven"),
+        ({"motion": {"O": 3.0}}, "motion of joint 'O': expected a law"),
+        ({"posture": {"stick": 1.0}}, "unknown link or prismatic joint in posture 'stick'; valid: crank, rod, guide"),
+        ({"t": (0, 1, 0)}, "t: COUNT must be a whole number of at least 1, got 0"),
+        ({"t": (0, 1, 1.5)}, "t: COUNT must be a whole number"),
+        ({"t": (1, 0, 5)}, "t: STOP must be after START"),
+        ({"t": (0, float("nan"), 5)}, "t: START and STOP must be finite"),
+        ({"t": (0, 1)}, "t: expected"),
+        ({"xi": (0, 1.5, 5)}, r"xi: ratios xi/l must lie in \[0, 1\], got 0 to 1.5"),
+        ({"xi": (-0.1, 1, 5)}, r"xi: ratios"),
+    ],
+)
+def test_misuse_is_named(keywords, says):
+    base = slider_crank()
+    with pytest.raises(DeclarationError, match=says):
+        Scene(base.mechanism, **({"motion": base.motion, "posture": {"rod": 0.0}} | keywords))
+
+
+def test_grids_include_both_ends():
+    assert instants("t", (0.0, 2.0, 5)).tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
+    assert instants("t", (0.3, 0.3, 1)).tolist() == [0.3]
+    assert ratios((0.0, 1.0, 3)).tolist() == [0.0, 0.5, 1.0]
