@@ -1,0 +1,57 @@
+"""The documentation is run, and its tables are the code's."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import lagrange_casadi
+from lagrange_casadi.quantities import QUANTITIES
+from lagrange_casadi.store import SCHEMA_VERSION
+
+ROOT = Path(__file__).parent.parent
+PAGES = ["README.md", "docs/method.md"]
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_examples_run(page, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
+    assert blocks
+    for block in blocks:
+        exec(compile(block, page, "exec"), {})
+
+
+@pytest.mark.parametrize("page", [*PAGES, "docs/schema.md", "CONTRIBUTING.md", "cases/slider_crank/README.md"])
+def test_links_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)#]+)\)", (ROOT / page).read_text()):
+        assert ((ROOT / page).parent / target).exists(), f"{page}: {target}"
+
+
+def rows():
+    yield "| dataset | axes | unit | is | sign |"
+    yield "| --- | --- | --- | --- | --- |"
+    yield "| /t | t | s | time | |"
+    yield "| /xi | xi | 1 | place along a link, ratio xi/l | |"
+    places = {"motion": "/motion/JOINT", "pose": "/pose/BODY/", "effort": "/effort/JOINT", "reaction": "/reaction/JOINT/"}
+    places |= {"section": "/section/LINK/", "law": "/section/LINK/law/"}
+    for q in QUANTITIES:
+        place = places[q.group] + (f"_{q.member}" if q.group == "motion" and q.member else q.member)
+        units = dict.fromkeys(q.unit_for(kind) for kind in ("angle", "slide"))
+        yield f"| {place} | {', '.join(q.axes)} | {' or '.join(units)} | {q.long_name} | {q.sign} |"
+
+
+def test_the_schema_lists_every_quantity(request):
+    """Run pytest with --update to write the table anew."""
+    page = ROOT / "docs" / "schema.md"
+    text = page.read_text()
+    table = "<!-- quantities -->\n" + "\n".join(rows()) + "\n<!-- /quantities -->"
+    new = re.sub(r"<!-- quantities -->.*<!-- /quantities -->", lambda _: table, text, flags=re.DOTALL)
+    if request.config.getoption("--update"):
+        page.write_text(new)
+    assert page.read_text() == new
+    assert f"schema version {SCHEMA_VERSION}" in text
+
+
+def test_the_changelog_names_the_version():
+    assert f"## {lagrange_casadi.__version__}" in (ROOT / "CHANGELOG.md").read_text()
