@@ -182,7 +182,7 @@ def scene():
 """
 
 
-@pytest.mark.parametrize("delay", [0.0, 0.5])
+@pytest.mark.parametrize("delay", [0.0, 0.01, 0.02, 0.5])
 def test_ctrl_c_is_one_line_and_leaves_nothing(here, tmp_path_factory, delay):
     """A real interrupt of a real process, which would compute for a long while."""
     case = tmp_path_factory.mktemp("slow") / "slow.py"
@@ -192,7 +192,10 @@ def test_ctrl_c_is_one_line_and_leaves_nothing(here, tmp_path_factory, delay):
     assert process.stdout.readline() == "ready\n"
     time.sleep(delay)
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
+    try:
+        out, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
     assert process.returncode == 130
     assert err == "error: interrupted; nothing was left half-written\n"
     assert out == ""

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import signal
+import threading
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from types import FrameType
 from typing import Any
 
 import click
@@ -24,10 +28,8 @@ class _Interrupted(Exception):  # noqa: N818 - it is no error
 
 class _Commands(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
-        try:
+        with _insistent():
             return super().invoke(ctx)
-        except KeyboardInterrupt:
-            raise _Interrupted from None
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         if args and not args[0].startswith("-") and args[0] not in self.commands:
@@ -57,6 +59,37 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except MemoryError as error:
             return _fail(f"out of memory: {error or 'fewer instants or ratios fit'}", 1)
     return result if isinstance(result, int) else 0
+
+
+@contextmanager
+def _insistent() -> Iterator[None]:
+    """Make an interrupt arrive: as :class:`_Interrupted`, whatever a library in between makes of it.
+
+    CasADi clears exceptions while it tries which of its overloads fits, so an interrupt at that moment is lost, or comes back as
+    another error. It is repeated every second until it arrives, and what fails after it is taken for it.
+    """
+    seen = threading.Event()
+
+    def interrupt(_number: int, _frame: FrameType | None) -> None:
+        seen.set()
+        signal.setitimer(signal.ITIMER_REAL, 1.0)
+        raise KeyboardInterrupt
+
+    able = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")
+    before = [(number, signal.signal(number, interrupt)) for number in (signal.SIGINT, signal.SIGALRM)] if able else []
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise _Interrupted from None
+    except Exception:
+        if seen.is_set():
+            raise _Interrupted from None
+        raise
+    finally:
+        if able:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+        for number, handler in before:
+            signal.signal(number, handler)
 
 
 def _fail(message: str, status: int) -> int:
