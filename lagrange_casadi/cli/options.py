@@ -3,45 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import click
 
 from ..scene import Grid
 
 
-class GridType(click.ParamType[Grid]):
+def grid(text: str) -> Grid:
     """START:STOP:COUNT, both ends included."""
-
-    name = "START:STOP:COUNT"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Grid:
-        """Read a grid."""
-        if isinstance(value, tuple):
-            return value
-        try:
-            start, stop, count = str(value).split(":")
-            return float(start), float(stop), int(count)
-        except ValueError:
-            self.fail(f"expected START:STOP:COUNT, as in 0:0.08:801, got '{value}'", param, ctx)
+    try:
+        start, stop, count = text.split(":")
+        return float(start), float(stop), int(count)
+    except ValueError:
+        raise click.BadParameter(f"expected START:STOP:COUNT, as in 0:0.08:801, got '{text}'") from None
 
 
-class SettingType(click.ParamType[tuple[str, float]]):
+def setting(text: str) -> tuple[str, float]:
     """NAME=VALUE."""
-
-    name = "NAME=VALUE"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, float]:
-        """Read a setting."""
-        if isinstance(value, tuple):
-            return value
-        name, equals, number = str(value).partition("=")
-        try:
-            if not equals:
-                raise ValueError
-            return name.strip(), float(number)
-        except ValueError:
-            self.fail(f"expected NAME=VALUE with a number, as in l=0.25, got '{value}'", param, ctx)
+    name, equals, number = text.partition("=")
+    try:
+        if not equals:
+            raise ValueError
+        return name.strip(), float(number)
+    except ValueError:
+        raise click.BadParameter(f"expected NAME=VALUE with a number, as in l=0.25, got '{text}'") from None
 
 
 def parameters(settings: Sequence[tuple[str, float]]) -> dict[str, float]:

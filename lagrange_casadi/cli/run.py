@@ -16,14 +16,18 @@ from ..scene import Grid
 from ..solution import Solution
 from ..store import save
 from .drawing import draw_with_progress
-from .options import GridType, SettingType, parameters
+from .options import grid, parameters, setting
+
+GRID = "START:STOP:COUNT"
 
 
 @click.command()
 @click.argument("case", type=click.Path(path_type=Path))
-@click.option("--set", "settings", type=SettingType(), multiple=True, help="Give a parameter another value; repeatable.")
-@click.option("--t", type=GridType(), help="Instants [s]; default: the case's.")
-@click.option("--xi", type=GridType(), help="Section ratios xi/l, within 0 and 1; default: the case's.")
+@click.option(
+    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
+)
+@click.option("--t", type=grid, metavar=GRID, help="Instants [s]; default: the case's.")
+@click.option("--xi", type=grid, metavar=GRID, help="Section ratios xi/l, within 0 and 1; default: the case's.")
 @click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
 @click.option("--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="Compiled C, or CasADi's machine.")
 @click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>.h5 here.")
