@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from .errors import StoreError
 
@@ -34,6 +36,43 @@ def replacing(target: Path) -> Iterator[Path]:
         with draft.open("rb") as written:
             os.fsync(written.fileno())
         os.replace(draft, target)
+
+
+class PatientFile(io.FileIO):
+    """A file to write that keeps its first failure to itself, until :meth:`close` raises it.
+
+    HDF5 does not survive a write that fails: it prints, and may crash when it closes. So it never hears of one.
+    """
+
+    failure: OSError | None = None
+
+    def write(self, data: Any, /) -> int:
+        """Write all of ``data``, or pass over as much."""
+        view = memoryview(data).cast("B")
+        try:
+            done = 0
+            while self.failure is None and done < view.nbytes:
+                done += super().write(view[done:])
+        except OSError as error:
+            self.failure = error
+        if self.failure is not None:
+            self.seek(view.nbytes - done, os.SEEK_CUR)
+        return view.nbytes
+
+    def truncate(self, size: int | None = None, /) -> int:
+        """Cut or stretch the file, unless it has failed."""
+        try:
+            return super().truncate(size) if self.failure is None else size or 0
+        except OSError as error:
+            self.failure = error
+            return size or 0
+
+    def close(self) -> None:
+        """Close the file, and raise what failed, once."""
+        super().close()
+        failure, self.failure = self.failure, None
+        if failure is not None:
+            raise failure
 
 
 @contextmanager

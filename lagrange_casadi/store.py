@@ -18,7 +18,7 @@ import numpy as np
 
 from .description import Description
 from .errors import StoreError
-from .publish import replacing
+from .publish import PatientFile, replacing
 from .quantities import CONVENTIONS, QUANTITIES, quantity_of
 from .section_law import FORCES, Array
 from .solution import Provenance, Solution
@@ -39,7 +39,7 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
     the file cannot be written.
     """
     target = Path(path)
-    with replacing(target) as draft, h5py.File(draft, "w", track_order=True) as file:
+    with replacing(target) as draft, PatientFile(draft, "x+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
         _write(file, solution, figures)
         file.flush()
         file.attrs["complete"] = True

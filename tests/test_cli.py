@@ -1,6 +1,7 @@
 """The command line: what it writes, and the one line and status of every mistake."""
 
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -11,6 +12,7 @@ from pathlib import Path
 import h5py
 import pytest
 
+from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.cli import main
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
@@ -200,6 +202,24 @@ def test_ctrl_c_is_one_line_and_leaves_nothing(here, tmp_path_factory, delay):
     assert err == "error: interrupted; nothing was left half-written\n"
     assert out == ""
     assert os.listdir(here) == []
+
+
+@pytest.mark.parametrize("size", [20_000, 400_000, 2_000_000])
+def test_a_file_that_cannot_grow_is_one_line(here, size):
+    """A real write that fails, at several places of the file; the system's limit stands for a full disk."""
+
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    Path("slider_crank.h5").write_text("of before")
+    evaluate(load_case(CASE).scene, t=(0, 0.08, 2))
+    command = [sys.executable, "-m", "lagrange_casadi", "run", str(CASE), "--no-figures"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, preexec_fn=limit)
+    assert done.returncode == 1
+    assert done.stderr == "error: cannot write slider_crank.h5: File too large\n"
+    assert os.listdir(here) == ["slider_crank.h5"]
+    assert Path("slider_crank.h5").read_text() == "of before"
 
 
 def test_help_and_version(capsys):
