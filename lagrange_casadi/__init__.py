@@ -1,7 +1,8 @@
 """Forces inside a mechanism that must make a given motion: efforts, reactions, and the section forces of every link."""
 
-from . import figures, motion
+from . import density, figures, motion
 from .case import Case, load_case
+from .curves import table
 from .errors import LagrangeCasadiError
 from .evaluate import evaluate
 from .lagrange import LagrangeSystem
@@ -21,6 +22,7 @@ __all__ = [
     "Solution",
     "__version__",
     "check",
+    "density",
     "derive",
     "evaluate",
     "figures",
@@ -28,4 +30,5 @@ __all__ = [
     "load_case",
     "motion",
     "save",
+    "table",
 ]

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from .mechanism import Link, Mechanism, Point
+from .mechanism import Mechanism
+from .parts import Force, Link, Point, PointMass, RigidMass, Spring, Torque
 
 Description = dict[str, Any]
 
@@ -19,9 +20,26 @@ def describe(mechanism: Mechanism, values: Mapping[str, float], driven: Collecti
     def place(point: Point) -> Description:
         return {"body": point.body.name, "x": number(point.x), "y": number(point.y)}
 
-    bodies = {
-        body.name: {"length": number(body.length) if isinstance(body, Link) else None, "mass": number(body.mass)}
-        for body in mechanism.moving
+    def matter(body: Link | PointMass) -> Description:
+        if isinstance(body, PointMass):
+            return {"length": None, "mass": number(body.mass)}
+        length = number(body.length)
+        if isinstance(body.mass, RigidMass):
+            x, y = body.mass.centre
+            centre = {"x": number(x), "y": number(y), "inertia": number(body.mass.inertia)}
+            return {"length": length, "mass": number(body.mass.mass), "centre": centre}
+        density = body.mass.at(number, length)
+        return {
+            "length": length,
+            "mass": density.mass,
+            "density": {"breaks": list(density.breaks), "cells": [list(c) for c in density.cells]},
+        }
+
+    bodies = {body.name: matter(body) for body in mechanism.moving}
+    loads = {
+        name: {"points": [place(p) for p in ((load.first, load.second) if isinstance(load, Spring) else _points(load))]}
+        | {"kind": type(load).__name__.lower()}
+        for name, load in mechanism.loads.items()
     }
     joints = {
         joint.name: {
@@ -31,6 +49,7 @@ def describe(mechanism: Mechanism, values: Mapping[str, float], driven: Collecti
             "parent": place(joint.parent),
             "child": place(joint.child),
             "axis": [number(component) for component in joint.axis],
+            "angle": number(joint.angle),
         }
         for joint in mechanism.joints.values()
     }
@@ -44,4 +63,11 @@ def describe(mechanism: Mechanism, values: Mapping[str, float], driven: Collecti
         "gravity": [number(component) for component in mechanism.gravity],
         "bodies": bodies,
         "joints": joints,
+        "loads": loads,
+        "rows": {name: row.replaces for name, row in mechanism.rows.items()},
+        "constraints": list(mechanism.constraints),
     }
+
+
+def _points(load: Force | Torque) -> tuple[Point, ...]:
+    return (load.point,) if isinstance(load, Force) else (load.point, load.against)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .section_law import Array
+from .density import Array
 from .solution import Solution
 
 if TYPE_CHECKING:

@@ -15,17 +15,29 @@ import numpy.typing as npt
 
 from . import codegen
 from .codegen.compiler import FLAGS
-from .codegen.emit import NEWTON_DONE, NEWTON_STEPS, NOT_CONVERGED, NOT_FINITE, OK
+from .codegen.emit import (
+    NEWTON_DONE,
+    NEWTON_RATE,
+    NEWTON_ROUNDING,
+    NEWTON_STEPS,
+    NOT_CONVERGED,
+    NOT_FINITE,
+    OK,
+    SLOW,
+)
+from .density import Array
 from .description import describe
 from .errors import AssemblyError, CompilerError, DeclarationError, UnknownNameError
 from .kinematics import describe_coordinate
 from .scene import Grid, Scene, SceneGraph, derive, instants, ratios
-from .section_law import Array
-from .solution import Provenance, Solution
+from .solution import Provenance, Solution, in_order
 from .version import __version__
 
 Backend = Literal["auto", "c", "vm"]
 BACKENDS: tuple[Backend, ...] = ("auto", "c", "vm")
+
+MISFIT = 1e-8
+"""How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
 
 _VM_BLOCK = 4096
 
@@ -76,12 +88,13 @@ def evaluate(
     graph = derive(scene, wanted)
     table, provenance = run(graph, times, np.array(list(values.values())), backend)
     _refuse(graph, table, times, list(values.values()))
-    series = {name: table.out[k] for k, name in enumerate(graph.columns) if not name.startswith("closure:")}
+    series = {name: table.out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
     for name, column in series.items():
         if _wraps(graph, name):
             column[:] = np.unwrap(column)
+    series |= {name: np.full(times.size, np.nan) for name in graph.open_}
     description = describe(scene.mechanism, values, scene.motion)
-    return Solution(scene.mechanism.name, times, places, series, description, provenance)
+    return Solution(scene.mechanism.name, times, places, in_order(series, description), description, provenance, graph.open_)
 
 
 def run(graph: SceneGraph, t: Array, p: Array, backend: Backend = "auto") -> tuple[Table, Provenance]:
@@ -127,50 +140,76 @@ def _interpret(graph: SceneGraph, t: Array, p: Array) -> Table:
         z = np.zeros((guess.size, d.shape[1]))
         if graph.newton:
             for i in range(d.shape[1]):
-                found, converged = _iterate(graph.newton.step, guess, d[:, i], p)
-                guess = found if converged else guess
-                z[:, i] = found
-                if not converged:
-                    table.status[start + i] = NOT_CONVERGED
-        table.out[:, block] = graph.instant(d, rate, acceleration, z, p).full()
+                z[:, i], table.status[start + i] = _iterate(graph.newton.step, guess, t[start + i], d[:, i], p)
+                guess = guess if table.status[start + i] == NOT_CONVERGED else z[:, i]
+        table.out[:, block] = graph.instant(t[None, block], d, rate, acceleration, z, p).full()
     unclean = ~np.isfinite(table.out).all(axis=0) & (table.status == OK)
     table.status[unclean] = NOT_FINITE
     return table
 
 
-def _iterate(step: ca.Function, z: Array, d: Array, p: Array) -> tuple[Array, bool]:
+def _iterate(step: ca.Function, z: Array, t: float, d: Array, p: Array) -> tuple[Array, int]:
+    guess, size = z, 1.0
     for _ in range(NEWTON_STEPS):
-        correction, size = (x.full().ravel() for x in step(z, d, p))
-        if not math.isfinite(size[0]):
+        before = size
+        correction, relative = (x.full().ravel() for x in step(z, t, d, p))
+        size = float(relative[0])
+        if not math.isfinite(size):
             break
         z = z + correction
-        if size[0] < NEWTON_DONE:
-            return z, True
-    return z, False
+        if size < NEWTON_DONE:
+            return z, SLOW if size > NEWTON_RATE * before and size > NEWTON_ROUNDING else OK
+    return guess, NOT_CONVERGED
 
 
 def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
     """Raise for the first instant that has no result, naming the joint and the driven coordinates."""
-    failed = np.flatnonzero(table.status != OK)
-    if not failed.size:
+    bad = table.status != OK
+    for k, name in enumerate(graph.columns):
+        if name.startswith("_closure:"):
+            bad |= ~(table.out[k] > 0.0)
+        elif name.startswith("_misfit:"):
+            bad |= ~(table.out[k] <= MISFIT)
+        elif name.startswith("_row:"):
+            size = table.out[graph.columns.index(name.replace("_row:", "_rowsize:"))]
+            bad |= ~(np.abs(table.out[k]) <= MISFIT * size)
+    if not bad.any():
         return
-    i = int(failed[0])
+    i = int(np.argmax(bad))
     joints = graph.scene.mechanism.joints
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
     where = ", ".join(
         describe_coordinate(name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True)
     )
-    at = f"at t = {t[i]:.6g} s, where {where}"
+    raise AssemblyError(_why(graph, table, i, f"at t = {t[i]:.6g} s, where {where}"))
+
+
+def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
     if table.status[i] == NOT_CONVERGED:
         assert graph.newton is not None
-        raise AssemblyError(f"the loops closed by joints {graph.newton.joints} did not converge {at}")
-    for k, joint in enumerate(graph.closures):
-        if table.out[k, i] < 0.0:
-            raise AssemblyError(f"the loop closed by joint '{joint}' cannot be closed {at}: its links do not reach")
-        if not table.out[k, i] > 0.0:
-            raise AssemblyError(f"the loop closed by joint '{joint}' is at a dead centre {at}: its forces are not determined there")
-    name = next(name for name, value in zip(graph.columns, table.out[:, i], strict=True) if not math.isfinite(value))
-    raise AssemblyError(f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow")
+        return f"the loops closed by {graph.newton.joints} did not converge {at}"
+    values = dict(zip(graph.columns, table.out[:, i], strict=True))
+    for name, value in values.items():
+        kind, _, joint = name.partition(":")
+        closed = f"{'joint' if joint in graph.scene.mechanism.joints else 'constraint'} '{joint}'"
+        iterated = graph.newton is not None and f"'{joint}'" in graph.newton.joints
+        if kind == "_closure" and value < 0.0:
+            if iterated:
+                return f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
+            return f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
+        if kind == "_closure" and not value > 0.0:
+            return f"the loop closed by {closed} is at a dead centre {at}: its forces are not determined there"
+        if kind == "_misfit" and not value <= MISFIT:
+            return (
+                f"the loops closed by {closed} are over-constrained and do not fit {at}: a gap of {value:.3g} of the links' length"
+            )
+        if kind == "_row" and not abs(value) <= MISFIT * values[f"_rowsize:{joint}"]:
+            return f"the motion violates the non-holonomic row '{joint}' by {value:.6g} {at}"
+    if table.status[i] == SLOW:
+        assert graph.newton is not None
+        return f"the loops closed by {graph.newton.joints} converge slowly {at}: they are near a dead centre"
+    name = next(name for name, value in values.items() if not math.isfinite(value))
+    return f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"
 
 
 def _wraps(graph: SceneGraph, name: str) -> bool:

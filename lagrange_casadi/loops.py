@@ -26,7 +26,7 @@ from .multibody import Coordinate
 class ClosedForm:
     """Solved variables, one column a coordinate, as expressions in what is known and in ``branch`` (+1 or -1).
 
-    ``closure`` is None where the solution is unique (two slides).
+    ``closure`` is None where the solution is unique (slides, and angles that are tied to others).
     """
 
     branch: Any
@@ -38,9 +38,12 @@ def solve_loop(phi: Any, unknown: Sequence[Coordinate]) -> ClosedForm | None:
     """The closed form of Phi = 0 for one or two unknown coordinates, or None where there is none."""
     branch = ca.SX.sym("branch")
     kinds = "".join(sorted(c.kind[0] for c in unknown))
+    counted = ca.vertcat(ca.SX(0, 1), *(c.value for c in unknown if c.kind == "angle"))
+    if ca.depends_on(phi, counted):
+        return _tied(phi, unknown[0], branch) if phi.numel() == 1 and kinds == "a" else None
     if phi.numel() == 1 and kinds == "a":
         solved = _direction_on_line(phi, unknown[0], branch)
-        return solved and ClosedForm(branch, (solved[0],), solved[1])
+        return solved and ClosedForm(branch, (_variables(solved[0]),), solved[1])
     if phi.numel() == 2 and kinds == "aa":
         return _two_circles(phi, unknown, branch)
     if phi.numel() == 2 and kinds == "as":
@@ -63,7 +66,7 @@ def _affine(phi: Any, symbols: Any, all_unknown: Any) -> tuple[Any, Any] | None:
 
 
 def _direction_on_line(phi: Any, angle: Coordinate, branch: Any) -> tuple[Any, Any] | None:
-    affine = _affine(phi, angle.variables, angle.variables)
+    affine = _affine(phi, _pair(angle), _pair(angle))
     if affine is None:
         return None
     slope, rest = affine
@@ -84,7 +87,7 @@ def _direction_on_line(phi: Any, angle: Coordinate, branch: Any) -> tuple[Any, A
 
 
 def _two_circles(phi: Any, unknown: Sequence[Coordinate], branch: Any) -> ClosedForm | None:
-    symbols = ca.vertcat(*(c.variables for c in unknown))
+    symbols = ca.vertcat(*(_pair(c) for c in unknown))
     affine = _affine(phi, symbols, symbols)
     if affine is None:
         return None
@@ -100,13 +103,14 @@ def _two_circles(phi: Any, unknown: Sequence[Coordinate], branch: Any) -> Closed
     reach2 = (_square(l2) + (d - l1) * (d + l1)) / 2
     first = ((px * reach1 - py * w) / squared, (py * reach1 + px * w) / squared)
     second = ((px * reach2 + py * w) / squared, (py * reach2 - px * w) / squared)
-    directions = tuple(_direction(v, arm) for v, arm in zip((first, second), arms, strict=True))
+    directions = tuple(_variables(_direction(v, arm)) for v, arm in zip((first, second), arms, strict=True))
     return ClosedForm(branch, directions, root / _square(l1 * l2))
 
 
 def _direction_and_slide(phi: Any, angle: Coordinate, slide: Coordinate, branch: Any) -> ClosedForm | None:
     """Project the slide out along its own axis, a unit vector; what is left is a direction on a line."""
-    unknown = ca.vertcat(angle.variables, slide.variables)
+    pair = _pair(angle)
+    unknown = ca.vertcat(pair, slide.variables)
     axis = ca.jacobian(phi, slide.variables)
     if not ca.depends_on(axis, unknown):
         across = -axis[1] * phi[0] + axis[0] * phi[1]
@@ -116,15 +120,15 @@ def _direction_and_slide(phi: Any, angle: Coordinate, slide: Coordinate, branch:
         along = axis[0] * phi[0] + axis[1] * phi[1]
     else:
         # The axis turns with the angle: Phi = p + R (b + axis sigma), and R' Phi is affine where R' R need not be formed.
-        turned = ca.jacobian(phi, angle.variables)
-        fixed = ca.substitute(phi, angle.variables, ca.SX.zeros(2))
-        if ca.depends_on(fixed, slide.variables) or ca.depends_on(turned, angle.variables):
+        turned = ca.jacobian(phi, pair)
+        fixed = ca.substitute(phi, pair, ca.SX.zeros(2))
+        if ca.depends_on(fixed, slide.variables) or ca.depends_on(turned, pair):
             return None
         own = ca.jacobian(turned[:, 0], slide.variables)
         arm = ca.substitute(turned[:, 0], slide.variables, 0)
         if ca.depends_on(own, unknown):
             return None
-        c, s = angle.variables[0], angle.variables[1]
+        c, s = pair[0], pair[1]
         resolved = (c * fixed[0] + s * fixed[1] + arm[0], c * fixed[1] - s * fixed[0] + arm[1])
         rest = own[0] * resolved[1] - own[1] * resolved[0]
         along = own[0] * resolved[0] + own[1] * resolved[1]
@@ -133,7 +137,16 @@ def _direction_and_slide(phi: Any, angle: Coordinate, slide: Coordinate, branch:
         return None
     direction, closure = solved
     place = -ca.substitute(along, unknown, ca.vertcat(direction, 0))
-    return ClosedForm(branch, (direction, place), closure)
+    return ClosedForm(branch, (_variables(direction), place), closure)
+
+
+def _tied(phi: Any, angle: Coordinate, branch: Any) -> ClosedForm | None:
+    """An angle that counts turns and follows another one, as in a gear."""
+    affine = _affine(phi, angle.value, angle.variables)
+    if affine is None or ca.depends_on(affine[1], _pair(angle)):
+        return None
+    value = -affine[1] / affine[0]
+    return ClosedForm(branch, (ca.vertcat(ca.cos(value), ca.sin(value), value),), None)
 
 
 def _slides(phi: Any, unknown: Sequence[Coordinate], branch: Any) -> ClosedForm | None:
@@ -157,6 +170,14 @@ def _direction(vector: tuple[Any, Any], arm: tuple[Any, Any]) -> Any:
     if b.is_zero():
         return ca.vertcat(x / a, y / a)
     return ca.vertcat(a * x + b * y, a * y - b * x) / (_square(a) + _square(b))
+
+
+def _pair(angle: Coordinate) -> Any:
+    return angle.variables[:2]
+
+
+def _variables(direction: Any) -> Any:
+    return ca.vertcat(direction, ca.atan2(direction[1], direction[0]))
 
 
 def _square(x: Any) -> Any:

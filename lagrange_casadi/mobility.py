@@ -7,92 +7,172 @@ material from the section to the tip,
     shear   = f0 + f1 mu0 + f2 mu1,
     bending = m0 + f0 (l - xi) + f1 (mu1 - xi mu0) + f2 (mu2 - xi mu1).
 
-Energy is linear in the moments, so the coefficients are derivatives of the section mobility's Lagrange terms (paper eq. 20)
-by the moments. That bending repeats the coefficients of shear is the equilibrium of an element of the link,
-d(bending)/d(xi) = -shear; seven numbers an instant hold a link's whole load.
+Energy is linear in the moments, so n1, n2, f1, f2 are derivatives of the section mobility's Lagrange terms by the moments (paper
+eq. 20); they repeat in bending because d(bending)/d(xi) = -shear, the equilibrium of an element. n0, f0, m0 are what acts on the
+tip: the reactions, efforts and loads there. What acts at a station between base and tip is seen by the sections on its base side.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
 
 from .kinematics import Kinematics
-from .mechanism import Joint
-from .multibody import Multibody, SectionCut
-from .planar import Moments, Rotation, reaction
+from .mechanism import Mechanism
+from .multibody import Multibody, column
+from .parts import Joint, Link, Point
+from .planar import Rotation, reaction, slide
 
 LAW = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
+STATION = ("n", "f", "m", "station")
 
 
 @dataclass(frozen=True, eq=False)
 class InternalForces:
-    """Every force that was asked for, as expressions in the driven motion, the iterated unknowns and the parameters."""
+    """Every force that was asked for, by full name, over time, the driven motion, the iterated unknowns and the parameters.
 
-    efforts: dict[str, Any]
-    reactions: dict[str, dict[str, Any]]
-    laws: dict[str, dict[str, Any]]
+    ``free`` are the symbols of what equilibrium leaves open in an over-constrained mechanism.
+    """
+
+    columns: dict[str, Any]
+    free: Any
 
 
-def internal_forces(multibody: Multibody, kinematics: Kinematics, reactions: tuple[str, ...]) -> InternalForces:
-    """Efforts of the drives, reactions of the named joints, and the laws of the links that were cut."""
+def needed_reactions(mechanism: Mechanism, reactions: Sequence[str], sections: Sequence[str]) -> tuple[str, ...]:
+    """The joints whose reaction some output needs: those wanted, and those that load a wanted link beyond its base."""
+    needed = set(reactions)
+    for joint in mechanism.joints.values():
+        for point in (joint.parent, joint.child):
+            moves = joint.slides and point is joint.parent
+            if point.body.name in sections and (moves or not _at_base(point)):
+                needed.add(joint.name)
+    return tuple(name for name in mechanism.joints if name in needed)
+
+
+def internal_forces(
+    multibody: Multibody,
+    kinematics: Kinematics,
+    *,
+    effort: bool,
+    reactions: Sequence[str],
+    multipliers: Sequence[str],
+    sections: Sequence[str],
+) -> InternalForces:
+    """Efforts of the drives, reactions of the named joints, multipliers of constraints and rows, and the laws of links."""
     along, across = multibody.system.terms()
-    moments = ca.vertcat(ca.SX(0, 1), *(cut.moments for cut in multibody.cuts.values()))
-    uncut = ca.SX.zeros(moments.numel())
-    along = kinematics.evaluate(ca.substitute(along, moments, uncut))
-    multipliers, forces = _multipliers(multibody, kinematics, along)
+    moments = column(cut.moments for cut in multibody.cuts.values())
+    whole = ca.SX.zeros(moments.numel())
+    along = kinematics.evaluate(ca.substitute(along, moments, whole))
+    unknowns, values, free = _multipliers(multibody, kinematics, along)
 
     def known(expression: Any) -> Any:
         """At the moments of an undisturbed link, with the multipliers and the motion put in."""
-        still = kinematics.evaluate(ca.substitute(ca.SX(expression), moments, uncut))
-        return ca.substitute(still, multipliers, forces)
+        still = kinematics.evaluate(ca.substitute(ca.SX(expression), moments, whole))
+        return ca.substitute(still, unknowns, values)
 
-    efforts = {c.joint: known(along[i]) for i, c in enumerate(multibody.coordinates) if c.driven}
-    sizes = [d.symbols.numel() for d in multibody.displacements]
-    actions = _split(across, sizes)
+    unaided = {graph.row.replaces for graph in multibody.rows}
+    drives = {c.joint: along[i] for i, c in enumerate(multibody.coordinates) if c.driven and c.joint not in unaided}
+    actions = _split(across, [d.symbols.numel() for d in multibody.displacements])
     by_joint = dict(zip(multibody.joint_mobilities, actions, strict=False))
-    found = {}
+    joints = multibody.mechanism.joints
+    borne = {
+        name: _reaction(multibody, joints[name], by_joint) for name in needed_reactions(multibody.mechanism, reactions, sections)
+    }
+    columns = {f"effort:{joint}": force for joint, force in drives.items()} if effort else {}
     for name in reactions:
-        joint = multibody.mechanism.joints[name]
-        found[name] = {member: known(force) for member, force in _reaction(multibody, joint, by_joint).items()}
-    laws = {}
-    for (name, cut), action in zip(multibody.cuts.items(), actions[len(by_joint) :], strict=True):
-        laws[name] = {k: known(v) for k, v in section_law(cut, action, multibody.frames[name].rotation).items()}
-    return InternalForces(efforts, found, laws)
+        columns |= {f"reaction:{name}:{member}": force for member, force in borne[name].items()}
+    held = {c.name: c.multipliers for c in multibody.closures if c.joint is None}
+    held |= {graph.row.name: graph.multiplier for graph in multibody.rows}
+    columns |= {f"multiplier:{name}": held[name] for name in multipliers}
+    for name, action in zip(multibody.cuts, actions[len(by_joint) :], strict=True):
+        for coefficient, force in _section_law(multibody, name, action, borne, drives).items():
+            columns[f"section:{name}:{coefficient}"] = force
+    return InternalForces({name: known(force) for name, force in columns.items()}, free)
 
 
-def section_law(cut: SectionCut, action: Any, direction: Rotation) -> dict[str, Any]:
-    """The coefficients of a link's law, from the generalized forces of its section mobility; to be taken at zero moments.
+def _section_law(multibody: Multibody, name: str, action: Any, borne: Any, drives: Any) -> dict[str, Any]:
+    """The coefficients of a link's law: of its material from the section mobility, of the tip and stations from what acts there."""
+    link, frame, cut = multibody.mechanism.links[name], multibody.frames[name], multibody.cuts[name]
+    direction: Rotation = frame.rotation
+    slopes = ca.jacobian(ca.vertcat(*direction.resolve(action[0], action[1])), cut.moments[:2])
+    tip = [ca.SX(0), ca.SX(0), ca.SX(0)]
+    stations: dict[str, Any] = {}
+    for source, x, y, (fx, fy, mz) in _loads_on(multibody, link, borne, drives):
+        n, f = direction.resolve(fx, fy)
+        acting = (n, f, mz - y * n)
+        if x is None:
+            tip = [total + part for total, part in zip(tip, acting, strict=True)]
+        else:
+            found = zip(STATION, (*acting, x / link.length), strict=True)
+            stations |= {f"{source}:{member}": value for member, value in found}
+    n0, f0, m0 = tip
+    law = (n0, -slopes[0, 0], -slopes[0, 1], f0, -slopes[1, 0], -slopes[1, 1], m0)
+    return dict(zip((f"law:{k}" for k in LAW), law, strict=True)) | stations
 
-    ``action`` is what the side nearer the ground does to the displaced side. Where that side holds the base, the tip's side
-    is the one that acts, and the moments of the displaced material are the link's less those up to the tip.
+
+def _loads_on(multibody: Multibody, link: Link, borne: Any, drives: Any) -> Iterator[tuple[str, Any, Any, tuple[Any, Any, Any]]]:
+    """What acts on a link beyond its base: by whom, where in the link's axes, and force and couple in ground axes.
+
+    The station is None at the tip.
     """
-    n, f = direction.resolve(action[0], action[1])
-    m = action[2]
-    slopes = ca.jacobian(ca.vertcat(n, f), cut.moments[:2])
-    n1, n2, f1, f2 = slopes[0, 0], slopes[0, 1], slopes[1, 0], slopes[1, 1]
-    if cut.toward_tip:
-        return dict(zip(LAW, (-n, -n1, -n2, -f, -f1, -f2, -m), strict=True))
-    link = Moments.of_uniform(cut.link.mass, cut.link.length)
-    n0 = n + n1 * link.mass + n2 * link.first
-    f0 = f + f1 * link.mass + f2 * link.first
-    m0 = m + f1 * link.first + f2 * link.second - cut.link.length * f0
-    return dict(zip(LAW, (n0, -n1, -n2, f0, -f1, -f2, m0), strict=True))
+    for joint in multibody.mechanism.joints.values():
+        for point, sign in ((joint.parent, -1), (joint.child, 1)):
+            if point.body is not link or joint.name not in borne:
+                continue
+            parent = multibody.frames[joint.parent.body.name]
+            members = borne[joint.name]
+            fx, fy, mz = members["fx"], members["fy"], members.get("mz", 0)
+            if joint.name in drives and joint.slides:
+                ax, ay = parent.rotation.apply(*joint.axis)
+                fx, fy = fx + drives[joint.name] * ax, fy + drives[joint.name] * ay
+            elif joint.name in drives:
+                mz = mz + drives[joint.name]
+            x, y = point.x, point.y
+            if joint.slides and point is joint.parent:
+                along, _ = slide(joint, parent, multibody.frames[joint.child.body.name])
+                x, y = x + joint.axis[0] * along, y + joint.axis[1] * along
+            elif _at_base(point):
+                continue
+            elif point.end == "tip":
+                x = None
+            yield joint.name, x, y, (sign * fx, sign * fy, sign * mz)
+    for number, part in enumerate(multibody.applied):
+        if part.point.body is link and not _at_base(part.point):
+            x = None if part.point.end == "tip" else part.point.x
+            again = any(other.load == part.load and other.point.body is link for other in multibody.applied[:number])
+            yield f"{part.load}_2" if again else part.load, x, part.point.y, (part.fx, part.fy, part.mz)
 
 
-def _multipliers(multibody: Multibody, kinematics: Kinematics, along: Any) -> tuple[Any, Any]:
-    """lambda from the undriven rows of R = Phi_q' lambda (paper eq. 8): the blocks of the loops, last one first."""
+def _at_base(point: Point) -> bool:
+    return point.end == "base" or (isinstance(point.x, float) and point.x == 0.0)
+
+
+def _multipliers(multibody: Multibody, kinematics: Kinematics, along: Any) -> tuple[Any, Any, Any]:
+    """lambda and mu: their symbols, their values, and the symbols of what equilibrium leaves open.
+
+    lambda comes from the undriven rows of R = Phi_q' lambda + A' mu (paper eq. 2, 8), the blocks of the loops last one first; mu
+    from the driven rows that bear no effort.
+    """
     rows = {c: along[i] for i, c in enumerate(multibody.coordinates)}
-    symbols, values = ca.SX(0, 1), ca.SX(0, 1)
+    symbols, values, free = ca.SX(0, 1), ca.SX(0, 1), ca.SX(0, 1)
     for block, system in reversed(list(zip(kinematics.blocks, kinematics.systems, strict=True))):
-        own = ca.vertcat(*(closure.multipliers for closure in block.closures))
-        left = ca.vertcat(*(rows[c] for c in block.unknown))
+        own = column(closure.multipliers for closure in block.closures)
+        left = column(rows[c] for c in block.unknown)
         left = ca.substitute(left, ca.vertcat(own, symbols), ca.vertcat(ca.SX.zeros(own.numel()), values))
-        symbols = ca.vertcat(own, symbols)
-        values = ca.vertcat(system.solve_transposed(left), values)
-    return symbols, values
+        open_here = ca.SX.sym(f"free_{block.closures[0].name}", system.free)
+        free = ca.vertcat(free, open_here)
+        symbols, values = ca.vertcat(own, symbols), ca.vertcat(system.solve_transposed(left, open_here), values)
+    if multibody.rows:
+        mu = column(graph.multiplier for graph in multibody.rows)
+        replaced = [next(c for c in rows if c.joint == graph.row.replaces) for graph in multibody.rows]
+        unaided = ca.substitute(column(rows[c] for c in replaced), symbols, values)
+        solved = ca.solve(ca.jacobian(unaided, mu), -ca.substitute(unaided, mu, ca.SX.zeros(mu.numel())))
+        values = ca.substitute(values, mu, solved)
+        symbols, values = ca.vertcat(symbols, mu), ca.vertcat(values, solved)
+    return symbols, values, free
 
 
 def _reaction(multibody: Multibody, joint: Joint, actions: dict[str, Any]) -> dict[str, Any]:
@@ -104,6 +184,6 @@ def _reaction(multibody: Multibody, joint: Joint, actions: dict[str, Any]) -> di
     return reaction(joint, parent, branch.sign * actions[joint.name], closing=False)
 
 
-def _split(column: Any, sizes: list[int]) -> list[Any]:
+def _split(stacked: Any, sizes: list[int]) -> list[Any]:
     starts = [sum(sizes[:i]) for i in range(len(sizes))]
-    return [column[start : start + size] for start, size in zip(starts, sizes, strict=True)]
+    return [stacked[start : start + size] for start, size in zip(starts, sizes, strict=True)]

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
+from .curves import rows
 from .errors import DeclarationError
-from .mechanism import Expression
+from .parts import Expression
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,18 +61,9 @@ def samples(times: Sequence[float], values: Sequence[float]) -> Motion:
 
     Raises :class:`DeclarationError` for fewer than four samples, for times that do not increase, or for what is not finite.
     """
-    t, v = np.asarray(times, dtype=float), np.asarray(values, dtype=float)
-    if t.ndim != 1 or t.shape != v.shape:
-        raise DeclarationError(f"samples: times and values must be two rows of one length, got shapes {t.shape} and {v.shape}")
-    if t.size < 4:
-        raise DeclarationError(f"samples: a cubic spline needs at least 4 samples, got {t.size}")
-    if not (np.isfinite(t).all() and np.isfinite(v).all()):
-        raise DeclarationError("samples: times and values must be finite")
-    if not (np.diff(t) > 0).all():
-        first = int(np.argmin(np.diff(t) > 0))
-        raise DeclarationError(f"samples: times must increase, but sample {first + 1} is at {t[first + 1]:g} after {t[first]:g}")
-    spline = ca.interpolant("spline", "bspline", [t.tolist()], v.tolist())
-    return Motion(lambda time: spline(time), spline=True, span=(float(t[0]), float(t[-1])))
+    t, v = rows("motion samples", times, values, 4)
+    spline = ca.interpolant("spline", "bspline", [t], v)
+    return Motion(lambda time: spline(time), spline=True, span=(t[0], t[-1]))
 
 
 def motion_function(laws: Sequence[Motion], parameters: Any) -> Any:

@@ -12,25 +12,26 @@ from typing import Any
 
 import casadi as ca
 
-from .mechanism import Expression, Joint
+from .parts import Expression, Joint
 
 Pair = tuple[Any, Any]
 
 
 @dataclass(frozen=True, eq=False)
 class Rotation:
-    """A direction, as its cosine and sine."""
+    """A direction, as its cosine and sine; the angle itself is there for those who count turns."""
 
     c: Expression = 1.0
     s: Expression = 0.0
+    angle: Expression = 0.0
 
     @classmethod
     def by(cls, angle: Expression) -> Rotation:
         """The rotation by an angle [rad]; a number within rounding of a right angle is meant to be one."""
         if isinstance(angle, ca.SX):
-            return cls(ca.cos(angle), ca.sin(angle))
+            return cls(ca.cos(angle), ca.sin(angle), angle)
         c, s = math.cos(angle), math.sin(angle)
-        return cls(0.0 if abs(c) < 2e-16 else c, 0.0 if abs(s) < 2e-16 else s)
+        return cls(0.0 if abs(c) < 2e-16 else c, 0.0 if abs(s) < 2e-16 else s, angle)
 
     def apply(self, x: Expression, y: Expression) -> Pair:
         """Components in the ground's axes of a vector given in the rotated axes."""
@@ -42,16 +43,16 @@ class Rotation:
 
     def then(self, other: Rotation) -> Rotation:
         """This rotation followed by another."""
-        return Rotation(*self.apply(other.c, other.s))
+        return Rotation(*self.apply(other.c, other.s), self.angle + other.angle)
 
     def against(self, other: Rotation) -> Rotation:
         """This direction as seen from another."""
-        return Rotation(*other.resolve(self.c, self.s))
+        return Rotation(*other.resolve(self.c, self.s), self.angle - other.angle)
 
     @property
     def inverse(self) -> Rotation:
         """The rotation back."""
-        return Rotation(self.c, -self.s)
+        return Rotation(self.c, -self.s, -self.angle)
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +108,7 @@ class Frame:
         at, speed = self.place_of(x, y), self.speed_of(x, y)
         rotation, rate = self.rotation, self.rate
         if displacement.rotates:
-            rotation, rate = rotation.then(Rotation(1.0, e[2])), rate + ed[2]
+            rotation, rate = rotation.then(Rotation(1.0, e[2], e[2])), rate + ed[2]
             across = self.rotation.apply(-drift[1], drift[0])
             speed = (speed[0] - e[2] * across[0], speed[1] - e[2] * across[1])
         return Frame((at[0] + e[0], at[1] + e[1]), (speed[0] + ed[0], speed[1] + ed[1]), rotation, rate, (x, y))
@@ -118,40 +119,32 @@ class Frame:
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """Mass, first and second moment of a piece of a straight body, about its origin and along its x axis."""
+    """Mass, first moment along and beside the axis, and second moment of a body or a piece of one, about its origin."""
 
     mass: Expression
     first: Expression = 0.0
     second: Expression = 0.0
-
-    @classmethod
-    def of_uniform(cls, mass: Expression, length: Expression) -> Moments:
-        """A whole uniform link."""
-        return cls(mass, mass * length / 2, mass * length * length / 3)
+    beside: Expression = 0.0
 
     def kinetic(self, frame: Frame) -> Any:
         """Kinetic energy (paper eq. 16), linear in the moments."""
-        nx, ny = frame.rotation.apply(0.0, 1.0)
+        nx, ny = frame.rotation.apply(-self.beside, self.first)
         vx, vy = frame.speed_of(0.0, 0.0)
-        return (
-            self.mass * (vx * vx + vy * vy) / 2
-            + self.first * frame.rate * (vx * nx + vy * ny)
-            + self.second * frame.rate * frame.rate / 2
-        )
+        return self.mass * (vx * vx + vy * vy) / 2 + frame.rate * (vx * nx + vy * ny) + self.second * frame.rate * frame.rate / 2
 
     def force_function(self, frame: Frame, gravity: Pair) -> Any:
         """Work of gravity (paper eq. 18), linear in the moments."""
-        ex, ey = frame.rotation.apply(1.0, 0.0)
+        ex, ey = frame.rotation.apply(self.first, self.beside)
         x, y = frame.place_of(0.0, 0.0)
-        return gravity[0] * (self.mass * x + self.first * ex) + gravity[1] * (self.mass * y + self.first * ey)
+        return gravity[0] * (self.mass * x + ex) + gravity[1] * (self.mass * y + ey)
 
     def without(self, piece: Moments) -> Moments:
-        """What is left when a piece is taken off."""
-        return Moments(self.mass - piece.mass, self.first - piece.first, self.second - piece.second)
+        """What is left when a piece on the axis is taken off."""
+        return Moments(self.mass - piece.mass, self.first - piece.first, self.second - piece.second, self.beside)
 
 
 def slide(joint: Joint, parent: Frame, child: Frame) -> Pair:
-    """Along and across the axis of a prismatic joint: where the child's point is, in the parent's axes."""
+    """Along and across the axis of a joint that slides: where the child's point is, in the parent's axes."""
     x, y = parent.local(child.place_of(joint.child.x, joint.child.y))
     dx, dy = x - joint.parent.x, y - joint.parent.y
     ax, ay = joint.axis
@@ -159,28 +152,31 @@ def slide(joint: Joint, parent: Frame, child: Frame) -> Pair:
 
 
 def closure(joint: Joint, parent: Frame, child: Frame) -> Any:
-    """Phi of a joint that closes a loop (paper eq. 5): two gaps in ground axes, or the gap across a line.
+    """Phi of a joint that closes a loop (paper eq. 5): gaps in ground axes or across a line, and of direction where it is held.
 
     The multipliers of Phi are the action of the parent on the child along these gaps.
     """
-    if joint.kind == "prismatic":
-        across = ca.SX(slide(joint, parent, child)[1])
-        turned = child.rotation.against(parent.rotation.then(Rotation.by(joint.angle))).s
-        return ca.vertcat(across, turned) if joint.holds_direction else across
-    a, b = child.place_of(joint.child.x, joint.child.y), parent.place_of(joint.parent.x, joint.parent.y)
-    return ca.vertcat(a[0] - b[0], a[1] - b[1])
+    if joint.slides:
+        gaps = [ca.SX(slide(joint, parent, child)[1])]
+    else:
+        a, b = child.place_of(joint.child.x, joint.child.y), parent.place_of(joint.parent.x, joint.parent.y)
+        gaps = [ca.SX(a[0] - b[0]), ca.SX(a[1] - b[1])]
+    if joint.holds_direction:
+        gaps.append(ca.SX(child.rotation.against(parent.rotation.then(Rotation.by(joint.angle))).s))
+    return ca.vertcat(*gaps)
 
 
 def reaction(joint: Joint, parent: Frame, action: Any, *, closing: bool) -> dict[str, Any]:
     """The reaction by member, from the generalized forces ``action`` of its mobility, or of Phi where it closes a loop.
 
-    A prismatic joint bears no force along its axis: what its mobility feels there is the drive's, not the joint's.
+    What slides bears no force along its axis: what its mobility feels there is the drive's, not the joint's.
     """
-    if joint.kind == "revolute":
-        return {"fx": action[0], "fy": action[1]}
-    nx, ny = parent.rotation.apply(-joint.axis[1], joint.axis[0])
-    normal = action[0] if closing else action[0] * nx + action[1] * ny
-    members = {"fx": normal * nx, "fy": normal * ny}
+    if joint.slides:
+        nx, ny = parent.rotation.apply(-joint.axis[1], joint.axis[0])
+        normal = action[0] if closing else action[0] * nx + action[1] * ny
+        members = {"fx": normal * nx, "fy": normal * ny}
+    else:
+        members = {"fx": action[0], "fy": action[1]}
     if joint.holds_direction:
-        members["mz"] = action[1 if closing else 2]
+        members["mz"] = action[1 if closing and joint.slides else 2]
     return members

@@ -24,7 +24,8 @@ class Quantity:
     """One kind of output.
 
     ``axes`` is ``("t",)`` or ``("t", "xi")``. ``unit`` holds ``{q}`` where it depends on whether the joint's coordinate
-    is an angle (rad) or a slide (m), and ``{Q}`` where it depends on the effort that works on it (N m or N).
+    is an angle (rad) or a slide (m), and ``{Q}`` where it depends on the effort that works on it (N m or N). A multiplier's unit is
+    that of power over its own equation's: the file says ``1`` where the equation's unit is the user's affair.
     """
 
     group: str
@@ -47,6 +48,7 @@ class Quantity:
 
 _ON_INBOARD = "action of the part towards the tip on the part towards the base"
 _ON_CHILD = "action of the parent side on the child side"
+_ON_FIRST = "on the body of the load's first point"
 _ALONG = "positive along the joint's coordinate"
 
 QUANTITIES = (
@@ -60,6 +62,10 @@ QUANTITIES = (
     Quantity("reaction", "fx", ("t",), FORCE, "reaction of the joint, x", _ON_CHILD),
     Quantity("reaction", "fy", ("t",), FORCE, "reaction of the joint, y", _ON_CHILD),
     Quantity("reaction", "mz", ("t",), MOMENT, "moment of the joint about its point on the child", _ON_CHILD),
+    Quantity("multiplier", "", ("t",), "1", "multiplier of a constraint or a non-holonomic row"),
+    Quantity("load", "fx", ("t",), FORCE, "applied force, x", _ON_FIRST),
+    Quantity("load", "fy", ("t",), FORCE, "applied force, y", _ON_FIRST),
+    Quantity("load", "mz", ("t",), MOMENT, "applied torque", _ON_FIRST),
     Quantity("section", "axial", ("t", "xi"), FORCE, "axial force", f"tension is positive: {_ON_INBOARD}, along the axis"),
     Quantity("section", "shear", ("t", "xi"), FORCE, "shear force", f"{_ON_INBOARD}, 90 deg counter-clockwise of the axis"),
     Quantity("section", "bending", ("t", "xi"), MOMENT, "bending moment", f"{_ON_INBOARD}, counter-clockwise"),
@@ -70,14 +76,13 @@ QUANTITIES = (
     Quantity("law", "f1", ("t",), "m/s^2", "shear force for a unit of the mass mu0 from the section to the tip"),
     Quantity("law", "f2", ("t",), "1/s^2", "shear force for a unit of the first moment mu1 from the section to the tip"),
     Quantity("law", "m0", ("t",), MOMENT, "bending moment at the tip"),
+    Quantity("station", "n", ("t",), FORCE, "force on the link at a station, along the axis"),
+    Quantity("station", "f", ("t",), FORCE, "force on the link at a station, 90 deg counter-clockwise of the axis"),
+    Quantity("station", "m", ("t",), MOMENT, "moment on the link at a station"),
+    Quantity("station", "station", ("t",), "1", "place of the station, ratio xi/l"),
 )  # fmt: skip
 
 _BY_KEY = {(q.group, q.member): q for q in QUANTITIES}
-
-
-def members(group: str) -> tuple[str, ...]:
-    """The members of a group, in the order of the table."""
-    return tuple(q.member for q in QUANTITIES if q.group == group)
 
 
 def quantity_of(name: str) -> Quantity:
@@ -91,6 +96,8 @@ def quantity_of(name: str) -> Quantity:
             if rest[0].endswith(f"_{member}"):
                 return _BY_KEY[group, member]
         return _BY_KEY[group, ""]
-    if group == "effort":
+    if group in ("effort", "multiplier"):
         return _BY_KEY[group, ""]
-    return _BY_KEY["law" if "law" in rest[1:] else group, rest[-1]]
+    if group == "section" and len(rest) == 3:
+        return _BY_KEY["law" if rest[1] == "law" else "station", rest[2]]
+    return _BY_KEY[group, rest[-1]]

@@ -11,13 +11,18 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from . import kinematics, multibody
+from . import kinematics
+from .assembly import assemble
+from .density import Density
 from .errors import DeclarationError, UnknownNameError
-from .kinematics import NewtonLoop
+from .kinematics import NewtonLoop, Start
 from .mechanism import Mechanism
-from .mobility import internal_forces
+from .mobility import internal_forces, needed_reactions
 from .motion import Motion, motion_function
+from .multibody import Multibody
 from .tree import span
+
+_OPEN = 1e-9
 
 Grid = tuple[float, float, int]
 """Start, stop and count; both ends are included."""
@@ -48,17 +53,21 @@ def ratios(grid: Grid) -> npt.NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class Wanted:
-    """Outputs by kind, joints and links in the order of declaration whatever the order of wanting."""
+    """Outputs by kind, each in the order of declaration whatever the order of wanting."""
 
     effort: bool
     motion: bool
     reactions: tuple[str, ...]
+    multipliers: tuple[str, ...]
+    loads: tuple[str, ...]
     sections: tuple[str, ...]
 
     @classmethod
     def of(cls, mechanism: Mechanism, names: Sequence[str]) -> Wanted:
-        """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``section:LINK``, ``all``."""
+        """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``, ``load:NAME``, ``section:LINK``, ``all``."""
         choices = outputs(mechanism)
+        if isinstance(names, str) or not all(isinstance(name, str) for name in names):
+            raise DeclarationError(f"wanted: expected a list of output names, got {names!r}; valid: {', '.join(choices)}")
         for name in names:
             if name not in choices:
                 _refuse_output(mechanism, name)
@@ -66,36 +75,34 @@ class Wanted:
         chosen = set(choices if "all" in names else names)
         if not chosen:
             raise DeclarationError(f"no output wanted; valid: {', '.join(choices)}")
-        return cls(
-            effort="effort" in chosen,
-            motion="motion" in chosen,
-            reactions=tuple(joint for joint in mechanism.joints if f"reaction:{joint}" in chosen),
-            sections=tuple(link for link in mechanism.links if f"section:{link}" in chosen),
-        )
+
+        def parts(kind: str) -> tuple[str, ...]:
+            return tuple(name.partition(":")[2] for name in choices if name in chosen and name.startswith(f"{kind}:"))
+
+        kinds = ("reaction", "multiplier", "load", "section")
+        return cls("effort" in chosen, "motion" in chosen, *(parts(kind) for kind in kinds))
+
+    @property
+    def forces(self) -> bool:
+        """Whether any force is wanted that equilibrium gives."""
+        return bool(self.effort or self.reactions or self.multipliers or self.sections)
 
 
 def outputs(mechanism: Mechanism) -> list[str]:
     """Every output that can be wanted of a mechanism."""
     reactions = [f"reaction:{joint}" for joint in mechanism.joints]
-    sections = [f"section:{link}" for link in mechanism.links if _side_joint(mechanism, link) is None]
-    return ["all", "effort", "motion", *reactions, *sections]
-
-
-def _side_joint(mechanism: Mechanism, link: str) -> str | None:
-    """A joint that sits elsewhere than at the link's ends."""
-    for joint in mechanism.joints.values():
-        for point in (joint.parent, joint.child):
-            if point.body.name == link and point.end is None:
-                return joint.name
-    return None
+    multipliers = [f"multiplier:{name}" for name in (*mechanism.constraints, *mechanism.rows)]
+    loads = [f"load:{name}" for name in mechanism.loads]
+    sections = [f"section:{name}" for name, link in mechanism.links.items() if isinstance(link.mass, Density)]
+    return ["all", "effort", "motion", *reactions, *multipliers, *loads, *sections]
 
 
 def _refuse_output(mechanism: Mechanism, name: str) -> None:
     kind, _, part = name.partition(":")
     if kind == "section" and part in mechanism.links:
         raise DeclarationError(
-            f"output '{name}': joint '{_side_joint(mechanism, part)}' sits off the ends of link '{part}', and the section law "
-            "needs all joints at its base or its tip"
+            f"output '{name}': link '{part}' is known by its centre of mass and inertia only; a section needs to know how its mass "
+            "lies along it, so give it a mass alone or a density"
         )
     if kind == "section" and part in mechanism.bodies:
         raise DeclarationError(f"output '{name}': '{part}' is not a link and has no sections; links: {', '.join(mechanism.links)}")
@@ -128,18 +135,29 @@ class Scene:
     posture: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.mechanism, Mechanism):
+            raise DeclarationError(f"scene: expected a Mechanism, got {self.mechanism!r}")
+        for what, mapping in (("motion", self.motion), ("posture", self.posture)):
+            if not isinstance(mapping, Mapping):
+                raise DeclarationError(f"{what}: expected a mapping by name, got {mapping!r}")
         joints = self.mechanism.joints
         for name, law in self.motion.items():
             if name not in joints:
                 raise UnknownNameError("joint in motion", name, joints)
             if joints[name].coordinate is None:
-                raise DeclarationError(f"joint '{name}' cannot be driven: a pin at a point mass turns nothing")
+                why = "a weld does not move" if joints[name].kind == "weld" else "a pin at a point mass turns nothing"
+                raise DeclarationError(f"joint '{name}' cannot be driven: {why}")
             if not isinstance(law, Motion):
                 raise DeclarationError(f"motion of joint '{name}': expected a law of lagrange_casadi.motion, got {law!r}")
-        places = [*self.mechanism.links, *(n for n, j in joints.items() if j.kind == "prismatic")]
-        for name in self.posture:
+        places = [*self.mechanism.links, *(n for n, j in joints.items() if j.slides)]
+        for name, rough in self.posture.items():
             if name not in places:
-                raise UnknownNameError("link or prismatic joint in posture", name, places)
+                raise UnknownNameError("link or sliding joint in posture", name, places)
+            if not isinstance(rough, (int, float)) or not math.isfinite(rough):
+                raise DeclarationError(f"posture of '{name}': expected a finite number, got {rough!r}")
+        for row in self.mechanism.rows.values():
+            if row.replaces not in self.motion:
+                raise DeclarationError(f"row '{row.name}' replaces the drive of joint '{row.replaces}', which has no motion")
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)
         instants("t", self.t)
@@ -151,23 +169,20 @@ class Scene:
 class SceneGraph:
     """What a scene computes, as CasADi functions that hold nothing else.
 
-    ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` a
-    column name; ``newton`` where loops must be iterated. ``closures`` names the first rows of ``out``: the joints whose loops are
-    in closed form, see :mod:`.loops`.
+    ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` a
+    column name; ``newton`` where loops must be iterated. Columns that begin with ``_`` are no outputs but tell whether there is a
+    result: ``_closure:JOINT`` (see :mod:`.loops`), ``_misfit:JOINT``, ``_row:NAME`` and ``_rowsize:NAME``. ``open_`` names the
+    outputs that equilibrium does not determine.
     """
 
     scene: Scene
     wanted: Wanted
+    driven: tuple[str, ...]
     motion: Any
     instant: Any
     newton: NewtonLoop | None
     columns: tuple[str, ...]
-    closures: tuple[str, ...]
-
-    @property
-    def driven(self) -> tuple[str, ...]:
-        """The driven joints in the order of d."""
-        return tuple(name for name in self.scene.mechanism.joints if name in self.scene.motion)
+    open_: tuple[str, ...]
 
     @property
     def instructions(self) -> dict[str, int]:
@@ -185,47 +200,68 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None) -> SceneGraph:
     want = Wanted.of(mechanism, scene.wanted if wanted is None else wanted)
     p = mechanism.symbols
     tree = span(mechanism, scene.motion)
-    body = multibody.assemble(mechanism, tree, scene.motion, want.reactions, want.sections)
-    order = [c.joint for c in body.coordinates if c.driven]
-    motion = motion_function([scene.motion[name] for name in order], p)
+    body = assemble(mechanism, tree, scene.motion, needed_reactions(mechanism, want.reactions, want.sections), want.sections)
+    driven = tuple(c.joint for c in body.coordinates if c.driven)
+    motion = motion_function([scene.motion[name] for name in driven], p)
     defaults = list(mechanism.values().values())
-    start = [float(x) for x in ca.DM(motion(scene.t[0], defaults)[0]).full().ravel()]
-    solved = kinematics.solve(body, scene.posture, start, defaults)
+    first = [float(x) for x in ca.DM(motion(scene.t[0], defaults)[0]).full().ravel()]
+    solved = kinematics.solve(body, scene.posture, Start(float(scene.t[0]), first, defaults))
 
-    columns: dict[str, Any] = {f"closure:{name}": closure for name, closure in solved.closures.items()}
+    columns = {f"_closure:{name}": closure for name, closure in solved.closures.items()}
+    columns |= {f"_misfit:{name}": misfit for name, misfit in solved.misfits.items()}
+    for graph in body.rows:
+        columns |= {f"_row:{graph.row.name}": graph.residual, f"_rowsize:{graph.row.name}": graph.size}
     if want.motion:
-        columns |= _motion_columns(body, solved, order)
-    if want.effort or want.reactions or want.sections:
-        forces = internal_forces(body, solved, want.reactions)
-        if want.effort:
-            columns |= {f"effort:{joint}": effort for joint, effort in forces.efforts.items()}
-        for joint, members in forces.reactions.items():
-            columns |= {f"reaction:{joint}:{member}": force for member, force in members.items()}
-        for link, law in forces.laws.items():
-            columns |= {f"section:{link}:law:{name}": coefficient for name, coefficient in law.items()}
+        columns |= _motion_columns(body, solved, driven)
+    for part in reversed(body.applied):
+        if part.load in want.loads:
+            columns |= {f"load:{part.load}:{member}": getattr(part, member) for member in ("fx", "fy", "mz")}
+    columns = {name: solved.evaluate(column) for name, column in columns.items()}
+    inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, p]
+    open_: tuple[str, ...] = ()
+    if want.forces:
+        chosen = {"effort": want.effort, "reactions": want.reactions, "multipliers": want.multipliers, "sections": want.sections}
+        forces = internal_forces(body, solved, **chosen)  # type: ignore[arg-type]
+        open_ = _undetermined(forces.columns, forces.free, motion, inputs, scene, solved.newton)
+        settled = [column for name, column in forces.columns.items() if name not in open_]
+        settled = ca.vertsplit(ca.substitute(ca.vertcat(ca.SX(0, 1), *settled), forces.free, ca.SX.zeros(forces.free.numel())))
+        columns |= dict(zip((name for name in forces.columns if name not in open_), settled, strict=False))
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
-    inputs = [solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, p]
-    names = ["d", "d_rate", "d_acceleration", "z", "p"]
+    names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = ca.Function("instant", inputs, [out], names, ["out"], {"cse": True})
-    return SceneGraph(scene, want, motion, instant, solved.newton, tuple(columns), tuple(solved.closures))
+    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), open_)
 
 
-def _motion_columns(body: multibody.Multibody, solved: kinematics.Kinematics, order: list[str]) -> dict[str, Any]:
+def _undetermined(
+    columns: dict[str, Any], free: Any, motion: Any, inputs: list[Any], scene: Scene, newton: NewtonLoop | None
+) -> tuple[str, ...]:
+    """The outputs that change with what equilibrium leaves open, at any of a few instants of the motion."""
+    if not free.numel():
+        return ()
+    slopes = ca.Function("slopes", [*inputs, free], [ca.jacobian(ca.vertcat(*columns.values()), free)])
+    p = list(scene.mechanism.values().values())
+    largest = np.zeros((len(columns), free.numel()))
+    for t in np.linspace(scene.t[0], scene.t[1], 7) if newton is None else [scene.t[0]]:
+        found = slopes(t, *motion(t, p), newton.guess if newton else [], p, ca.DM.zeros(free.numel())).full()
+        largest = np.fmax(largest, np.abs(found))
+    return tuple(name for name, row in zip(columns, largest, strict=True) if row.max() > _OPEN)
+
+
+def _motion_columns(body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]) -> dict[str, Any]:
     columns: dict[str, Any] = {}
     for name, joint in body.mechanism.joints.items():
-        if name in order:
-            i = order.index(name)
+        if name in driven:
+            i = driven.index(name)
             motion = (solved.driven[i], solved.driven_rate[i], solved.driven_acceleration[i])
         elif joint.coordinate is not None:
-            motion = tuple(solved.evaluate(x) for x in body.joint_motion(joint))
+            motion = body.joint_motion(joint)
         else:
             continue
         columns |= dict(zip((f"motion:{name}", f"motion:{name}_rate", f"motion:{name}_acceleration"), motion, strict=True))
     for part in body.mechanism.moving:
         frame = body.frames[part.name]
         x, y = frame.place_of(0.0, 0.0)
-        columns |= {f"pose:{part.name}:x": solved.evaluate(x), f"pose:{part.name}:y": solved.evaluate(y)}
+        columns |= {f"pose:{part.name}:x": x, f"pose:{part.name}:y": y}
         if part.oriented:
-            angle = ca.atan2(frame.rotation.s, frame.rotation.c)
-            columns[f"pose:{part.name}:angle"] = solved.evaluate(angle)
+            columns[f"pose:{part.name}:angle"] = ca.atan2(frame.rotation.s, frame.rotation.c)
     return columns

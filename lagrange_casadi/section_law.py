@@ -1,68 +1,140 @@
-"""The section law of a uniform rod as numbers: its forces at any ratio xi/l, and where along the link they peak.
+"""The section law of a link as numbers: its forces at any ratio xi/l, and where along the link they peak.
 
-With u = xi/l and v = 1 - u the moments from the section to the tip are mu0 = m v, mu1 = m l v (1 + u)/2, and the combinations
-that bending needs, mu1 - xi mu0 = m l v^2/2 and mu2 - xi mu1 = m l^2 v^2 (2 + u)/6, are written so that nothing cancels near
-the tip.
+With u = xi/l the forces are those of the material beyond the section, whose moments :mod:`.density` gives, and of what acts on the
+link beyond it: at the tip (n0, f0, m0), and at stations in between, each seen by the sections on its base side.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from .density import Array, NumericDensity
 
 FORCES = ("axial", "shear", "bending")
-_COEFFICIENTS = {"axial": ("n0", "n1", "n2"), "shear": ("f0", "f1", "f2"), "bending": ("m0", "f0", "f1", "f2")}
+Side = Literal["base", "tip"]
+
+_HALVINGS = 60
+
+
+@dataclass(frozen=True, eq=False)
+class StationLoad:
+    """What acts on a link at a station: force along ``n`` and across ``f`` the axis [N], moment ``m`` [N m], each (t,).
+
+    ``station`` is the ratio xi/l, (t,): it moves where something slides along the link.
+    """
+
+    name: str
+    station: Array
+    n: Array
+    f: Array
+    m: Array
 
 
 @dataclass(frozen=True, eq=False)
 class SectionLaw:
-    """The law of one link: ``coefficients`` by name (n0 ... m0), each of shape (t,); length [m] and mass [kg]."""
+    """The law of one link: ``coefficients`` by name (n0 ... m0), each (t,); length [m], density, and loads at stations."""
 
     length: float
-    mass: float
+    density: NumericDensity
     coefficients: Mapping[str, Array]
+    loads: tuple[StationLoad, ...] = ()
 
     def on_grid(self, force: str, xi: Array) -> Array:
-        """A force at every instant and every ratio ``xi``, of shape (t, xi)."""
-        columns = np.stack([self.coefficients[name] for name in _COEFFICIENTS[force]], axis=1)
-        return np.asarray(columns @ np.stack(self._basis(force, xi)))
+        """A force at every instant and every ratio ``xi``, of shape (t, xi); at a station, the value on its tip side."""
+        columns, basis = self._terms(force, xi)
+        values = np.asarray(np.stack(columns, axis=1) @ np.stack(basis))
+        for load in self.loads:
+            values += self._beyond(force, load, xi[None, :], xi[None, :] < load.station[:, None])
+        return values
 
-    def at(self, force: str, xi: Any) -> Array:
-        """A force at ratios of shape (t, ...), one row an instant."""
+    def at(self, force: str, xi: Any, side: Side = "tip") -> Array:
+        """A force at ratios of shape (t, ...), one row an instant; ``side`` tells which value is meant at a station."""
         u = np.asarray(xi, dtype=float)
-        shape = (-1,) + (1,) * (u.ndim - 1)
-        terms = zip(_COEFFICIENTS[force], self._basis(force, u), strict=True)
-        return np.asarray(sum(self.coefficients[name].reshape(shape) * factor for name, factor in terms))
+        values = self._smooth(force, u)
+        for load in self.loads:
+            station = _column(load.station, u)
+            values = values + self._beyond(force, load, u, u < station if side == "tip" else u <= station)
+        return values
 
     def extreme(self, force: str) -> tuple[Array, Array]:
         """The ratio at which a force is largest in size, and the force there, at every instant, both of shape (t,)."""
-        places = np.stack([np.zeros_like(self.coefficients["n0"]), np.ones_like(self.coefficients["n0"]), *self._stationary(force)])
-        places = np.where((places > 0.0) & (places < 1.0), places, np.where(places >= 1.0, 1.0, 0.0)).T
-        values = self.at(force, places)
+        places = [np.zeros_like(self.coefficients["n0"]), np.ones_like(self.coefficients["n0"]), *self._stationary(force)]
+        stacked = np.stack(places, axis=1)
+        stacked = np.where((stacked > 0.0) & (stacked < 1.0), stacked, np.where(stacked >= 1.0, 1.0, 0.0))
+        values = self.at(force, stacked)
+        if self.loads:
+            before = self.at(force, stacked, side="base")
+            values = np.where(np.abs(before) > np.abs(values), before, values)
         best = np.argmax(np.abs(values), axis=1)[:, None]
-        return np.take_along_axis(places, best, 1)[:, 0], np.take_along_axis(values, best, 1)[:, 0]
+        return np.take_along_axis(stacked, best, 1)[:, 0], np.take_along_axis(values, best, 1)[:, 0]
 
-    def _basis(self, force: str, u: Array) -> list[Array]:
-        m, l, v = self.mass, self.length, 1.0 - u
+    def _terms(self, force: str, u: Array) -> tuple[list[Array], list[Array]]:
+        c, l = self.coefficients, self.length
+        t0, t1, t2 = self.density.tails(u)
+        one = np.ones_like(u)
         if force == "bending":
-            return [np.ones_like(u), l * v, m * l * v * v / 2, m * l * l * v * v * (2.0 + u) / 6]
-        return [np.ones_like(u), m * v, m * l * v * (1.0 + u) / 2]
+            return [c["m0"], c["f0"], c["f1"], c["f2"]], [one, l * (1.0 - u), l * t1, l * l * (u * t1 + t2)]
+        names = ("n0", "n1", "n2") if force == "axial" else ("f0", "f1", "f2")
+        return [c[name] for name in names], [one, t0, l * (u * t0 + t1)]
+
+    def _smooth(self, force: str, u: Array) -> Array:
+        columns, basis = self._terms(force, u)
+        return np.asarray(sum(_column(column, u) * factor for column, factor in zip(columns, basis, strict=True)))
+
+    def _beyond(self, force: str, load: StationLoad, u: Array, seen: Any) -> Array:
+        if force == "axial":
+            value = _column(load.n, u)
+        elif force == "shear":
+            value = _column(load.f, u)
+        else:
+            value = _column(load.m, u) + _column(load.f, u) * self.length * (_column(load.station, u) - u)
+        return np.where(seen, value, 0.0)
 
     def _stationary(self, force: str) -> list[Array]:
-        """Where the force's derivative along the link is zero: for bending, the zeros of shear."""
-        c, m, l = self.coefficients, self.mass, self.length
+        """Where the force may peak inside: at the stations, and where its derivative along the link is zero."""
+        c, l = self.coefficients, self.length
+        stations = [load.station for load in self.loads]
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             if force == "axial":
-                return [-c["n1"] / (c["n2"] * l)]
+                return [*stations, -c["n1"] / (c["n2"] * l)]
+            turning = -c["f1"] / (c["f2"] * l)
             if force == "shear":
-                return [-c["f1"] / (c["f2"] * l)]
-            # shear = f0 + b v + a v^2; the root that would cancel comes from the other one.
-            a, b = -c["f2"] * m * l / 2, c["f1"] * m + c["f2"] * m * l
-            q = -(b + np.copysign(np.sqrt(b * b - 4.0 * a * c["f0"]), b)) / 2
-            return [1.0 - q / a, 1.0 - c["f0"] / q]
+                return [*stations, turning]
+            if self.density.uniform and not self.loads:
+                return self._zeros_of_uniform_shear()
+        return [*stations, *self._zeros_of_shear(np.where(np.isfinite(turning), turning, 0.0))]
+
+    def _zeros_of_uniform_shear(self) -> list[Array]:
+        """f0 + b v + a v^2 = 0 with v = 1 - u; the root that would cancel comes from the other one."""
+        c, l, m = self.coefficients, self.length, self.density.cells[0][0]
+        a, b = -c["f2"] * m * l / 2, c["f1"] * m + c["f2"] * m * l
+        q = -(b + np.copysign(np.sqrt(b * b - 4.0 * a * c["f0"]), b)) / 2
+        return [1.0 - q / a, 1.0 - c["f0"] / q]
+
+    def _zeros_of_shear(self, turning: Array) -> list[Array]:
+        """Shear is monotonic between neighbouring stations and its turning point, whatever the density: halve each interval."""
+        marks = np.stack([np.zeros_like(turning), np.ones_like(turning), turning, *(load.station for load in self.loads)], axis=1)
+        marks = np.sort(np.clip(marks, 0.0, 1.0), axis=1)
+        low, high = marks[:, :-1].copy(), marks[:, 1:].copy()
+        middle = (low + high) / 2
+        seen = [middle < load.station[:, None] for load in self.loads]
+
+        def shear(u: Array) -> Array:
+            beyond = (self._beyond("shear", load, u, mask) for load, mask in zip(self.loads, seen, strict=True))
+            return np.asarray(self._smooth("shear", u) + sum(beyond))
+
+        rising = shear(low) <= 0.0
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2
+            lower = (shear(middle) <= 0.0) == rising
+            low, high = np.where(lower, middle, low), np.where(lower, high, middle)
+        return list(((low + high) / 2).T)
+
+
+def _column(values: Array, like: Array) -> Array:
+    """A row an instant, shaped to go with an array whose first axis is time."""
+    return values.reshape((-1,) + (1,) * (like.ndim - 1))

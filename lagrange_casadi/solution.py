@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .density import Array, NumericDensity
 from .description import Description
 from .errors import LagrangeCasadiError, UnknownNameError
-from .quantities import quantity_of
-from .section_law import FORCES, Array, SectionLaw
+from .quantities import QUANTITIES, quantity_of
+from .section_law import FORCES, SectionLaw, StationLoad
 
 if TYPE_CHECKING:
     import xarray
@@ -90,12 +91,27 @@ class Section:
         return self.law.on_grid("bending", self.xi)
 
 
+def in_order(series: Mapping[str, Array], description: Description) -> dict[str, Array]:
+    """Series in the order in which a solution keeps them: by kind, then by part as declared, then as in the table."""
+    groups = list(dict.fromkeys(q.group for q in QUANTITIES))
+    parts = [part for table in ("bodies", "joints", "constraints", "rows", "loads") for part in description[table]]
+
+    def rank(name: str) -> tuple[int, int, str, int]:
+        group, part, *rest = name.split(":")
+        part = part.removesuffix("_rate").removesuffix("_acceleration") if group == "motion" else part
+        station = rest[0] if group == "section" and rest[0] != "law" else ""
+        return groups.index(group), parts.index(part), station, QUANTITIES.index(quantity_of(name))
+
+    return {name: series[name] for name in sorted(series, key=rank)}
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution:
     """The outputs of a scene over its instants.
 
     ``series`` holds every array over time by full name (``effort:O``, ``reaction:guide:fy``, ``section:rod:law:n0``, ...), each of
-    shape (t,); :mod:`.quantities` says what each means. ``xi`` are the ratios of the section grids.
+    shape (t,); :mod:`.quantities` says what each means. ``xi`` are the ratios of the section grids. ``undetermined`` names what
+    equilibrium does not determine, because the mechanism is over-constrained: its values are NaN.
     """
 
     case: str
@@ -104,6 +120,7 @@ class Solution:
     series: Mapping[str, Array]
     description: Description
     provenance: Provenance
+    undetermined: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Solution of {self.case}: {self.t.size} instants, {self.xi.size} ratios, {', '.join(self.names())}>"
@@ -139,7 +156,7 @@ class Solution:
 
     def names(self) -> Iterator[str]:
         """The full names of all quantities, the coefficients of the laws left out and the section forces in their place."""
-        yield from (name for name in self.series if ":law:" not in name)
+        yield from (name for name in self.series if not name.startswith("section:"))
         yield from (f"section:{link}:{force}" for link in self._sections for force in FORCES)
 
     def unit(self, name: str) -> str:
@@ -187,12 +204,26 @@ class Solution:
     @cached_property
     def _sections(self) -> dict[str, Section]:
         laws: dict[str, dict[str, Array]] = {}
+        stations: dict[str, dict[str, dict[str, Array]]] = {}
         for name, values in self.series.items():
-            if ":law:" in name:
-                _, link, _, coefficient = name.split(":")
-                laws.setdefault(link, {})[coefficient] = values
-        bodies = self.description["bodies"]
-        return {link: Section(SectionLaw(bodies[link]["length"], bodies[link]["mass"], law), self.xi) for link, law in laws.items()}
+            if name.startswith("section:"):
+                _, link, part, member = name.split(":")
+                if part == "law":
+                    laws.setdefault(link, {})[member] = values
+                else:
+                    stations.setdefault(link, {}).setdefault(part, {})[member] = values
+        return {link: self._section(link, law, stations.get(link, {})) for link, law in laws.items()}
+
+    def _section(self, link: str, law: Mapping[str, Array], stations: Mapping[str, Mapping[str, Array]]) -> Section:
+        body = self.description["bodies"][link]
+        cells = tuple(tuple(cell) for cell in body["density"]["cells"])
+        density = NumericDensity(tuple(body["density"]["breaks"]), cells)
+        loads = tuple(StationLoad(name, **members) for name, members in stations.items())
+        return Section(SectionLaw(body["length"], density, law, loads), self.xi)
+
+    def multiplier(self, name: str) -> Array:
+        """Multiplier of a constraint or a non-holonomic row (t,)."""
+        return self._find("multiplier", "constraint or row with a multiplier", name, "")
 
     def _find(self, group: str, kind: str, part: str, member: str) -> Array:
         name = f"{group}:{part}{member}"

@@ -16,12 +16,12 @@ from typing import Any
 import h5py
 import numpy as np
 
-from .description import Description
+from .density import Array
 from .errors import StoreError
 from .publish import PatientFile, replacing
-from .quantities import CONVENTIONS, QUANTITIES, quantity_of
-from .section_law import FORCES, Array
-from .solution import Provenance, Solution
+from .quantities import CONVENTIONS, quantity_of
+from .section_law import FORCES
+from .solution import Provenance, Solution, in_order
 
 SCHEMA = "lagrange-casadi"
 SCHEMA_VERSION = 1
@@ -120,6 +120,7 @@ def _write(file: h5py.File, solution: Solution, figures: str) -> None:
     file.attrs["conventions"] = CONVENTIONS
     file.attrs["mechanism"] = json.dumps(solution.description)
     file.attrs["parameters"] = json.dumps({k: v["value"] for k, v in solution.description["parameters"].items()})
+    file.attrs["undetermined"] = json.dumps(solution.undetermined)
     file.attrs["versions"] = json.dumps(dict(provenance.versions))
     for key in _PROVENANCE:
         file.attrs[key] = getattr(provenance, key)
@@ -149,19 +150,11 @@ def _read(file: h5py.File) -> Solution:
                 series[name] = item[()]
 
     file.visititems(visit)
-    series = {name: series[name] for name in sorted(series, key=lambda name: _rank(name, description))}
     backend, precision, compiler, flags = (str(file.attrs[key]) for key in _PROVENANCE)
     provenance = Provenance(backend, precision, compiler, flags, json.loads(file.attrs["versions"]))
-    return Solution(str(file.attrs["case"]), file["t"][()], file["xi"][()], series, description, provenance)
-
-
-def _rank(name: str, description: Description) -> tuple[int, int, int]:
-    """The place of a quantity among those of a solution: by kind, then by part as declared, then as in the table."""
-    group, part, *_ = name.split(":")
-    parts = [*description["bodies"]] if group in ("pose", "section") else [*description["joints"]]
-    groups = list(dict.fromkeys(q.group for q in QUANTITIES))
-    part = part.removesuffix("_rate").removesuffix("_acceleration") if group == "motion" else part
-    return groups.index(group), parts.index(part), QUANTITIES.index(quantity_of(name))
+    open_ = tuple(json.loads(file.attrs["undetermined"]))
+    t, xi = file["t"][()], file["xi"][()]
+    return Solution(str(file.attrs["case"]), t, xi, in_order(series, description), description, provenance, open_)
 
 
 @contextmanager

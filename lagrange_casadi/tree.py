@@ -12,7 +12,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from .errors import DeclarationError
-from .mechanism import Body, Joint, Mechanism, Point
+from .mechanism import Mechanism
+from .parts import Body, Joint, Point
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,10 +46,6 @@ class Tree:
     branches: tuple[Branch, ...]
     closures: tuple[Joint, ...]
 
-    def branch_of(self, body: Body) -> Branch:
-        """The joint on which a moving body hangs."""
-        return next(branch for branch in self.branches if branch.far.body is body)
-
 
 def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
     """The spanning tree of a frozen mechanism whose joints ``driven`` carry a prescribed motion.
@@ -69,9 +66,13 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
         waiting.remove(best.joint)
     for body in mechanism.moving:
         if body not in depth:
-            raise DeclarationError(f"link '{body.name}' only slides on a point; it needs a joint that holds its place")
+            raise DeclarationError(
+                f"link '{body.name}' only slides on a point; pin it to a point mass (of mass 0 if need be) that slides in its stead"
+            )
     for joint in waiting:
         if joint.name in driven:
+            if joint.kind == "slot" and joint.child.body.oriented:
+                raise DeclarationError(f"joint '{joint.name}' cannot be driven: it is a slot, drive another joint of its loop")
             raise DeclarationError(
                 f"the drive of joint '{joint.name}' is redundant: the motions of the other driven joints already place its bodies"
             )
@@ -79,8 +80,10 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
 
 
 def _can_carry(joint: Joint, reverse: bool) -> bool:
-    """A point on a line does not place the body that carries the line."""
-    return not (reverse and joint.kind == "prismatic" and not joint.child.body.oriented)
+    """A point on a line places neither the body that carries the line, nor the direction of the one that slides."""
+    if joint.slides and not joint.holds_direction:
+        return not reverse and not joint.child.body.oriented
+    return not (reverse and joint.kind == "weld" and not joint.child.body.oriented)
 
 
 def _rank(joint: Joint, driven: Collection[str]) -> int:
@@ -88,4 +91,4 @@ def _rank(joint: Joint, driven: Collection[str]) -> int:
         return 3
     if joint.holds_direction:
         return 2
-    return 1 if joint.kind == "revolute" else 0
+    return 0 if joint.slides else 1

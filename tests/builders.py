@@ -8,9 +8,9 @@ import casadi as ca
 import numpy as np
 import oracle
 
-from lagrange_casadi import Mechanism, Scene, derive
-from lagrange_casadi.mechanism import Link
+from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.motion import polynomial
+from lagrange_casadi.parts import Link, RigidMass
 
 MOTION = polynomial(0.2, 3.0, 4.0)
 INSTANT = 0.3
@@ -55,21 +55,26 @@ def four_bar(lengths=(0.1, 0.35, 0.25), masses=(0.3, 0.5, 0.4), frame=(0.3, 0.05
     return Scene(m, {"O": MOTION}, posture={"c": rocker - math.pi if turned[1] else rocker}, t=(INSTANT, 1.0, 2), **keywords)
 
 
-def compare(scene, t=INSTANT, parameters=None, nudge=0.02):
-    """The largest difference between the scene's instant ``t`` and the oracle's, forces relative to the largest force."""
-    graph = derive(scene)
+def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
+    """The largest difference between the scene's instant ``t`` and the oracle's, forces relative to the largest force.
+
+    ``rough`` gives directions with their turns; ``beside`` goes to the oracle: loads, extras and unaided drives.
+    """
     m = scene.mechanism
     values = m.values(parameters)
     p = list(values.values())
+    graph = derive(scene)
     driven = np.array([x.full().ravel() for x in graph.motion(t, p)])
-    z = settle(graph, driven[0], p)
-    found = dict(zip(graph.columns, graph.instant(*driven, z, p).full().ravel(), strict=True))
-    solved = oracle_of(m, values).solve(
+    z = settle(graph, t, driven[0], p)
+    found = dict(zip(graph.columns, graph.instant(t, *driven, z, p).full().ravel(), strict=True))
+    solved = oracle_of(m, values, **beside).solve(
         {joint: tuple(driven[:, i]) for i, joint in enumerate(graph.driven)},
-        {b.name: _rough(found, b.name, nudge) for b in m.moving},
+        {b.name: (*_rough(found, b.name, nudge)[:2], dict(rough).get(b.name, _rough(found, b.name, nudge)[2])) for b in m.moving},
     )
     size = max((abs(x) for forces in solved.reactions.values() for x in forces), default=0.0) or 1.0
     gaps = {f"effort:{joint}": (found[f"effort:{joint}"] - effort) / size for joint, effort in solved.efforts.items()}
+    for name, multiplier in solved.multipliers.items():
+        gaps[f"multiplier:{name}"] = (found[f"multiplier:{name}"] - multiplier) / size
     for joint, forces in solved.reactions.items():
         for member, force in zip(("fx", "fy", "mz"), forces, strict=True):
             gaps[f"reaction:{joint}:{member}"] = (found.get(f"reaction:{joint}:{member}", 0.0) - force) / size
@@ -77,21 +82,28 @@ def compare(scene, t=INSTANT, parameters=None, nudge=0.02):
         q = solved.q[body.name]
         gaps[f"{body.name} x"] = found[f"pose:{body.name}:x"] - q[0].v
         gaps[f"{body.name} y"] = found[f"pose:{body.name}:y"] - q[1].v
-        if f"section:{body.name}:law:n0" in found:
-            law = {k: found[f"section:{body.name}:law:{k}"] for k in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")}
-            for u in (0.0, 0.13, 0.5, 0.9, 1.0):
-                mine = section_forces(law, m.number(body.mass, values), m.number(body.length, values), u)
-                for k, (a, b) in enumerate(zip(mine, solved.sections[body.name](u), strict=True)):
-                    gaps[f"section {k} of {body.name} at {u}"] = (a - b) / size
+    solution = evaluate(scene, t=(t, t, 1), parameters=parameters, backend="vm") if graph.newton is None else None
+    for link in solution.links_with_sections if solution else ():
+        law = solution.section(link).law
+        for u in (0.0, 0.13, 0.37, 0.5, 0.81, 0.9, 1.0):
+            for k, force in enumerate(("axial", "shear", "bending")):
+                mine = law.at(force, np.array([[u]]))[0, 0]
+                gaps[f"{force} of {link} at {u}"] = (mine - solved.sections[link](u)[k]) / size
     worst = max(gaps, key=lambda name: abs(gaps[name]))
+    assert all(math.isfinite(gap) for gap in gaps.values()), [name for name, gap in gaps.items() if not math.isfinite(gap)]
     return worst, abs(gaps[worst])
 
 
-def settle(graph, d, p):
+def instant_at(graph, t, p=()):
+    """Every column of a graph without iteration at an instant."""
+    return graph.instant(t, *graph.motion(t, p), [], p)
+
+
+def settle(graph, t, d, p):
     """The iterated coordinates at driven coordinates ``d``."""
     z = ca.DM(graph.newton.guess if graph.newton else [])
     for _ in range(60 if graph.newton else 0):
-        z += graph.newton.step(z, d, p)[0]
+        z += graph.newton.step(z, t, d, p)[0]
     return z
 
 
@@ -105,7 +117,7 @@ def section_forces(law, m, l, u):
     )
 
 
-def oracle_of(m, values):
+def oracle_of(m, values, **beside):
     """The oracle of a mechanism: its numbers, and nothing else of the package."""
 
     def number(expression):
@@ -114,12 +126,27 @@ def oracle_of(m, values):
     def point(p):
         return p.body.name, number(p.x), number(p.y)
 
-    bodies = [oracle.Body(b.name, number(b.mass), number(b.length) if isinstance(b, Link) else None) for b in m.moving]
+    def body(b):
+        if not isinstance(b, Link):
+            return oracle.Body(b.name, number(b.mass), oriented=False)
+        if isinstance(b.mass, RigidMass):
+            centre = tuple(number(c) for c in b.mass.centre)
+            return oracle.Body(b.name, number(b.mass.mass), number(b.length), centre, number(b.mass.inertia))
+        length, breaks = number(b.length), b.mass.breaks
+        cells = [[number(c) * (length if b.mass.per_length else 1.0) for c in cell] for cell in b.mass.cells]
+
+        def density(u):
+            i = min(max(int(np.searchsorted(breaks, u, side="right")) - 1, 0), len(cells) - 1)
+            return sum(c * u**j for j, c in enumerate(cells[i]))
+
+        return oracle.from_density(b.name, length, density, breaks)
+
     joints = [
         oracle.Joint(j.name, j.kind, point(j.parent), point(j.child), (number(j.axis[0]), number(j.axis[1])), number(j.angle))
         for j in m.joints.values()
     ]
-    return oracle.Oracle(bodies, joints, (number(m.gravity[0]), number(m.gravity[1])))
+    gravity = (number(m.gravity[0]), number(m.gravity[1]))
+    return oracle.Oracle([body(b) for b in m.moving], joints, gravity, **beside)
 
 
 def _rough(found, body, nudge):

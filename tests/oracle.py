@@ -8,6 +8,7 @@ the piece towards the tip. It shares no formula with an energy method.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -55,11 +56,40 @@ def _sin(q: Jet) -> Jet:
 
 @dataclass(frozen=True)
 class Body:
-    """A uniform rod of a length, or a point mass where the length is None."""
+    """A rigid body, or a point mass where ``oriented`` is false.
+
+    ``centre`` is in its axes and ``inertia`` about it; ``density`` (kg per unit of the ratio) and its ``breaks`` are for sections.
+    """
 
     name: str
     mass: float
-    length: float | None = None
+    length: float = 0.0
+    centre: tuple[float, float] = (0.0, 0.0)
+    inertia: float = 0.0
+    oriented: bool = True
+    density: Callable[[float], float] | None = None
+    breaks: tuple[float, ...] = (0.0, 1.0)
+
+
+def from_density(name: str, length: float, density: Callable[[float], float], breaks=(0.0, 1.0)) -> Body:
+    """A straight body, its mass, centre and inertia by quadrature."""
+    mass, first, second = _moments(density, breaks, 0.0)
+    centre = first / mass if mass else 0.0
+    inertia = (second - first * centre) * length**2
+    return Body(name, mass, length, (centre * length, 0.0), inertia, True, density, tuple(breaks))
+
+
+def _moments(density, breaks, start):
+    """Integrals of density, density u and density u^2 from ``start`` to 1, by Gauss' rule on each smooth piece."""
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    total = np.zeros(3)
+    for a, b in itertools.pairwise(breaks):
+        a = max(a, start)
+        if b > a:
+            u = a + (nodes + 1) / 2 * (b - a)
+            w = weights * (b - a) / 2 * np.array([density(x) for x in u])
+            total += [np.sum(w), np.sum(w * u), np.sum(w * u * u)]
+    return total
 
 
 @dataclass(frozen=True)
@@ -73,6 +103,22 @@ class Joint:
     axis: tuple[float, float] = (1.0, 0.0)
     angle: float = 0.0
 
+    @property
+    def slides(self) -> bool:
+        return self.kind in ("prismatic", "slot")
+
+
+@dataclass(frozen=True)
+class Extra:
+    """Something else that holds: ``gap(place)`` of jets (None for a non-holonomic row), and what a unit of its force does.
+
+    ``effect(place)`` lists (point, fx, fy, mz) of a unit multiplier.
+    """
+
+    name: str
+    gap: Callable | None
+    effect: Callable
+
 
 @dataclass
 class Result:
@@ -81,16 +127,23 @@ class Result:
     q: dict[str, tuple[Jet, Jet, Jet]]
     efforts: dict[str, float] = field(default_factory=dict)
     reactions: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    multipliers: dict[str, float] = field(default_factory=dict)
     sections: dict[str, Callable[[float], tuple[float, float, float]]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Oracle:
-    """A mechanism of bodies and joints; ``gravity`` in m/s^2."""
+    """A mechanism of bodies and joints; ``gravity`` in m/s^2; ``loads`` list (point, fx, fy, mz) from a posture.
+
+    ``unaided`` are driven joints that bear no effort.
+    """
 
     bodies: Sequence[Body]
     joints: Sequence[Joint]
     gravity: tuple[float, float] = (0.0, -9.81)
+    loads: Sequence[Callable] = ()
+    extras: Sequence[Extra] = ()
+    unaided: Sequence[str] = ()
 
     def solve(self, drives: dict[str, tuple[float, float, float]], guess: dict[str, tuple[float, float, float]]) -> Result:
         """The instant at which the driven joints have the given (coordinate, rate, acceleration), from a rough posture."""
@@ -98,15 +151,15 @@ class Oracle:
         q = np.array([x for n in names for x in guess[n]], dtype=float)
         for _ in range(50):
             gap, slope = self._gaps(q, drives, 0)
-            step, *_ = np.linalg.lstsq(slope, -gap, rcond=None)
+            step, *_ = np.linalg.lstsq(slope, -gap, rcond=1e-9)
             q = q + step
             if np.max(np.abs(step)) < 1e-14 * (1 + np.max(np.abs(q))):
                 break
         else:
             assert np.max(np.abs(step)) < 1e-11, "the oracle does not close its loops"
         _, slope = self._gaps(q, drives, 0)
-        rate = np.linalg.lstsq(slope, -self._gaps(q, drives, 1)[0], rcond=None)[0]
-        acceleration = np.linalg.lstsq(slope, -self._gaps(q, drives, 2, rate)[0], rcond=None)[0]
+        rate = np.linalg.lstsq(slope, -self._gaps(q, drives, 1)[0], rcond=1e-9)[0]
+        acceleration = np.linalg.lstsq(slope, -self._gaps(q, drives, 2, rate)[0], rcond=1e-9)[0]
         jets = [Jet(*x) for x in zip(q, rate, acceleration, strict=True)]
         result = Result({n: tuple(jets[3 * i : 3 * i + 3]) for i, n in enumerate(names)})
         self._balance(result, drives)
@@ -120,26 +173,26 @@ class Oracle:
         c, s = _cos(phi), _sin(phi)
         return bx + x * c - y * s, by + x * s + y * c, phi
 
+    def _oriented(self, name):
+        return name == "ground" or next(b.oriented for b in self.bodies if b.name == name)
+
+    def _holds_direction(self, joint):
+        return joint.kind in ("prismatic", "weld") and self._oriented(joint.child[0])
+
     def _joint_gaps(self, q, joint, drives):
         px, py, pphi = self._place(q, joint.parent)
         cx, cy, cphi = self._place(q, joint.child)
-        gaps = []
-        if joint.kind == "revolute":
-            gaps = [cx - px, cy - py]
-            if joint.name in drives:
-                gaps.append(cphi - pphi - Jet(*drives[joint.name]))
-            return gaps
-        c, s = _cos(pphi), _sin(pphi)
-        ax, ay = joint.axis[0] * c - joint.axis[1] * s, joint.axis[0] * s + joint.axis[1] * c
-        gaps = [ax * (cy - py) - ay * (cx - px)]
-        if self._length(joint.child[0]) is not None:
+        gaps = [cx - px, cy - py]
+        if joint.slides:
+            c, s = _cos(pphi), _sin(pphi)
+            ax, ay = joint.axis[0] * c - joint.axis[1] * s, joint.axis[0] * s + joint.axis[1] * c
+            gaps = [ax * (cy - py) - ay * (cx - px)]
+        if self._holds_direction(joint):
             gaps.append(cphi - pphi - joint.angle)
         if joint.name in drives:
-            gaps.append(ax * (cx - px) + ay * (cy - py) - Jet(*drives[joint.name]))
+            coordinate = ax * (cx - px) + ay * (cy - py) if joint.slides else cphi - pphi
+            gaps.append(coordinate - Jet(*drives[joint.name]))
         return gaps
-
-    def _length(self, name):
-        return 0.0 if name == "ground" else next(b.length for b in self.bodies if b.name == name)
 
     def _gaps(self, q, drives, order, rate=None):
         """Gaps of the given order of derivative with all higher rates of q at zero, and their slope by q."""
@@ -151,97 +204,105 @@ class Oracle:
             at = {n: tuple(jets[3 * i : 3 * i + 3]) for i, n in enumerate(names)}
             still = {k: (v[0], 0.0, 0.0) for k, v in drives.items()} if take == "slope" else drives
             found = [g for j in self.joints for g in self._joint_gaps(at, j, still)]
-            found += [at[b.name][2] for b in self.bodies if b.length is None]
+            found += [extra.gap(lambda point: self._place(at, point)) for extra in self.extras if extra.gap]
+            found += [at[b.name][2] for b in self.bodies if not b.oriented]
             return np.array([{"slope": g.d, 0: g.v, 1: g.d, 2: g.a}[take] for g in found])
 
         slope = np.column_stack([gaps(e, "slope") for e in np.eye(q.size)])
         return gaps(rate, order), slope
 
     def _balance(self, result, drives):
-        """Force and moment balance of every body, for all joint forces and efforts together."""
-        row = {b.name: 3 * i for i, b in enumerate(self.bodies)}
-        columns, labels = [], []
+        """Force and moment balance of every body, for all joint forces, efforts and multipliers together."""
+        q = result.q
 
-        def unknown(joint, label, force, moment):
-            column = np.zeros(3 * len(self.bodies))
-            point = self._place(result.q, joint.child)
-            for (name, *_), sign in ((joint.child, 1.0), (joint.parent, -1.0)):
-                if name == "ground":
-                    continue
-                cx, cy = (z.v for z in self._centre(result.q, name))
-                arm = (point[0].v - cx, point[1].v - cy)
-                turn = arm[0] * force[1] - arm[1] * force[0] + moment
-                column[row[name] : row[name] + 3] += sign * np.array([force[0], force[1], turn])
-            columns.append(column)
-            labels.append((joint, label, force))
+        def place(point):
+            return self._place(q, point)
+
+        labels, unknowns = [], []  # an unknown is what a unit of it does: a list of (point, fx, fy, mz)
+
+        def pair(joint, label, force, moment):
+            at = joint.child
+            meets = joint.parent
+            if meets[0] != "ground":
+                meets = (meets[0], *self._local(q, meets[0], place(at)))
+            labels.append((joint.name, label, (*force, moment)))
+            unknowns.append([(at, *force, moment), (meets, -force[0], -force[1], -moment)])
 
         for joint in self.joints:
-            if joint.kind == "revolute":
-                unknown(joint, "f", (1.0, 0.0), 0.0)
-                unknown(joint, "f", (0.0, 1.0), 0.0)
-                if joint.name in drives:
-                    unknown(joint, "effort", (0.0, 0.0), 1.0)
-                continue
-            phi = self._place(result.q, joint.parent)[2].v
+            phi = place(joint.parent)[2].v
             ax = joint.axis[0] * math.cos(phi) - joint.axis[1] * math.sin(phi)
             ay = joint.axis[0] * math.sin(phi) + joint.axis[1] * math.cos(phi)
-            unknown(joint, "f", (-ay, ax), 0.0)
-            if self._length(joint.child[0]) is not None:
-                unknown(joint, "m", (0.0, 0.0), 1.0)
-            if joint.name in drives:
-                unknown(joint, "effort", (ax, ay), 0.0)
+            for force in [(-ay, ax)] if joint.slides else [(1.0, 0.0), (0.0, 1.0)]:
+                pair(joint, "reaction", force, 0.0)
+            if self._holds_direction(joint):
+                pair(joint, "reaction", (0.0, 0.0), 1.0)
+            if joint.name in drives and joint.name not in self.unaided:
+                pair(joint, "effort", (ax, ay) if joint.slides else (0.0, 0.0), 0.0 if joint.slides else 1.0)
+        for extra in self.extras:
+            labels.append((extra.name, "multiplier", (0.0, 0.0, 0.0)))
+            unknowns.append(extra.effect(place))
+        given = [part for load in self.loads for part in load(place)]
+        matrix = np.column_stack([self._on_bodies(q, parts) for parts in unknowns])
         inertia = []
         for b in self.bodies:
-            cx, cy = self._centre(result.q, b.name)
-            alpha = result.q[b.name][2].a
-            about = 0.0 if b.length is None else b.mass * b.length**2 / 12
-            inertia += [b.mass * (cx.a - self.gravity[0]), b.mass * (cy.a - self.gravity[1]), about * alpha]
-        matrix = np.column_stack(columns)
-        keep = np.array([not (b.length is None and k == 2) for b in self.bodies for k in range(3)])
-        found, *_ = np.linalg.lstsq(matrix[keep], np.array(inertia)[keep], rcond=None)
-        for joint in self.joints:
-            mine = [(label, force, x) for (j, label, force), x in zip(labels, found, strict=True) if j is joint]
-            fx = sum(f[0] * x for label, f, x in mine if label == "f")
-            fy = sum(f[1] * x for label, f, x in mine if label == "f")
-            mz = sum(x for label, _, x in mine if label == "m")
-            result.reactions[joint.name] = (fx, fy, mz)
-            for label, _, x in mine:
-                if label == "effort":
-                    result.efforts[joint.name] = x
-        applied = [
-            (j, f, x, 1.0 if label != "f" and f == (0.0, 0.0) else 0.0) for (j, label, f), x in zip(labels, found, strict=True)
-        ]
+            cx, cy, phi = self._place(q, (b.name, *b.centre))
+            inertia += [b.mass * (cx.a - self.gravity[0]), b.mass * (cy.a - self.gravity[1]), b.inertia * phi.a]
+        right = np.array(inertia) - self._on_bodies(q, given)
+        keep = np.array([b.oriented or k < 2 for b in self.bodies for k in range(3)])
+        found, *_ = np.linalg.lstsq(matrix[keep], right[keep], rcond=1e-11)
+        for (name, label, (fx, fy, mz)), x in zip(labels, found, strict=True):
+            if label == "reaction":
+                before = result.reactions.get(name, (0.0, 0.0, 0.0))
+                result.reactions[name] = (before[0] + x * fx, before[1] + x * fy, before[2] + x * mz)
+            else:
+                (result.efforts if label == "effort" else result.multipliers)[name] = x
+        acting = [(p, x * fx, x * fy, x * mz) for parts, x in zip(unknowns, found, strict=True) for p, fx, fy, mz in parts]
         for b in self.bodies:
-            if b.length is not None:
-                result.sections[b.name] = self._section(result, b, applied)
+            if b.density is not None:
+                result.sections[b.name] = self._section(result, b, acting + given)
 
-    def _centre(self, q, name):
-        length = self._length(name)
-        return self._place(q, (name, 0.0 if length is None else length / 2, 0.0))[:2]
+    def _on_bodies(self, q, parts):
+        """Force and moment about each body's centre, stacked."""
+        row = {b.name: 3 * i for i, b in enumerate(self.bodies)}
+        stacked = np.zeros(3 * len(self.bodies))
+        for (name, px, py), fx, fy, mz in parts:
+            if name == "ground":
+                continue
+            body = next(b for b in self.bodies if b.name == name)
+            at, centre = self._place(q, (name, px, py)), self._place(q, (name, *body.centre))
+            arm = (at[0].v - centre[0].v, at[1].v - centre[1].v)
+            stacked[row[name] : row[name] + 3] += [fx, fy, arm[0] * fy - arm[1] * fx + mz]
+        return stacked
 
-    def _section(self, result, body, applied):
+    def _local(self, q, name, at):
+        """A place in a body's axes."""
+        bx, by, phi = q[name]
+        dx, dy, c, s = at[0].v - bx.v, at[1].v - by.v, math.cos(phi.v), math.sin(phi.v)
+        return c * dx + s * dy, c * dy - s * dx
+
+    def _section(self, result, body, acting):
         """Action of the piece towards the tip on the piece towards the base: (axial, shear, bending) at a ratio xi/l."""
 
         def at(ratio: float) -> tuple[float, float, float]:
             phi = result.q[body.name][2]
             c, s = math.cos(phi.v), math.sin(phi.v)
-            xi, l, rho = ratio * body.length, body.length, body.mass / body.length
-            cut = self._place(result.q, (body.name, xi, 0.0))
-            fx = fy = mz = 0.0  # what acts on the piece towards the tip, joints at the tip first
-            for joint, force, x, couple in applied:
-                for (name, px, _), sign in ((joint.child, 1.0), (joint.parent, -1.0)):
-                    if name != body.name or px < 0.5 * l:
-                        continue
-                    point = self._place(result.q, joint.child)
+            l = body.length
+            cut = self._place(result.q, (body.name, ratio * l, 0.0))
+            fx = fy = mz = 0.0  # what acts on the piece towards the tip
+            for (name, px, py), gx, gy, couple in acting:
+                # At the very tip of the link what acts there still acts beyond the section.
+                if name == body.name and (px > ratio * l + 1e-12 * l or (ratio == 1.0 and abs(px - l) < 1e-12 * l)):
+                    point = self._place(result.q, (name, px, py))
                     arm = (point[0].v - cut[0].v, point[1].v - cut[1].v)
-                    fx += sign * x * force[0]
-                    fy += sign * x * force[1]
-                    mz += sign * x * (arm[0] * force[1] - arm[1] * force[0] + couple)
-            mass, centre = rho * (l - xi), self._place(result.q, (body.name, (xi + l) / 2, 0.0))
-            gx, gy = mass * (self.gravity[0] - centre[0].a), mass * (self.gravity[1] - centre[1].a)
-            arm = (centre[0].v - cut[0].v, centre[1].v - cut[1].v)
-            fx, fy = fx + gx, fy + gy
-            mz += arm[0] * gy - arm[1] * gx - mass * (l - xi) ** 2 / 12 * phi.a
+                    fx, fy, mz = fx + gx, fy + gy, mz + arm[0] * gy - arm[1] * gx + couple
+            mass, first, second = _moments(body.density, body.breaks, ratio)
+            if mass:
+                middle = first / mass
+                centre = self._place(result.q, (body.name, middle * l, 0.0))
+                gx, gy = mass * (self.gravity[0] - centre[0].a), mass * (self.gravity[1] - centre[1].a)
+                arm = (centre[0].v - cut[0].v, centre[1].v - cut[1].v)
+                fx, fy = fx + gx, fy + gy
+                mz += arm[0] * gy - arm[1] * gx - (second - first * middle) * l**2 * phi.a
             return fx * c + fy * s, fy * c - fx * s, mz
 
         return at

@@ -34,7 +34,8 @@ def rows():
     yield "| /t | t | s | time | |"
     yield "| /xi | xi | 1 | place along a link, ratio xi/l | |"
     places = {"motion": "/motion/JOINT", "pose": "/pose/BODY/", "effort": "/effort/JOINT", "reaction": "/reaction/JOINT/"}
-    places |= {"section": "/section/LINK/", "law": "/section/LINK/law/"}
+    places |= {"multiplier": "/multiplier/NAME", "load": "/load/NAME/"}
+    places |= {"section": "/section/LINK/", "law": "/section/LINK/law/", "station": "/section/LINK/NAME/"}
     for q in QUANTITIES:
         place = places[q.group] + (f"_{q.member}" if q.group == "motion" and q.member else q.member)
         units = dict.fromkeys(q.unit_for(kind) for kind in ("angle", "slide"))

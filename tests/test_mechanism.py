@@ -39,7 +39,7 @@ def test_lengths_may_be_expressions(m):
         (lambda m: [m.parameter("r", 1), m.parameter("r", 2)], "parameter 'r' is declared twice"),
         (lambda m: m.link("a", length="long", mass=1), "link 'a': length must be a number or an expression"),
         (lambda m: m.link("a", length=math.nan, mass=1), "link 'a': length must be finite"),
-        (lambda m: m.link("a", length=ca.SX.sym("r"), mass=1), "link 'a': length depends on 'r' is, not a parameter"),
+        (lambda m: m.link("a", length=ca.SX.sym("r"), mass=1), "link 'a': length depends on 'r': no parameter of mechanism 'm'"),
         (lambda m: m.link("a", length=ca.SX.ones(2), mass=1), "must be a scalar"),
         (lambda m: m.revolute("J", m.ground, m.ground.at(1, 2)), "joint 'J' joins 'ground' to itself"),
         (lambda m: m.revolute("J", m.ground, "a"), "joint 'J': expected a link"),

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from builders import INSTANT, MOTION, compare, four_bar, slider_crank
+from builders import INSTANT, MOTION, compare, four_bar, instant_at, slider_crank
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -202,8 +202,7 @@ def test_random_four_bars(length, mass, frame, turned):
 def _transmission(scene):
     """How far a scene's loop is from a dead centre: the closure of loops.py, at its first instant."""
     graph = derive(scene)
-    driven = graph.motion(scene.t[0], [])
-    return float(graph.instant(*driven, [], [])[graph.columns.index("closure:B")])
+    return float(instant_at(graph, scene.t[0])[graph.columns.index("_closure:B")])
 
 
 @settings(max_examples=25, deadline=None)

@@ -49,7 +49,7 @@ def graph():
 
 
 def engine(graph, x):
-    out = graph.instant([x.angle], [x.rate], [x.acceleration], [], [x.r, x.l, x.m1, x.m2, x.m3])
+    out = graph.instant(0.0, [x.angle], [x.rate], [x.acceleration], [], [x.r, x.l, x.m1, x.m2, x.m3])
     return dict(zip(graph.columns, out.full().ravel(), strict=True))
 
 

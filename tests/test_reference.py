@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import section_forces
+from builders import instant_at, section_forces
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.motion import polynomial
@@ -20,7 +20,7 @@ def instants(slider_crank):
     """Every column at the reference's own instants."""
     graph = derive(slider_crank.scene)
     p = list(slider_crank.scene.mechanism.values().values())
-    rows = [graph.instant(*graph.motion(float(row["t"]), p), [], p).full().ravel() for row in SIXTY_DIGITS["rows"]]
+    rows = [instant_at(graph, float(row["t"]), p).full().ravel() for row in SIXTY_DIGITS["rows"]]
     return dict(zip(graph.columns, np.array(rows).T, strict=True))
 
 

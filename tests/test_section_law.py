@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lagrange_casadi.density import NumericDensity
 from lagrange_casadi.section_law import FORCES, SectionLaw
 
 NAMES = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
@@ -12,7 +13,9 @@ numbers = st.floats(-100, 100)
 
 
 def law(values, length=0.7, mass=1.3):
-    return SectionLaw(length, mass, {name: np.array([v]) for name, v in zip(NAMES, values, strict=True)})
+    return SectionLaw(
+        length, NumericDensity((0.0, 1.0), ((mass,),)), {name: np.array([v]) for name, v in zip(NAMES, values, strict=True)}
+    )
 
 
 @given(st.tuples(*[numbers] * 7))
