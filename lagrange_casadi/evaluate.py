@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import casadi as ca
@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import codegen
+from .certificate import certify
 from .codegen.compiler import FLAGS
 from .codegen.emit import (
     NEWTON_DONE,
@@ -58,6 +59,7 @@ def evaluate(
     xi: Grid | None = None,
     wanted: Sequence[str] | None = None,
     backend: Backend = "auto",
+    certificate: bool = True,
 ) -> Solution:
     """Evaluate a scene, with its own grids and outputs or with others.
 
@@ -71,6 +73,9 @@ def evaluate(
         Output names.
     backend
         ``c`` compiles; ``vm`` runs in CasADi's virtual machine; ``auto`` compiles where there is a compiler, and warns where not.
+
+    certificate
+        Whether to check the solution by :mod:`.certificate`, as far as the wanted outputs allow.
 
     Raises :class:`AssemblyError` where a loop does not close at some instant, :class:`CompilerError`, and for mistakes in the
     arguments :class:`UnknownNameError`, :class:`ParameterError` or :class:`DeclarationError`.
@@ -94,7 +99,24 @@ def evaluate(
             column[:] = np.unwrap(column)
     series |= {name: np.full(times.size, np.nan) for name in graph.open_}
     description = describe(scene.mechanism, values, scene.motion)
-    return Solution(scene.mechanism.name, times, places, in_order(series, description), description, provenance, graph.open_)
+    ordered = in_order(series, description)
+    solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, graph.open_)
+    if not certificate:
+        return solution
+    return replace(solution, certificate=certify(solution) | _condition(graph, table))
+
+
+def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:
+    """How much the loops magnify what goes into them: the worst of 1/sin(transmission angle), or for iterated loops 2/volume.
+
+    2/volume bounds the condition number of a matrix whose columns have length one (Guggenheimer, Edelman, Johnson 1995).
+    """
+    worst: list[Array] = []
+    for name, values in zip(graph.columns, table.out, strict=True):
+        if name.startswith("_closure:"):
+            iterated = graph.newton is not None and f"'{name.partition(':')[2]}'" in graph.newton.joints
+            worst.append(2.0 / values if iterated else 1.0 / np.sqrt(values))
+    return {"condition": np.max(worst, axis=0)} if worst else {}
 
 
 def run(graph: SceneGraph, t: Array, p: Array, backend: Backend = "auto") -> tuple[Table, Provenance]:

@@ -26,8 +26,8 @@ def check_connected(name: str, ground: Ground, bodies: Iterable[Body], joints: I
     loose = [f"'{body.name}'" for body in bodies if body.name not in reached]
     if loose:
         raise DeclarationError(
-            f"mechanism '{name}': {', '.join(loose)} {'is' if len(loose) == 1 else 'are'} not connected to the ground by any chain of "
-            f"joints; joints declared: {', '.join(joint.name for joint in joined) or 'none'}"
+            f"mechanism '{name}': {', '.join(loose)} {'is' if len(loose) == 1 else 'are'} not connected to the ground by any chain "
+            f"of joints; joints declared: {', '.join(joint.name for joint in joined) or 'none'}"
         )
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 import casadi as ca
 
@@ -72,9 +72,7 @@ class Mechanism:
     @property
     def ground(self) -> Ground:
         """The fixed frame; ``ground.at(x, y)`` is a point of it, ``ground`` itself its origin."""
-        ground = self.bodies[_GROUND]
-        assert isinstance(ground, Ground)
-        return ground
+        return cast(Ground, self.bodies[_GROUND])
 
     @property
     def moving(self) -> tuple[Link | PointMass, ...]:

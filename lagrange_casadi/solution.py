@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -111,7 +111,8 @@ class Solution:
 
     ``series`` holds every array over time by full name (``effort:O``, ``reaction:guide:fy``, ``section:rod:law:n0``, ...), each of
     shape (t,); :mod:`.quantities` says what each means. ``xi`` are the ratios of the section grids. ``undetermined`` names what
-    equilibrium does not determine, because the mechanism is over-constrained: its values are NaN.
+    equilibrium does not determine, because the mechanism is over-constrained: its values are NaN. ``certificate`` holds the
+    residuals of :mod:`.certificate`, and how singular the loops are.
     """
 
     case: str
@@ -121,6 +122,7 @@ class Solution:
     description: Description
     provenance: Provenance
     undetermined: tuple[str, ...] = ()
+    certificate: Mapping[str, Array] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"<Solution of {self.case}: {self.t.size} instants, {self.xi.size} ratios, {', '.join(self.names())}>"

@@ -16,6 +16,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from .certificate import TOLERANCE, certify
 from .density import Array
 from .errors import StoreError
 from .publish import PatientFile, replacing
@@ -66,12 +67,25 @@ def check(path: str | os.PathLike[str]) -> list[str]:
     with _reading(path) as file:
         try:
             solution = _read(file)
-            found = [finding for name in solution.names() for finding in _check_dataset(file, solution, name)]
-            for name in solution.series:
-                found += _check_dataset(file, solution, name) if ":law:" in name else []
+            names = dict.fromkeys([*solution.names(), *solution.series, *(f"certificate:{name}" for name in solution.certificate)])
+            found = [f"{_place(name)}: missing" for name in json.loads(file.attrs["outputs"]) if name not in names]
+            if not found:
+                found += [finding for name in names for finding in _check_dataset(file, solution, name)]
+                found += _check_certificate(solution, float(file.attrs["certificate_tolerance"]))
         except (OSError, KeyError, ValueError) as error:
             return [f"damaged: {_one_line(error)}"]
     return found
+
+
+def _check_certificate(solution: Solution, tolerance: float) -> Iterator[str]:
+    """The stored residuals, and the same computed anew from what is stored."""
+    for name, values in solution.certificate.items():
+        if name != "condition" and not np.max(values, initial=0.0) <= tolerance:
+            yield f"certificate/{name}: {np.max(values):.3g} is worse than the tolerance {tolerance:.3g}"
+    if solution.certificate:
+        for name, values in certify(solution).items():
+            if not np.max(values, initial=0.0) <= tolerance:
+                yield f"{name}: {np.max(values):.3g}, computed anew, is worse than the tolerance {tolerance:.3g}"
 
 
 def _check_dataset(file: h5py.File, solution: Solution, name: str) -> Iterator[str]:
@@ -83,7 +97,9 @@ def _check_dataset(file: h5py.File, solution: Solution, name: str) -> Iterator[s
         yield f"{place}: shape {dataset.shape}, expected {expected}"
         return
     stored = dataset[()]
-    if not np.isfinite(stored).all():
+    link = name.split(":")[1]
+    open_ = name in solution.undetermined or any(other.startswith(f"section:{link}:") for other in solution.undetermined)
+    if not open_ and not np.isfinite(stored).all():
         yield f"{place}: holds values that are not finite"
     if dataset.attrs.get("units") != solution.unit(name):
         yield f"{place}: units {dataset.attrs.get('units')!r}, expected {solution.unit(name)!r}"
@@ -93,7 +109,7 @@ def _check_dataset(file: h5py.File, solution: Solution, name: str) -> Iterator[s
     for axis, scale in enumerate(quantity.axes):
         if file[scale] not in dataset.dims[axis].values():
             yield f"{place}: axis {axis} has no scale /{scale}"
-    if quantity.axes == ("t", "xi"):
+    if quantity.axes == ("t", "xi") and not open_:
         gap = np.max(np.abs(stored - solution.array(name)), initial=0.0)
         if gap > _GRID_TOLERANCE * abs(solution.peak(name).value):
             yield f"{place}: differs from its law by {gap:.3g} {solution.unit(name)}"
@@ -110,6 +126,8 @@ def _write(file: h5py.File, solution: Solution, figures: str) -> None:
         scale.make_scale(axis)
     for name, values in solution.series.items():
         _add(file, solution, name, values)
+    for name, values in solution.certificate.items():
+        _add(file, solution, f"certificate:{name}", values)
     for link in solution.links_with_sections:
         for force in FORCES:
             _add(file, solution, f"section:{link}:{force}", solution.section(link).law.on_grid(force, solution.xi))
@@ -120,6 +138,8 @@ def _write(file: h5py.File, solution: Solution, figures: str) -> None:
     file.attrs["conventions"] = CONVENTIONS
     file.attrs["mechanism"] = json.dumps(solution.description)
     file.attrs["parameters"] = json.dumps({k: v["value"] for k, v in solution.description["parameters"].items()})
+    file.attrs["certificate_tolerance"] = TOLERANCE
+    file.attrs["outputs"] = json.dumps(list(solution.series))
     file.attrs["undetermined"] = json.dumps(solution.undetermined)
     file.attrs["versions"] = json.dumps(dict(provenance.versions))
     for key in _PROVENANCE:
@@ -146,7 +166,7 @@ def _read(file: h5py.File) -> Solution:
     def visit(place: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset) and place not in _AXES:
             name = place.replace("/", ":")
-            if quantity_of(name).axes == ("t",):
+            if quantity_of(name).axes == ("t",) and not name.startswith("certificate:"):
                 series[name] = item[()]
 
     file.visititems(visit)
@@ -154,7 +174,9 @@ def _read(file: h5py.File) -> Solution:
     provenance = Provenance(backend, precision, compiler, flags, json.loads(file.attrs["versions"]))
     open_ = tuple(json.loads(file.attrs["undetermined"]))
     t, xi = file["t"][()], file["xi"][()]
-    return Solution(str(file.attrs["case"]), t, xi, in_order(series, description), description, provenance, open_)
+    certificate = {name: file["certificate"][name][()] for name in file.get("certificate", ())}
+    case = str(file.attrs["case"])
+    return Solution(case, t, xi, in_order(series, description), description, provenance, open_, certificate)
 
 
 @contextmanager

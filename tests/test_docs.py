@@ -35,6 +35,7 @@ def rows():
     yield "| /xi | xi | 1 | place along a link, ratio xi/l | |"
     places = {"motion": "/motion/JOINT", "pose": "/pose/BODY/", "effort": "/effort/JOINT", "reaction": "/reaction/JOINT/"}
     places |= {"multiplier": "/multiplier/NAME", "load": "/load/NAME/"}
+    places |= {"certificate": "/certificate/"}
     places |= {"section": "/section/LINK/", "law": "/section/LINK/law/", "station": "/section/LINK/NAME/"}
     for q in QUANTITIES:
         place = places[q.group] + (f"_{q.member}" if q.group == "motion" and q.member else q.member)

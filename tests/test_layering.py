@@ -36,6 +36,7 @@ ORDER = (
     "description",
     "section_law",
     "solution",
+    "certificate",
     "evaluate",
     "publish",
     "store",

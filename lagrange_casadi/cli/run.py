@@ -7,8 +7,10 @@ from contextlib import nullcontext
 from pathlib import Path
 
 import click
+import numpy as np
 
 from ..case import load_case
+from ..certificate import summary
 from ..evaluate import BACKENDS, Backend, evaluate
 from ..figures import dump_specs
 from ..publish import check_writable, filling
@@ -33,6 +35,7 @@ GRID = "START:STOP:COUNT"
 @click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>.h5 here.")
 @click.option("--figures", type=click.Path(path_type=Path), help="The figures' folder; default: <case>_figures here.")
 @click.option("--no-figures", is_flag=True, help="Draw nothing.")
+@click.option("--no-certificate", is_flag=True, help="Do not check the solution.")
 def run(
     case: Path,
     settings: Sequence[tuple[str, float]],
@@ -43,6 +46,7 @@ def run(
     out: Path | None,
     figures: Path | None,
     no_figures: bool,
+    no_certificate: bool,
 ) -> None:
     """Evaluate CASE, a folder with a case.py or a Python file, and write an HDF5 file and figures."""
     loaded = load_case(case)
@@ -51,12 +55,22 @@ def run(
     check_writable(out)
     if folder:
         check_writable(folder, folder=True)
-    solution = evaluate(loaded.scene, parameters=parameters(settings), t=t, xi=xi, wanted=want or None, backend=backend)
+    solution = evaluate(
+        loaded.scene,
+        parameters=parameters(settings),
+        t=t,
+        xi=xi,
+        wanted=want or None,
+        backend=backend,
+        certificate=not no_certificate,
+    )
     with filling(folder) if folder else nullcontext() as draft:
         if draft:
             draw_with_progress(solution, loaded.figures, draft)
         save(solution, out, dump_specs(loaded.figures))
     _report(solution)
+    if solution.certificate:
+        click.echo(summary(solution.certificate))
     click.echo(f"wrote {out}" + (f" and the figures in {folder}/" if folder else ""))
 
 
@@ -65,6 +79,9 @@ def _report(solution: Solution) -> None:
     click.echo(f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {backend}; peaks:")
     for name in solution.names():
         if name.startswith(("effort:", "reaction:", "section:")):
+            if np.isnan(solution.array(name)).any():
+                click.echo(f"  {name:<28}{'open':>13} {'':<4} equilibrium does not determine it: the mechanism is over-constrained")
+                continue
             peak = solution.peak(name)
             where = f"t = {peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {peak.xi:.4f}")
             click.echo(f"  {name:<28}{peak.value:>13.6g} {peak.unit:<4} at {where}")

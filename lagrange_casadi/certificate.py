@@ -1,0 +1,258 @@
+"""Independent checks of a solution, from its own arrays: none shares the graphs that made them.
+
+The reported motions of the joints place every body anew, in plain arithmetic; the reported reactions, efforts and loads must then
+balance every body (Newton-Euler), the power of drives and loads must be the change of kinetic energy, loops must close, and the
+sections at a link's base must give back what its joints do there. Each residual is relative, (t,).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .density import Array, NumericDensity
+from .description import Description
+from .solution import Solution
+
+Complex = npt.NDArray[np.complexfloating[Any, Any]]
+
+TOLERANCE = 1e-9
+"""A residual above it means that the solution is wrong, not that it is rounded."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Motion:
+    """Place of a body's origin, direction, and both their derivatives: arrays of (t,), complex numbers for vectors."""
+
+    at: Complex
+    speed: Complex
+    change: Complex
+    angle: Array
+    rate: Array
+    acceleration: Array
+
+    def point(self, x: Any, y: Any) -> tuple[Complex, Complex, Complex]:
+        """Place, velocity and acceleration of the body's point (x, y)."""
+        arm = (x + 1j * y) * np.exp(1j * self.angle)
+        return (
+            self.at + arm,
+            self.speed + 1j * self.rate * arm,
+            self.change + (1j * self.acceleration - self.rate**2) * arm,
+        )
+
+
+@dataclass(eq=False)
+class _Tally:
+    """Forces on the bodies: what they sum to, about each centre, and how large they are."""
+
+    force: dict[str, Complex] = field(default_factory=dict)
+    moment: dict[str, Array] = field(default_factory=dict)
+    size: Array | float = 0.0
+    power: Array | float = 0.0
+
+
+def certify(solution: Solution) -> dict[str, Array]:
+    """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``, ``ends``, each where it can be had."""
+    description = solution.description
+    joints = description["joints"]
+    if any(joint["coordinate"] and f"motion:{name}" not in solution.series for name, joint in joints.items()):
+        return {}
+    bodies = _place(solution)
+    if len(bodies) < len(description["bodies"]) + 1:
+        return {}
+    found = {"closure": _closure(solution, bodies)}
+    wanted = [f"reaction:{name}:fx" for name in joints] + [f"load:{name}:fx" for name in description["loads"]]
+    wanted += [f"effort:{name}" for name, joint in joints.items() if joint["driven"] and name not in description["rows"].values()]
+    free = not description["constraints"] and not description["rows"] and not solution.undetermined
+    if free and all(name in solution.series for name in wanted):
+        tally = _tally(solution, bodies)
+        found["balance"], found["power"] = _balance(solution, bodies, tally)
+        if solution.links_with_sections:
+            found["ends"] = _ends(solution, bodies)
+    return found
+
+
+def summary(residuals: Mapping[str, Array]) -> str:
+    """The largest residuals, in one line."""
+    parts = [f"{name} {np.max(values):.1e}" for name, values in residuals.items() if name != "condition"]
+    return "certificate: " + (", ".join(parts) if parts else "nothing to check, for want of outputs")
+
+
+def _place(solution: Solution) -> dict[str, _Motion]:
+    zero = np.zeros_like(solution.t)
+    bodies = {"ground": _Motion(zero + 0j, zero + 0j, zero + 0j, zero, zero, zero)}
+    waiting = dict(solution.description["joints"])
+    moved = True
+    while waiting and moved:
+        moved = False
+        for name, joint in list(waiting.items()):
+            near, far = joint["parent"], joint["child"]
+            reverse = near["body"] not in bodies
+            if reverse:
+                near, far = far, near
+            if near["body"] not in bodies or far["body"] in bodies:
+                continue
+            motion = _hang(solution, name, joint, bodies[near["body"]], near, far, reverse)
+            if motion is not None:
+                bodies[far["body"]] = motion
+                del waiting[name]
+                moved = True
+    return bodies
+
+
+def _oriented(description: Description, body: str) -> bool:
+    return body == "ground" or description["bodies"][body]["length"] is not None
+
+
+def _hang(
+    solution: Solution, name: str, joint: Description, base: _Motion, near: Description, far: Description, reverse: bool
+) -> _Motion | None:
+    """The motion of the body at a joint's far side, or None where the joint does not give it."""
+    oriented = _oriented(solution.description, far["body"])
+    kind, sign = joint["kind"], -1.0 if reverse else 1.0
+    zero = np.zeros_like(solution.t)
+    slides = kind in ("prismatic", "slot")
+    if slides and oriented and kind == "slot":
+        return None
+    if slides and reverse and not _oriented(solution.description, joint["child"]["body"]):
+        return None
+    motion = solution.motion(name) if joint["coordinate"] else None
+    if oriented and kind == "revolute":
+        if motion is None:
+            return None
+        angle = base.angle + sign * motion.value
+        rate, acceleration = base.rate + sign * motion.rate, base.acceleration + sign * motion.acceleration
+    elif oriented:
+        angle, rate, acceleration = base.angle + sign * joint["angle"], base.rate, base.acceleration
+    else:
+        angle, rate, acceleration = zero, zero, zero
+    at, speed, change = base.point(near["x"], near["y"])
+    if slides:
+        assert motion is not None
+        axis = (joint["axis"][0] + 1j * joint["axis"][1]) * np.exp(1j * (angle if reverse else base.angle))
+        turn, spin = (rate, acceleration) if reverse else (base.rate, base.acceleration)
+        at = at + sign * axis * motion.value
+        speed = speed + sign * axis * (motion.rate + 1j * turn * motion.value)
+        along = motion.acceleration - turn**2 * motion.value + 1j * (spin * motion.value + 2 * turn * motion.rate)
+        change = change + sign * axis * along
+    still = _Motion(zero + 0j, zero + 0j, zero + 0j, angle, rate, acceleration)
+    arm, arm_speed, arm_change = still.point(far["x"], far["y"])
+    return _Motion(at - arm, speed - arm_speed, change - arm_change, angle, rate, acceleration)
+
+
+def _matter(body: Description) -> tuple[float, complex, float]:
+    """Mass, centre in the body's axes, and inertia about the centre."""
+    mass, length = body["mass"], body["length"]
+    if length is None or mass == 0.0:
+        return mass, 0j, 0.0
+    if "centre" in body:
+        return mass, body["centre"]["x"] + 1j * body["centre"]["y"], body["centre"]["inertia"]
+    density = NumericDensity(tuple(body["density"]["breaks"]), tuple(tuple(cell) for cell in body["density"]["cells"]))
+    _, first, second = (float(tail[0]) for tail in density.tails(np.zeros(1)))
+    return mass, first / mass * length + 0j, (second - first**2 / mass) * length**2
+
+
+def _size(solution: Solution) -> float:
+    return sum(body["length"] or 0.0 for body in solution.description["bodies"].values()) or 1.0
+
+
+def _closure(solution: Solution, bodies: dict[str, _Motion]) -> Array:
+    """Gaps of all joints, and of the reported poses, over the length of all links."""
+    worst = np.zeros_like(solution.t)
+    for joint in solution.description["joints"].values():
+        (a, *_), (b, *_) = (bodies[p["body"]].point(p["x"], p["y"]) for p in (joint["parent"], joint["child"]))
+        gap = b - a
+        if joint["kind"] in ("prismatic", "slot"):
+            axis = (joint["axis"][0] + 1j * joint["axis"][1]) * np.exp(1j * bodies[joint["parent"]["body"]].angle)
+            gap = (gap * np.conj(axis)).imag
+        worst = np.maximum(worst, np.abs(gap))
+    for name in solution.description["bodies"]:
+        pose = solution.pose(name)
+        worst = np.maximum(worst, np.abs(pose.x + 1j * pose.y - bodies[name].at))
+    return worst / _size(solution)
+
+
+def _acting(solution: Solution, bodies: dict[str, _Motion]) -> Iterator[tuple[str, Complex, Any, Any, bool]]:
+    """Every force: the body, the place, the force and couple, and whether it does work."""
+    for name, joint in solution.description["joints"].items():
+        at = bodies[joint["child"]["body"]].point(joint["child"]["x"], joint["child"]["y"])[0]
+        reaction = solution.reaction(name)
+        force, couple = reaction.fx + 1j * reaction.fy, 0.0 if reaction.mz is None else reaction.mz
+        pushes: list[tuple[Any, Any, bool]] = [(force, couple, False)]
+        if f"effort:{name}" in solution.series:
+            effort = solution.effort(name)
+            axis = (joint["axis"][0] + 1j * joint["axis"][1]) * np.exp(1j * bodies[joint["parent"]["body"]].angle)
+            pushes.append((0j, effort, True) if joint["coordinate"] == "angle" else (effort * axis, 0.0, True))
+        for push, twist, works in pushes:
+            yield joint["child"]["body"], at, push, twist, works
+            yield joint["parent"]["body"], at, -push, -twist, works
+    for name, load in solution.description["loads"].items():
+        fx, fy, mz = (solution.series[f"load:{name}:{k}"] for k in ("fx", "fy", "mz"))
+        for point, sign in zip(load["points"], (1.0, -1.0), strict=False):
+            at = bodies[point["body"]].point(point["x"], point["y"])[0]
+            yield point["body"], at, sign * (fx + 1j * fy), sign * mz, True
+
+
+def _tally(solution: Solution, bodies: dict[str, _Motion]) -> _Tally:
+    tally = _Tally()
+    for body, at, force, couple, works in _acting(solution, bodies):
+        if body == "ground":
+            continue
+        motion = bodies[body]
+        _, centre, _ = _matter(solution.description["bodies"][body])
+        middle = motion.point(centre.real, centre.imag)[0]
+        moment = (np.conj(at - middle) * force).imag + couple
+        tally.force[body] = tally.force.get(body, 0j) + force
+        tally.moment[body] = tally.moment.get(body, 0.0) + moment
+        tally.size = np.maximum(tally.size, np.abs(force) + np.abs(couple) / _size(solution))
+        if works:
+            local = (at - motion.at) * np.exp(-1j * motion.angle)
+            tally.power = tally.power + (np.conj(motion.point(local.real, local.imag)[1]) * force).real + couple * motion.rate
+    return tally
+
+
+def _balance(solution: Solution, bodies: dict[str, _Motion], tally: _Tally) -> tuple[Array, Array]:
+    """Newton-Euler for every body, over the largest force of the cycle; and power, over the largest power of the cycle."""
+    gravity = complex(*solution.description["gravity"])
+    worst, power = np.zeros_like(solution.t), np.zeros_like(solution.t)
+    largest = np.zeros_like(solution.t)
+    for name, body in solution.description["bodies"].items():
+        mass, centre, inertia = _matter(body)
+        motion = bodies[name]
+        _, speed, change = motion.point(centre.real, centre.imag)
+        inertial = mass * (change - gravity)
+        turning = inertia * motion.acceleration
+        tally.size = np.maximum(tally.size, np.abs(inertial))
+        worst = np.maximum(worst, np.abs(tally.force.get(name, 0j) - inertial))
+        if body["length"] is not None:
+            worst = np.maximum(worst, np.abs(tally.moment.get(name, 0.0) - turning) / _size(solution))
+        used = (np.conj(speed) * inertial).real + turning * motion.rate
+        power = power + used
+        largest = np.maximum(largest, np.abs(used))
+    scale = float(np.max(tally.size)) or 1.0
+    return worst / scale, np.abs(tally.power - power) / (float(np.max(largest + np.abs(tally.power))) or 1.0)
+
+
+def _ends(solution: Solution, bodies: dict[str, _Motion]) -> Array:
+    """A link's section at its base is the opposite of all that acts on it there, over the largest force of the cycle."""
+    worst, scale = np.zeros_like(solution.t), 0.0
+    acting = list(_acting(solution, bodies))
+    base = np.zeros((solution.t.size, 1))
+    for link in solution.links_with_sections:
+        law, motion, length = solution.section(link).law, bodies[link], solution.section(link).law.length
+        axial, shear, bending = (law.at(force, base)[:, 0] for force in ("axial", "shear", "bending"))
+        force, moment = np.zeros_like(motion.at), np.zeros_like(solution.t)
+        for body, at, push, couple, _ in acting:
+            local = (at - motion.at) * np.exp(-1j * motion.angle)
+            if body == link and float(np.max(np.abs(local.real))) <= 1e-12 * length:
+                force = force + push
+                moment = moment + (np.conj(at - motion.at) * push).imag + couple
+        turned = force * np.exp(-1j * motion.angle)
+        worst = np.maximum(worst, np.abs(turned + axial + 1j * shear))
+        worst = np.maximum(worst, np.abs(moment + bending) / _size(solution))
+        scale = max(scale, float(np.max(np.abs(axial + 1j * shear))), float(np.max(np.abs(bending))) / _size(solution))
+    return worst / (scale or 1.0)

@@ -1,0 +1,195 @@
+"""Every case: against vector Newton-Euler at several instants, its certificate, its page, its figures."""
+
+import math
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+import oracle
+import pytest
+from builders import compare
+
+from lagrange_casadi import LagrangeSystem, evaluate, figures, load_case
+
+CASES = Path(__file__).parent.parent / "cases"
+NAMES = sorted(path.parent.name for path in CASES.glob("*/case.py"))
+
+
+def gas(place):
+    """The engine's gas force at the oracle's posture: the same table, read by NumPy."""
+    angle = place(("crank", 0.0, 0.0))[2].v
+    turned = math.fmod(angle - math.pi / 2, 4 * math.pi) * 180 / math.pi
+    pressure = 1e5 * float(np.interp(turned, ANGLES, PRESSURES))
+    return [(("piston", 0.0, 0.0), 0.0, -pressure * math.pi / 4 * 0.08**2, 0.0)]
+
+
+ANGLES = (0, 20, 180, 220, 260, 300, 320, 335, 350, 360, 368, 375, 390, 410, 440, 480, 520, 540, 560, 600, 700, 720)
+PRESSURES = (0.3, -0.2, -0.2, 0.1, 0.9, 3.4, 6.5, 10.5, 18, 27, 42, 45, 30, 15, 6.5, 3.2, 2.0, 1.4, 0.6, 0.3, 0.3, 0.3)
+
+
+def cut(place):
+    x = place(("ram", 0.0, 0.0))[0]
+    return [(("ram", 0.0, 0.0), -400.0 * (x.d > 0), 0.0, 0.0)]
+
+
+def spring(place):
+    (ax, ay, _), (bx, by, _) = place(("ground", 0.014, 0.072)), place(("k3", 0.018, 0.02))
+    dx, dy = bx.v - ax.v, by.v - ay.v
+    length = math.hypot(dx, dy)
+    pull = 4530.0 * (length - 0.07785) / length
+    return [(("k3", 0.018, 0.02), -pull * dx, -pull * dy, 0.0)]
+
+
+def blade(place):
+    phi = place(("body", 0.0, 0.0))[2]
+    return [(("body", 0.0, 0.0), -math.sin(phi.v), math.cos(phi.v), 0.0)]
+
+
+BESIDE = {
+    "engine": {"loads": [gas]},
+    "quick_return": {"loads": [cut]},
+    "andrews_squeezer": {"loads": [spring]},
+    "sleigh": {"extras": [oracle.Extra("blade", None, blade)], "unaided": ["Y"]},
+}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_against_newton_euler(name):
+    scene = load_case(CASES / name).scene
+    start, stop, _ = scene.t
+    for part in (0.0, 0.13, 0.4, 0.77):
+        worst, gap = compare(scene, t=start + part * (stop - start), nudge=1e-4, **BESIDE.get(name, {}))
+        assert gap < 1e-12, f"{worst} at {part}"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_certificate_is_at_rounding_level(name):
+    certificate = evaluate(load_case(CASES / name).scene).certificate
+    expected = {"closure"} if name == "sleigh" else {"closure", "balance", "power"}
+    assert expected <= set(certificate)
+    for residual in expected:
+        assert np.max(certificate[residual]) < 1e-13, residual
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_figure_can_be_drawn(name, tmp_path):
+    case = load_case(CASES / name)
+    drawn = list(figures.draw(evaluate(case.scene, t=(*case.scene.t[:2], 41), xi=(0, 1, 21)), case.figures, tmp_path))
+    assert all(path is not None and path.stat().st_size > 2000 for _, path in drawn)
+    assert "mechanism" in {spec.name for spec, _ in drawn}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_page_says_what_it_is(name):
+    page = (CASES / name / "README.md").read_text()
+    assert page.startswith(f"# {name}\n")
+    for word in ("Source:", "Expected values:", f"lagrange-casadi run cases/{name}"):
+        assert word in page, word
+
+
+# The IVP test set's reference solution at t = 0.03 s (PSIDE, tolerance 1e-14).
+SET = {
+    "q": (15.81077119629904, -15.75637105984298, 0.04082224013073101, -0.5347301163226948, 0.5244099658805304, 0.5347301163226948,
+          1.048080741042263),
+    "rate": (1139.920302151208, -1424.379294994111, 11.03291221937134, 19.29337464421385, 0.5735699284790808, -19.29337464421385,
+             0.3231791658026955),
+    "acceleration": (-24631.76316945196, 51850.37701610329, 324102.5686413781, 566749.3645176213, 16743.62929479361,
+                     -566749.3645176222, 9826.520791458422),
+    "multipliers": (199.1753333731910, -29.75531228015052, 23.06654119098399, 31.45271365475927, 22.64249232082739,
+                    11.61740700019673),
+}  # fmt: skip
+
+# The set's equations at its beta, beta' and beta'' alone, everything else from the loops, in 60-digit arithmetic.
+EXACT = {"P3": (199.17534806422029369, -29.755310058961486767), "P4": (23.066543603840927337, 31.452725249522902698),
+         "P6": (22.642494779373571809, 11.617392381073002921)}  # fmt: skip
+EXACT_TORQUE = 0.033000002514822625774
+
+
+def test_squeezer_against_the_sets_equations_in_60_digits():
+    """The reactions of the pins that close the loops are the set's multipliers, in its order and with its signs."""
+    solution = evaluate(load_case(CASES / "andrews_squeezer").scene, t=(0, 0, 1))
+    for pin, expected in EXACT.items():
+        found = (solution.reaction(pin).fx[0], solution.reaction(pin).fy[0])
+        assert found == pytest.approx(expected, abs=1e-12 * 200)
+    assert solution.effort("O")[0] == pytest.approx(EXACT_TORQUE, abs=1e-13)
+
+
+def test_squeezer_against_the_printed_reference():
+    """The printed rates miss the loops' equations by 1e-9, which magnifies to 1e-7 of the largest multiplier."""
+    solution = evaluate(load_case(CASES / "andrews_squeezer").scene, t=(0, 0, 1))
+    assert solution.effort("O")[0] == pytest.approx(0.033, abs=1e-8)
+    found = [getattr(solution.reaction(pin), axis)[0] for pin in ("P3", "P4", "P6") for axis in ("fx", "fy")]
+    np.testing.assert_allclose(found, SET["multipliers"], atol=1.1e-7 * max(map(abs, SET["multipliers"])))
+    for body, turn, i in (("k3", math.pi / 2, 2), ("k5", 0.0, 4), ("k7", math.pi / 2, 6)):
+        assert solution.pose(body).angle[0] + turn == pytest.approx(SET["q"][i], abs=1e-14)
+
+
+def test_squeezer_at_the_printed_rates():
+    """At the set's own q, q' and q'', all seven, the Lagrange terms give its torque and multipliers to its own accuracy."""
+    q, qd, qdd, lam = ca.SX.sym("q", 7), ca.SX.sym("qd", 7), ca.SX.sym("qdd", 7), ca.SX.sym("lam", 6)
+    module = load_module("andrews_squeezer")
+    beta, theta, gamma, phi, delta, omega, epsilon = ca.vertsplit(q)
+    g = vars(module)
+    pin = _u(beta) * g["RR"] - _u(beta + theta) * g["D"]
+    b, a = ca.DM([g["XB"], g["YB"]]), ca.DM([g["XA"], g["YA"]])
+    turned = math.pi / 2
+    k3 = _u(gamma - turned)
+    h, corner = a + g["ZT"] * _u(delta), a + g["U"] * _u(epsilon - turned)
+    gaps = ca.vertcat(
+        pin - b - g["SS"] * k3, pin - h - g["E"] * _u(phi + delta - turned), pin - corner - g["ZF"] * _u(omega + epsilon)
+    )
+    bodies = [
+        (1, g["RA"] * _u(beta), beta),
+        (2, g["RR"] * _u(beta) - g["DA"] * _u(beta + theta), beta + theta),
+        (3, g["SB"] * k3 + g["SA"] * _u(gamma), gamma),
+        (4, h + (g["E"] - g["EA"]) * _u(phi + delta - turned), phi + delta),
+        (5, g["TA"] * _u(delta) + g["TB"] * _u(delta + turned), delta),
+        (6, corner + (g["ZF"] - g["FA"]) * _u(omega + epsilon), omega + epsilon),
+        (7, g["UB"] * _u(epsilon - turned) + g["UA"] * _u(epsilon), epsilon),
+    ]
+    kinetic = sum(
+        g[f"M{i}"] * ca.sumsqr(ca.jtimes(place, q, qd)) / 2 + g[f"I{i}"] * ca.jtimes(angle, q, qd) ** 2 / 2
+        for i, place, angle in bodies
+    )
+    attached = b + g["SC"] * k3 + g["SD"] * _u(gamma)
+    stretch = ca.norm_2(attached - ca.DM([g["XC"], g["YC"]])) - 0.07785
+    system = LagrangeSystem(kinetic, -4530.0 * stretch**2 / 2, q, qd, qdd, constraints=-gaps, multipliers=lam)
+    along, _ = system.terms()
+    f = ca.Function("f", [q, qd, qdd], [ca.substitute(along, lam, ca.DM.zeros(6)), ca.jacobian(along, lam)])
+    rest, slope = (x.full() for x in f(SET["q"], SET["rate"], SET["acceleration"]))
+    found = np.linalg.lstsq(np.hstack([slope, -np.eye(7, 1)]), -rest, rcond=None)[0].ravel()
+    np.testing.assert_allclose(found[:6], SET["multipliers"], rtol=1e-8)
+    assert found[6] == pytest.approx(0.033, abs=1e-8)
+
+
+def _u(angle):
+    return ca.vertcat(ca.cos(angle), ca.sin(angle))
+
+
+def load_module(name):
+    import importlib.util
+
+    spec = importlib.util.spec_from_file_location(name, CASES / name / "case.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_quick_return_is_quicker_back():
+    """The rocker's two strokes take the crank 180 deg less and more twice the angle whose sine is r over the distance."""
+    solution = evaluate(load_case(CASES / "quick_return").scene, t=(0, 0.5, 20001))
+    rate = solution.motion("way").rate
+    slow = np.count_nonzero(rate > 0) / rate.size
+    expected = 0.5 + math.asin(0.1 / 0.3) / math.pi
+    assert slow == pytest.approx(expected, abs=1e-2)
+
+
+def test_engine_turns_twice_and_gives_work():
+    solution = evaluate(load_case(CASES / "engine").scene)
+    assert solution.motion("main").value[-1] - solution.motion("main").value[0] == pytest.approx(4 * math.pi)
+    torque = _trapezoid(solution.effort("main"), solution.motion("main").value) / (4 * math.pi)
+    assert -40.0 < torque < -5.0
+
+
+def _trapezoid(values, at):
+    return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(at)))
