@@ -15,6 +15,7 @@ from types import ModuleType
 from typing import Any
 
 from .errors import CaseError, LagrangeCasadiError
+from .figures import Spec
 from .scene import Scene
 
 
@@ -24,7 +25,7 @@ class Case:
 
     path: Path
     scene: Scene
-    figures: Sequence[Any]
+    figures: Sequence[Spec]
 
     @property
     def name(self) -> str:
@@ -50,7 +51,9 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     scene = _call(given, file, module, "scene")
     if not isinstance(scene, Scene):
         raise CaseError(f"case {given}: scene() returned {type(scene).__name__}, expected a lagrange_casadi.Scene")
-    figures = _call(given, file, module, "figures") if hasattr(module, "figures") else ()
+    figures = _call(given, file, module, "figures") if callable(getattr(module, "figures", None)) else ()
+    if not isinstance(figures, (list, tuple)) or not all(isinstance(spec, Spec) for spec in figures):
+        raise CaseError(f"case {given}: figures() must return a list of specs of lagrange_casadi.figures, got {figures!r}")
     return Case(file, scene, tuple(figures))
 
 
@@ -67,7 +70,7 @@ def _guard(given: Path, file: Path, action: Any) -> Any:
         return action()
     except LagrangeCasadiError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(file)]
         if isinstance(error, SyntaxError):
             lines = [error.lineno]

@@ -20,6 +20,7 @@ from .solution import Solution
 
 Complex = npt.NDArray[np.complexfloating[Any, Any]]
 
+NEAR = 1e3
 TOLERANCE = 1e-9
 """A residual above it means that the solution is wrong, not that it is rounded."""
 
@@ -77,9 +78,11 @@ def certify(solution: Solution) -> dict[str, Array]:
 
 
 def summary(residuals: Mapping[str, Array]) -> str:
-    """The largest residuals, in one line."""
+    """The largest residuals, in one line; and how singular the loops are, where it matters."""
     parts = [f"{name} {np.max(values):.1e}" for name, values in residuals.items() if name != "condition"]
-    return "certificate: " + (", ".join(parts) if parts else "nothing to check, for want of outputs")
+    said = "certificate: " + (", ".join(parts) if parts else "nothing to check, for want of outputs")
+    worst = float(np.max(residuals.get("condition", np.ones(1))))
+    return said + (f"; near a dead centre, where the loops magnify by {worst:.3g}" if worst > NEAR else "")
 
 
 def _place(solution: Solution) -> dict[str, _Motion]:

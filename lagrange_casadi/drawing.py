@@ -54,15 +54,15 @@ def _draw_instant(axes: Any, solution: Solution, i: int, paths: Any, ends: Any, 
         if body["length"]:
             x0, y0, x1, y1 = (values[i] for values in ends[name])
             axes.plot([x0, x1], [y0, y1], color=colour, linewidth=4, solid_capstyle="round", label=name, zorder=3)
-        else:
+        elif body["length"] is None:
             pose = solution.pose(name)
             axes.plot(pose.x[i], pose.y[i], "s", color=colour, markersize=11, label=name, zorder=3)
     for name, joint in description["joints"].items():
         x, y = paths[name]
         axes.plot(x, y, color="0.75", linewidth=0.9, zorder=1)
-        if joint["kind"] == "prismatic":
+        if joint["kind"] in ("prismatic", "slot"):
             _draw_axis(axes, solution, joint, i, size)
-        if joint["kind"] == "revolute":
+        if joint["kind"] in ("revolute", "slot"):
             grounded = "ground" in (joint["parent"]["body"], joint["child"]["body"])
             axes.plot(x[i], y[i], "o", markersize=7, markerfacecolor="white", markeredgecolor="black", zorder=4)
             if grounded:

@@ -55,7 +55,11 @@ class CompilerError(LagrangeCasadiError):
     exit_status = 1
 
 
+class PathError(LagrangeCasadiError):
+    """A file is not where it is said to be, or cannot be put where it is wanted."""
+
+
 class StoreError(LagrangeCasadiError):
-    """A result file cannot be written, or is not a whole file of this schema."""
+    """Writing a result file failed, or a file is not a whole one of this schema."""
 
     exit_status = 1

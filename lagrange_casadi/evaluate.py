@@ -80,6 +80,8 @@ def evaluate(
     Raises :class:`AssemblyError` where a loop does not close at some instant, :class:`CompilerError`, and for mistakes in the
     arguments :class:`UnknownNameError`, :class:`ParameterError` or :class:`DeclarationError`.
     """
+    if not isinstance(scene, Scene):
+        raise DeclarationError(f"evaluate: expected a Scene, got {scene!r}")
     values = scene.mechanism.values(parameters)
     times = instants("t", scene.t if t is None else t)
     places = ratios(scene.xi if xi is None else xi)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .errors import DeclarationError, StoreError
+from .errors import DeclarationError, StoreError, UnknownNameError
 from .quantities import quantity_of
 from .section_law import FORCES
 from .solution import Solution
@@ -116,7 +117,7 @@ class SectionMaps:
             axes.set_ylabel(r"$\xi/l$")
             figure.colorbar(picture, ax=axes, label=f"{quantity_of(name).long_name} [{peak.unit}]")
         axes.set_xlabel("t [s]")
-        figure.suptitle(f"{solution.case}: section forces of {self.link} (tension positive)", fontsize=11)
+        figure.suptitle(f"{solution.case}: section forces of {self.link}, as the tip's side acts on the base's", fontsize=11)
         return figure
 
 
@@ -140,6 +141,7 @@ class MechanismDrawing:
 
 
 Spec = TimePlot | SpanPlot | SectionMaps | MechanismDrawing
+_FILE = re.compile(r"[A-Za-z0-9_-]+")
 _KINDS: dict[str, type[Spec]] = {spec.kind: spec for spec in (TimePlot, SpanPlot, SectionMaps, MechanismDrawing)}
 
 
@@ -149,11 +151,14 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     groups: dict[tuple[str, str], list[str]] = {}
     for name in solution.series:
         group, part, *member = name.split(":")
-        if group in ("motion", "effort", "reaction") and member != ["mz"] and not name.endswith(("_rate", "_acceleration")):
-            groups.setdefault((group, part), []).append(name)
+        if group in ("motion", "effort", "reaction", "multiplier", "load") and not name.endswith(("_rate", "_acceleration")):
+            if not np.isnan(solution.series[name]).any() and np.any(solution.series[name]):
+                groups.setdefault((group + ("_moment" if member == ["mz"] else ""), part), []).append(name)
     for (group, part), names in groups.items():
-        specs.append(TimePlot(f"{group}_{part}", tuple(names), f"{solution.case}: {group} of {part}"))
-    specs += [SectionMaps(f"section_{link}", link) for link in solution.links_with_sections]
+        specs.append(TimePlot(f"{group}_{part}", tuple(names), f"{solution.case}: {group.replace('_', ' ')} of {part}"))
+    for link in solution.links_with_sections:
+        if not any(np.isnan(solution.section(link).law.on_grid(force, solution.xi)).any() for force in FORCES):
+            specs.append(SectionMaps(f"section_{link}", link))
     return (*specs, MechanismDrawing())
 
 
@@ -182,9 +187,14 @@ def draw(solution: Solution, specs: Sequence[Spec], folder: Path) -> Iterator[tu
 
     The path is None where the solution lacks what a spec draws. Raises :class:`DeclarationError` for what is no spec.
     """
-    for spec in specs or default_figures(solution):
-        if not isinstance(spec, TimePlot | SpanPlot | SectionMaps | MechanismDrawing):
-            raise DeclarationError(f"figures() must give specs of lagrange_casadi.figures, got {spec!r}")
+    chosen = specs or default_figures(solution)
+    for spec in chosen:
+        if not isinstance(spec, Spec):
+            raise DeclarationError(f"expected specs of lagrange_casadi.figures, got {spec!r}")
+        if not _FILE.fullmatch(spec.name) or sum(other.name == spec.name for other in chosen) > 1:
+            raise DeclarationError(f"figure '{spec.name}': names must be letters, digits, underscores and hyphens, each once")
+        _check_parts(solution, spec)
+    for spec in chosen:
         if not _has(solution, spec):
             yield spec, None
             continue
@@ -192,6 +202,15 @@ def draw(solution: Solution, specs: Sequence[Spec], folder: Path) -> Iterator[tu
         # No program's name and no clock, so that the same solution gives the same bytes.
         spec.draw(solution).savefig(path, dpi=120, metadata={"Software": None})
         yield spec, path
+
+
+def _check_parts(solution: Solution, spec: Spec) -> None:
+    """Raise :class:`UnknownNameError` for a quantity of a part that the mechanism does not have."""
+    parts = [part for table in ("bodies", "joints", "loads", "constraints", "rows") for part in solution.description[table]]
+    for name in spec.needs():
+        part = (name.split(":") + [""])[1].removesuffix("_rate").removesuffix("_acceleration")
+        if part not in parts:
+            raise UnknownNameError(f"part in figure '{spec.name}'", part, parts)
 
 
 def _has(solution: Solution, spec: Spec) -> bool:
@@ -210,7 +229,8 @@ def _figure() -> tuple[Figure, Any]:
 
 def _finish(figure: Figure, axes: Any, solution: Solution, name: str, title: str, note: str, along: str) -> None:
     axes.set_xlabel(along)
-    axes.set_ylabel(f"{quantity_of(name).long_name.partition(':')[0]} [{solution.unit(name)}]")
+    words = quantity_of(name).long_name.partition(":")[0]
+    axes.set_ylabel(f"{words.partition(',')[0] if len(axes.get_lines()) > 1 else words} [{solution.unit(name)}]")
     axes.set_title(title or name, fontsize=11)
     axes.axhline(0.0, color="0.6", linewidth=0.8, zorder=0)
     axes.grid(True, color="0.9")

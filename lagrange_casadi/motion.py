@@ -7,7 +7,7 @@ automatic differentiation.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +15,7 @@ import casadi as ca
 
 from .curves import rows
 from .errors import DeclarationError
+from .expressions import scalar
 from .parts import Expression
 
 
@@ -66,35 +67,37 @@ def samples(times: Sequence[float], values: Sequence[float]) -> Motion:
     return Motion(lambda time: spline(time), spline=True, span=(t[0], t[-1]))
 
 
-def motion_function(laws: Sequence[Motion], parameters: Any) -> Any:
-    """The CasADi function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of several laws.
+def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
+    """The CasADi function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of several laws, by the joint's name.
 
     Raises :class:`DeclarationError` for a law that is not a scalar expression of t and parameters.
     """
     names = (["t", "p"], ["d", "d_rate", "d_acceleration"])
     t = ca.SX.sym("t")
-    smooth = [None if law.spline else _derivatives(_scalar(law, t), t) for law in laws]
-    if not any(law.spline for law in laws):
+    smooth = [None if law.spline else _derivatives(_scalar(joint, law, t, parameters), t) for joint, law in laws.items()]
+    if not any(law.spline for law in laws.values()):
         return ca.Function("motion", [t, parameters], _stack(smooth, ca.SX), *names, {"cse": True})
     time, p = ca.MX.sym("t"), ca.MX.sym("p", parameters.numel())
     rows = [
         _derivatives(law.graph(time), time) if row is None else ca.Function(f"law{i}", [t, parameters], row, {"cse": True})(time, p)
-        for i, (law, row) in enumerate(zip(laws, smooth, strict=True))
+        for i, (law, row) in enumerate(zip(laws.values(), smooth, strict=True))
     ]
     return ca.Function("motion", [time, p], _stack(rows, ca.MX), *names)
 
 
-def _scalar(law: Motion, t: Any) -> Any:
+def _scalar(joint: str, law: Motion, t: Any, parameters: Any) -> Any:
     try:
-        value = ca.SX(law.graph(t))
-    except NotImplementedError:
-        raise DeclarationError("a motion must be a casadi.SX expression of t; for samples use motion.samples") from None
-    if value.numel() != 1:
-        raise DeclarationError(f"a motion must be a scalar expression of t, got one of shape {value.shape}")
-    return value
+        value = law.graph(t)
+    except Exception as error:
+        reason = f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
+        raise DeclarationError(f"the motion of joint '{joint}' is no casadi.SX expression of t: {reason}") from None
+    return scalar(
+        f"the motion of joint '{joint}'", value, [t, *ca.vertsplit(parameters)] if parameters.numel() else [t], "parameter"
+    )
 
 
 def _derivatives(value: Any, t: Any) -> list[Any]:
+    value = value if isinstance(value, ca.MX) else ca.SX(value)
     rate = ca.densify(ca.jacobian(value, t))
     return [ca.densify(value), rate, ca.densify(ca.jacobian(rate, t))]
 

@@ -33,7 +33,8 @@ class Parameter:
             raise ParameterError(f"parameter '{self.name}' must be a finite number, got {value}")
         if not self.low <= value <= self.high:
             raise ParameterError(
-                f"parameter '{self.name}' = {value:.17g} {self.unit} is out of its range [{self.low:.17g}, {self.high:.17g}]"
+                f"parameter '{self.name}' = {value:.17g}{'' if self.unit == '1' else ' ' + self.unit} is out of its range "
+                f"[{self.low:.17g}, {self.high:.17g}]"
             )
 
 

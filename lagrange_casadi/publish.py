@@ -10,20 +10,20 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from .errors import StoreError
+from .errors import PathError, StoreError
 
 
 def check_writable(target: Path, *, folder: bool = False) -> None:
-    """Raise :class:`StoreError` where no file (or folder) can be put at ``target``: said before anything is computed."""
+    """Raise :class:`PathError` where no file (or folder) can be put at ``target``: said before anything is computed."""
     if not folder and target.is_dir():
-        raise StoreError(f"cannot write {target}: it is a folder")
+        raise PathError(f"cannot write {target}: it is a folder")
     if folder and target.exists() and not target.is_dir():
-        raise StoreError(f"cannot write {target}: it is a file, not a folder")
+        raise PathError(f"cannot write {target}: it is a file, not a folder")
     if not target.parent.is_dir():
-        raise StoreError(f"cannot write {target}: folder {target.parent} does not exist")
+        raise PathError(f"cannot write {target}: folder {target.parent} does not exist")
     for place in (target.parent, *([target] if target.is_dir() else [])):
         if not os.access(place, os.W_OK):
-            raise StoreError(f"cannot write {target}: folder {place} is not writable")
+            raise PathError(f"cannot write {target}: folder {place} is not writable")
 
 
 @contextmanager

@@ -32,7 +32,9 @@ def instants(what: str, grid: Grid) -> npt.NDArray[np.float64]:
     """The points of a grid. Raises :class:`DeclarationError` for a count below 1 or ends that are not finite or fall."""
     try:
         start, stop, count = float(grid[0]), float(grid[1]), int(grid[2])
-    except (TypeError, ValueError, IndexError):
+        if len(grid) != 3:
+            raise ValueError
+    except (TypeError, ValueError, IndexError, OverflowError):
         raise DeclarationError(f"{what}: expected (start, stop, count), got {grid!r}") from None
     if count < 1 or count != grid[2]:
         raise DeclarationError(f"{what}: COUNT must be a whole number of at least 1, got {grid[2]}")
@@ -202,7 +204,7 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None) -> SceneGraph:
     tree = span(mechanism, scene.motion)
     body = assemble(mechanism, tree, scene.motion, needed_reactions(mechanism, want.reactions, want.sections), want.sections)
     driven = tuple(c.joint for c in body.coordinates if c.driven)
-    motion = motion_function([scene.motion[name] for name in driven], p)
+    motion = motion_function({name: scene.motion[name] for name in driven}, p)
     defaults = list(mechanism.values().values())
     first = [float(x) for x in ca.DM(motion(scene.t[0], defaults)[0]).full().ravel()]
     solved = kinematics.solve(body, scene.posture, Start(float(scene.t[0]), first, defaults))

@@ -163,6 +163,8 @@ class Solution:
 
     def unit(self, name: str) -> str:
         """The unit of a quantity by its full name."""
+        if name not in self.series and name not in self.names() and not name.startswith("certificate:"):
+            raise UnknownNameError("quantity", name, self.names())
         joint = name.split(":")[1].removesuffix("_rate").removesuffix("_acceleration")
         kind = self.description["joints"].get(joint, {}).get("coordinate") or "angle"
         return quantity_of(name).unit_for(kind)

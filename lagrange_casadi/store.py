@@ -18,7 +18,7 @@ import numpy as np
 
 from .certificate import TOLERANCE, certify
 from .density import Array
-from .errors import StoreError
+from .errors import DeclarationError, PathError, StoreError
 from .publish import PatientFile, replacing
 from .quantities import CONVENTIONS, quantity_of
 from .section_law import FORCES
@@ -30,6 +30,7 @@ SCHEMA_VERSION = 1
 _CHUNK_BYTES = 1 << 20
 _AXES = {"t": ("s", "time"), "xi": ("1", "place along a link, ratio xi/l")}
 _PROVENANCE = ("backend", "precision", "compiler", "flags")
+_DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError)
 _GRID_TOLERANCE = 1e-12
 
 
@@ -39,6 +40,8 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
     ``figures`` is kept for :mod:`.figures`, which reads from it how the case wants to be drawn. Raises :class:`StoreError` where
     the file cannot be written.
     """
+    if not isinstance(solution, Solution) or not isinstance(path, (str, os.PathLike)):
+        raise DeclarationError(f"save: expected a solution and a path, got {solution!r} and {path!r}")
     target = Path(path)
     with replacing(target) as draft, PatientFile(draft, "x+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
         _write(file, solution, figures)
@@ -47,15 +50,18 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
 
 
 def load(path: str | os.PathLike[str]) -> Solution:
-    """Read a solution. Raises :class:`StoreError` for what is not a whole file of this schema."""
+    """Read a solution. Raises :class:`StoreError` for what is not a whole file of this schema, :class:`PathError` for none."""
     with _reading(path) as file:
-        return _read(file)
+        try:
+            return _read(file)
+        except _DAMAGE as error:
+            raise StoreError(f"{path}: damaged: {_one_line(error)}") from None
 
 
 def figure_specs(path: str | os.PathLike[str]) -> str:
     """How the case wants to be drawn, as it was given to :func:`save`."""
     with _reading(path) as file:
-        return str(file.attrs["figures"])
+        return str(file.attrs.get("figures", ""))
 
 
 def check(path: str | os.PathLike[str]) -> list[str]:
@@ -72,7 +78,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
             if not found:
                 found += [finding for name in names for finding in _check_dataset(file, solution, name)]
                 found += _check_certificate(solution, float(file.attrs["certificate_tolerance"]))
-        except (OSError, KeyError, ValueError) as error:
+        except _DAMAGE as error:
             return [f"damaged: {_one_line(error)}"]
     return found
 
@@ -182,7 +188,7 @@ def _read(file: h5py.File) -> Solution:
 @contextmanager
 def _reading(path: str | os.PathLike[str]) -> Iterator[h5py.File]:
     if not Path(path).is_file():
-        raise StoreError(f"{path}: no such file")
+        raise PathError(f"{path}: {'is a folder, not a file' if Path(path).is_dir() else 'no such file'}")
     try:
         file = h5py.File(path, "r")
     except OSError as error:

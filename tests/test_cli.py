@@ -92,6 +92,8 @@ def test_check_fails_a_damaged_file(here, capsys):
 BROKEN = {
     "raises.py": "1 / 0\n",
     "empty.py": "x = 1\n",
+    "leaves.py": "raise SystemExit(3)\n",
+    "draws.py": f"from lagrange_casadi import load_case\ndef scene(): return load_case({str(CASE)!r}).scene\ndef figures(): return 3\n",
     "heavy.py": """
 from lagrange_casadi import Mechanism, Scene, motion
 def scene():
@@ -123,19 +125,24 @@ def scene():
         (["run", "CASE", "--t", "1:0:5"], 2, "t: STOP must be after START"),
         (["run", "CASE", "--xi", "0:2:5"], 2, "ratios xi/l must lie in [0, 1]"),
         (["run", "CASE", "--backend", "gpu"], 2, "'gpu' is not one of 'auto', 'c', 'vm'"),
-        (["run", "CASE", "--out", "nowhere/x.h5"], 1, "cannot write nowhere/x.h5: folder nowhere does not exist"),
-        (["run", "CASE", "--out", "."], 1, "it is a folder"),
-        (["run", "CASE", "--figures", "raises.py"], 1, "it is a file, not a folder"),
+        (["run", "CASE", "--out", "nowhere/x.h5"], 2, "cannot write nowhere/x.h5: folder nowhere does not exist"),
+        (["run", "CASE", "--out", "."], 2, "expected a name that ends in .h5"),
+        (["run", "CASE", "--figures", "raises.py"], 2, "it is a file, not a folder"),
         (["run", "nothing"], 2, "case nothing: no such file"),
         (["run", "raises.py"], 2, "case raises.py, line 1: ZeroDivisionError: division by zero"),
         (["run", "empty.py"], 2, "case empty.py: has no function scene()"),
         (["run"], 2, "Missing argument 'CASE'"),
         (["walk"], 2, "unknown command 'walk'; valid: run, plot, info, check"),
         (["run", "CASE", "--fast"], 2, "No such option"),
-        (["check", "nothing.h5"], 1, "nothing.h5: no such file"),
+        (["run", "CASE", "--figures", "a", "--no-figures"], 2, "exclude each other"),
+        (["run", "CASE", "--out", "m.txt"], 2, "expected a name that ends in .h5"),
+        (["run", "leaves.py"], 2, "case leaves.py, line 1: SystemExit: 3"),
+        (["run", "draws.py"], 2, "figures() must return a list of specs"),
+        (["info", "."], 2, "case .: has no case.py"),
+        (["check", "nothing.h5"], 2, "nothing.h5: no such file"),
         (["check", "raises.py"], 1, "raises.py: not a whole HDF5 file"),
         (["plot", "raises.py", "--out", "figures"], 1, "not a whole HDF5 file"),
-        (["info", "nothing.h5"], 1, "nothing.h5: no such file"),
+        (["info", "nothing.h5"], 2, "nothing.h5: no such file"),
         (["info", "x.h5", "--want", "effort"], 2, "--want goes with a case"),
     ],
 )
@@ -220,6 +227,11 @@ def test_a_file_that_cannot_grow_is_one_line(here, size):
     assert done.stderr == "error: cannot write slider_crank.h5: File too large\n"
     assert os.listdir(here) == ["slider_crank.h5"]
     assert Path("slider_crank.h5").read_text() == "of before"
+
+
+def test_no_command_shows_the_help(capsys):
+    assert main([]) == 2
+    assert "Commands:\n" in capsys.readouterr().err
 
 
 def test_help_and_version(capsys):

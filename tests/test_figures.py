@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import evaluate, figures
-from lagrange_casadi.errors import DeclarationError, StoreError
+from lagrange_casadi.errors import DeclarationError, StoreError, UnknownNameError
 from lagrange_casadi.figures import MechanismDrawing, SectionMaps, SpanPlot, TimePlot
 
 
@@ -77,5 +77,11 @@ def test_the_same_solution_gives_the_same_bytes(solution, tmp_path):
 
 
 def test_what_is_no_spec_is_named(solution, tmp_path):
-    with pytest.raises(DeclarationError, match=r"figures\(\) must give specs"):
+    with pytest.raises(DeclarationError, match="expected specs of lagrange_casadi.figures"):
         list(figures.draw(solution, ["fig"], tmp_path))
+    with pytest.raises(UnknownNameError, match=r"unknown part in figure 'x' 'Q'; valid: crank"):
+        list(figures.draw(solution, [TimePlot("x", ("effort:Q",))], tmp_path))
+    for specs in ([TimePlot("../x", ("effort:O",))], [TimePlot("x", ("effort:O",))] * 2):
+        with pytest.raises(DeclarationError, match="names must be letters"):
+            list(figures.draw(solution, specs, tmp_path))
+    assert not list(tmp_path.iterdir())

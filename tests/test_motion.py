@@ -11,7 +11,7 @@ from lagrange_casadi.errors import DeclarationError
 
 
 def at(law, t):
-    f = motion.motion_function([law], ca.SX(0, 1))
+    f = motion.motion_function({"J": law}, ca.SX(0, 1))
     return [float(x) for x in f(t, [])]
 
 
@@ -83,7 +83,9 @@ def test_samples_cover_their_span_only():
         (lambda: motion.samples([0, 1, 1, 2], [0, 1, 2, 3]), "places must increase, but entry 2 is at 1 after 1"),
         (lambda: motion.samples([0, 1, 2, 3], [0, 1, math.nan, 3]), "must be finite"),
         (lambda: motion.samples([0, 1, 2, 3], [0, 1, 2]), "of one length"),
-        (lambda: at(motion.expression(lambda t: ca.vertcat(t, t)), 1.0), "must be a scalar expression"),
+        (lambda: at(motion.expression(lambda t: ca.vertcat(t, t)), 1.0), "the motion of joint 'J' must be a scalar"),
+        (lambda: at(motion.expression(lambda t: math.sin(t)), 1.0), "motion of joint 'J' is no casadi.SX expression of t: "),
+        (lambda: motion.samples("abcd", "abcd"), "two rows of numbers"),
     ],
 )
 def test_misuse_is_named(make, says):

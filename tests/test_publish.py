@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from lagrange_casadi.errors import StoreError
+from lagrange_casadi.errors import PathError
 from lagrange_casadi.publish import check_writable, filling, replacing
 
 
@@ -41,7 +41,7 @@ def test_replacing_keeps_the_old_until_the_new_is_whole(tmp_path):
 
 def test_what_is_in_the_way_is_named(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(StoreError, match="it is a file, not a folder"):
+    with pytest.raises(PathError, match="it is a file, not a folder"):
         check_writable(tmp_path / "file", folder=True)
-    with pytest.raises(StoreError, match="it is a folder"):
+    with pytest.raises(PathError, match="it is a folder"):
         check_writable(tmp_path)

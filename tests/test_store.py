@@ -10,7 +10,7 @@ import pytest
 import xarray
 
 from lagrange_casadi import check, evaluate, load, save, store
-from lagrange_casadi.errors import StoreError
+from lagrange_casadi.errors import DeclarationError, PathError, StoreError
 from lagrange_casadi.quantities import CONVENTIONS
 
 
@@ -35,7 +35,7 @@ def test_layout(solution, file):
     with h5py.File(file) as h:
         assert h["section/rod/bending"].shape == (801, 101)
         assert h["section/rod/law/n0"].shape == (801,)
-        assert set(h) == {"t", "xi", "motion", "pose", "effort", "reaction", "section"}
+        assert set(h) == {"t", "xi", "motion", "pose", "effort", "reaction", "section", "certificate"}
         assert dict(h["t"].attrs)["units"] == "s"
         assert list(h.attrs)[-1] == "complete"
         assert h.attrs["schema"] == "lagrange-casadi"
@@ -97,13 +97,24 @@ def edit(file, change):
         (lambda h: h["effort/O"].dims[0].detach_scale(h["t"]), "effort/O: axis 0 has no scale /t"),
         (lambda h: h.__delitem__("section/rod/shear"), "damaged: .*section/rod/shear|damaged: .*shear"),
         (lambda h: h.attrs.__setitem__("mechanism", "{"), "damaged: "),
+        (lambda h: h.attrs.__delitem__("mechanism"), "damaged: "),
+        (lambda h: h.__delitem__("t"), "damaged: "),
+        (lambda h: h.__delitem__("effort"), "effort/O: missing"),
+        (lambda h: h["effort/O"].__setitem__(5, 3.0), "power: .*, computed anew, is worse than the tolerance|balance: "),
+        (lambda h: h["certificate/power"].__setitem__(5, 0.1), "certificate/power: 0.1 is worse than the tolerance 1e-09"),
     ],
 )
 def test_check_names_what_is_wrong(file, change, finding):
     edit(file, change)
     found = check(file)
-    assert len(found) == 1
     assert re.search(finding, found[0])
+
+
+@pytest.mark.parametrize("name", ["mechanism", "versions", "undetermined"])
+def test_a_damaged_file_is_one_line(file, name):
+    edit(file, lambda h: h.attrs.__setitem__(name, "{"))
+    with pytest.raises(StoreError, match=r"result\.h5: damaged: "):
+        load(file)
 
 
 def test_a_flipped_byte_is_found(file):
@@ -139,7 +150,9 @@ def test_other_files_are_refused(tmp_path, file):
     edit(file, lambda h: h.attrs.__setitem__("schema_version", 99))
     with pytest.raises(StoreError, match="schema version 99, this program reads version 1"):
         load(file)
-    with pytest.raises(StoreError, match="no such file"):
+    with pytest.raises(PathError, match="is a folder, not a file"):
+        load(tmp_path)
+    with pytest.raises(PathError, match="no such file"):
         load(tmp_path / "missing.h5")
 
 
@@ -170,7 +183,9 @@ def test_an_interrupt_leaves_the_file_of_before(solution, file, monkeypatch):
 
 
 def test_places_that_cannot_be_written(solution, tmp_path):
-    with pytest.raises(StoreError, match="it is a folder"):
+    with pytest.raises(DeclarationError, match="expected a solution and a path"):
+        save(tmp_path, solution)
+    with pytest.raises(PathError, match="it is a folder"):
         save(solution, tmp_path)
-    with pytest.raises(StoreError, match=r"folder .*nowhere does not exist"):
+    with pytest.raises(PathError, match=r"folder .*nowhere does not exist"):
         save(solution, tmp_path / "nowhere" / "result.h5")

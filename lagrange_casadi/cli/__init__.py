@@ -52,8 +52,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
             result = program.main(arguments, prog_name="lagrange-casadi", standalone_mode=False)
         except LagrangeCasadiError as error:
             return _fail(str(error), error.exit_status)
+        except click.exceptions.NoArgsIsHelpError as error:
+            click.echo(error.format_message(), err=True)
+            return error.exit_code
         except click.ClickException as error:
-            return _fail(error.format_message() or "nothing to do; see lagrange-casadi --help", error.exit_code)
+            return _fail(error.format_message(), error.exit_code)
         except _Interrupted:
             return _fail("interrupted; nothing was left half-written", INTERRUPTED)
         except MemoryError as error:

@@ -49,6 +49,10 @@ def run(
     no_certificate: bool,
 ) -> None:
     """Evaluate CASE, a folder with a case.py or a Python file, and write an HDF5 file and figures."""
+    if figures and no_figures:
+        raise click.UsageError("--figures and --no-figures exclude each other")
+    if out and out.suffix not in (".h5", ".hdf5"):
+        raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
     loaded = load_case(case)
     out = out or Path(f"{loaded.name}.h5")
     folder = None if no_figures else figures or Path(f"{loaded.name}_figures")
