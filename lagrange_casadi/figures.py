@@ -151,9 +151,9 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     groups: dict[tuple[str, str], list[str]] = {}
     for name in solution.series:
         group, part, *member = name.split(":")
-        if group in ("motion", "effort", "reaction", "multiplier", "load") and not name.endswith(("_rate", "_acceleration")):
-            if not np.isnan(solution.series[name]).any() and np.any(solution.series[name]):
-                groups.setdefault((group + ("_moment" if member == ["mz"] else ""), part), []).append(name)
+        drawn = group in ("motion", "effort", "reaction", "multiplier", "load") and not name.endswith(("_rate", "_acceleration"))
+        if drawn and not np.isnan(solution.series[name]).any() and np.any(solution.series[name]):
+            groups.setdefault((group + ("_moment" if member == ["mz"] else ""), part), []).append(name)
     for (group, part), names in groups.items():
         specs.append(TimePlot(f"{group}_{part}", tuple(names), f"{solution.case}: {group.replace('_', ' ')} of {part}"))
     for link in solution.links_with_sections:
@@ -208,7 +208,7 @@ def _check_parts(solution: Solution, spec: Spec) -> None:
     """Raise :class:`UnknownNameError` for a quantity of a part that the mechanism does not have."""
     parts = [part for table in ("bodies", "joints", "loads", "constraints", "rows") for part in solution.description[table]]
     for name in spec.needs():
-        part = (name.split(":") + [""])[1].removesuffix("_rate").removesuffix("_acceleration")
+        part = name.partition(":")[2].partition(":")[0].removesuffix("_rate").removesuffix("_acceleration")
         if part not in parts:
             raise UnknownNameError(f"part in figure '{spec.name}'", part, parts)
 

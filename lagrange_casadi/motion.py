@@ -91,9 +91,12 @@ def _scalar(joint: str, law: Motion, t: Any, parameters: Any) -> Any:
     except Exception as error:
         reason = f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
         raise DeclarationError(f"the motion of joint '{joint}' is no casadi.SX expression of t: {reason}") from None
-    return scalar(
-        f"the motion of joint '{joint}'", value, [t, *ca.vertsplit(parameters)] if parameters.numel() else [t], "parameter"
-    )
+    if isinstance(value, float) and math.isnan(value):
+        raise DeclarationError(
+            f"the motion of joint '{joint}' is not a number; use CasADi's functions of t, as casadi.sin, not math's"
+        )
+    symbols = [t, *ca.vertsplit(parameters)] if parameters.numel() else [t]
+    return scalar(f"the motion of joint '{joint}'", value, symbols, "parameter")
 
 
 def _derivatives(value: Any, t: Any) -> list[Any]:

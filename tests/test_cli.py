@@ -40,7 +40,7 @@ def test_run_takes_options(here):
     assert main(["run", str(CASE), *arguments, "--backend", "vm", "--out", "x.h5", "--no-figures"]) == 0
     assert [path.name for path in here.iterdir()] == ["x.h5"]
     with h5py.File("x.h5") as h:
-        assert set(h) == {"t", "xi", "section"}
+        assert set(h) == {"t", "xi", "section", "certificate"}
         assert h["section/rod/bending"].shape == (5, 3)
         assert h.attrs["backend"] == "vm"
         assert '"l": 0.25' in h.attrs["parameters"]
@@ -93,7 +93,11 @@ BROKEN = {
     "raises.py": "1 / 0\n",
     "empty.py": "x = 1\n",
     "leaves.py": "raise SystemExit(3)\n",
-    "draws.py": f"from lagrange_casadi import load_case\ndef scene(): return load_case({str(CASE)!r}).scene\ndef figures(): return 3\n",
+    "draws.py": f"""
+from lagrange_casadi import load_case
+def scene(): return load_case({str(CASE)!r}).scene
+def figures(): return 3
+""",
     "heavy.py": """
 from lagrange_casadi import Mechanism, Scene, motion
 def scene():

@@ -84,7 +84,7 @@ def test_samples_cover_their_span_only():
         (lambda: motion.samples([0, 1, 2, 3], [0, 1, math.nan, 3]), "must be finite"),
         (lambda: motion.samples([0, 1, 2, 3], [0, 1, 2]), "of one length"),
         (lambda: at(motion.expression(lambda t: ca.vertcat(t, t)), 1.0), "the motion of joint 'J' must be a scalar"),
-        (lambda: at(motion.expression(lambda t: math.sin(t)), 1.0), "motion of joint 'J' is no casadi.SX expression of t: "),
+        (lambda: at(motion.expression(lambda t: math.sin(t)), 1.0), "joint 'J' is not a number; use CasADi's functions"),
         (lambda: motion.samples("abcd", "abcd"), "two rows of numbers"),
     ],
 )
