@@ -32,7 +32,7 @@ def draw_mechanism(solution: Solution, count: int) -> Figure:
     axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     chosen = np.linspace(0, solution.t.size - 1, count + 1).astype(int)[:-1] if count > 1 else [0]
     for place, i in zip(axes.flat, chosen, strict=False):
-        _draw_instant(place, solution, int(i), paths, ends, size)
+        _draw_instant(place, solution, int(i), paths, size)
         place.set(xlim=box[:2], ylim=box[2:], aspect="equal")
         place.set_title(f"t = {solution.t[i]:.4g} s", fontsize=10)
         place.grid(True, color="0.93")
@@ -47,16 +47,19 @@ def draw_mechanism(solution: Solution, count: int) -> Figure:
     return figure
 
 
-def _draw_instant(axes: Any, solution: Solution, i: int, paths: Any, ends: Any, size: float) -> None:
+def _draw_instant(axes: Any, solution: Solution, i: int, paths: Any, size: float) -> None:
     description = solution.description
     for number, (name, body) in enumerate(description["bodies"].items()):
         colour = _COLOURS[number % len(_COLOURS)]
         if body["length"]:
-            x0, y0, x1, y1 = (values[i] for values in ends[name])
-            axes.plot([x0, x1], [y0, y1], color=colour, linewidth=4, solid_capstyle="round", label=name, zorder=3)
+            _draw_body(axes, solution, name, i, colour)
         elif body["length"] is None:
             pose = solution.pose(name)
             axes.plot(pose.x[i], pose.y[i], "s", color=colour, markersize=11, label=name, zorder=3)
+    for load in description["loads"].values():
+        if load["kind"] == "spring":
+            (ax, ay), (bx, by) = (_place(solution, point) for point in load["points"])
+            axes.plot([ax[i], bx[i]], [ay[i], by[i]], color="0.4", linewidth=1.4, linestyle=":", zorder=2)
     for name, joint in description["joints"].items():
         x, y = paths[name]
         axes.plot(x, y, color="0.75", linewidth=0.9, zorder=1)
@@ -69,6 +72,29 @@ def _draw_instant(axes: Any, solution: Solution, i: int, paths: Any, ends: Any, 
                 axes.plot(x[i], y[i] - 0.035 * size, "^", markersize=12, color="0.55", zorder=2)
     for (x, y), names in _labels(paths, i, size).items():
         axes.annotate(", ".join(names), (x, y), xytext=(6, 6), textcoords="offset points", fontsize=8, color="0.25", zorder=5)
+
+
+def _draw_body(axes: Any, solution: Solution, name: str, i: int, colour: str) -> None:
+    """A link's axis, and arms to the joints beside it; a body known by its centre of mass as arms from there."""
+    body = solution.description["bodies"][name]
+    points = [end for joint in solution.description["joints"].values() for end in (joint["parent"], joint["child"])]
+    own = [(point["x"], point["y"]) for point in points if point["body"] == name]
+    if "centre" in body:
+        centre = (body["centre"]["x"], body["centre"]["y"])
+        lines, width = [(centre, point) for point in own], 3.0
+    else:
+        lines, width = [((min(max(x, 0.0), body["length"]), 0.0), (x, y)) for x, y in own], 1.6
+        (x0, y0), (x1, y1) = (_at(solution, name, i, *place) for place in ((0.0, 0.0), (body["length"], 0.0)))
+        axes.plot([x0, x1], [y0, y1], color=colour, linewidth=4, solid_capstyle="round", label=name, zorder=3)
+    for k, (start, stop) in enumerate(lines):
+        (x0, y0), (x1, y1) = _at(solution, name, i, *start), _at(solution, name, i, *stop)
+        label = name if "centre" in body and k == 0 else None
+        axes.plot([x0, x1], [y0, y1], color=colour, linewidth=width, solid_capstyle="round", label=label, zorder=3)
+
+
+def _at(solution: Solution, body: str, i: int, x: float, y: float) -> tuple[float, float]:
+    place = _place(solution, {"body": body, "x": x, "y": y})
+    return float(place[0][i]), float(place[1][i])
 
 
 def _labels(paths: Any, i: int, size: float) -> dict[tuple[float, float], list[str]]:
