@@ -44,7 +44,7 @@ def main() -> int:
         extra = result["peak"] - floor
         ratio = f"{extra / benchmark.bytes_returned:.2f} x result" if benchmark.bytes_returned else ""
         figures = f"{result['median']:>10.3f}{result['min']:>10.3f}{result['peak'] / 1e6:>10.0f}{ratio:>15}"
-        print(f"{benchmark.name:<16}{figures}  {benchmark.what}")
+        print(f"{benchmark.name:<16}{figures}  {benchmark.what}{': ' + result['says'] if result['says'] else ''}")
         if arguments.json:
             with arguments.json.open("a") as lines:
                 lines.write(json.dumps({"name": benchmark.name, **result, "memory_over_import": extra, **machine}) + "\n")
@@ -74,19 +74,31 @@ def measure(benchmark: Benchmark) -> dict[str, Any]:
             if benchmark.cold:
                 shutil.rmtree(f"{work}/cache", ignore_errors=True)
             runs.append(run_once(benchmark, work, environment))
-    times = [seconds for seconds, _ in runs]
-    return {"median": statistics.median(times), "min": min(times), "peak": max(peak for _, peak in runs), "runs": len(runs)}
+    times = [seconds for seconds, _, _ in runs]
+    says = runs[-1][2] if benchmark.reports else ""
+    return {
+        "median": statistics.median(times),
+        "min": min(times),
+        "peak": max(peak for _, peak, _ in runs),
+        "runs": len(runs),
+        "says": says,
+    }
 
 
-def run_once(benchmark: Benchmark, work: str, environment: dict[str, str]) -> tuple[float, int]:
+def run_once(benchmark: Benchmark, work: str, environment: dict[str, str]) -> tuple[float, int, str]:
     start = time.perf_counter()
-    process = subprocess.Popen([sys.executable, "-c", benchmark.program], cwd=work, env=environment, stdout=subprocess.DEVNULL)
+    process = subprocess.Popen(
+        [sys.executable, "-c", benchmark.program], cwd=work, env=environment, stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    with process.stdout as printed:
+        lines = printed.read().splitlines()
     _, status, usage = os.wait4(process.pid, 0)
     seconds = time.perf_counter() - start
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode:
         raise SystemExit(f"benchmark {benchmark.name} failed with status {process.returncode}")
-    return seconds, usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+    return seconds, usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024), lines[-1] if lines else ""
 
 
 if __name__ == "__main__":

@@ -268,5 +268,5 @@ def _generalized(moved: _Builder, applied: tuple[Applied, ...], rows: tuple[RowG
     slopes = ca.substitute(slopes, resting, ca.SX.zeros(resting.numel()))
     forces = column([*(p.fx for p in applied), *(p.fy for p in applied), *(p.mz for p in applied)])
     slopes = ca.substitute(slopes, ca.vertcat(fx, fy, mz), forces)
-    n = len(moved.coordinates)
-    return slopes[:n], slopes[n:]
+    along, across = ca.vertsplit(slopes, [0, len(moved.coordinates), slopes.numel()])
+    return along, across

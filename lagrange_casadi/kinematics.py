@@ -23,6 +23,9 @@ from .loops import ClosedForm
 from .multibody import Coordinate, Multibody, column, joint_coordinate
 from .parts import Link
 
+_LARGEST_STEP = 0.3
+"""Of an angle [rad], or of a slide over the length of all links: a full step from afar may land on another branch."""
+
 
 @dataclass(frozen=True, eq=False)
 class NewtonLoop:
@@ -265,9 +268,10 @@ class _Solver:
         gaps = self.place(column(block.gap for block in self.residuals))
         correction = -LinearSystem.of(ca.jacobian(gaps, iterated)).solve(gaps)
         relative = ca.mmax(ca.fabs(correction / column(self.scales)))
+        bounded = correction * ca.fmin(1.0, _LARGEST_STEP / relative)
         inputs = [iterated, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
         names = ["z", "t", "d", "p"]
-        step = ca.Function("loops", inputs, [correction, relative], names, ["correction", "size"], {"cse": True})
+        step = ca.Function("loops", inputs, [bounded, relative], names, ["correction", "size"], {"cse": True})
         return NewtonLoop(step, tuple(self.guess), ", ".join(block.joints for block in self.residuals))
 
 

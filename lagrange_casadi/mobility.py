@@ -68,11 +68,6 @@ def internal_forces(
     along = kinematics.evaluate(ca.substitute(along, moments, whole))
     unknowns, values, free = _multipliers(multibody, kinematics, along)
 
-    def known(expression: Any) -> Any:
-        """At the moments of an undisturbed link, with the multipliers and the motion put in."""
-        still = kinematics.evaluate(ca.substitute(ca.SX(expression), moments, whole))
-        return ca.substitute(still, unknowns, values)
-
     unaided = {graph.row.replaces for graph in multibody.rows}
     drives = {c.joint: along[i] for i, c in enumerate(multibody.coordinates) if c.driven and c.joint not in unaided}
     actions = _split(across, [d.symbols.numel() for d in multibody.displacements])
@@ -90,7 +85,10 @@ def internal_forces(
     for name, action in zip(multibody.cuts, actions[len(by_joint) :], strict=True):
         for coefficient, force in _section_law(multibody, name, action, borne, drives).items():
             columns[f"section:{name}:{coefficient}"] = force
-    return InternalForces({name: known(force) for name, force in columns.items()}, free)
+    # All at once, for a substitution visits the whole graph: at the moments of an undisturbed link, with motion and multipliers.
+    still = kinematics.evaluate(ca.substitute(column(columns.values()), moments, whole))
+    known = ca.substitute(still, unknowns, values)
+    return InternalForces(dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True)), free)
 
 
 def _section_law(multibody: Multibody, name: str, action: Any, borne: Any, drives: Any) -> dict[str, Any]:

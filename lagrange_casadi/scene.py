@@ -218,12 +218,19 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None) -> SceneGraph:
     for part in reversed(body.applied):
         if part.load in want.loads:
             columns |= {f"load:{part.load}:{member}": getattr(part, member) for member in ("fx", "fy", "mz")}
-    columns = {name: solved.evaluate(column) for name, column in columns.items()}
+    placed = solved.evaluate(ca.vertcat(ca.SX(0, 1), *columns.values()))
+    columns = dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True))
     inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, p]
     open_: tuple[str, ...] = ()
     if want.forces:
-        chosen = {"effort": want.effort, "reactions": want.reactions, "multipliers": want.multipliers, "sections": want.sections}
-        forces = internal_forces(body, solved, **chosen)  # type: ignore[arg-type]
+        forces = internal_forces(
+            body,
+            solved,
+            effort=want.effort,
+            reactions=want.reactions,
+            multipliers=want.multipliers,
+            sections=want.sections,
+        )
         open_ = _undetermined(forces.columns, forces.free, motion, inputs, scene, solved.newton)
         settled = [column for name, column in forces.columns.items() if name not in open_]
         settled = ca.vertsplit(ca.substitute(ca.vertcat(ca.SX(0, 1), *settled), forces.free, ca.SX.zeros(forces.free.numel())))

@@ -127,6 +127,26 @@ def test_a_loop_that_does_not_converge_is_named(backend):
         evaluate(truss_platform(), backend=backend, parameters={"shaft": 5.0})
 
 
+def double_crank(step):
+    """A drag link whose second crank a gear counts, so that it is iterated; instants ``step`` radians of the drive apart."""
+    m = Mechanism("double_crank")
+    a, b, c = (m.link(n, length=l, mass=1.0) for n, l in (("a", 0.3), ("b", 0.25), ("c", 0.35)))
+    wheel = m.link("wheel", length=0.1, mass=0.1)
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, c.tip)
+    joints = m.revolute("C", m.ground.at(0.1, 0.0), c), m.revolute("G", m.ground.at(0.5, 0), wheel)
+    m.gear("mesh", *joints, ratio=-2.0)
+    return Scene(m, {"O": polynomial(0.2, 1.0)}, posture={"c": 0.6, "b": 1.5}, t=(0, 12 * step, 13))
+
+
+@pytest.mark.parametrize("backend", ["c", "vm"])
+def test_a_jump_of_branch_is_named(backend):
+    assert evaluate(double_crank(1.0), backend=backend).pose("c").angle[-1] > 2.0
+    with pytest.raises(AssemblyError, match=r"closed by joint 'B' has jumped to another branch at t = 2\.3 s, where O = 2\.5 rad"):
+        evaluate(double_crank(2.3), backend=backend)
+
+
 @pytest.mark.parametrize("n", [1, 2, 3, 5])
 def test_linear_systems(n):
     rng = np.random.default_rng(n)

@@ -205,6 +205,38 @@ def _transmission(scene):
     return float(instant_at(graph, scene.t[0])[graph.columns.index("_closure:B")])
 
 
+@settings(max_examples=15, deadline=None)
+@given(st.floats(0.05, 0.3), st.floats(-0.15, 0.15), st.tuples(masses, masses, masses, masses), st.floats(0.2, 0.4), st.booleans())
+def test_random_six_bars(x, y, mass, arm, turned):
+    """A crank-rocker with a pin anywhere on its coupler that swings a second rocker; parents, children and order exchanged."""
+    m = Mechanism("six_bar")
+    swing = m.link("swing", length=0.28, mass=0.5)
+    crank, coupler, rocker, last = (
+        m.link(n, length=l, mass=w)
+        for n, l, w in zip(("crank", "coupler", "rocker", "arm"), (0.1, 0.35, 0.25, arm), mass, strict=True)
+    )
+    ends = {
+        "O": (m.ground, crank),
+        "A": (crank.tip, coupler),
+        "B": (coupler.tip, rocker.tip),
+        "C": (m.ground.at(0.3, 0.05), rocker),
+        "D": (coupler.at(x, y), last),
+        "E": (last.tip, swing.tip),
+        "F": (m.ground.at(0.45, 0.35), swing),
+    }
+    for name in sorted(ends, reverse=turned):
+        m.revolute(name, *(ends[name][::-1] if turned and name != "O" else ends[name]))
+    scene = Scene(m, {"O": MOTION}, posture={"rocker": 1.5, "arm": 0.3, "swing": 1.8}, t=(INSTANT, 1, 2))
+    try:
+        graph = derive(scene)
+    except AssemblyError:
+        return
+    closures = [float(instant_at(graph, INSTANT)[k]) for k, name in enumerate(graph.columns) if name.startswith("_closure")]
+    worst, gap = compare(scene, nudge=1e-3)
+    if min(closures) > 1e-2:
+        assert gap < 1e-10, worst
+
+
 @settings(max_examples=25, deadline=None)
 @given(st.floats(0.01, 1.0), st.floats(1.05, 8.0), masses, masses, st.floats(0.1, 5.0))
 def test_random_slider_cranks(r, ratio, m1, m2, m3):

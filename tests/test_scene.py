@@ -1,9 +1,10 @@
 """Scenes: only what is wanted, and what is refused."""
 
+import numpy as np
 import pytest
 from builders import four_bar, slider_crank
 
-from lagrange_casadi import Mechanism, Scene, derive
+from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import polynomial
 from lagrange_casadi.scene import instants, outputs, ratios
@@ -43,6 +44,17 @@ def test_what_is_not_wanted_costs_nothing():
     assert count[0] < 0.7 * count[2]
     motion = derive(scene, ["motion"])
     assert sum(motion.instructions.values()) < count[2]
+
+
+def test_a_single_link_gives_each_output_alone():
+    m = Mechanism("m")
+    m.revolute("J", m.ground, m.link("a", length=1, mass=3))
+    scene = Scene(m, {"J": polynomial(0.3, 1.0)}, t=(0, 1, 3))
+    whole = evaluate(scene)
+    for wanted in ("effort", "reaction:J", "section:a", "motion"):
+        alone = evaluate(scene, wanted=[wanted])
+        for name in alone.series:
+            np.testing.assert_allclose(alone.series[name], whole.series[name], rtol=1e-14, err_msg=name)
 
 
 def test_the_order_of_wanting_does_not_matter():
