@@ -73,7 +73,6 @@ def evaluate(
         Output names.
     backend
         ``c`` compiles; ``vm`` runs in CasADi's virtual machine; ``auto`` compiles where there is a compiler, and warns where not.
-
     certificate
         Whether to check the solution by :mod:`.certificate`, as far as the wanted outputs allow.
 
@@ -99,10 +98,10 @@ def evaluate(
     for name, column in series.items():
         if _wraps(graph, name):
             column[:] = np.unwrap(column)
-    series |= {name: np.full(times.size, np.nan) for name in graph.open_}
+    series |= {name: np.full(times.size, np.nan) for name in graph.undetermined}
     description = describe(scene.mechanism, values, scene.motion)
     ordered = in_order(series, description)
-    solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, graph.open_)
+    solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, graph.undetermined)
     if not certificate:
         return solution
     return replace(solution, certificate=certify(solution) | _condition(graph, table))

@@ -23,6 +23,7 @@ from .multibody import Multibody
 from .tree import span
 
 _OPEN = 1e-9
+_SAMPLES, _STEPS = 6, 8
 
 Grid = tuple[float, float, int]
 """Start, stop and count; both ends are included."""
@@ -173,8 +174,8 @@ class SceneGraph:
 
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` a
     column name; ``newton`` where loops must be iterated. Columns that begin with ``_`` are no outputs but tell whether there is a
-    result: ``_closure:JOINT`` (see :mod:`.loops`), ``_misfit:JOINT``, ``_row:NAME`` and ``_rowsize:NAME``. ``open_`` names the
-    outputs that equilibrium does not determine.
+    result: ``_closure:JOINT`` (see :mod:`.loops`), ``_misfit:JOINT``, ``_row:NAME`` and ``_rowsize:NAME``. ``undetermined`` names
+    the outputs that equilibrium does not determine.
     """
 
     scene: Scene
@@ -184,7 +185,7 @@ class SceneGraph:
     instant: Any
     newton: NewtonLoop | None
     columns: tuple[str, ...]
-    open_: tuple[str, ...]
+    undetermined: tuple[str, ...]
 
     @property
     def instructions(self) -> dict[str, int]:
@@ -221,7 +222,7 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None) -> SceneGraph:
     placed = solved.evaluate(ca.vertcat(ca.SX(0, 1), *columns.values()))
     columns = dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True))
     inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, p]
-    open_: tuple[str, ...] = ()
+    undetermined: tuple[str, ...] = ()
     if want.forces:
         forces = internal_forces(
             body,
@@ -231,14 +232,14 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None) -> SceneGraph:
             multipliers=want.multipliers,
             sections=want.sections,
         )
-        open_ = _undetermined(forces.columns, forces.free, motion, inputs, scene, solved.newton)
-        settled = [column for name, column in forces.columns.items() if name not in open_]
+        undetermined = _undetermined(forces.columns, forces.free, motion, inputs, scene, solved.newton)
+        settled = [column for name, column in forces.columns.items() if name not in undetermined]
         settled = ca.vertsplit(ca.substitute(ca.vertcat(ca.SX(0, 1), *settled), forces.free, ca.SX.zeros(forces.free.numel())))
-        columns |= dict(zip((name for name in forces.columns if name not in open_), settled, strict=False))
+        columns |= dict(zip((name for name in forces.columns if name not in undetermined), settled, strict=False))
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = ca.Function("instant", inputs, [out], names, ["out"], {"cse": True})
-    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), open_)
+    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), undetermined)
 
 
 def _undetermined(
@@ -250,9 +251,12 @@ def _undetermined(
     slopes = ca.Function("slopes", [*inputs, free], [ca.jacobian(ca.vertcat(*columns.values()), free)])
     p = list(scene.mechanism.values().values())
     largest = np.zeros((len(columns), free.numel()))
-    for t in np.linspace(scene.t[0], scene.t[1], 7) if newton is None else [scene.t[0]]:
-        found = slopes(t, *motion(t, p), newton.guess if newton else [], p, ca.DM.zeros(free.numel())).full()
-        largest = np.fmax(largest, np.abs(found))
+    z = ca.DM(newton.guess if newton else [])
+    for number, t in enumerate(np.linspace(scene.t[0], scene.t[1], 10 * _SAMPLES + 1)):
+        for _ in range(_STEPS if newton else 0):
+            z += newton.step(z, t, motion(t, p)[0], p)[0]
+        if number % 10 == 0:
+            largest = np.fmax(largest, np.abs(slopes(t, *motion(t, p), z, p, ca.DM.zeros(free.numel())).full()))
     return tuple(name for name, row in zip(columns, largest, strict=True) if row.max() > _OPEN)
 
 
