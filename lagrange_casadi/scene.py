@@ -253,8 +253,9 @@ def _undetermined(
     largest = np.zeros((len(columns), free.numel()))
     z = ca.DM(newton.guess if newton else [])
     for number, t in enumerate(np.linspace(scene.t[0], scene.t[1], 10 * _SAMPLES + 1)):
-        for _ in range(_STEPS if newton else 0):
-            z += newton.step(z, t, motion(t, p)[0], p)[0]
+        if newton is not None:
+            for _ in range(_STEPS):
+                z += newton.step(z, t, motion(t, p)[0], p)[0]
         if number % 10 == 0:
             largest = np.fmax(largest, np.abs(slopes(t, *motion(t, p), z, p, ca.DM.zeros(free.numel())).full()))
     return tuple(name for name, row in zip(columns, largest, strict=True) if row.max() > _OPEN)
