@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 import casadi as ca
@@ -45,6 +45,8 @@ def assemble(
         closures.append(_closure(constraint.name, None, moved.counted(constraint.phi), resting.counted(constraint.phi)))
     rows = tuple(_row(resting, row) for row in mechanism.rows.values())
     applied = tuple(part for load in mechanism.loads.values() for part in _apply(load, resting))
+    held = [part for c in closures if c.joint is None for part in _hold(resting, c.name, mechanism.constraints[c.name].phi, c)]
+    held += [part for graph in rows for part in _hold(resting, graph.row.name, graph.row.expression, graph)]
     forces, mobility_forces = _generalized(moved, applied, rows)
     return Multibody(
         mechanism=mechanism,
@@ -56,6 +58,7 @@ def assemble(
         cuts=moved.cuts,
         frames=resting.frames,
         applied=applied,
+        held=tuple(held),
         kinetic=moved.kinetic,
         force_function=moved.force_function,
         forces=forces,
@@ -241,6 +244,31 @@ def _apply(load: Load, resting: _Builder) -> list[Applied]:
         Applied(load.name, load.first, ca.SX(fx), ca.SX(fy), ca.SX(0)),
         Applied(load.name, load.second, ca.SX(-fx), ca.SX(-fy), ca.SX(0)),
     ]
+
+
+def _hold(resting: _Builder, name: str, expression: Any, of: Closure | RowGraph) -> Iterator[Applied]:
+    """What a multiplier does to bodies, by what its equation is written in: a joint's coordinate, a place, a direction."""
+    multiplier = of.multipliers if isinstance(of, Closure) else of.multiplier
+    for measure in resting.mechanism.measures.asked:
+        symbols = ca.vertcat(*(measure.places if isinstance(of, Closure) else measure.rates))
+        if not ca.depends_on(expression, symbols):
+            continue
+        part = [multiplier * resting.at_state(slope) for slope in ca.vertsplit(ca.jacobian(expression, symbols).T)]
+        if isinstance(measure.of, Point):
+            yield Applied(name, measure.of, part[0], part[1], ca.SX(0))
+        elif isinstance(measure.of, Link):
+            yield Applied(name, measure.of.base, ca.SX(0), ca.SX(0), part[0])
+        elif measure.of.coordinate == "angle":
+            yield Applied(name, measure.of.child, ca.SX(0), ca.SX(0), part[0])
+            yield Applied(name, measure.of.parent, ca.SX(0), ca.SX(0), -part[0])
+        else:
+            joint = measure.of
+            parent, child = resting.ends(joint)
+            ax, ay = parent.rotation.apply(*joint.axis)
+            along, _ = slide(joint, parent, child)
+            x, y = joint.parent.x + joint.axis[0] * along, joint.parent.y + joint.axis[1] * along
+            yield Applied(name, joint.child, part[0] * ax, part[0] * ay, ca.SX(0))
+            yield Applied(name, Point(joint.parent.body, x, y), -part[0] * ax, -part[0] * ay, ca.SX(0))
 
 
 def _row(resting: _Builder, row: Any) -> RowGraph:

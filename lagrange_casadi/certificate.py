@@ -7,8 +7,8 @@ sections at a link's base must give back what its joints do there. Each residual
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,9 @@ from .solution import Solution
 Complex = npt.NDArray[np.complexfloating[Any, Any]]
 
 NEAR = 1e3
+_EDGE = 1e-9
+_Action = tuple[str, Complex, Any, Any, bool]
+
 TOLERANCE = 1e-9
 """A residual above it means that the solution is wrong, not that it is rounded."""
 
@@ -56,8 +59,24 @@ class _Tally:
     power: Array | float = 0.0
 
 
-def certify(solution: Solution) -> dict[str, Array]:
-    """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``, ``ends``, each where it can be had."""
+@dataclass(frozen=True, eq=False)
+class Held:
+    """What the multiplier of a constraint or row does at a point (x, y) of a body, in its axes: arrays of (t,)."""
+
+    body: str
+    x: Array
+    y: Array
+    fx: Array
+    fy: Array
+    mz: Array
+
+
+def certify(solution: Solution, held: Sequence[Held] | None = None) -> dict[str, Array]:
+    """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``, ``ends``, each where it can be had.
+
+    Multipliers act by their equations, which a solution does not hold; so with constraints or rows all but ``closure`` needs to be
+    told what they do.
+    """
     description = solution.description
     joints = description["joints"]
     if any(joint["coordinate"] and f"motion:{name}" not in solution.series for name, joint in joints.items()):
@@ -68,12 +87,13 @@ def certify(solution: Solution) -> dict[str, Array]:
     found = {"closure": _closure(solution, bodies)}
     wanted = [f"reaction:{name}:fx" for name in joints] + [f"load:{name}:fx" for name in description["loads"]]
     wanted += [f"effort:{name}" for name, joint in joints.items() if joint["driven"] and name not in description["rows"].values()]
-    free = not description["constraints"] and not description["rows"] and not solution.undetermined
-    if free and all(name in solution.series for name in wanted):
-        tally = _tally(solution, bodies)
+    told = held is not None or not (description["constraints"] or description["rows"])
+    if told and not solution.undetermined and all(name in solution.series for name in wanted):
+        acting = [*_acting(solution, bodies), *(_push(part, bodies) for part in held or ())]
+        tally = _tally(solution, bodies, acting)
         found["balance"], found["power"] = _balance(solution, bodies, tally)
         if solution.links_with_sections:
-            found["ends"] = _ends(solution, bodies)
+            found["ends"] = _ends(solution, bodies, acting)
     return found
 
 
@@ -104,7 +124,35 @@ def _place(solution: Solution) -> dict[str, _Motion]:
                 bodies[far["body"]] = motion
                 del waiting[name]
                 moved = True
+        if not moved:
+            moved = _span(solution, bodies)
     return bodies
+
+
+def _span(solution: Solution, bodies: dict[str, _Motion]) -> bool:
+    """Place a link that is pinned at two points to bodies already placed, from where these move; whether there was one."""
+    pins: dict[str, list[tuple[Description, Description]]] = {}
+    for joint in solution.description["joints"].values():
+        for own, other in ((joint["parent"], joint["child"]), (joint["child"], joint["parent"])):
+            if joint["kind"] == "revolute" and own["body"] not in bodies and other["body"] in bodies:
+                pins.setdefault(own["body"], []).append((own, other))
+    for name, found in pins.items():
+        first = found[0]
+        second = next((pin for pin in found if (pin[0]["x"], pin[0]["y"]) != (first[0]["x"], first[0]["y"])), None)
+        if second is None or not _oriented(solution.description, name):
+            continue
+        (a, va, ca), (b, vb, cb) = (bodies[other["body"]].point(other["x"], other["y"]) for _, other in (first, second))
+        reach = np.abs(b - a) ** 2
+        rate, acceleration = (np.conj(b - a) * (vb - va)).imag / reach, (np.conj(b - a) * (cb - ca)).imag / reach
+        local = (second[0]["x"] - first[0]["x"]) + 1j * (second[0]["y"] - first[0]["y"])
+        angle = np.angle((b - a) / local)
+        zero = np.zeros_like(angle)
+        arm, arm_speed, arm_change = _Motion(zero + 0j, zero + 0j, zero + 0j, angle, rate, acceleration).point(
+            first[0]["x"], first[0]["y"]
+        )
+        bodies[name] = _Motion(a - arm, va - arm_speed, ca - arm_change, angle, rate, acceleration)
+        return True
+    return False
 
 
 def _oriented(description: Description, body: str) -> bool:
@@ -179,7 +227,7 @@ def _closure(solution: Solution, bodies: dict[str, _Motion]) -> Array:
     return worst / _size(solution)
 
 
-def _acting(solution: Solution, bodies: dict[str, _Motion]) -> Iterator[tuple[str, Complex, Any, Any, bool]]:
+def _acting(solution: Solution, bodies: dict[str, _Motion]) -> Iterator[_Action]:
     """Every force: the body, the place, the force and couple, and whether it does work."""
     for name, joint in solution.description["joints"].items():
         at = bodies[joint["child"]["body"]].point(joint["child"]["x"], joint["child"]["y"])[0]
@@ -200,9 +248,13 @@ def _acting(solution: Solution, bodies: dict[str, _Motion]) -> Iterator[tuple[st
             yield point["body"], at, sign * (fx + 1j * fy), sign * mz, True
 
 
-def _tally(solution: Solution, bodies: dict[str, _Motion]) -> _Tally:
+def _push(part: Held, bodies: dict[str, _Motion]) -> _Action:
+    return part.body, bodies[part.body].point(part.x, part.y)[0], part.fx + 1j * part.fy, part.mz, True
+
+
+def _tally(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Action]) -> _Tally:
     tally = _Tally()
-    for body, at, force, couple, works in _acting(solution, bodies):
+    for body, at, force, couple, works in acting:
         if body == "ground":
             continue
         motion = bodies[body]
@@ -219,7 +271,7 @@ def _tally(solution: Solution, bodies: dict[str, _Motion]) -> _Tally:
 
 
 def _balance(solution: Solution, bodies: dict[str, _Motion], tally: _Tally) -> tuple[Array, Array]:
-    """Newton-Euler for every body, over the largest force of the cycle; and power, over the largest power of the cycle."""
+    """Newton-Euler for every body, over the largest force of the cycle; and power, over the largest of force times speed."""
     gravity = complex(*solution.description["gravity"])
     worst, power = np.zeros_like(solution.t), np.zeros_like(solution.t)
     largest = np.zeros_like(solution.t)
@@ -235,27 +287,33 @@ def _balance(solution: Solution, bodies: dict[str, _Motion], tally: _Tally) -> t
             worst = np.maximum(worst, np.abs(tally.moment.get(name, 0.0) - turning) / _size(solution))
         used = (np.conj(speed) * inertial).real + turning * motion.rate
         power = power + used
-        largest = np.maximum(largest, np.abs(used))
+        largest = np.maximum(largest, np.abs(speed) * np.abs(inertial) + np.abs(turning * motion.rate))
     scale = float(np.max(tally.size)) or 1.0
     return worst / scale, np.abs(tally.power - power) / (float(np.max(largest + np.abs(tally.power))) or 1.0)
 
 
-def _ends(solution: Solution, bodies: dict[str, _Motion]) -> Array:
+def _ends(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Action]) -> Array:
     """A link's section at its base is the opposite of all that acts on it there, over the largest force of the cycle."""
     worst, scale = np.zeros_like(solution.t), 0.0
-    acting = list(_acting(solution, bodies))
     base = np.zeros((solution.t.size, 1))
     for link in solution.links_with_sections:
-        law, motion, length = solution.section(link).law, bodies[link], solution.section(link).law.length
+        law = solution.section(link).law
+        # What slides over the base just now counts as at the base, here and there.
+        law = replace(law, loads=tuple(replace(x, station=np.where(np.abs(x.station) < _EDGE, 0.0, x.station)) for x in law.loads))
         axial, shear, bending = (law.at(force, base)[:, 0] for force in ("axial", "shear", "bending"))
-        force, moment = np.zeros_like(motion.at), np.zeros_like(solution.t)
-        for body, at, push, couple, _ in acting:
-            local = (at - motion.at) * np.exp(-1j * motion.angle)
-            if body == link and float(np.max(np.abs(local.real))) <= 1e-12 * length:
-                force = force + push
-                moment = moment + (np.conj(at - motion.at) * push).imag + couple
-        turned = force * np.exp(-1j * motion.angle)
-        worst = np.maximum(worst, np.abs(turned + axial + 1j * shear))
+        force, moment = _before(bodies[link], [part for part in acting if part[0] == link], _EDGE * law.length)
+        worst = np.maximum(worst, np.abs(force + axial + 1j * shear))
         worst = np.maximum(worst, np.abs(moment + bending) / _size(solution))
         scale = max(scale, float(np.max(np.abs(axial + 1j * shear))), float(np.max(np.abs(bending))) / _size(solution))
     return worst / (scale or 1.0)
+
+
+def _before(motion: _Motion, acting: Sequence[_Action], edge: float) -> tuple[Complex, Array]:
+    """The force in a link's axes, and the moment about its base, of all that acts at its base or beyond it."""
+    force, moment = np.zeros_like(motion.at), np.zeros_like(motion.angle)
+    for _, at, push, couple, _ in acting:
+        arm = (at - motion.at) * np.exp(-1j * motion.angle)
+        here = arm.real <= edge
+        force = force + np.where(here, push * np.exp(-1j * motion.angle), 0.0)
+        moment = moment + np.where(here, (np.conj(at - motion.at) * push).imag + couple, 0.0)
+    return force, moment

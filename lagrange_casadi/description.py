@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from .mechanism import Mechanism
-from .parts import Force, Link, Point, PointMass, RigidMass, Spring, Torque
+from .parts import Link, Point, PointMass, RigidMass
 
 Description = dict[str, Any]
 
@@ -37,8 +37,7 @@ def describe(mechanism: Mechanism, values: Mapping[str, float], driven: Collecti
 
     bodies = {body.name: matter(body) for body in mechanism.moving}
     loads = {
-        name: {"points": [place(p) for p in ((load.first, load.second) if isinstance(load, Spring) else _points(load))]}
-        | {"kind": type(load).__name__.lower()}
+        name: {"kind": type(load).__name__.lower(), "points": [place(point) for point in load.points]}
         for name, load in mechanism.loads.items()
     }
     joints = {
@@ -67,7 +66,3 @@ def describe(mechanism: Mechanism, values: Mapping[str, float], driven: Collecti
         "rows": {name: row.replaces for name, row in mechanism.rows.items()},
         "constraints": list(mechanism.constraints),
     }
-
-
-def _points(load: Force | Torque) -> tuple[Point, ...]:
-    return (load.point,) if isinstance(load, Force) else (load.point, load.against)

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import codegen
-from .certificate import certify
+from .certificate import Held, certify
 from .codegen.compiler import FLAGS
 from .codegen.emit import (
     NEWTON_DONE,
@@ -40,6 +40,7 @@ BACKENDS: tuple[Backend, ...] = ("auto", "c", "vm")
 MISFIT = 1e-8
 """How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
 
+_NEAR = 0.3
 _VM_BLOCK = 4096
 
 
@@ -104,7 +105,14 @@ def evaluate(
     solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, graph.undetermined)
     if not certificate:
         return solution
-    return replace(solution, certificate=certify(solution) | _condition(graph, table))
+    return replace(solution, certificate=certify(solution, _held(graph, table)) | _condition(graph, table))
+
+
+def _held(graph: SceneGraph, table: Table) -> list[Held]:
+    rows = dict(zip(graph.columns, table.out, strict=True))
+    names = ("x", "y", "fx", "fy", "mz")
+    complete = all(f"_held:{number}:fx" in rows for number in range(len(graph.held)))
+    return [Held(body, *(rows[f"_held:{i}:{name}"] for name in names)) for i, body in enumerate(graph.held)] if complete else []
 
 
 def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:
@@ -190,7 +198,7 @@ def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
     bad = table.status != OK
     for k, name in enumerate(graph.columns):
         if name.startswith("_closure:"):
-            bad |= ~(table.out[k] > 0.0)
+            bad |= ~(table.out[k] > 0.0) | _passes(table.out[k])
         elif name.startswith("_misfit:"):
             bad |= ~(table.out[k] <= MISFIT)
         elif name.startswith("_row:"):
@@ -205,6 +213,19 @@ def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
         describe_coordinate(name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True)
     )
     raise AssemblyError(_why(graph, table, i, f"at t = {t[i]:.6g} s, where {where}"))
+
+
+def _passes(closure: Array) -> npt.NDArray[np.bool_]:
+    """After which instants a loop passes a dead centre: the sine of its transmission angle meets zero, straight on from both sides.
+
+    The closed forms keep to their branch there, with a kink; the mechanism itself may not.
+    """
+    found = np.zeros(closure.size, dtype=bool)
+    if closure.size >= 4:
+        sine = np.sqrt(np.maximum(closure, 0.0))
+        left, right = 2 * sine[1:-2] - sine[:-3], 2 * sine[2:-1] - sine[3:]
+        found[1:-2] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[1:-2], sine[2:-1]) < _NEAR)
+    return found
 
 
 def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
@@ -222,6 +243,11 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
             return f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
         if kind == "_closure" and not value > 0.0:
             return f"the loop closed by {closed} is at a dead centre {at}: its forces are not determined there"
+        if kind == "_closure" and _passes(table.out[graph.columns.index(name)])[i]:
+            return (
+                f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}, and how it goes on is open; "
+                "if it only comes near one, take more instants"
+            )
         if kind == "_misfit" and not value <= MISFIT:
             return (
                 f"the loops closed by {closed} are over-constrained and do not fit {at}: a gap of {value:.3g} of the links' length"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import casadi as ca
@@ -40,11 +40,11 @@ def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str) -> Expre
     return number
 
 
-def unit_vector(what: str, axis: tuple[Expression, ...]) -> tuple[Expression, Expression]:
+def unit_vector(what: str, axis: Any, component: Callable[[Any], Expression]) -> tuple[Expression, Expression]:
     """A direction of length one. Raises :class:`DeclarationError` for (0, 0), or for what has not two components."""
-    if len(axis) != 2:
-        raise DeclarationError(f"{what}: axis must have two components, got {len(axis)}")
-    x, y = axis
+    if not isinstance(axis, (tuple, list)) or len(axis) != 2:
+        raise DeclarationError(f"{what}: axis must be two components, got {axis!r}")
+    x, y = (component(a) for a in axis)
     if isinstance(x, ca.SX) or isinstance(y, ca.SX):
         norm = ca.sqrt(x * x + y * y)
         return x / norm, y / norm

@@ -146,7 +146,7 @@ class _Solver:
         reach = self._at_start(closure)[0]
         if not reach > 0.0:
             what = "is at a dead centre" if reach == 0.0 else "cannot be closed"
-            raise AssemblyError(f"the loop closed by {block.joints} {what} at the start of the motion, where {self._where()}")
+            raise AssemblyError(f"the loop closed by {block.joints} {what} at the start of the motion{self._where()}")
         found = {sign: self._at_start(variables, form.branch, sign) for sign in (1, -1)}
         distance = {sign: self._distance(block, values) for sign, values in found.items()}
         if abs(distance[1] - distance[-1]) <= 1e-6 * (1.0 + distance[1]):
@@ -203,13 +203,14 @@ class _Solver:
             if float(size) < 1e-9:
                 return
         raise AssemblyError(
-            f"the loops closed by {loop.joints} cannot be assembled from the given posture at the start of the motion, "
-            f"where {self._where()}"
+            f"the loops closed by {loop.joints} cannot be assembled from the given posture at the start of the motion"
+            f"{self._where()}"
         )
 
     def _where(self) -> str:
         driven = [c for c in self.multibody.coordinates if c.driven]
-        return ", ".join(describe_coordinate(c.joint, c.kind, v) for c, v in zip(driven, self.start.driven, strict=True))
+        where = ", ".join(describe_coordinate(c.joint, c.kind, v) for c, v in zip(driven, self.start.driven, strict=True))
+        return f", where {where}" if where else ""
 
     def finish(self, blocks: tuple[Block, ...]) -> Kinematics:
         """Rates and accelerations, block by block, and the substitution of everything."""

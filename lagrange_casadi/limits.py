@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from .density import Density
-from .errors import DeclarationError, ParameterError
-from .parts import Body, Ground, Joint, Link, Point, PointMass, RigidMass
+from .errors import DeclarationError, ParameterError, UnknownNameError
+from .parts import Body, Ground, Joint, Link, Load, Parameter, Point, PointMass, RigidMass
 
 Number = Callable[[Any], float]
 
@@ -31,13 +31,33 @@ def check_connected(name: str, ground: Ground, bodies: Iterable[Body], joints: I
         )
 
 
-def check_parts(name: str, bodies: Iterable[Link | PointMass], joints: Iterable[Joint], number: Number) -> None:
+def parameter_values(parameters: Mapping[str, Parameter], overrides: Mapping[str, float]) -> dict[str, float]:
+    """Defaults with overrides, each checked against its range. Raises :class:`UnknownNameError` or :class:`ParameterError`."""
+    for name in overrides:
+        if name not in parameters:
+            raise UnknownNameError("parameter", name, parameters)
+    values = {}
+    for name, parameter in parameters.items():
+        try:
+            values[name] = float(overrides.get(name, parameter.default))
+        except (TypeError, ValueError):
+            raise ParameterError(f"parameter '{name}' must be a number, got {overrides[name]!r}") from None
+        parameter.check(values[name])
+    return values
+
+
+def check_parts(
+    name: str, bodies: Iterable[Link | PointMass], joints: Iterable[Joint], loads: Iterable[Load], number: Number
+) -> None:
     """Raise :class:`ParameterError` for a part that is impossible at the values that ``number`` puts into expressions."""
     if sum(_mass(body, number) for body in bodies) == 0.0:
         raise ParameterError(f"mechanism '{name}' is massless: at least one link or point mass needs a mass")
     for joint in joints:
         for point in (joint.parent, joint.child):
             _check_station(f"joint '{joint.name}'", point, number)
+    for load in loads:
+        for point in load.points:
+            _check_station(f"load '{load.name}'", point, number)
 
 
 def _mass(body: Link | PointMass, number: Number) -> float:

@@ -16,9 +16,9 @@ import casadi as ca
 
 from . import density as densities
 from .density import Density
-from .errors import DeclarationError, ParameterError, UnknownNameError
+from .errors import DeclarationError
 from .expressions import check_name, scalar, unit_vector
-from .limits import check_connected, check_parts
+from .limits import check_connected, check_parts, parameter_values
 from .measures import Measures
 from .parts import (
     Body,
@@ -203,6 +203,11 @@ class Mechanism:
         if ca.depends_on(ca.jacobian(expression, self.measures.rates), self.measures.rates):
             raise DeclarationError(f"row '{name}' must be linear in the rates")
         row = Row(name, expression, self._own_joint(replaces).name)
+        for other in self.rows.values():
+            if other.replaces == row.replaces:
+                raise DeclarationError(
+                    f"row '{name}': the drive of joint '{row.replaces}' is replaced by row '{other.name}' already"
+                )
         self.rows[name] = row
         return row
 
@@ -211,6 +216,8 @@ class Mechanism:
         place = self._load_point(name, point)
         if turning and not place.body.oriented:
             raise DeclarationError(f"load '{name}': point mass '{place.body.name}' has no axes for its force to turn with")
+        if place.body is self.ground:
+            raise DeclarationError(f"load '{name}': a force on the ground moves nothing; name a point of a link or a point mass")
         load = Force(name, place, self._load(name, x), self._load(name, y), turning)
         self.loads[name] = load
         return load
@@ -301,18 +308,8 @@ class Mechanism:
         finite or out of range, a length that is not positive, a mass or density that is negative, a station outside its link, or a
         mechanism without any mass.
         """
-        overrides = dict(overrides or {})
-        for name in overrides:
-            if name not in self.parameters:
-                raise UnknownNameError("parameter", name, self.parameters)
-        values = {}
-        for name, parameter in self.parameters.items():
-            try:
-                values[name] = float(overrides.get(name, parameter.default))
-            except (TypeError, ValueError):
-                raise ParameterError(f"parameter '{name}' must be a number, got {overrides[name]!r}") from None
-            parameter.check(values[name])
-        check_parts(self.name, self.moving, self.joints.values(), lambda expression: self.number(expression, values))
+        values = parameter_values(self.parameters, overrides or {})
+        check_parts(self.name, self.moving, self.joints.values(), self.loads.values(), lambda e: self.number(e, values))
         return values
 
     def number(self, expression: Expression, values: Mapping[str, float]) -> float:
@@ -333,8 +330,10 @@ class Mechanism:
     ) -> Joint:
         self._add("joint", name, self.joints)
         what = f"joint '{name}'"
-        if name.endswith(_RESERVED_ENDINGS) or name in _RESERVED_NAMES:
-            raise DeclarationError(f"{what}: names ending in {' or '.join(_RESERVED_ENDINGS)}, and 'law', are taken")
+        if name.endswith(_RESERVED_ENDINGS) or name in _RESERVED_NAMES or name in self.bodies:
+            raise DeclarationError(
+                f"{what}: names of links, those ending in {' or '.join(_RESERVED_ENDINGS)}, and 'law', are taken"
+            )
         start, end = self._point(what, parent), self._point(what, child)
         if start.body is end.body:
             raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
@@ -343,7 +342,7 @@ class Mechanism:
                 f"{what}: its parent '{start.body.name}' is a point mass and has no direction to carry "
                 f"{'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
             )
-        unit = unit_vector(what, tuple(self._expression(f"{what}: axis", a) for a in axis)) if axis is not None else (1.0, 0.0)
+        unit = (1.0, 0.0) if axis is None else unit_vector(what, axis, lambda a: self._expression(f"{what}: axis", a))
         joint = Joint(name, kind, start, end, unit, self._expression(f"{what}: angle", angle))
         self.joints[name] = joint
         return joint

@@ -82,6 +82,10 @@ def internal_forces(
     held = {c.name: c.multipliers for c in multibody.closures if c.joint is None}
     held |= {graph.row.name: graph.multiplier for graph in multibody.rows}
     columns |= {f"multiplier:{name}": held[name] for name in multipliers}
+    if reactions:
+        for number, part in enumerate(multibody.held):
+            columns |= {f"_held:{number}:{member}": getattr(part, member) for member in ("fx", "fy", "mz")}
+            columns |= {f"_held:{number}:{member}": ca.SX(getattr(part.point, member)) for member in ("x", "y")}
     for name, action in zip(multibody.cuts, actions[len(by_joint) :], strict=True):
         for coefficient, force in _section_law(multibody, name, action, borne, drives).items():
             columns[f"section:{name}:{coefficient}"] = force
@@ -137,11 +141,13 @@ def _loads_on(multibody: Multibody, link: Link, borne: Any, drives: Any) -> Iter
             elif point.end == "tip":
                 x = None
             yield joint.name, x, y, (sign * fx, sign * fy, sign * mz)
-    for number, part in enumerate(multibody.applied):
+    seen: dict[str, int] = {}
+    for part in (*multibody.applied, *multibody.held):
         if part.point.body is link and not _at_base(part.point):
             x = None if part.point.end == "tip" else part.point.x
-            again = any(other.load == part.load and other.point.body is link for other in multibody.applied[:number])
-            yield f"{part.load}_2" if again else part.load, x, part.point.y, (part.fx, part.fy, part.mz)
+            seen[part.source] = seen.get(part.source, 0) + 1
+            name = part.source if seen[part.source] == 1 else f"{part.source}_{seen[part.source]}"
+            yield name, x, part.point.y, (part.fx, part.fy, part.mz)
 
 
 def _at_base(point: Point) -> bool:

@@ -70,9 +70,12 @@ class SectionCut:
 
 @dataclass(frozen=True, eq=False)
 class Applied:
-    """What a load does at a point of a body: force in ground axes [N] and couple [N m], as expressions of the state."""
+    """What a load, or the multiplier of a constraint or row, does at a point of a body, as expressions of the state.
 
-    load: str
+    Force in ground axes [N] and couple [N m]; ``source`` names the load, constraint or row.
+    """
+
+    source: str
     point: Point
     fx: Any
     fy: Any
@@ -102,6 +105,7 @@ class Multibody:
     cuts: dict[str, SectionCut]
     frames: dict[str, Frame]
     applied: tuple[Applied, ...]
+    held: tuple[Applied, ...]
     kinetic: Any
     force_function: Any
     forces: Any

@@ -174,6 +174,11 @@ class Force:
     y: Expression
     turning: bool
 
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Where it acts."""
+        return (self.point,)
+
 
 @dataclass(frozen=True, eq=False)
 class Torque:
@@ -183,6 +188,11 @@ class Torque:
     point: Point
     value: Expression
     against: Point
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Where it acts, first the point it is for."""
+        return (self.point, self.against)
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,6 +205,11 @@ class Spring:
     stiffness: Expression
     length: Expression
     damping: Expression
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Its ends."""
+        return (self.first, self.second)
 
 
 Load = Force | Torque | Spring

@@ -173,9 +173,10 @@ class SceneGraph:
     """What a scene computes, as CasADi functions that hold nothing else.
 
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` a
-    column name; ``newton`` where loops must be iterated. Columns that begin with ``_`` are no outputs but tell whether there is a
-    result: ``_closure:JOINT`` (see :mod:`.loops`), ``_misfit:JOINT``, ``_row:NAME`` and ``_rowsize:NAME``. ``undetermined`` names
-    the outputs that equilibrium does not determine.
+    column name; ``newton`` where loops must be iterated. Columns that begin with ``_`` are no outputs. They tell whether there is a
+    result: ``_closure:JOINT`` (see :mod:`.loops`), ``_misfit:JOINT``, ``_row:NAME`` and ``_rowsize:NAME``; or they are what the
+    certificate needs: ``_held:NUMBER:...``, what multipliers do to the bodies that ``held`` names. ``undetermined`` names the
+    outputs that equilibrium does not determine.
     """
 
     scene: Scene
@@ -186,6 +187,7 @@ class SceneGraph:
     newton: NewtonLoop | None
     columns: tuple[str, ...]
     undetermined: tuple[str, ...]
+    held: tuple[str, ...]
 
     @property
     def instructions(self) -> dict[str, int]:
@@ -217,8 +219,8 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None) -> SceneGraph:
     if want.motion:
         columns |= _motion_columns(body, solved, driven)
     for part in reversed(body.applied):
-        if part.load in want.loads:
-            columns |= {f"load:{part.load}:{member}": getattr(part, member) for member in ("fx", "fy", "mz")}
+        if part.source in want.loads:
+            columns |= {f"load:{part.source}:{member}": getattr(part, member) for member in ("fx", "fy", "mz")}
     placed = solved.evaluate(ca.vertcat(ca.SX(0, 1), *columns.values()))
     columns = dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True))
     inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, p]
@@ -236,10 +238,11 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None) -> SceneGraph:
         settled = [column for name, column in forces.columns.items() if name not in undetermined]
         settled = ca.vertsplit(ca.substitute(ca.vertcat(ca.SX(0, 1), *settled), forces.free, ca.SX.zeros(forces.free.numel())))
         columns |= dict(zip((name for name in forces.columns if name not in undetermined), settled, strict=False))
+    held = tuple(part.point.body.name for part in body.held) if want.reactions else ()
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = ca.Function("instant", inputs, [out], names, ["out"], {"cse": True})
-    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), undetermined)
+    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), undetermined, held)
 
 
 def _undetermined(

@@ -48,7 +48,7 @@ class SectionLaw:
         columns, basis = self._terms(force, xi)
         values = np.asarray(np.stack(columns, axis=1) @ np.stack(basis))
         for load in self.loads:
-            values += self._beyond(force, load, xi[None, :], xi[None, :] < load.station[:, None])
+            values += self._beyond(force, load, xi[None, :], _seen(xi[None, :], load.station[:, None], "tip"))
         return values
 
     def at(self, force: str, xi: Any, side: Side = "tip") -> Array:
@@ -57,7 +57,7 @@ class SectionLaw:
         values = self._smooth(force, u)
         for load in self.loads:
             station = _column(load.station, u)
-            values = values + self._beyond(force, load, u, u < station if side == "tip" else u <= station)
+            values = values + self._beyond(force, load, u, _seen(u, station, side))
         return values
 
     def extreme(self, force: str) -> tuple[Array, Array]:
@@ -133,6 +133,11 @@ class SectionLaw:
             lower = (shear(middle) <= 0.0) == rising
             low, high = np.where(lower, middle, low), np.where(lower, high, middle)
         return list(((low + high) / 2).T)
+
+
+def _seen(u: Array, station: Array, side: Side) -> Any:
+    """Whether a section sees what acts at a station: from its base side, and at the very tip always."""
+    return ((u < station) if side == "tip" else (u <= station)) | ((u >= 1.0) & (station >= 1.0))
 
 
 def _column(values: Array, like: Array) -> Array:

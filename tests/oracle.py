@@ -208,7 +208,8 @@ class Oracle:
             found += [at[b.name][2] for b in self.bodies if not b.oriented]
             return np.array([{"slope": g.d, 0: g.v, 1: g.d, 2: g.a}[take] for g in found])
 
-        slope = np.column_stack([gaps(e, "slope") for e in np.eye(q.size)])
+        still = gaps(np.zeros_like(q), "slope")
+        slope = np.column_stack([gaps(e, "slope") - still for e in np.eye(q.size)])
         return gaps(rate, order), slope
 
     def _balance(self, result, drives):

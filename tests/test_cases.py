@@ -65,7 +65,7 @@ def test_against_newton_euler(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_certificate_is_at_rounding_level(name):
     certificate = evaluate(load_case(CASES / name).scene).certificate
-    expected = {"closure"} if name == "sleigh" else {"closure", "balance", "power"}
+    expected = {"closure", "balance", "power"}
     assert expected <= set(certificate)
     for residual in expected:
         assert np.max(certificate[residual]) < 1e-13, residual

@@ -127,6 +127,29 @@ def test_a_loop_that_does_not_converge_is_named(backend):
         evaluate(truss_platform(), backend=backend, parameters={"shaft": 5.0})
 
 
+def flat_parallelogram():
+    m = Mechanism("parallelogram")
+    a, b, c = m.link("a", length=0.2, mass=1.0), m.link("b", length=0.5, mass=1.0), m.link("c", length=0.2, mass=1.0)
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, c.tip)
+    m.revolute("C", m.ground.at(0.5, 0), c)
+    return Scene(m, {"O": polynomial(0.7, 4.0)}, posture={"b": 0.0, "c": 0.7}, t=(0, 1, 101))
+
+
+def test_a_change_point_between_instants_is_named():
+    """A parallelogram lies flat at 180 deg, where it may go on as one or turn over: neither is guessed."""
+    evaluate(flat_parallelogram(), t=(0, 0.6, 61))
+    with pytest.raises(AssemblyError, match=r"joint 'B' passes a dead centre after t = 0\.6\d* s, where O = 3\.1\d* rad"):
+        evaluate(flat_parallelogram())
+    with pytest.raises(AssemblyError, match=r"joint 'guide' passes a dead centre after t = 0\.01"):
+        evaluate(slider_crank(), parameters={"l": 0.1}, t=(0, 0.08, 802))
+
+
+def test_a_near_dead_centre_is_none():
+    evaluate(slider_crank(), parameters={"l": 0.1005}, t=(0, 0.08, 801))
+
+
 def double_crank(step):
     """A drag link whose second crank a gear counts, so that it is iterated; instants ``step`` radians of the drive apart."""
     m = Mechanism("double_crank")

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.errors import AssemblyError
 from lagrange_casadi.motion import polynomial
+from lagrange_casadi.parts import Link
 
 TOLERANCE = 1e-12
 
@@ -182,6 +183,54 @@ def test_declaration_order_does_not_matter():
     for name in one.names():
         scale = np.max(np.abs(one.array(name)), initial=1e-3)
         np.testing.assert_allclose(one.array(name), two.array(name), atol=1e-12 * scale, err_msg=name)
+
+
+place = st.tuples(st.sampled_from(["base", "tip", "station", "beside"]), st.floats(0.1, 0.9), st.floats(-0.2, 0.2))
+branch = st.tuples(
+    st.sampled_from(["revolute", "prismatic", "weld", "mass"]),
+    st.booleans(),
+    st.integers(0, 5),
+    place,
+    place,
+    st.floats(-3.0, 3.0),
+    st.floats(0.05, 2.0),
+)
+
+
+def point_of(body, choice):
+    kind, along, beside = choice
+    if not isinstance(body, Link):
+        return body
+    if kind in ("base", "tip"):
+        return getattr(body, kind)
+    return body.at(along * body.length, beside if kind == "beside" else 0.0)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(branch, min_size=1, max_size=5))
+def test_random_trees(branches):
+    """Links hung on each other anywhere by any joint, either end of which may be the parent, at stations on and off their axes."""
+    m = Mechanism("tree")
+    bodies, motion = [m.ground], {}
+    for i, (kind, reverse, on, near, far, angle, mass) in enumerate(branches):
+        base = bodies[on % len(bodies)]
+        if kind == "mass":
+            m.weld(f"J{i}", point_of(base, near), m.point_mass(f"p{i}", mass))
+            continue
+        link = m.link(f"l{i}", length=0.3 + 0.1 * i, mass=mass)
+        ends = (point_of(base, near), point_of(link, far))
+        ends = ends[::-1] if reverse else ends
+        if kind == "revolute":
+            m.revolute(f"J{i}", *ends)
+            motion[f"J{i}"] = polynomial(angle, 1.0 + 0.3 * i, -2.0)
+        elif kind == "prismatic":
+            m.prismatic(f"J{i}", *ends, axis=(math.cos(angle), math.sin(angle)), angle=0.4 * i)
+            motion[f"J{i}"] = polynomial(0.2, -0.5, 1.0 + 0.2 * i)
+        else:
+            m.weld(f"J{i}", *ends, angle=angle)
+        bodies.append(link)
+    worst, gap = compare(Scene(m, motion, t=(INSTANT, 1, 2)), nudge=1e-4)
+    assert gap < TOLERANCE, worst
 
 
 lengths = st.floats(0.05, 2.0)

@@ -270,6 +270,80 @@ def test_non_holonomic_row():
     assert np.max(np.abs(solution.section("boom").bending)) > 0.05
 
 
+def prop(x, y=0.0, level=False):
+    """A driven link on a spring-less prop: a point of another link, hinged to the first, is held at a height."""
+    m = Mechanism("prop")
+    a, b = m.link("a", length=0.5, mass=1.0), m.link("b", length=0.8, mass=2.0)
+    m.revolute("O", m.ground, a)
+    m.revolute("A", b.at(0.2), a.tip)
+    if level:
+        m.constraint("hold", m.direction(b) - 0.3)
+    else:
+        m.constraint("hold", m.place(b.at(x, y))[1] - 0.45 - 0.1 * ca.sin(m.time))
+    return Scene(m, {"O": MOTION}, posture={"b": 0.2}, t=(INSTANT, 1, 2))
+
+
+@pytest.mark.parametrize(("x", "y"), [(0.6, 0.0), (0.55, 0.1), (0.05, -0.1), (0.8, 0.0)])
+def test_a_constraint_on_a_place_loads_the_link_there(x, y):
+    def gap(place):
+        return place(("b", x, y))[1] - 0.45 - 0.1 * oracle.Jet(math.sin(INSTANT), math.cos(INSTANT), -math.sin(INSTANT))
+
+    assert_balanced(prop(x, y), extras=[oracle.Extra("hold", gap, lambda _: [(("b", x, y), 0.0, 1.0, 0.0)])])
+    certificate = evaluate(prop(x, y)).certificate
+    assert max(np.max(certificate[k]) for k in ("balance", "power", "ends", "closure")) < 1e-13
+
+
+def test_a_constraint_on_a_direction_turns_the_link_at_its_base():
+    def gap(place):
+        return place(("b", 0.0, 0.0))[2] - 0.3
+
+    assert_balanced(prop(0, level=True), extras=[oracle.Extra("hold", gap, lambda _: [(("b", 0.0, 0.0), 0.0, 0.0, 1.0)])])
+
+
+def test_a_gear_between_a_link_and_what_it_carries_bends_it():
+    """A planet at the arm's tip is geared to the arm's own hinge: the arm carries the gear's torque."""
+    m = Mechanism("planetary")
+    m.set_gravity(0.0, 0.0)
+    arm, planet = m.link("arm", length=0.5, mass=1.0), m.link("planet", length=0.1, mass=0.5, centre=(0.0, 0.0), inertia=0.03)
+    first = m.revolute("O", m.ground, arm)
+    second = m.revolute("P", arm.tip, planet)
+    m.gear("mesh", first, second, ratio=3.0)
+    m.torque("brake", planet, 7.0)
+    scene = Scene(m, {"O": MOTION}, t=(INSTANT, 1, 2))
+
+    def gap(place):
+        return (place(("planet", 0, 0))[2] - place(("arm", 0, 0))[2]) - 3.0 * place(("arm", 0, 0))[2]
+
+    def effect(_):
+        return [(("planet", 0.0, 0.0), 0.0, 0.0, 1.0), (("arm", 0.5, 0.0), 0.0, 0.0, -1.0), (("arm", 0.0, 0.0), 0.0, 0.0, -3.0)]
+
+    extras = [oracle.Extra("mesh", gap, effect)]
+    assert_balanced(scene, extras=extras, loads=[lambda _: [(("planet", 0.0, 0.0), 0.0, 0.0, 7.0)]], rough={"planet": 1.46 * 4})
+    solution = evaluate(scene)
+    assert abs(solution.section("arm").bending[0, -1]) > 1.0
+    assert np.max(solution.certificate["balance"]) < 1e-14
+
+
+def test_a_row_at_a_station_loads_the_link_there():
+    m = Mechanism("skid")
+    m.set_gravity(0.0, 0.0)
+    cross, pivot, body = (
+        m.link("cross", length=0.1, mass=0.0),
+        m.link("pivot", length=0.1, mass=0.0),
+        m.link("body", length=1.0, mass=2.0),
+    )
+    m.prismatic("X", m.ground, cross, axis=(1, 0))
+    across = m.prismatic("Y", cross, pivot, axis=(0, 1))
+    m.revolute("turn", pivot, body)
+    vy = m.velocity(body.at(0.4))[1]
+    m.nonholonomic("skid", vy, replaces=across)
+    laws = {"X": polynomial(0, 1.0, 0.3), "turn": polynomial(0.2, 0.7)}
+    laws["Y"] = expression(lambda t: -0.4 * ca.sin(0.2 + 0.7 * t))
+    scene = Scene(m, laws, t=(INSTANT, 1, 5))
+    extras = [oracle.Extra("skid", None, lambda _: [(("body", 0.4, 0.0), 0.0, 1.0, 0.0)])]
+    assert_balanced(scene, extras=extras, unaided=["Y"])
+
+
 def test_motion_that_violates_a_row_is_refused():
     with pytest.raises(AssemblyError, match=r"violates the non-holonomic row 'blade' by -0\.0\d+ at t = 0\.2 s, where X = 0\.19"):
         evaluate(sleigh(lead=0.1))
@@ -370,6 +444,14 @@ def test_a_static_structure_needs_no_drive():
         (lambda m, a: m.coordinate("J"), DeclarationError, "expected a joint of mechanism 'm', got 'J'; joints: J"),
         (lambda m, a: m.coordinate(m.weld("W", a.tip, m.point_mass("p", 1))), DeclarationError, "joint 'W' has no coordinate"),
         (lambda m, a: m.weld("W", m.point_mass("p", 1), a), DeclarationError, "no direction to carry the weld"),
+        (lambda m, a: m.force("F", m.ground, x=1), DeclarationError, "a force on the ground moves nothing"),
+        (lambda m, a: m.prismatic("P", m.ground, m.point_mass("p", 1), axis=1), DeclarationError, "axis must be two components"),
+        (lambda m, a: m.revolute("a", m.ground, a.tip), DeclarationError, "names of links"),
+        (
+            lambda m, a: [m.nonholonomic(n, m.rate(m.joints["J"]), replaces=m.joints["J"]) for n in "rs"],
+            DeclarationError,
+            "already",
+        ),
     ],
 )
 def test_misuse_is_named(declare, error, says):
@@ -404,6 +486,41 @@ def test_a_station_outside_its_link_is_named():
     scene = Scene(m, {"J": polynomial(0)})
     with pytest.raises(ParameterError, match=r"joint 'W': station 1\.5 m is outside link 'a', 0 to 1 m"):
         evaluate(scene, parameters={"x": 1.5})
+
+
+def test_a_load_outside_its_link_is_named():
+    m = Mechanism("m")
+    a = m.link("a", length=1, mass=1)
+    m.revolute("J", m.ground, a)
+    m.spring("S", m.ground.at(0, 1), a.at(-0.9), stiffness=1.0, length=0.0)
+    with pytest.raises(ParameterError, match=r"load 'S': station -0\.9\d* m is outside link 'a'"):
+        Scene(m, {"J": polynomial(0)})
+
+
+def test_a_slider_may_leave_its_link():
+    """What is beyond the base acts on the base's side of every section: the rest hangs on it as on a bracket."""
+    m = Mechanism("boom")
+    a, p = m.link("a", length=0.5, mass=1.0), m.point_mass("p", 2.0)
+    m.revolute("J", m.ground.at(0, 0), a)
+    m.prismatic("S", a, p, axis=(1, 0))
+    scene = Scene(m, {"J": MOTION, "S": polynomial(-0.3, 1.0)}, t=(0, 1, 11))
+    for t in (0.0, 0.5, 1.0):
+        assert_balanced(scene, t=t)
+    assert np.max(evaluate(scene).certificate["ends"]) < 1e-14
+
+
+def test_links_between_point_masses_have_a_certificate():
+    """A trammel: a rod whose ends are pinned to two sliders."""
+    m = Mechanism("trammel")
+    rod, p, q = m.link("rod", length=1.0, mass=2.0), m.point_mass("p", 0.3), m.point_mass("q", 0.4)
+    m.prismatic("X", m.ground, p, axis=(1, 0))
+    m.prismatic("Y", m.ground, q, axis=(0, 1))
+    m.revolute("P", p, rod)
+    m.revolute("Q", q, rod.tip)
+    scene = Scene(m, {"X": polynomial(0.5, 0.3, -0.2)}, posture={"rod": 2.0}, t=(0, 1, 11))
+    assert_balanced(scene, t=0.4)
+    certificate = evaluate(scene).certificate
+    assert max(np.max(certificate[k]) for k in ("balance", "power", "ends", "closure")) < 1e-13
 
 
 def test_a_slot_between_links_cannot_be_driven():
