@@ -248,12 +248,12 @@ def _apply(load: Load, resting: _Builder) -> list[Applied]:
 
 def _hold(resting: _Builder, name: str, expression: Any, of: Closure | RowGraph) -> Iterator[Applied]:
     """What a multiplier does to bodies, by what its equation is written in: a joint's coordinate, a place, a direction."""
-    multiplier = of.multipliers if isinstance(of, Closure) else of.multiplier
+    multiplier, seen = (of.multipliers, resting.counted) if isinstance(of, Closure) else (of.multiplier, resting.at_state)
     for measure in resting.mechanism.measures.asked:
         symbols = ca.vertcat(*(measure.places if isinstance(of, Closure) else measure.rates))
         if not ca.depends_on(expression, symbols):
             continue
-        part = [multiplier * resting.at_state(slope) for slope in ca.vertsplit(ca.jacobian(expression, symbols).T)]
+        part = [multiplier * seen(slope) for slope in ca.vertsplit(ca.jacobian(expression, symbols).T)]
         if isinstance(measure.of, Point):
             yield Applied(name, measure.of, part[0], part[1], ca.SX(0))
         elif isinstance(measure.of, Link):

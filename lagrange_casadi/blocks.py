@@ -64,7 +64,9 @@ def plan(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block, ...]:
         blocks = _arrange(multibody, redundant=True)
     if blocks is None:
         movable = [name for name, joint in multibody.mechanism.joints.items() if joint.coordinate]
-        advice = f"drive {freedom} of the joints {', '.join(movable)}" if freedom > 0 else "take a joint or a link away"
+        advice = (
+            f"drive {freedom} of the joints {', '.join(movable)}" if freedom > 0 else "take a joint, a constraint or a link away"
+        )
         if freedom == driven:
             advice = "but these over-determine some loops and leave others loose; drive other joints"
         raise MobilityError(

@@ -158,11 +158,6 @@ class Joint:
             return "slide"
         return "angle" if self.kind == "revolute" and all(body.oriented for body in self.bodies) else None
 
-    @property
-    def reaction_members(self) -> tuple[str, ...]:
-        """What its reaction consists of."""
-        return ("fx", "fy", "mz") if self.holds_direction else ("fx", "fy")
-
 
 @dataclass(frozen=True, eq=False)
 class Force:

@@ -135,6 +135,7 @@ def loads_on(m, parts):
     m.torque("brake", b.at(0.25), 0.7, against=a.at(0.05))
     m.spring("spring", m.ground.at(0.2, 0.3), b.at(0.3, -0.02), stiffness=200.0, length=0.1, damping=4.0)
     m.spring("strut", a.tip, s, stiffness=90.0, length=0.2)
+    m.damper("dashpot", m.ground.at(0.5, 0.1), b.tip, damping=2.5)
     m.torsion_spring("coil", m.joints["A"], stiffness=1.5, angle=0.2, damping=0.05)
 
 
@@ -151,6 +152,7 @@ def loads_beside(place):
     for p, q, k, rest, c in (
         (("ground", 0.2, 0.3), ("b", 0.3, -0.02), 200.0, 0.1, 4.0),
         (("a", 0.1, 0.0), ("s", 0.0, 0.0), 90.0, 0.2, 0.0),
+        (("ground", 0.5, 0.1), ("b", 0.35, 0.0), 0.0, 0.0, 2.5),
     ):
         (px, py, _), (qx, qy, _) = place(p), place(q)
         d, e = (qx - px), (qy - py)
