@@ -330,10 +330,8 @@ class Mechanism:
     ) -> Joint:
         self._add("joint", name, self.joints)
         what = f"joint '{name}'"
-        if name.endswith(_RESERVED_ENDINGS) or name in _RESERVED_NAMES or name in self.bodies:
-            raise DeclarationError(
-                f"{what}: names of links, those ending in {' or '.join(_RESERVED_ENDINGS)}, and 'law', are taken"
-            )
+        if name.endswith(_RESERVED_ENDINGS):
+            raise DeclarationError(f"{what}: names ending in {' or '.join(_RESERVED_ENDINGS)} are taken")
         start, end = self._point(what, parent), self._point(what, child)
         if start.body is end.body:
             raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
@@ -363,8 +361,6 @@ class Mechanism:
 
     def _load_point(self, name: str, place: Body | Point) -> Point:
         self._add("load", name, self.loads)
-        if name in self.joints or name in _RESERVED_NAMES:
-            raise DeclarationError(f"load '{name}': the name is taken")
         return self._point(f"load '{name}'", place)
 
     def _load(self, name: str, value: Expression) -> Expression:
@@ -392,6 +388,11 @@ class Mechanism:
         check_name(kind, name)
         if name in table:
             raise DeclarationError(f"{kind} '{name}' is declared twice in mechanism '{self.name}'")
+        # Files know joints, loads, constraints and rows by their names alone, beside those of links.
+        acting = (self.joints, self.loads, self.constraints, self.rows)
+        shared = any(table is other for other in acting) and any(name in other for other in (self.bodies, *acting))
+        if shared or name in _RESERVED_NAMES:
+            raise DeclarationError(f"{kind} '{name}': the name is taken")
 
     def _check_open(self, what: str) -> None:
         if self.frozen:

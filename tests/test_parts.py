@@ -448,7 +448,9 @@ def test_a_static_structure_needs_no_drive():
         (lambda m, a: m.weld("W", m.point_mass("p", 1), a), DeclarationError, "no direction to carry the weld"),
         (lambda m, a: m.force("F", m.ground, x=1), DeclarationError, "a force on the ground moves nothing"),
         (lambda m, a: m.prismatic("P", m.ground, m.point_mass("p", 1), axis=1), DeclarationError, "axis must be two components"),
-        (lambda m, a: m.revolute("a", m.ground, a.tip), DeclarationError, "names of links"),
+        (lambda m, a: m.revolute("a", m.ground, a.tip), DeclarationError, "joint 'a': the name is taken"),
+        (lambda m, a: m.constraint("J", m.coordinate(m.joints["J"])), DeclarationError, "constraint 'J': the name is taken"),
+        (lambda m, a: m.link("law", length=1, mass=1), DeclarationError, "link 'law': the name is taken"),
         (
             lambda m, a: [m.nonholonomic(n, m.rate(m.joints["J"]), replaces=m.joints["J"]) for n in "rs"],
             DeclarationError,
