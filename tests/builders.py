@@ -14,6 +14,7 @@ from lagrange_casadi.parts import Link, RigidMass
 
 MOTION = polynomial(0.2, 3.0, 4.0)
 INSTANT = 0.3
+TOLERANCE = 1e-12
 
 
 def slider_crank(wanted=("all",), mechanism=None, **keywords):
@@ -164,3 +165,22 @@ def _rough(found, body, nudge):
         found[f"pose:{body}:y"] - nudge * size / 5,
         found.get(f"pose:{body}:angle", 0.0) + nudge,
     )
+
+
+def assert_balanced(scene, **keywords):
+    worst, gap = compare(scene, **keywords)
+    assert gap < TOLERANCE, worst
+
+
+def crank_and_rod(rod, crank=None, loads=lambda m, parts: None, **link):
+    """A crank drives a rod whose tip slides on the x axis; the rod is declared by its keywords."""
+    m = Mechanism("test")
+    a = m.link("a", length=0.1, **(crank or {"mass": 0.3}))
+    b = m.link("b", length=0.35, **rod)
+    s = m.point_mass("s", 0.6)
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, s)
+    m.prismatic("P", m.ground.at(0, 0.02), s, axis=(1, 0))
+    loads(m, {"a": a, "b": b, "s": s})
+    return Scene(m, {"O": MOTION}, posture={"b": 0.0}, t=(INSTANT, 1, 2))

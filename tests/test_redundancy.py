@@ -1,0 +1,79 @@
+"""Mechanisms with more equations than unknowns, and structures that do not move."""
+
+import numpy as np
+import pytest
+
+from lagrange_casadi import Mechanism, Scene, evaluate
+from lagrange_casadi.errors import AssemblyError, MobilityError
+from lagrange_casadi.motion import polynomial
+
+
+def parallelogram(third=1.0, pendulum=False):
+    """Three equal cranks on one coupler: one of them is too many. The third is off the line of the others, so none is dead."""
+    m = Mechanism("three_cranks")
+    a, b, c = (m.link(n, length=0.2, mass=0.3) for n in "abc")
+    bar = m.link("bar", length=1.0, mass=1.0)
+    m.revolute("O", m.ground, a)
+    m.revolute("P", m.ground.at(0.4, 0), b)
+    m.revolute("Q", m.ground.at(third, 0.3), c)
+    m.revolute("A", a.tip, bar)
+    m.revolute("B", b.tip, bar.at(0.4))
+    m.revolute("C", c.tip, bar.at(1.0, 0.3))
+    motion = {"O": polynomial(0.7, 2.0)}
+    if pendulum:
+        m.revolute("hang", bar.at(0.7), m.link("bob", length=0.3, mass=0.4))
+        motion["hang"] = polynomial(-1.5, 1.0)
+    return Scene(m, motion, posture={"a": 0.7, "b": 0.7, "c": 0.7, "bar": 0.0}, t=(0, 3.0, 31))
+
+
+def test_reactions_that_are_not_unique_are_named():
+    solution = evaluate(parallelogram())
+    open_ = {name.rpartition(":")[0] for name in solution.undetermined if name.startswith("reaction")}
+    assert open_ == {f"reaction:{joint}" for joint in "OPQABC"}
+    assert np.isnan(solution.reaction("A").fx).all()
+    # The cranks turn together, the bar moves without turning: the torque is what all of them need.
+    rate = 2.0
+    torque = 3 * (0.3 * 0.1 * 9.81 * np.cos(0.7 + rate * solution.t)) + 1.0 * 0.2 * 9.81 * np.cos(0.7 + rate * solution.t)
+    np.testing.assert_allclose(solution.effort("O"), torque, atol=1e-12)
+
+
+def test_a_unique_reaction_stays_where_others_are_not():
+    """A pendulum hung on the parallelogram's bar has a reaction of its own."""
+    solution = evaluate(parallelogram(pendulum=True))
+    assert np.isfinite(solution.reaction("hang").fx).all()
+    assert np.isfinite(solution.section("bob").bending).all()
+    assert np.isfinite(solution.effort("hang")).all()
+    assert np.isnan(solution.reaction("C").fy).all()
+    assert "section:bar:C:n" in solution.undetermined
+
+
+def test_an_over_constrained_mechanism_that_does_not_fit_is_refused():
+    with pytest.raises((MobilityError, AssemblyError), match=r"0 degree\(s\) of freedom|do not fit"):
+        evaluate(parallelogram(third=1.02))
+
+
+def test_two_guides_share_a_load():
+    """A bar held by two coaxial guides: each one's force is open, the drive's is not."""
+    m = Mechanism("guides")
+    bar = m.link("bar", length=1.0, mass=2.0)
+    m.prismatic("G1", m.ground, bar, axis=(1, 0))
+    m.prismatic("G2", m.ground.at(1, 0), bar.tip, axis=(1, 0))
+    solution = evaluate(Scene(m, {"G1": polynomial(0.0, 0.0, 0.5)}, t=(0, 1, 3)))
+    np.testing.assert_allclose(solution.effort("G1"), 2.0, rtol=1e-14)
+    assert {name for name in solution.undetermined if "reaction" in name} == {
+        f"reaction:{g}:{k}" for g in ("G1", "G2") for k in ("fy", "mz")
+    }
+    assert np.all(solution.reaction("G2").fx == 0.0)
+
+
+def test_a_static_structure_needs_no_drive():
+    """A cantilever: closed form of a textbook."""
+    m = Mechanism("cantilever")
+    beam = m.link("beam", length=2.0, mass=3.0)
+    m.weld("wall", m.ground, beam)
+    m.force("tip", beam.tip, y=-10.0)
+    solution = evaluate(Scene(m, {}, t=(0, 0, 1), xi=(0, 1, 5)))
+    xi = 2.0 * solution.xi
+    np.testing.assert_allclose(solution.section("beam").bending[0], -10 * (2 - xi) - 3 / 2 * 9.81 * (2 - xi) ** 2 / 2, rtol=1e-14)
+    assert solution.reaction("wall").mz[0] == pytest.approx(10 * 2 + 3 * 9.81 * 1)
+    assert solution.reaction("wall").fy[0] == pytest.approx(10 + 3 * 9.81)
