@@ -108,11 +108,13 @@ def evaluate(
     return replace(solution, certificate=certify(solution, _held(graph, table)) | _condition(graph, table))
 
 
-def _held(graph: SceneGraph, table: Table) -> list[Held]:
+def _held(graph: SceneGraph, table: Table) -> list[Held] | None:
+    """What multipliers do to the bodies, or None where it was not asked for, or is not determined."""
     rows = dict(zip(graph.columns, table.out, strict=True))
-    names = ("x", "y", "fx", "fy", "mz")
-    complete = all(f"_held:{number}:fx" in rows for number in range(len(graph.held)))
-    return [Held(body, *(rows[f"_held:{i}:{name}"] for name in names)) for i, body in enumerate(graph.held)] if complete else []
+    parts = [[f"_held:{i}:{name}" for name in ("x", "y", "fx", "fy", "mz")] for i in range(len(graph.held))]
+    if not all(name in rows for names in parts for name in names):
+        return None
+    return [Held(body, *(rows[name] for name in names)) for body, names in zip(graph.held, parts, strict=True)]
 
 
 def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:

@@ -238,6 +238,7 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None) -> SceneGraph:
         settled = [column for name, column in forces.columns.items() if name not in undetermined]
         settled = ca.vertsplit(ca.substitute(ca.vertcat(ca.SX(0, 1), *settled), forces.free, ca.SX.zeros(forces.free.numel())))
         columns |= dict(zip((name for name in forces.columns if name not in undetermined), settled, strict=False))
+    undetermined = tuple(name for name in undetermined if not name.startswith("_"))
     held = tuple(part.point.body.name for part in body.held) if want.reactions else ()
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]

@@ -77,3 +77,21 @@ def test_a_static_structure_needs_no_drive():
     np.testing.assert_allclose(solution.section("beam").bending[0], -10 * (2 - xi) - 3 / 2 * 9.81 * (2 - xi) ** 2 / 2, rtol=1e-14)
     assert solution.reaction("wall").mz[0] == pytest.approx(10 * 2 + 3 * 9.81 * 1)
     assert solution.reaction("wall").fy[0] == pytest.approx(10 + 3 * 9.81)
+
+
+def test_two_gears_between_the_same_wheels_share_their_couple():
+    """Each one's multiplier is open; what they do together, and so every reaction and the drive, is not."""
+
+    def wheels(*meshes):
+        m = Mechanism("wheels")
+        a, b = m.link("a", length=0.2, mass=1.0), m.link("b", length=0.3, mass=2.0)
+        joints = m.revolute("A", m.ground, a), m.revolute("B", m.ground.at(1, 0), b)
+        for name in meshes:
+            m.gear(name, *joints, ratio=-2.0)
+        return evaluate(Scene(m, {"A": polynomial(0.1, 2.0)}, posture={"b": -0.2}, t=(0, 1, 5)))
+
+    one, two = wheels("left"), wheels("left", "right")
+    assert set(two.undetermined) == {"multiplier:left", "multiplier:right"}
+    np.testing.assert_allclose(two.effort("A"), one.effort("A"), rtol=1e-12)
+    np.testing.assert_allclose(two.reaction("B").fy, one.reaction("B").fy, rtol=1e-12)
+    np.testing.assert_allclose(two.section("b").bending, one.section("b").bending, atol=1e-12)
