@@ -29,6 +29,11 @@ class Block:
     form: ClosedForm | None
 
     @property
+    def name(self) -> str:
+        """The closure that stands for the block where one name is wanted: its last."""
+        return self.closures[-1].name
+
+    @property
     def joints(self) -> str:
         """The joints and constraints that close the loops, for messages."""
         return ", ".join(f"{'joint' if closure.joint else 'constraint'} '{closure.name}'" for closure in self.closures)

@@ -29,7 +29,7 @@ from .codegen.emit import (
 from .density import Array
 from .description import describe
 from .errors import AssemblyError, CompilerError, DeclarationError, UnknownNameError
-from .kinematics import describe_coordinate
+from .kinematics import where
 from .scene import Grid, Scene, SceneGraph, derive, instants, ratios
 from .solution import Provenance, Solution, in_order
 from .version import __version__
@@ -125,8 +125,7 @@ def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:
     worst: list[Array] = []
     for name, values in zip(graph.columns, table.out, strict=True):
         if name.startswith("_closure:"):
-            iterated = graph.newton is not None and f"'{name.partition(':')[2]}'" in graph.newton.joints
-            worst.append(2.0 / values if iterated else 1.0 / np.sqrt(values))
+            worst.append(2.0 / values if graph.iterates(name.partition(":")[2]) else 1.0 / np.sqrt(values))
     return {"condition": np.max(worst, axis=0)} if worst else {}
 
 
@@ -211,10 +210,8 @@ def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
     i = int(np.argmax(bad))
     joints = graph.scene.mechanism.joints
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
-    where = ", ".join(
-        describe_coordinate(name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True)
-    )
-    raise AssemblyError(_why(graph, table, i, f"at t = {t[i]:.6g} s, where {where}"))
+    at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
+    raise AssemblyError(_why(graph, table, i, f"at t = {t[i]:.6g} s{at}"))
 
 
 def _passes(closure: Array) -> npt.NDArray[np.bool_]:
@@ -238,9 +235,8 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
     for name, value in values.items():
         kind, _, joint = name.partition(":")
         closed = f"{'joint' if joint in graph.scene.mechanism.joints else 'constraint'} '{joint}'"
-        iterated = graph.newton is not None and f"'{joint}'" in graph.newton.joints
         if kind == "_closure" and value < 0.0:
-            if iterated:
+            if graph.iterates(joint):
                 return f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
             return f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
         if kind == "_closure" and not value > 0.0:

@@ -152,12 +152,12 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     for name in solution.series:
         group, part, *member = name.split(":")
         drawn = group in ("motion", "effort", "reaction", "multiplier", "load") and not name.endswith(("_rate", "_acceleration"))
-        if drawn and not np.isnan(solution.series[name]).any() and np.any(solution.series[name]):
+        if drawn and solution.determined(name) and np.any(solution.series[name]):
             groups.setdefault((group + ("_moment" if member == ["mz"] else ""), part), []).append(name)
     for (group, part), names in groups.items():
         specs.append(TimePlot(f"{group}_{part}", tuple(names), f"{solution.case}: {group.replace('_', ' ')} of {part}"))
     for link in solution.links_with_sections:
-        if not any(np.isnan(solution.section(link).law.on_grid(force, solution.xi)).any() for force in FORCES):
+        if solution.determined(f"section:{link}:bending"):
             specs.append(SectionMaps(f"section_{link}", link))
     return (*specs, MechanismDrawing())
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,7 +33,12 @@ class NewtonLoop:
 
     step: Any
     guess: tuple[float, ...]
-    joints: str
+    blocks: tuple[Block, ...]
+
+    @property
+    def joints(self) -> str:
+        """What closes its loops, for messages."""
+        return ", ".join(block.joints for block in self.blocks)
 
 
 @dataclass(frozen=True)
@@ -132,7 +137,7 @@ class _Solver:
             sizes = itertools.accumulate(c.variables.numel() for c in block.unknown)
             solved = ca.vertsplit(ca.substitute(variables, form.branch, sign), [0, *sizes])
             self.known.update(zip(block.unknown, solved, strict=True))
-            self.closures[block.closures[-1].name] = closure
+            self.closures[block.name] = closure
 
     def _at_start(self, expression: Any, extra: Any = None, value: float = 0.0) -> list[float]:
         inputs = [self.multibody.mechanism.time, self.d, column(self.iterated), self.multibody.mechanism.symbols]
@@ -209,8 +214,7 @@ class _Solver:
 
     def _where(self) -> str:
         driven = [c for c in self.multibody.coordinates if c.driven]
-        where = ", ".join(describe_coordinate(c.joint, c.kind, v) for c, v in zip(driven, self.start.driven, strict=True))
-        return f", where {where}" if where else ""
+        return where((c.joint, c.kind, v) for c, v in zip(driven, self.start.driven, strict=True))
 
     def finish(self, blocks: tuple[Block, ...]) -> Kinematics:
         """Rates and accelerations, block by block, and the substitution of everything."""
@@ -236,9 +240,9 @@ class _Solver:
             systems.append(system)
             if block in self.residuals:
                 side = math.copysign(1.0, self._at_start(system.volume)[0])
-                self.closures[block.closures[-1].name] = ca.fabs(system.volume) if system.free else side * system.volume
+                self.closures[block.name] = ca.fabs(system.volume) if system.free else side * system.volume
             if system.free:
-                misfits[block.closures[-1].name] = ca.mmax(ca.fabs(self.place(block.gap))) / self._size()
+                misfits[block.name] = ca.mmax(ca.fabs(self.place(block.gap))) / self._size()
         symbols, values = self._substitution(rates, accelerations)
         return Kinematics(
             driven=self.d,
@@ -273,7 +277,13 @@ class _Solver:
         inputs = [iterated, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
         names = ["z", "t", "d", "p"]
         step = ca.Function("loops", inputs, [bounded, relative], names, ["correction", "size"], {"cse": True})
-        return NewtonLoop(step, tuple(self.guess), ", ".join(block.joints for block in self.residuals))
+        return NewtonLoop(step, tuple(self.guess), tuple(self.residuals))
+
+
+def where(coordinates: Iterable[tuple[str, str, float]]) -> str:
+    """Coordinates by joint, kind and value, to end a message with; nothing where there are none."""
+    listed = ", ".join(describe_coordinate(*coordinate) for coordinate in coordinates)
+    return f", where {listed}" if listed else ""
 
 
 def describe_coordinate(joint: str, kind: str, value: float) -> str:

@@ -189,6 +189,10 @@ class SceneGraph:
     undetermined: tuple[str, ...]
     held: tuple[str, ...]
 
+    def iterates(self, closure: str) -> bool:
+        """Whether the loops that stand under the name of a closure are iterated."""
+        return self.newton is not None and any(block.name == closure for block in self.newton.blocks)
+
     @property
     def instructions(self) -> dict[str, int]:
         """Instructions of each function."""

@@ -156,6 +156,13 @@ class Solution:
         """The links whose sections were wanted."""
         return tuple(self._sections)
 
+    def determined(self, name: str) -> bool:
+        """Whether equilibrium determines a quantity; of a link, all its section forces or none."""
+        group, part, *_ = name.split(":")
+        if group == "section":
+            return not any(other.startswith(f"section:{part}:") for other in self.undetermined)
+        return name not in self.undetermined
+
     def names(self) -> Iterator[str]:
         """The full names of all quantities, the coefficients of the laws left out and the section forces in their place."""
         yield from (name for name in self.series if not name.startswith("section:"))

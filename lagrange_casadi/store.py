@@ -103,9 +103,7 @@ def _check_dataset(file: h5py.File, solution: Solution, name: str) -> Iterator[s
         yield f"{place}: shape {dataset.shape}, expected {expected}"
         return
     stored = dataset[()]
-    link = name.split(":")[1]
-    open_ = name in solution.undetermined or any(other.startswith(f"section:{link}:") for other in solution.undetermined)
-    if not open_ and not np.isfinite(stored).all():
+    if solution.determined(name) and not np.isfinite(stored).all():
         yield f"{place}: holds values that are not finite"
     if dataset.attrs.get("units") != solution.unit(name):
         yield f"{place}: units {dataset.attrs.get('units')!r}, expected {solution.unit(name)!r}"
@@ -115,7 +113,7 @@ def _check_dataset(file: h5py.File, solution: Solution, name: str) -> Iterator[s
     for axis, scale in enumerate(quantity.axes):
         if file[scale] not in dataset.dims[axis].values():
             yield f"{place}: axis {axis} has no scale /{scale}"
-    if quantity.axes == ("t", "xi") and not open_:
+    if quantity.axes == ("t", "xi") and solution.determined(name):
         gap = np.max(np.abs(stored - solution.array(name)), initial=0.0)
         if gap > _GRID_TOLERANCE * abs(solution.peak(name).value):
             yield f"{place}: differs from its law by {gap:.3g} {solution.unit(name)}"
@@ -178,11 +176,11 @@ def _read(file: h5py.File) -> Solution:
     file.visititems(visit)
     backend, precision, compiler, flags = (str(file.attrs[key]) for key in _PROVENANCE)
     provenance = Provenance(backend, precision, compiler, flags, json.loads(file.attrs["versions"]))
-    open_ = tuple(json.loads(file.attrs["undetermined"]))
+    undetermined = tuple(json.loads(file.attrs["undetermined"]))
     t, xi = file["t"][()], file["xi"][()]
     certificate = {name: file["certificate"][name][()] for name in file.get("certificate", ())}
     case = str(file.attrs["case"])
-    return Solution(case, t, xi, in_order(series, description), description, provenance, open_, certificate)
+    return Solution(case, t, xi, in_order(series, description), description, provenance, undetermined, certificate)
 
 
 @contextmanager

@@ -35,9 +35,8 @@ def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
         click.echo(f"{what}: {start:g} to {stop:g}, {count} points")
     click.echo(f"outputs: {', '.join(outputs(mechanism))}")
     click.echo(f"wanted: {', '.join(want or scene.wanted)}")
-    iterated = graph.newton.joints if graph.newton else ""
     closed = [name.partition(":")[2] for name in graph.columns if name.startswith("_closure:")]
-    loops = [f"{name} (iterated)" if f"'{name}'" in iterated else f"{name} (closed form)" for name in closed]
+    loops = [f"{name} ({'iterated' if graph.iterates(name) else 'closed form'})" for name in closed]
     click.echo(f"loops closed by: {', '.join(loops) or 'none'}")
     counts = ", ".join(f"{name} {count}" for name, count in graph.instructions.items())
     click.echo(f"instructions an instant: {sum(graph.instructions.values())} ({counts})")

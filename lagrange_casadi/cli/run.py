@@ -7,7 +7,6 @@ from contextlib import nullcontext
 from pathlib import Path
 
 import click
-import numpy as np
 
 from ..case import load_case
 from ..certificate import summary
@@ -83,7 +82,7 @@ def _report(solution: Solution) -> None:
     click.echo(f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {backend}; peaks:")
     for name in solution.names():
         if name.startswith(("effort:", "reaction:", "section:")):
-            if np.isnan(solution.array(name)).any():
+            if not solution.determined(name):
                 click.echo(f"  {name:<28}{'open':>13} {'':<4} equilibrium does not determine it: the mechanism is over-constrained")
                 continue
             peak = solution.peak(name)
