@@ -14,14 +14,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .density import Array, NumericDensity
-from .description import Description
+from .density import Array
+from .description import Description, density_of
 from .solution import Solution
 
 Complex = npt.NDArray[np.complexfloating[Any, Any]]
 
 NEAR = 1e3
 _EDGE = 1e-9
+_Matter = tuple[float, complex, float]
 _Action = tuple[str, Complex, Any, Any, bool]
 
 TOLERANCE = 1e-9
@@ -38,6 +39,15 @@ class _Motion:
     angle: Array
     rate: Array
     acceleration: Array
+
+    @classmethod
+    def holding(
+        cls, at: tuple[Complex, Complex, Complex], point: Description, angle: Array, rate: Array, acceleration: Array
+    ) -> _Motion:
+        """The motion of a body that turns as said and whose ``point`` has the given place, velocity and acceleration."""
+        turning = np.exp(1j * angle) * (point["x"] + 1j * point["y"])
+        change = at[2] - (1j * acceleration - rate**2) * turning
+        return cls(at[0] - turning, at[1] - 1j * rate * turning, change, angle, rate, acceleration)
 
     def point(self, x: Any, y: Any) -> tuple[Complex, Complex, Complex]:
         """Place, velocity and acceleration of the body's point (x, y)."""
@@ -89,9 +99,10 @@ def certify(solution: Solution, held: Sequence[Held] | None = None) -> dict[str,
     wanted += [f"effort:{name}" for name, joint in joints.items() if joint["driven"] and name not in description["rows"].values()]
     told = held is not None or not (description["constraints"] or description["rows"])
     if told and not solution.undetermined and all(name in solution.series for name in wanted):
+        matter = {name: _matter(body) for name, body in description["bodies"].items()}
         acting = [*_acting(solution, bodies), *(_push(part, bodies) for part in held or ())]
-        tally = _tally(solution, bodies, acting)
-        found["balance"], found["power"] = _balance(solution, bodies, tally)
+        tally = _tally(solution, bodies, acting, matter)
+        found["balance"], found["power"] = _balance(solution, bodies, tally, matter)
         if solution.links_with_sections:
             found["ends"] = _ends(solution, bodies, acting)
     return found
@@ -146,11 +157,7 @@ def _span(solution: Solution, bodies: dict[str, _Motion]) -> bool:
         rate, acceleration = (np.conj(b - a) * (vb - va)).imag / reach, (np.conj(b - a) * (cb - ca)).imag / reach
         local = (second[0]["x"] - first[0]["x"]) + 1j * (second[0]["y"] - first[0]["y"])
         angle = np.angle((b - a) / local)
-        zero = np.zeros_like(angle)
-        arm, arm_speed, arm_change = _Motion(zero + 0j, zero + 0j, zero + 0j, angle, rate, acceleration).point(
-            first[0]["x"], first[0]["y"]
-        )
-        bodies[name] = _Motion(a - arm, va - arm_speed, ca - arm_change, angle, rate, acceleration)
+        bodies[name] = _Motion.holding((a, va, ca), first[0], angle, rate, acceleration)
         return True
     return False
 
@@ -190,20 +197,17 @@ def _hang(
         speed = speed + sign * axis * (motion.rate + 1j * turn * motion.value)
         along = motion.acceleration - turn**2 * motion.value + 1j * (spin * motion.value + 2 * turn * motion.rate)
         change = change + sign * axis * along
-    still = _Motion(zero + 0j, zero + 0j, zero + 0j, angle, rate, acceleration)
-    arm, arm_speed, arm_change = still.point(far["x"], far["y"])
-    return _Motion(at - arm, speed - arm_speed, change - arm_change, angle, rate, acceleration)
+    return _Motion.holding((at, speed, change), far, angle, rate, acceleration)
 
 
-def _matter(body: Description) -> tuple[float, complex, float]:
+def _matter(body: Description) -> _Matter:
     """Mass, centre in the body's axes, and inertia about the centre."""
     mass, length = body["mass"], body["length"]
     if length is None or mass == 0.0:
         return mass, 0j, 0.0
     if "centre" in body:
         return mass, body["centre"]["x"] + 1j * body["centre"]["y"], body["centre"]["inertia"]
-    density = NumericDensity(tuple(body["density"]["breaks"]), tuple(tuple(cell) for cell in body["density"]["cells"]))
-    _, first, second = (float(tail[0]) for tail in density.tails(np.zeros(1)))
+    _, first, second = (float(tail[0]) for tail in density_of(body).tails(np.zeros(1)))
     return mass, first / mass * length + 0j, (second - first**2 / mass) * length**2
 
 
@@ -252,13 +256,13 @@ def _push(part: Held, bodies: dict[str, _Motion]) -> _Action:
     return part.body, bodies[part.body].point(part.x, part.y)[0], part.fx + 1j * part.fy, part.mz, True
 
 
-def _tally(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Action]) -> _Tally:
+def _tally(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Action], matter: Mapping[str, _Matter]) -> _Tally:
     tally = _Tally()
     for body, at, force, couple, works in acting:
         if body == "ground":
             continue
         motion = bodies[body]
-        _, centre, _ = _matter(solution.description["bodies"][body])
+        _, centre, _ = matter[body]
         middle = motion.point(centre.real, centre.imag)[0]
         moment = (np.conj(at - middle) * force).imag + couple
         tally.force[body] = tally.force.get(body, 0j) + force
@@ -270,13 +274,13 @@ def _tally(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Act
     return tally
 
 
-def _balance(solution: Solution, bodies: dict[str, _Motion], tally: _Tally) -> tuple[Array, Array]:
+def _balance(solution: Solution, bodies: dict[str, _Motion], tally: _Tally, matter: Mapping[str, _Matter]) -> tuple[Array, Array]:
     """Newton-Euler for every body, over the largest force of the cycle; and power, over the largest of force times speed."""
     gravity = complex(*solution.description["gravity"])
     worst, power = np.zeros_like(solution.t), np.zeros_like(solution.t)
     largest = np.zeros_like(solution.t)
     for name, body in solution.description["bodies"].items():
-        mass, centre, inertia = _matter(body)
+        mass, centre, inertia = matter[name]
         motion = bodies[name]
         _, speed, change = motion.point(centre.real, centre.imag)
         inertial = mass * (change - gravity)

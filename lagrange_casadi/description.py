@@ -5,10 +5,16 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
+from .density import NumericDensity
 from .mechanism import Mechanism
 from .parts import Link, Point, PointMass, RigidMass
 
 Description = dict[str, Any]
+
+
+def density_of(body: Description) -> NumericDensity:
+    """The density of a described link that has sections."""
+    return NumericDensity(tuple(body["density"]["breaks"]), tuple(tuple(cell) for cell in body["density"]["cells"]))
 
 
 def describe(mechanism: Mechanism, values: Mapping[str, float], driven: Collection[str]) -> Description:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .density import Array, NumericDensity
-from .description import Description
+from .density import Array
+from .description import Description, density_of
 from .errors import LagrangeCasadiError, UnknownNameError
 from .quantities import QUANTITIES, quantity_of
 from .section_law import FORCES, SectionLaw, StationLoad
@@ -227,10 +227,8 @@ class Solution:
 
     def _section(self, link: str, law: Mapping[str, Array], stations: Mapping[str, Mapping[str, Array]]) -> Section:
         body = self.description["bodies"][link]
-        cells = tuple(tuple(cell) for cell in body["density"]["cells"])
-        density = NumericDensity(tuple(body["density"]["breaks"]), cells)
         loads = tuple(StationLoad(name, **members) for name, members in stations.items())
-        return Section(SectionLaw(body["length"], density, law, loads), self.xi)
+        return Section(SectionLaw(body["length"], density_of(body), law, loads), self.xi)
 
     def multiplier(self, name: str) -> Array:
         """Multiplier of a constraint or a non-holonomic row (t,)."""
