@@ -3,53 +3,26 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Literal
+from dataclasses import replace
 
-import casadi as ca
-import h5py
 import numpy as np
 import numpy.typing as npt
 
-from . import codegen
+from .backends import Backend, Table, run
 from .certificate import Held, certify
-from .codegen.compiler import FLAGS
-from .codegen.emit import (
-    NEWTON_DONE,
-    NEWTON_RATE,
-    NEWTON_ROUNDING,
-    NEWTON_STEPS,
-    NOT_CONVERGED,
-    NOT_FINITE,
-    OK,
-    SLOW,
-)
+from .codegen.emit import NOT_CONVERGED, OK, SLOW
 from .density import Array
 from .description import describe
-from .errors import AssemblyError, CompilerError, DeclarationError, UnknownNameError
+from .errors import AssemblyError, DeclarationError
 from .kinematics import where
 from .scene import Grid, Scene, SceneGraph, derive, instants, ratios
-from .solution import Provenance, Solution, in_order
-from .version import __version__
-
-Backend = Literal["auto", "c", "vm"]
-BACKENDS: tuple[Backend, ...] = ("auto", "c", "vm")
+from .solution import Solution, in_order
 
 MISFIT = 1e-8
 """How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
 
 _NEAR = 0.3
-_VM_BLOCK = 4096
-
-
-@dataclass(frozen=True, eq=False)
-class Table:
-    """The columns of a scene graph over instants: ``out`` (columns, t) and the status of each instant (t)."""
-
-    out: Array
-    status: npt.NDArray[np.int32]
 
 
 def evaluate(
@@ -60,6 +33,7 @@ def evaluate(
     xi: Grid | None = None,
     wanted: Sequence[str] | None = None,
     backend: Backend = "auto",
+    threads: int | None = None,
     certificate: bool = True,
 ) -> Solution:
     """Evaluate a scene, with its own grids and outputs or with others.
@@ -73,7 +47,10 @@ def evaluate(
     wanted
         Output names.
     backend
-        ``c`` compiles; ``vm`` runs in CasADi's virtual machine; ``auto`` compiles where there is a compiler, and warns where not.
+        ``lanes`` compiles for packs of instants, by a C++ compiler; ``c`` for one instant at a time; ``vm`` runs in CasADi's
+        virtual machine. ``auto`` takes the first of them that there is a compiler for, and warns where there is none.
+    threads
+        How many threads share the instants; default: one a core. The result does not depend on it.
     certificate
         Whether to check the solution by :mod:`.certificate`, as far as the wanted outputs allow.
 
@@ -93,7 +70,7 @@ def evaluate(
                 f"{times[0]:g} to {times[-1]:g} s is asked for"
             )
     graph = derive(scene, wanted)
-    table, provenance = run(graph, times, np.array(list(values.values())), backend)
+    table, provenance = run(graph, times, np.array(list(values.values())), backend, threads)
     _refuse(graph, table, times, list(values.values()))
     series = {name: table.out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
     for name, column in series.items():
@@ -127,71 +104,6 @@ def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:
         if name.startswith("_closure:"):
             worst.append(2.0 / values if graph.iterates(name.partition(":")[2]) else 1.0 / np.sqrt(values))
     return {"condition": np.max(worst, axis=0)} if worst else {}
-
-
-def run(graph: SceneGraph, t: Array, p: Array, backend: Backend = "auto") -> tuple[Table, Provenance]:
-    """The columns of a graph at instants ``t`` and parameters ``p``, by the given backend; nothing is checked.
-
-    Raises :class:`CompilerError` where the backend is ``c`` and there is no compiler, or the compiler fails.
-    """
-    if backend not in BACKENDS:
-        raise UnknownNameError("backend", backend, BACKENDS)
-    compiler = None if backend == "vm" else codegen.find_compiler()
-    if compiler is None and backend == "c":
-        raise CompilerError("backend 'c' needs a C compiler: none of $CC, cc, gcc, clang or the Python package ziglang is there")
-    if compiler is None:
-        if backend == "auto":
-            warnings.warn(
-                "no C compiler found ($CC, cc, gcc, clang, ziglang): CasADi's virtual machine serves, slowly", stacklevel=2
-            )
-        return _interpret(graph, t, p), _provenance("vm", "", "")
-    library = codegen.load(codegen.emit(graph), compiler)
-    table = Table(np.empty((len(graph.columns), t.size)), np.empty(t.size, dtype=np.int32))
-    library.evaluate(t, p, np.array(graph.newton.guess if graph.newton else ()), table.out, table.status)
-    return table, _provenance("c", compiler.version, " ".join(FLAGS))
-
-
-def _provenance(backend: str, compiler: str, flags: str) -> Provenance:
-    versions = {
-        "lagrange_casadi": __version__,
-        "casadi": ca.CasadiMeta.version(),
-        "numpy": np.__version__,
-        "h5py": h5py.__version__,
-        "hdf5": h5py.version.hdf5_version,
-    }
-    return Provenance(backend, "double", compiler, flags, versions)
-
-
-def _interpret(graph: SceneGraph, t: Array, p: Array) -> Table:
-    """What the emitted C does, by CasADi's virtual machine."""
-    table = Table(np.empty((len(graph.columns), t.size)), np.full(t.size, OK, dtype=np.int32))
-    guess = np.array(graph.newton.guess) if graph.newton else np.zeros(0)
-    for start in range(0, t.size, _VM_BLOCK):
-        block = slice(start, min(start + _VM_BLOCK, t.size))
-        d, rate, acceleration = (np.atleast_2d(x.full()) for x in graph.motion(t[None, block], p))
-        z = np.zeros((guess.size, d.shape[1]))
-        if graph.newton:
-            for i in range(d.shape[1]):
-                z[:, i], table.status[start + i] = _iterate(graph.newton.step, guess, t[start + i], d[:, i], p)
-                guess = guess if table.status[start + i] == NOT_CONVERGED else z[:, i]
-        table.out[:, block] = graph.instant(t[None, block], d, rate, acceleration, z, p).full()
-    unclean = ~np.isfinite(table.out).all(axis=0) & (table.status == OK)
-    table.status[unclean] = NOT_FINITE
-    return table
-
-
-def _iterate(step: ca.Function, z: Array, t: float, d: Array, p: Array) -> tuple[Array, int]:
-    guess, size = z, 1.0
-    for _ in range(NEWTON_STEPS):
-        before = size
-        correction, relative = (x.full().ravel() for x in step(z, t, d, p))
-        size = float(relative[0])
-        if not math.isfinite(size):
-            break
-        z = z + correction
-        if size < NEWTON_DONE:
-            return z, SLOW if size > NEWTON_RATE * before and size > NEWTON_ROUNDING else OK
-    return guess, NOT_CONVERGED
 
 
 def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:

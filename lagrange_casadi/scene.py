@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 import casadi as ca
@@ -143,6 +145,7 @@ class Scene:
         for what, mapping in (("motion", self.motion), ("posture", self.posture)):
             if not isinstance(mapping, Mapping):
                 raise DeclarationError(f"{what}: expected a mapping by name, got {mapping!r}")
+            object.__setattr__(self, what, MappingProxyType(dict(mapping)))
         joints = self.mechanism.joints
         for name, law in self.motion.items():
             if name not in joints:
@@ -201,12 +204,16 @@ class SceneGraph:
 
 
 def derive(scene: Scene, wanted: Sequence[str] | None = None) -> SceneGraph:
-    """Derive the graphs of a scene, for its own wanted outputs or for others.
+    """Derive the graphs of a scene, for its own wanted outputs or for others; the same graph for the same scene, while it lasts.
 
     Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the loops cannot be solved.
     """
+    return _derive(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted))
+
+
+@functools.lru_cache(maxsize=32)
+def _derive(scene: Scene, want: Wanted) -> SceneGraph:
     mechanism = scene.mechanism
-    want = Wanted.of(mechanism, scene.wanted if wanted is None else wanted)
     p = mechanism.symbols
     tree = span(mechanism, scene.motion)
     body = assemble(mechanism, tree, scene.motion, needed_reactions(mechanism, want.reactions, want.sections), want.sections)

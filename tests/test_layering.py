@@ -37,6 +37,7 @@ ORDER = (
     "section_law",
     "solution",
     "certificate",
+    "backends",
     "evaluate",
     "publish",
     "store",

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import click
 
+from ..backends import BACKENDS, Backend
 from ..case import load_case
 from ..certificate import summary
-from ..evaluate import BACKENDS, Backend, evaluate
+from ..evaluate import evaluate
 from ..figures import dump_specs
 from ..publish import check_writable, filling
 from ..scene import Grid
@@ -30,7 +31,10 @@ GRID = "START:STOP:COUNT"
 @click.option("--t", type=grid, metavar=GRID, help="Instants [s]; default: the case's.")
 @click.option("--xi", type=grid, metavar=GRID, help="Section ratios xi/l, within 0 and 1; default: the case's.")
 @click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
-@click.option("--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="Compiled C, or CasADi's machine.")
+@click.option(
+    "--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="C++ in packs, C, or CasADi's machine."
+)
+@click.option("--threads", type=click.IntRange(1), metavar="N", help="Threads; default: one a core.")
 @click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>.h5 here.")
 @click.option("--figures", type=click.Path(path_type=Path), help="The figures' folder; default: <case>_figures here.")
 @click.option("--no-figures", is_flag=True, help="Draw nothing.")
@@ -42,6 +46,7 @@ def run(
     xi: Grid | None,
     want: Sequence[str],
     backend: Backend,
+    threads: int | None,
     out: Path | None,
     figures: Path | None,
     no_figures: bool,
@@ -65,6 +70,7 @@ def run(
         xi=xi,
         wanted=want or None,
         backend=backend,
+        threads=threads,
         certificate=not no_certificate,
     )
     with filling(folder) if folder else nullcontext() as draft:

@@ -1,64 +1,99 @@
-"""The C compiler: which one there is, and a cache of what it has built.
+"""The compilers: which there are, with what flags, and a cache of what they have built.
 
-A library is named by the hash of its source, of the flags and of the compiler, built under another name and renamed, so any
-number of processes may build the same one at once and none ever sees half of it.
+A library is named by the hash of its source, of the flags, of the compiler, and of the machine where the code is for this one
+alone. It is built under another name and renamed, so any number of processes may build the same one at once and none ever sees
+half of it; its digest lies beside it, for a truncated library can load and then crash.
 """
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import importlib.util
 import os
+import platform
 import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import platformdirs
 
 from ..errors import CompilerError
 
-FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared")
-"""No contraction: a product and a sum round as written, so every machine gives the same digits."""
+Language = Literal["c", "c++"]
+
+_COMMON = ("-fno-math-errno", "-ffp-contract=off", "-fvisibility=hidden", "-fPIC", "-shared")
+FLAGS: dict[Language, tuple[str, ...]] = {
+    "c": ("-std=c99", "-O2", *_COMMON),
+    "c++": ("-std=c++11", "-O3", "-march=native", *_COMMON),
+}
+"""No contraction: a product and a sum round as written. Nobody reads errno; without it a root is an instruction, no call."""
+
+LARGE = 20_000
+"""Statements from which on a file is compiled with -O1: see ``docs/speed.md`` for what that saves and costs."""
+
+_NAMES: dict[Language, tuple[str, tuple[str, ...]]] = {
+    "c": ("CC", ("cc", "gcc", "clang")),
+    "c++": ("CXX", ("c++", "g++", "clang++")),
+}
 
 
 @dataclass(frozen=True)
 class Compiler:
-    """A C compiler: the command that runs it and the first line of its version, which holds no path."""
+    """A compiler: its language, the command that runs it and the first line of its version, which holds no path.
 
+    ``extra`` flags come after the package's own.
+    """
+
+    language: Language
     command: tuple[str, ...]
     version: str
+    extra: tuple[str, ...] = ()
+
+    def flags(self, source: str) -> tuple[str, ...]:
+        """The flags for a source."""
+        flags = (*FLAGS[self.language], *self.extra)
+        if source.count(";\n") < LARGE:
+            return flags
+        return tuple("-O1" if flag.startswith("-O") else flag for flag in flags)
 
 
-def find_compiler() -> Compiler | None:
-    """$CC, else cc, gcc, clang, else the wheel ziglang; None where there is none.
+def find_compiler(language: Language = "c") -> Compiler | None:
+    """$CC, else cc, gcc, clang (of C++: $CXX, c++, g++, clang++), else the wheel ziglang; None where there is none.
 
-    Raises :class:`CompilerError` where $CC is set and does not run.
+    Raises :class:`CompilerError` where the variable is set and does not run.
     """
-    chosen = os.environ.get("CC", "").strip()
+    variable, names = _NAMES[language]
+    chosen = os.environ.get(variable, "").strip()
     if chosen:
         try:
             command = tuple(shlex.split(chosen))
         except ValueError as error:
-            raise CompilerError(f"$CC = {chosen!r} cannot be split into words: {error}") from None
+            raise CompilerError(f"${variable} = {chosen!r} cannot be split into words: {error}") from None
         version = _version(command)
         if version is None:
-            raise CompilerError(f"$CC = {chosen!r} does not run; unset it, or name a C compiler such as cc, gcc or clang")
-        return Compiler(command, version)
-    candidates = [(name,) for name in ("cc", "gcc", "clang") if shutil.which(name)]
-    commands: list[tuple[str, ...]] = [*candidates]
+            raise CompilerError(f"${variable} = {chosen!r} does not run; unset it, or name a compiler such as {', '.join(names)}")
+        return Compiler(language, command, version)
+    commands: list[tuple[str, ...]] = [(name,) for name in names if shutil.which(name)]
     if importlib.util.find_spec("ziglang"):
-        commands.append((sys.executable, "-m", "ziglang", "cc"))
+        # Its C library has no libmvec to link with.
+        commands.append((sys.executable, "-m", "ziglang", *(("cc",) if language == "c" else ("c++", "-DLANES_LIBMVEC=0"))))
     for command in commands:
         version = _version(command)
         if version is not None:
-            return Compiler(command, version)
+            return Compiler(language, command, version)
     return None
 
 
+@functools.lru_cache
 def _version(command: tuple[str, ...]) -> str | None:
     try:
         run = subprocess.run([*command, "--version"], capture_output=True, text=True, timeout=60, check=True)
@@ -72,42 +107,65 @@ def cache_folder() -> Path:
     return Path(platformdirs.user_cache_dir("lagrange_casadi", appauthor=False))
 
 
-def build(source: str, compiler: Compiler) -> Path:
-    """The shared library of a C source, from the cache or newly built.
+@contextmanager
+def built(source: str, compiler: Compiler) -> Iterator[Path]:
+    """The shared library of a source, from the cache or newly built; it need not outlive the block.
 
-    Raises :class:`CompilerError` where the compiler refuses the source; its whole message is kept beside the source in the cache.
+    Warns where the cache cannot be written, and where what it held was damaged. Raises :class:`CompilerError` where the compiler
+    refuses the source; its whole message is kept beside the source in the cache.
     """
-    identity = "\0".join([source, *FLAGS, *compiler.command, compiler.version])
-    name = hashlib.sha256(identity.encode()).hexdigest()[:32]
-    folder = _folder()
-    library = folder / f"{name}.so"
-    if library.exists():
-        return library
-    code = folder / f"{name}.c"
-    with tempfile.TemporaryDirectory(dir=folder, prefix="build-") as work:
-        draft, built = Path(work) / f"{name}.c", Path(work) / f"{name}.so"
-        draft.write_text(source)
-        run = subprocess.run(
-            [*compiler.command, *FLAGS, str(draft), "-o", str(built), "-lm"], capture_output=True, text=True, check=False
-        )
-        os.replace(draft, code)
-        if run.returncode != 0 or not built.exists():
-            log = folder / f"{name}.log"
-            log.write_text(run.stderr)
-            first = next((line for line in run.stderr.splitlines() if "error" in line.lower()), run.stderr.strip() or "no message")
-            raise CompilerError(
-                f"{' '.join(compiler.command)} failed with status {run.returncode}: {first.strip()} (whole message in {log})"
-            )
-        os.replace(built, library)
-    return library
-
-
-def _folder() -> Path:
     folder = cache_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
-        raise CompilerError(f"cannot write into the cache folder {folder}: {error.strerror}") from None
-    return folder
+        warnings.warn(f"cannot write into the cache folder {folder}: {error.strerror}; compiled for this time only", stacklevel=2)
+        with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as temporary:
+            yield _build(source, compiler, Path(temporary))
+    else:
+        yield _build(source, compiler, folder)
+
+
+def _build(source: str, compiler: Compiler, folder: Path) -> Path:
+    flags = compiler.flags(source)
+    machine = _machine() if "-march=native" in flags else ""
+    identity = "\0".join([source, *flags, *compiler.command, compiler.version, machine])
+    name = hashlib.sha256(identity.encode()).hexdigest()[:32]
+    library, seal = folder / f"{name}.so", folder / f"{name}.sha256"
+    if library.exists():
+        if seal.exists() and seal.read_text() == _digest(library):
+            return library
+        warnings.warn(f"the cached library {library} was damaged and is built again", stacklevel=4)
+    code = folder / f"{name}.{'c' if compiler.language == 'c' else 'cpp'}"
+    with tempfile.TemporaryDirectory(dir=folder, prefix="build-") as work:
+        draft, fresh, sealed = Path(work) / code.name, Path(work) / library.name, Path(work) / seal.name
+        draft.write_text(source)
+        run = subprocess.run(
+            [*compiler.command, *flags, str(draft), "-o", str(fresh), "-lm"], capture_output=True, text=True, check=False
+        )
+        os.replace(draft, code)
+        if run.returncode != 0 or not fresh.exists():
+            log = folder / f"{name}.log"
+            log.write_text(run.stderr)
+            first = next((line for line in run.stderr.splitlines() if "error" in line.lower()), run.stderr.strip() or "no message")
+            raise CompilerError(
+                f"{' '.join(compiler.command)} failed with status {run.returncode}: {first.strip()} (whole message in {log})"
+            )
+        sealed.write_text(_digest(fresh))
+        os.replace(sealed, seal)
+        os.replace(fresh, library)
+    return library
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _machine() -> str:
+    """What ``native`` means here: a cache may be shared by several machines."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return f"{platform.machine()} {platform.processor()}"
+    return "\n".join(sorted({line for line in lines if line.startswith(("flags", "Features", "model name"))}))

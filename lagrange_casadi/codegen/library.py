@@ -1,49 +1,85 @@
-"""A scene's compiled C, loaded."""
+"""A scene's compiled code, loaded."""
 
 from __future__ import annotations
 
 import ctypes
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from pathlib import Path
+from importlib import resources
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import CompilerError
-from .compiler import Compiler, build
-from .emit import ENTRY
+from .compiler import Compiler, built
+from .emit import EVALUATE, FOLLOW
 
 Array = npt.NDArray[np.float64]
+Status = npt.NDArray[np.int32]
+
+_SHARE = 8192
+"""Instants that are worth a thread of their own; a multiple of any pack and block, so that no cut falls into one."""
 
 
 @dataclass(frozen=True, eq=False)
 class Library:
-    """The loaded library of one scene graph. Its call releases the interpreter and allocates nothing."""
+    """The loaded code of one scene graph. Its calls release the interpreter and allocate nothing."""
 
-    path: Path
     entry: Any
+    entry_follow: Any | None
+    flags: tuple[str, ...]
 
-    def evaluate(self, t: Array, p: Array, z: Array, out: Array, status: npt.NDArray[np.int32]) -> None:
-        """Fill ``out`` (columns, n) and ``status`` (n) for the instants ``t`` (n); ``z`` is the guess, and moves along."""
-        n = t.size
-        assert out.shape[1:] == status.shape == (n,)
-        assert out.flags.c_contiguous
-        self.entry(n, *(array.ctypes.data for array in (t, p, z, out, status)))
+    def follow(self, t: Array, p: Array, guess: Array, z: Array, status: Status) -> None:
+        """Fill the iterated coordinates ``z`` (k, n), each instant from the one before; ``guess`` (k) begins, and moves along."""
+        if self.entry_follow is None:
+            status[:] = 0
+        else:
+            self._call(self.entry_follow, t, z, (p, guess, z, status))
+
+    def evaluate(self, t: Array, p: Array, z: Array, out: Array, status: Status, threads: int = 1) -> None:
+        """Fill ``out`` (columns, n) for the instants ``t`` (n), where the iterated coordinates are ``z`` (k, n).
+
+        ``status`` (n) is what :meth:`follow` left; what is not finite is noted there. The bytes do not depend on ``threads``.
+        """
+        assert z.strides == out.strides or not z.size
+        shares = max(1, min(threads, t.size // _SHARE))
+        size = -(-t.size // (shares * _SHARE)) * _SHARE
+        cuts = [slice(start, start + size) for start in range(0, t.size, size)]
+
+        def run(cut: slice) -> None:
+            self._call(self.entry, t[cut], out[:, cut], (p, z[:, cut], out[:, cut], status[cut]))
+
+        if len(cuts) <= 1:
+            run(slice(None))
+            return
+        with ThreadPoolExecutor(len(cuts)) as pool:
+            list(pool.map(run, cuts))
+
+    @staticmethod
+    def _call(entry: Any, t: Array, rows: Array, rest: tuple[npt.NDArray[Any], ...]) -> None:
+        stride = rows.strides[0] // rows.itemsize if rows.size else t.size
+        entry(t.size, stride, t.ctypes.data, *(array.ctypes.data for array in rest))
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def load(source: str, compiler: Compiler) -> Library:
-    """Build a source, or take it from the cache, and load it. Raises :class:`CompilerError`."""
-    path = build(source, compiler)
-    try:
-        entry = getattr(ctypes.CDLL(str(path)), ENTRY)
-    except (OSError, AttributeError):
-        path.unlink(missing_ok=True)
-        path = build(source, compiler)
+    """Build an emitted file, as C or with packs as C++, or take it from the cache, and load it. Raises :class:`CompilerError`."""
+    if compiler.language == "c++":
+        source = resources.files(__package__).joinpath("lanes.h").read_text() + source
+    with built(source, compiler) as path:
         try:
-            entry = getattr(ctypes.CDLL(str(path)), ENTRY)
+            library = ctypes.CDLL(str(path))
+            entry = getattr(library, EVALUATE)
         except (OSError, AttributeError) as error:
             raise CompilerError(f"the library built by {' '.join(compiler.command)} does not load: {error}") from None
-    entry.restype = None
-    entry.argtypes = [ctypes.c_longlong, *[ctypes.c_void_p] * 5]
-    return Library(path, entry)
+        follow = getattr(library, FOLLOW, None)
+    entry.restype, entry.argtypes = None, [ctypes.c_longlong] * 2 + [ctypes.c_void_p] * 5
+    if follow is not None:
+        follow.restype, follow.argtypes = None, [ctypes.c_longlong] * 2 + [ctypes.c_void_p] * 5
+    return Library(entry, follow, compiler.flags(source))

@@ -1,0 +1,132 @@
+"""Packs of instants: the numbers of scalar C to a few units in the last place, whatever the vectors, the tail and the threads."""
+
+import platform
+import subprocess
+from importlib import resources
+
+import numpy as np
+import pytest
+from builders import slider_crank
+from test_codegen import SCENES, columns
+
+from lagrange_casadi import codegen, derive, evaluate
+
+HEADER = resources.files("lagrange_casadi.codegen").joinpath("lanes.h")
+ULP = np.finfo(float).eps
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_packs_agree_with_scalar_c(name):
+    scene = SCENES[name]()
+    graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 157)
+    packs, scalar = (columns(graph, t, language) for language in ("c++", "c"))
+    groups = [column.partition(":")[0] for column in graph.columns]
+    for group in set(groups):
+        rows = [i for i, other in enumerate(groups) if other == group]
+        assert np.max(np.abs(packs[rows] - scalar[rows])) <= 32 * ULP * np.max(np.abs(scalar[rows]))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_tail_of_any_length_has_the_same_bits(name):
+    scene = SCENES[name]()
+    graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 80)
+    whole = columns(graph, t, "c++")
+    for n in (*range(1, 19), 63, 64, 65, 72, 79):
+        assert np.array_equal(columns(graph, t[:n], "c++"), whole[:, :n])
+
+
+@pytest.mark.parametrize("language", ["c", "c++"])
+@pytest.mark.parametrize("name", ["effort_alone", "iterated"])
+def test_the_bytes_do_not_depend_on_the_threads(name, language):
+    scene = SCENES[name]()
+    graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 40_001)
+    one = columns(graph, t, language)
+    for threads in (2, 3, 5):
+        assert columns(graph, t, language, threads).tobytes() == one.tobytes()
+
+
+def test_a_tail_that_cannot_be_closed_is_found_in_its_pack():
+    """Instants beyond the reach of the links have a status; their neighbours in the pack have their numbers."""
+    graph, t = derive(slider_crank()), np.linspace(0, 0.08, 21)
+    library = codegen.load(codegen.emit(graph), codegen.find_compiler("c++"))
+    p = np.array([0.1, 0.1 * np.sin(1.2), 0.1, 0.1, 0.1])
+    out, status = np.full((len(graph.columns), t.size), np.nan), np.zeros(t.size, dtype=np.int32)
+    library.evaluate(t, p, np.empty((0, t.size)), out, status)
+    reach = np.abs(np.sin(out[graph.columns.index("motion:O")])) < np.sin(1.2)
+    assert 0 < reach.sum() < t.size
+    assert np.array_equal(status == 0, reach)
+    assert np.isfinite(out[:, reach]).all()
+
+
+def test_the_backend_is_named():
+    solution = evaluate(slider_crank(), backend="lanes")
+    assert solution.provenance.backend == "lanes"
+    assert "-march=native" in solution.provenance.flags
+
+
+PROGRAM = r"""
+#include <cstdio>
+#include <initializer_list>
+static void say(const char* name, double x, double y, double found, double expected) {
+  printf("%s %.17g %.17g %.17g %.17g\n", name, x, y, found, expected);
+}
+#define ONE(name) \
+  for (double x : xs) { lanes_pack r = name(lanes_pack(x)); for (int i = 0; i < LANES; ++i) say(#name, x, 0, r.v[i], name(x)); }
+#define TWO(name) \
+  for (double x : xs) for (double y : xs) { \
+    lanes_pack r = name(lanes_pack(x), lanes_pack(y)); \
+    for (int i = 0; i < LANES; ++i) say(#name, x, y, r.v[i], name(x, y)); }
+static double less(double a, double b) { return a < b; }
+static double most(double a, double b) { return a <= b; }
+static double same(double a, double b) { return a == b; }
+static double other(double a, double b) { return a != b; }
+static double both(double a, double b) { return a && b; }
+static double either(double a, double b) { return a || b; }
+static double no(double a) { return !a; }
+static double minus(double a) { return -a; }
+static double inverse(double a) { return 1. / a; }
+static lanes_pack less(lanes_pack a, lanes_pack b) { return a < b; }
+static lanes_pack most(lanes_pack a, lanes_pack b) { return a <= b; }
+static lanes_pack same(lanes_pack a, lanes_pack b) { return a == b; }
+static lanes_pack other(lanes_pack a, lanes_pack b) { return a != b; }
+static lanes_pack both(lanes_pack a, lanes_pack b) { return a && b; }
+static lanes_pack either(lanes_pack a, lanes_pack b) { return a || b; }
+static lanes_pack no(lanes_pack a) { return !a; }
+static lanes_pack minus(lanes_pack a) { return -a; }
+static lanes_pack inverse(lanes_pack a) { return 1. / a; }
+int main() {
+  const std::initializer_list<double> xs = {
+      0.0, -0.0, 1.0, -1.0, 0.3, -0.7, 2.5, -3.5, 1e-9, 7e5, -1e5, 1e-310, 1e300, INFINITY, -INFINITY, NAN};
+  ONE(sin) ONE(cos) ONE(exp) ONE(log) ONE(tan) ONE(asin) ONE(acos) ONE(atan) ONE(sinh) ONE(cosh) ONE(tanh) ONE(asinh) ONE(acosh)
+  ONE(atanh) ONE(log1p) ONE(expm1) ONE(erf) ONE(sqrt) ONE(floor) ONE(ceil) ONE(fabs) ONE(lanes_sign) ONE(no) ONE(minus) ONE(inverse)
+  TWO(atan2) TWO(hypot) TWO(pow) TWO(fmod) TWO(remainder) TWO(fmin) TWO(fmax) TWO(copysign) TWO(lanes_choose)
+  TWO(less) TWO(most) TWO(same) TWO(other) TWO(both) TWO(either)
+}
+"""
+EXACT = ["sqrt", "floor", "ceil", "fabs", "lanes_sign", "no", "minus", "inverse", "fmod", "remainder", "fmin", "fmax", "copysign"]
+EXACT += ["lanes_choose", "less", "most", "same", "other", "both", "either"]
+X86 = platform.machine() in ("x86_64", "AMD64")
+
+
+@pytest.mark.parametrize("libmvec", ["where it is", "none"])
+@pytest.mark.parametrize("march", ["native", *(["x86-64", "x86-64-v3"] if X86 else [])])
+def test_every_function_of_a_pack(march, libmvec, tmp_path):
+    """Against the scalar functions: exact where C99 is, else within 4 units; the same infinities, the same NaN."""
+    source, program = tmp_path / "functions.cpp", tmp_path / "functions"
+    source.write_text(HEADER.read_text() + PROGRAM)
+    flags = [f"-march={march}", *(["-DLANES_LIBMVEC=0"] if libmvec == "none" else [])]
+    command = [*codegen.find_compiler("c++").command, "-std=c++11", "-Wall", "-Wextra", "-Werror", "-Wno-psabi", "-O2"]
+    subprocess.run([*command, "-fno-math-errno", *flags, source, "-o", program, "-lm"], check=True)
+    done = subprocess.run([program], capture_output=True, text=True, check=False)
+    if done.returncode < 0:
+        pytest.skip(f"this machine has not the instructions of {march}")
+    rows = [line.split() for line in done.stdout.splitlines()]
+    assert {row[0] for row in rows} >= {"sin", "pow", *EXACT}
+    unsigned = ("fmin", "fmax")  # which zero is the larger one C99 leaves open
+    wrong = []
+    for name, x, y, found, expected in rows:
+        a, b = float(found), float(expected)
+        exact = (a == b and (name in unsigned or np.signbit(a) == np.signbit(b))) or (np.isnan(a) and np.isnan(b))
+        if not exact and (name in EXACT or not np.isfinite(b) or abs(a - b) > 4 * np.spacing(abs(b))):
+            wrong.append((name, x, y, found, expected))
+    assert not wrong
