@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
-from . import codegen
+from . import codegen, grids
 from .codegen.emit import (
     NEWTON_DONE,
     NEWTON_RATE,
@@ -61,8 +61,8 @@ def run(graph: SceneGraph, t: Array, p: Array, backend: Backend = "auto", thread
         return _interpret(graph, t, p), _provenance("vm", "", "")
     compiler, library = compiled
     guess = np.array(graph.newton.guess if graph.newton else ())
-    z = np.empty((guess.size, t.size))
-    table = Table(np.empty((len(graph.columns), t.size)), np.empty(t.size, dtype=np.int32))
+    z = grids.empty("a table of iterated coordinates and instants", (guess.size, t.size))
+    table = _table(graph, t)
     library.follow(t, p, guess, z, table.status)
     library.evaluate(t, p, z, table.out, table.status, threads or codegen.cores())
     used = "lanes" if compiler.language == "c++" else "c"
@@ -95,6 +95,11 @@ def _library(graph: SceneGraph, compiler: codegen.Compiler) -> codegen.Library:
     return codegen.load(codegen.emit(graph), compiler)
 
 
+def _table(graph: SceneGraph, t: Array) -> Table:
+    out = grids.empty("a table of columns and instants", (len(graph.columns), t.size))
+    return Table(out, np.full(t.size, OK, dtype=np.int32))
+
+
 def _provenance(backend: str, compiler: str, flags: str) -> Provenance:
     versions = {
         "lagrange_casadi": __version__,
@@ -108,7 +113,7 @@ def _provenance(backend: str, compiler: str, flags: str) -> Provenance:
 
 def _interpret(graph: SceneGraph, t: Array, p: Array) -> Table:
     """What the emitted C does, by CasADi's virtual machine."""
-    table = Table(np.empty((len(graph.columns), t.size)), np.full(t.size, OK, dtype=np.int32))
+    table = _table(graph, t)
     guess = np.array(graph.newton.guess) if graph.newton else np.zeros(0)
     for start in range(0, t.size, _VM_BLOCK):
         block = slice(start, min(start + _VM_BLOCK, t.size))

@@ -22,6 +22,7 @@ Complex = npt.NDArray[np.complexfloating[Any, Any]]
 
 NEAR = 1e3
 _EDGE = 1e-9
+_BLOCK = 1 << 14
 _Matter = tuple[float, complex, float]
 _Action = tuple[str, Complex, Any, Any, bool]
 
@@ -80,6 +81,10 @@ class Held:
     fy: Array
     mz: Array
 
+    def during(self, instants: slice) -> Held:
+        """The same at some of the instants."""
+        return Held(self.body, *(values[instants] for values in (self.x, self.y, self.fx, self.fy, self.mz)))
+
 
 def certify(solution: Solution, held: Sequence[Held] | None = None) -> dict[str, Array]:
     """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``, ``ends``, each where it can be had.
@@ -87,6 +92,19 @@ def certify(solution: Solution, held: Sequence[Held] | None = None) -> dict[str,
     Multipliers act by their equations, which a solution does not hold; so with constraints or rows all but ``closure`` needs to be
     told what they do.
     """
+    found: dict[str, list[Array]] = {}
+    scales: dict[str, float] = {}
+    for start in range(0, solution.t.size, _BLOCK):
+        block = slice(start, start + _BLOCK)
+        there = None if held is None else [part.during(block) for part in held]
+        for name, (gaps, scale) in _residuals(solution.during(block), there).items():
+            found.setdefault(name, []).append(gaps)
+            scales[name] = max(scales.get(name, 0.0), scale)
+    return {name: np.concatenate(gaps) / (scales[name] or 1.0) for name, gaps in found.items()}
+
+
+def _residuals(solution: Solution, held: Sequence[Held] | None) -> dict[str, tuple[Array, float]]:
+    """Each residual, and the largest of what it is to be compared with."""
     description = solution.description
     joints = description["joints"]
     if any(joint["coordinate"] and f"motion:{name}" not in solution.series for name, joint in joints.items()):
@@ -94,7 +112,7 @@ def certify(solution: Solution, held: Sequence[Held] | None = None) -> dict[str,
     bodies = _place(solution)
     if len(bodies) < len(description["bodies"]) + 1:
         return {}
-    found = {"closure": _closure(solution, bodies)}
+    found = {"closure": (_closure(solution, bodies), _size(solution))}
     wanted = [f"reaction:{name}:fx" for name in joints] + [f"load:{name}:fx" for name in description["loads"]]
     wanted += [f"effort:{name}" for name, joint in joints.items() if joint["driven"] and name not in description["rows"].values()]
     told = held is not None or not (description["constraints"] or description["rows"])
@@ -216,7 +234,7 @@ def _size(solution: Solution) -> float:
 
 
 def _closure(solution: Solution, bodies: dict[str, _Motion]) -> Array:
-    """Gaps of all joints, and of the reported poses, over the length of all links."""
+    """Gaps of all joints, and of the reported poses."""
     worst = np.zeros_like(solution.t)
     for joint in solution.description["joints"].values():
         (a, *_), (b, *_) = (bodies[p["body"]].point(p["x"], p["y"]) for p in (joint["parent"], joint["child"]))
@@ -228,7 +246,7 @@ def _closure(solution: Solution, bodies: dict[str, _Motion]) -> Array:
     for name in solution.description["bodies"]:
         pose = solution.pose(name)
         worst = np.maximum(worst, np.abs(pose.x + 1j * pose.y - bodies[name].at))
-    return worst / _size(solution)
+    return worst
 
 
 def _acting(solution: Solution, bodies: dict[str, _Motion]) -> Iterator[_Action]:
@@ -274,8 +292,10 @@ def _tally(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Act
     return tally
 
 
-def _balance(solution: Solution, bodies: dict[str, _Motion], tally: _Tally, matter: Mapping[str, _Matter]) -> tuple[Array, Array]:
-    """Newton-Euler for every body, over the largest force of the cycle; and power, over the largest of force times speed."""
+def _balance(
+    solution: Solution, bodies: dict[str, _Motion], tally: _Tally, matter: Mapping[str, _Matter]
+) -> tuple[tuple[Array, float], tuple[Array, float]]:
+    """Newton-Euler for every body, beside the largest force; and power, beside the largest of force times speed."""
     gravity = complex(*solution.description["gravity"])
     worst, power = np.zeros_like(solution.t), np.zeros_like(solution.t)
     largest = np.zeros_like(solution.t)
@@ -292,12 +312,11 @@ def _balance(solution: Solution, bodies: dict[str, _Motion], tally: _Tally, matt
         used = (np.conj(speed) * inertial).real + turning * motion.rate
         power = power + used
         largest = np.maximum(largest, np.abs(speed) * np.abs(inertial) + np.abs(turning * motion.rate))
-    scale = float(np.max(tally.size)) or 1.0
-    return worst / scale, np.abs(tally.power - power) / (float(np.max(largest + np.abs(tally.power))) or 1.0)
+    return (worst, float(np.max(tally.size))), (np.abs(tally.power - power), float(np.max(largest + np.abs(tally.power))))
 
 
-def _ends(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Action]) -> Array:
-    """A link's section at its base is the opposite of all that acts on it there, over the largest force of the cycle."""
+def _ends(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Action]) -> tuple[Array, float]:
+    """A link's section at its base is the opposite of all that acts on it there; beside the largest force."""
     worst, scale = np.zeros_like(solution.t), 0.0
     base = np.zeros((solution.t.size, 1))
     for link in solution.links_with_sections:
@@ -309,7 +328,7 @@ def _ends(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Acti
         worst = np.maximum(worst, np.abs(force + axial + 1j * shear))
         worst = np.maximum(worst, np.abs(moment + bending) / _size(solution))
         scale = max(scale, float(np.max(np.abs(axial + 1j * shear))), float(np.max(np.abs(bending))) / _size(solution))
-    return worst / (scale or 1.0)
+    return worst, scale
 
 
 def _before(motion: _Motion, acting: Sequence[_Action], edge: float) -> tuple[Complex, Array]:

@@ -70,11 +70,11 @@ class NumericDensity:
         """T0, T1 and T2 at ratios ``u`` of any shape."""
         found = [np.zeros_like(u) for _ in range(3)]
         for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
-            low, high = np.maximum(a - u, 0.0), np.maximum(b - u, 0.0)
+            low, high = (_powers(np.maximum(end - u, 0.0), len(cell) + 2) for end in (a, b))
             for j, shifted in enumerate(_shift(cell, u)):
                 for k in range(3):
-                    n = j + k + 1
-                    found[k] += shifted * (high**n - low**n) / n
+                    n = j + k
+                    found[k] += shifted * (high[n] - low[n]) / (n + 1)
         return found[0], found[1], found[2]
 
     def lowest(self) -> tuple[float, float]:
@@ -115,6 +115,14 @@ def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
         slope = (v[i + 1] - v[i]) / (u[i + 1] - u[i])
         cells.append((v[i] - slope * u[i], slope))
     return Density(tuple(u), tuple(cells), per_length=True)
+
+
+def _powers(x: Array, count: int) -> list[Array]:
+    """x, x^2, ... by products: a power of an array costs ten of them."""
+    found = [x]
+    for _ in range(count - 1):
+        found.append(found[-1] * x)
+    return found
 
 
 def _shift(cell: Sequence[float], u: Array) -> list[Array]:

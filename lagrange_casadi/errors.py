@@ -63,3 +63,9 @@ class StoreError(LagrangeCasadiError):
     """Writing a result file failed, or a file is not a whole one of this schema."""
 
     exit_status = 1
+
+
+class SizeError(LagrangeCasadiError):
+    """What is asked for does not fit into memory."""
+
+    exit_status = 1

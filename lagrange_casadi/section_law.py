@@ -7,17 +7,19 @@ link beyond it: at the tip (n0, f0, m0), and at stations in between, each seen b
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 
+from . import grids
 from .density import Array, NumericDensity
 
 FORCES = ("axial", "shear", "bending")
 Side = Literal["base", "tip"]
 
 _HALVINGS = 60
+_BLOCK = 1 << 15
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +35,10 @@ class StationLoad:
     f: Array
     m: Array
 
+    def during(self, instants: slice) -> StationLoad:
+        """The same at some of the instants."""
+        return StationLoad(self.name, *(values[instants] for values in (self.station, self.n, self.f, self.m)))
+
 
 @dataclass(frozen=True, eq=False)
 class SectionLaw:
@@ -43,13 +49,20 @@ class SectionLaw:
     coefficients: Mapping[str, Array]
     loads: tuple[StationLoad, ...] = ()
 
-    def on_grid(self, force: str, xi: Array) -> Array:
-        """A force at every instant and every ratio ``xi``, of shape (t, xi); at a station, the value on its tip side."""
+    def on_grid(self, force: str, xi: Array, out: Array | None = None) -> Array:
+        """A force at every instant and every ratio ``xi``, of shape (t, xi), in ``out`` where given; at a station, on its tip side.
+
+        Raises :class:`SizeError` where there is less memory than that.
+        """
         columns, basis = self._terms(force, xi)
-        values = np.asarray(np.stack(columns, axis=1) @ np.stack(basis))
-        for load in self.loads:
-            values += self._beyond(force, load, xi[None, :], _seen(xi[None, :], load.station[:, None], "tip"))
-        return values
+        out = grids.empty(f"a grid of {force}", (columns[0].size, xi.size)) if out is None else out
+        grids.fill(columns, basis, [self._acting(force, load) for load in self.loads], xi, out)
+        return out
+
+    def during(self, instants: slice) -> SectionLaw:
+        """The law at some of the instants."""
+        coefficients = {name: values[instants] for name, values in self.coefficients.items()}
+        return replace(self, coefficients=coefficients, loads=tuple(load.during(instants) for load in self.loads))
 
     def at(self, force: str, xi: Any, side: Side = "tip") -> Array:
         """A force at ratios of shape (t, ...), one row an instant; ``side`` tells which value is meant at a station."""
@@ -62,6 +75,11 @@ class SectionLaw:
 
     def extreme(self, force: str) -> tuple[Array, Array]:
         """The ratio at which a force is largest in size, and the force there, at every instant, both of shape (t,)."""
+        n = self.coefficients["n0"].size
+        blocks = [self.during(slice(i, i + _BLOCK))._extreme(force) for i in range(0, n, _BLOCK)]
+        return np.concatenate([place for place, _ in blocks]), np.concatenate([value for _, value in blocks])
+
+    def _extreme(self, force: str) -> tuple[Array, Array]:
         places = [np.zeros_like(self.coefficients["n0"]), np.ones_like(self.coefficients["n0"]), *self._stationary(force)]
         stacked = np.stack(places, axis=1)
         stacked = np.where((stacked > 0.0) & (stacked < 1.0), stacked, np.where(stacked >= 1.0, 1.0, 0.0))
@@ -85,14 +103,16 @@ class SectionLaw:
         columns, basis = self._terms(force, u)
         return np.asarray(sum(_column(column, u) * factor for column, factor in zip(columns, basis, strict=True)))
 
-    def _beyond(self, force: str, load: StationLoad, u: Array, seen: Any) -> Array:
+    def _acting(self, force: str, load: StationLoad) -> grids.Load:
         if force == "axial":
-            value = _column(load.n, u)
-        elif force == "shear":
-            value = _column(load.f, u)
-        else:
-            value = _column(load.m, u) + _column(load.f, u) * self.length * (_column(load.station, u) - u)
-        return np.where(seen, value, 0.0)
+            return load.station, load.n, np.zeros_like(load.n)
+        if force == "shear":
+            return load.station, load.f, np.zeros_like(load.f)
+        return load.station, load.m, load.f * self.length
+
+    def _beyond(self, force: str, load: StationLoad, u: Array, seen: Any) -> Array:
+        station, constant, slope = (_column(values, u) for values in self._acting(force, load))
+        return np.where(seen, constant + slope * (station - u), 0.0)
 
     def _stationary(self, force: str) -> list[Array]:
         """Where the force may peak inside: at the stations, and where its derivative along the link is zero."""

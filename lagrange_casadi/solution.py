@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -155,6 +155,12 @@ class Solution:
     def links_with_sections(self) -> tuple[str, ...]:
         """The links whose sections were wanted."""
         return tuple(self._sections)
+
+    def during(self, instants: slice) -> Solution:
+        """The same at some of the instants."""
+        series = {name: values[instants] for name, values in self.series.items()}
+        certificate = {name: values[instants] for name, values in self.certificate.items()}
+        return replace(self, t=self.t[instants], series=series, certificate=certificate)
 
     def determined(self, name: str) -> bool:
         """Whether equilibrium determines a quantity; of a link, all its section forces or none."""

@@ -33,6 +33,7 @@ ORDER = (
     "motion",
     "scene",
     "codegen",
+    "grids",
     "description",
     "section_law",
     "solution",

@@ -48,19 +48,15 @@ _NAMES: dict[Language, tuple[str, tuple[str, ...]]] = {
 
 @dataclass(frozen=True)
 class Compiler:
-    """A compiler: its language, the command that runs it and the first line of its version, which holds no path.
-
-    ``extra`` flags come after the package's own.
-    """
+    """A compiler: its language, the command that runs it and the first line of its version, which holds no path."""
 
     language: Language
     command: tuple[str, ...]
     version: str
-    extra: tuple[str, ...] = ()
 
     def flags(self, source: str) -> tuple[str, ...]:
         """The flags for a source."""
-        flags = (*FLAGS[self.language], *self.extra)
+        flags = FLAGS[self.language]
         if source.count(";\n") < LARGE:
             return flags
         return tuple("-O1" if flag.startswith("-O") else flag for flag in flags)
@@ -108,8 +104,10 @@ def cache_folder() -> Path:
 
 
 @contextmanager
-def built(source: str, compiler: Compiler) -> Iterator[Path]:
+def built(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Iterator[Path]:
     """The shared library of a source, from the cache or newly built; it need not outlive the block.
+
+    ``extra`` flags come after the package's own.
 
     Warns where the cache cannot be written, and where what it held was damaged. Raises :class:`CompilerError` where the compiler
     refuses the source; its whole message is kept beside the source in the cache.
@@ -122,13 +120,13 @@ def built(source: str, compiler: Compiler) -> Iterator[Path]:
     except OSError as error:
         warnings.warn(f"cannot write into the cache folder {folder}: {error.strerror}; compiled for this time only", stacklevel=2)
         with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as temporary:
-            yield _build(source, compiler, Path(temporary))
+            yield _build(source, compiler, extra, Path(temporary))
     else:
-        yield _build(source, compiler, folder)
+        yield _build(source, compiler, extra, folder)
 
 
-def _build(source: str, compiler: Compiler, folder: Path) -> Path:
-    flags = compiler.flags(source)
+def _build(source: str, compiler: Compiler, extra: tuple[str, ...], folder: Path) -> Path:
+    flags = (*compiler.flags(source), *extra)
     machine = _machine() if "-march=native" in flags else ""
     identity = "\0".join([source, *flags, *compiler.command, compiler.version, machine])
     name = hashlib.sha256(identity.encode()).hexdigest()[:32]

@@ -1,0 +1,77 @@
+/* Section forces over instants and ratios, row by row: a combination of a few functions along the link. */
+#include <stdint.h>
+#include <string.h>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+#define TILE 2048
+
+/* Put a tile into memory without reading first what it replaces, nor turning other data out of the cache. */
+static void stream(double* out, const double* tile, long long n) {
+  long long i = 0;
+#ifdef __SSE2__
+  if (((uintptr_t) out & 15) != 0 && n > 0) {
+    out[0] = tile[0];
+    i = 1;
+  }
+  if (((uintptr_t) (out + i) & 15) == 0) {
+    for (; i + 2 <= n; i += 2) _mm_stream_pd(out + i, _mm_loadu_pd(tile + i));
+  }
+#endif
+  memcpy(out + i, tile + i, (size_t) (n - i)*sizeof(double));
+}
+
+/* One row: sum of c[m]*basis[m][j] over three or four terms, in this order. */
+static void combine(long long n, int terms, const double* c, const double* const* basis, double* restrict row) {
+  const double c0 = c[0], c1 = c[1], c2 = c[2], *b0 = basis[0], *b1 = basis[1], *b2 = basis[2];
+  long long j;
+  if (terms == 3) {
+    for (j = 0; j < n; ++j) row[j] = (c0*b0[j] + c1*b1[j]) + c2*b2[j];
+  } else {
+    const double c3 = c[3], *b3 = basis[3];
+    for (j = 0; j < n; ++j) row[j] = ((c0*b0[j] + c1*b1[j]) + c2*b2[j]) + c3*b3[j];
+  }
+}
+
+/* What acts at a station is seen by the sections on its base side, and at the very tip always. */
+static void act(long long n, double station, double constant, double slope, const double* u, double* restrict row) {
+  const int at_tip = station >= 1.0;
+  long long j;
+  for (j = 0; j < n; ++j) {
+    const int seen = (u[j] < station) | ((u[j] >= 1.0) & at_tip);
+    row[j] += seen ? constant + slope*(station - u[j]) : 0.0;
+  }
+}
+
+/* out[i*k + j], n rows of k ratios u. columns[m][i] are the coefficients of basis[m*k + j], and acting[3*s], [3*s + 1], [3*s + 2] the
+   station, the constant and the slope of load s. */
+__attribute__((visibility("default")))
+void lagrange_casadi_grid(long long n, long long k, int terms, const double* const* columns, const double* basis, int loads,
+                          const double* const* acting, const double* u, int streams, double* out) {
+  double tile[TILE], c[4];
+  const double* along[4];
+  const long long width = k < TILE ? k : TILE, rows = TILE/width;
+  long long first, start, i;
+  int m, s;
+  for (first = 0; first < n; first += rows) {
+    const long long many = n - first < rows ? n - first : rows;
+    for (start = 0; start < k; start += width) {
+      const long long size = k - start < width ? k - start : width;
+      double* rows_here = streams ? tile : out + first*k + start;
+      for (m = 0; m < terms; ++m) along[m] = basis + m*k + start;
+      for (i = 0; i < many; ++i) {
+        for (m = 0; m < terms; ++m) c[m] = columns[m][first + i];
+        combine(size, terms, c, along, rows_here + i*size);
+        for (s = 0; s < loads; ++s) {
+          const double* const* load = acting + 3*s;
+          act(size, load[0][first + i], load[1][first + i], load[2][first + i], u + start, rows_here + i*size);
+        }
+      }
+      if (streams) stream(out + first*k + start, tile, many*size);
+    }
+  }
+#ifdef __SSE2__
+  if (streams) _mm_sfence();
+#endif
+}

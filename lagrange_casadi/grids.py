@@ -1,0 +1,112 @@
+"""Grids of (t, xi) filled at the speed of memory: small products over a basis, written straight into the result.
+
+A grid worth it is filled by compiled code, on all cores; any other by NumPy, in blocks. Both take the same operations in the same
+order, so they give the same bits.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from importlib import resources
+from typing import Any
+
+import numpy as np
+
+from .codegen import cores, find_compiler
+from .codegen.compiler import built
+from .density import Array
+from .errors import CompilerError, SizeError
+
+WORTH_COMPILING = 1 << 17
+"""Values from which on compiled code fills a grid."""
+
+_STREAMING = 1 << 24
+"""Bytes from which on a grid goes past the caches."""
+
+_BLOCK = 1 << 14
+_SHARE = 1 << 21
+_OPTIONS = ("-O3", "-march=native")
+
+Load = tuple[Array, Array, Array]
+"""Station, constant and slope of what acts there: sections on its base side feel constant + slope (station - u)."""
+
+
+def fill(columns: Sequence[Array], basis: Sequence[Array], loads: Sequence[Load], u: Array, out: Array) -> None:
+    """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what acts at stations.
+
+    ``columns`` and ``basis`` are three or four; ``u`` are the ratios.
+    """
+    entry = _compiled() if out.size >= WORTH_COMPILING else None
+    if entry is None:
+        _fill_in_blocks(columns, basis, loads, u, out)
+        return
+    flat = [np.ascontiguousarray(row) for row in (*columns, *(row for load in loads for row in load))]
+    functions, ratios = np.ascontiguousarray(np.stack(basis)), np.ascontiguousarray(u)
+    n, k = out.shape
+    shares = max(1, min(cores(), out.size // _SHARE, n))
+    size = -(-n // shares)
+
+    def run(start: int) -> None:
+        addresses = [row.ctypes.data + start * row.itemsize for row in flat]
+        terms, acting = addresses[: len(columns)], addresses[len(columns) :]
+        entry(
+            *(min(size, n - start), k, len(terms), (ctypes.c_void_p * len(terms))(*terms), functions.ctypes.data),
+            *(len(loads), (ctypes.c_void_p * len(acting))(*acting), ratios.ctypes.data),
+            *(int(out.nbytes >= _STREAMING), out[start:].ctypes.data),
+        )
+
+    if shares == 1:
+        run(0)
+        return
+    with ThreadPoolExecutor(shares) as pool:
+        list(pool.map(run, range(0, n, size)))
+
+
+def empty(what: str, shape: tuple[int, ...]) -> Array:
+    """An array to fill. Raises :class:`SizeError` where this machine has less memory than that."""
+    size = 8 * float(np.prod(np.array(shape, dtype=float)))
+    try:
+        there = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (ValueError, OSError, AttributeError):
+        there = np.inf
+    if size > there:
+        raise SizeError(
+            f"{what} of {' x '.join(map(str, shape))} values needs {size / 1e9:.3g} GB, and this machine has {there / 1e9:.3g} GB"
+        )
+    return np.empty(shape)
+
+
+def _fill_in_blocks(columns: Sequence[Array], basis: Sequence[Array], loads: Sequence[Load], u: Array, out: Array) -> None:
+    height = max(1, _BLOCK // max(1, out.shape[1]))
+    for start in range(0, out.shape[0], height):
+        block = slice(start, start + height)
+        rows = out[block]
+        np.multiply(columns[0][block, None], basis[0], out=rows)
+        for column, function in zip(columns[1:], basis[1:], strict=True):
+            rows += column[block, None] * function
+        for station, constant, slope in loads:
+            at = station[block, None]
+            seen = (u < at) | ((u >= 1.0) & (at >= 1.0))
+            rows += np.where(seen, constant[block, None] + slope[block, None] * (at - u), 0.0)
+
+
+@functools.cache
+def _compiled() -> Any | None:
+    """The C function, or None where there is no compiler that takes it."""
+    compiler = find_compiler()
+    if compiler is None:
+        return None
+    source = resources.files("lagrange_casadi.codegen").joinpath("grids.c").read_text()
+    try:
+        with built(source, compiler, _OPTIONS) as path:
+            entry = ctypes.CDLL(str(path)).lagrange_casadi_grid
+    except (CompilerError, OSError):
+        return None
+    integer, pointer = ctypes.c_longlong, ctypes.c_void_p
+    entry.restype = None
+    entry.argtypes = [integer, integer, ctypes.c_int, pointer, pointer, ctypes.c_int, pointer, pointer, ctypes.c_int, pointer]
+    return entry

@@ -1,0 +1,68 @@
+"""Grids of section forces: compiled or not, in one piece or in many, the same bits."""
+
+import numpy as np
+import pytest
+from builders import slider_crank
+
+from lagrange_casadi import evaluate, grids, load, save
+from lagrange_casadi.density import NumericDensity
+from lagrange_casadi.errors import SizeError
+from lagrange_casadi.section_law import FORCES, SectionLaw, StationLoad
+
+random = np.random.default_rng(4)
+
+
+def loaded_law(n):
+    """A link with a load at its tip, one at a station, and one that travels from before the base to beyond the tip."""
+    coefficients = {name: random.normal(size=n) for name in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")}
+    stations = (np.ones(n), np.full(n, 0.4), np.linspace(-0.1, 1.1, n))
+    loads = tuple(StationLoad(f"load{i}", station, *random.normal(size=(3, n))) for i, station in enumerate(stations))
+    return SectionLaw(0.7, NumericDensity((0.0, 0.3, 1.0), ((1.3, 0.2), (0.5,))), coefficients, loads)
+
+
+@pytest.mark.parametrize(("n", "k"), [(1, 1), (1, 4097), (700, 7), (3, 5000), (911, 201), (2, 100_001), (140_000, 1)])
+def test_compiled_and_not_agree_to_the_last_bit(n, k, monkeypatch):
+    law, xi = loaded_law(n), np.linspace(0, 1, k)
+    for force in FORCES:
+        monkeypatch.setattr(grids, "WORTH_COMPILING", 10**12)
+        plain = law.on_grid(force, xi)
+        monkeypatch.setattr(grids, "WORTH_COMPILING", 0)
+        for share, streaming in ((10**9, 10**12), (1000, 10**12), (1000, 0), (10**9, 0)):
+            monkeypatch.setattr(grids, "_SHARE", share)
+            monkeypatch.setattr(grids, "_STREAMING", streaming)
+            for offset in (0, 1):  # off the vectors' boundaries too
+                out = np.full(n * k + 1, np.nan)[offset : offset + n * k].reshape(n, k)
+                assert law.on_grid(force, xi, out) is out
+                assert out.tobytes() == plain.tobytes()
+
+
+def test_a_grid_is_what_the_law_gives_at_each_point():
+    law, xi = loaded_law(50), np.linspace(0, 1, 41)
+    for force in FORCES:
+        np.testing.assert_allclose(law.on_grid(force, xi), law.at(force, np.tile(xi, (50, 1))), rtol=0, atol=1e-14)
+
+
+def test_without_a_compiler_numpy_fills(monkeypatch):
+    monkeypatch.setattr(grids, "find_compiler", lambda: None)
+    grids._compiled.cache_clear()
+    law, xi = loaded_law(400), np.linspace(0, 1, 401)
+    plain = law.on_grid("bending", xi)
+    grids._compiled.cache_clear()
+    monkeypatch.undo()
+    assert np.array_equal(law.on_grid("bending", xi), plain)
+
+
+def test_a_file_written_in_blocks_holds_the_whole_grid(tmp_path, monkeypatch):
+    solution = evaluate(slider_crank(), t=(0, 0.08, 203), xi=(0, 1, 17))
+    for chunk, block in ((1 << 20, 1 << 23), (1000, 5000), (40, 40)):
+        monkeypatch.setattr("lagrange_casadi.store._CHUNK_BYTES", chunk)
+        monkeypatch.setattr("lagrange_casadi.store._BLOCK_BYTES", block)
+        save(solution, tmp_path / "x.h5")
+        again = load(tmp_path / "x.h5")
+        for force in FORCES:
+            assert np.array_equal(again.array(f"section:rod:{force}"), solution.array(f"section:rod:{force}"))
+
+
+def test_what_does_not_fit_into_memory_is_one_line_with_its_size():
+    with pytest.raises(SizeError, match=r"a grid of axial of 11 x 1000000000000 values needs 8\.8e\+04 GB, and this machine has"):
+        grids.empty("a grid of axial", (11, 10**12))
