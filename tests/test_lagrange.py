@@ -61,6 +61,58 @@ def test_coordinates_may_be_a_cosine_and_a_sine():
     np.testing.assert_allclose(one, two, rtol=1e-15)
 
 
+def double_pendulum(velocities):
+    """Two rods by their absolute angles, the lower one's bearing released by a mobility; E over coordinates, or over velocities."""
+    q, qd, qdd, e, ed, w = (ca.SX.sym(n, 2) for n in ("q", "qd", "qdd", "e", "ed", "w"))
+    l1, l2, m1, m2, inertia, g = 0.7, 0.4, 1.3, 0.8, 0.05, 9.81
+    upper = l1 * ca.vertcat(ca.sin(q[0]), -ca.cos(q[0]))
+    lower = upper + e + l2 * ca.vertcat(ca.sin(q[1]), -ca.cos(q[1]))
+    speeds = [ca.jtimes(place, ca.vertcat(q, e), ca.vertcat(qd, ed)) for place in (upper, lower)]
+    # Partly over velocities, partly over rates and coordinates: only the lower mass is written in w.
+    own = m1 * ca.sumsqr(speeds[0]) / 2 + inertia * qd[1] ** 2 * (1 + 0.1 * ca.cos(q[0])) / 2
+    fields = {"coordinates": q, "rates": qd, "accelerations": qdd, "mobilities": e, "mobility_rates": ed}
+    fields["force_function"] = -g * (m1 * upper[1] + m2 * lower[1])
+    if velocities:
+        fields |= {"velocities": w, "velocity_graphs": speeds[1]}
+    return LagrangeSystem(kinetic=own + m2 * ca.sumsqr(w if velocities else speeds[1]) / 2, **fields)
+
+
+def test_energy_over_velocities_gives_the_same_terms():
+    one, two = (numbers(s, *s.terms()) for s in (double_pendulum(False), double_pendulum(True)))
+    np.testing.assert_allclose(two, one, rtol=1e-14)
+
+
+def test_energy_over_velocities_and_the_coordinates_too():
+    """A mass that depends on where it is, moving at w = q': R = m q'' + m' q'^2 / 2, however the energy is split."""
+    q, qd, qdd, w = (ca.SX.sym(n) for n in ("q", "qd", "qdd", "w"))
+    mass = 1 + ca.sin(q) ** 2
+    over_rates = LagrangeSystem(mass * qd**2 / 2, ca.SX(0), q, qd, qdd)
+    mixed = LagrangeSystem(mass * w * qd / 2, ca.SX(0), q, qd, qdd, velocities=w, velocity_graphs=qd)
+    one, two = (numbers(s, s.terms()[0], symbols=[0.7, -0.4, 1.3]) for s in (over_rates, mixed))
+    np.testing.assert_allclose(two, one, rtol=1e-14)
+
+
+def test_fields_and_forces_work_along_velocities():
+    """Gravity as the acceleration of a field, and a force on a velocity, are what U and Q* are."""
+    q, qd, qdd, w = (ca.SX.sym(n) for n in ("q", "qd", "qdd", "w"))
+    height_rate = ca.cos(q) * qd
+    height_acceleration = ca.cos(q) * qdd - ca.sin(q) * qd**2
+    system = LagrangeSystem(
+        3.0 * w**2 / 2,
+        ca.SX(0),
+        q,
+        qd,
+        qdd,
+        velocities=w,
+        velocity_graphs=height_rate,
+        velocity_rates=height_acceleration + 9.81,
+        velocity_forces=2.0,
+    )
+    (found,) = numbers(system, system.terms()[0], symbols=[0.7, -0.4, 1.3])
+    rise = np.cos(0.7) * 1.3 - np.sin(0.7) * 0.16
+    assert found == pytest.approx(np.cos(0.7) * (3.0 * (rise + 9.81) - 2.0), rel=1e-14)
+
+
 def test_multipliers_work_on_constraints():
     """A bead held on the line y = x by a constraint: the multiplier enters with the gradient of Phi (paper eq. 8)."""
     q, qd, qdd, lam = ca.SX.sym("q", 2), ca.SX.sym("qd", 2), ca.SX.sym("qdd", 2), ca.SX.sym("lam")
@@ -106,6 +158,8 @@ def test_one_reverse_sweep_serves_any_number_of_mobilities():
         ({"rates": lambda s: 2 * s.rates}, "rates must be symbols"),
         ({"forces": lambda s: ca.SX.zeros(3)}, "forces must have 2 entries"),
         ({"constraints": lambda s: s.coordinates}, "multipliers must have 2 entries"),
+        ({"velocities": lambda s: ca.SX.sym("w")}, "velocity_graphs must have 1 entries, got 0"),
+        ({"velocity_forces": lambda s: s.rates}, "velocity_forces must have 0 entries, got 2"),
     ],
 )
 def test_misuse_is_named(change, says):
