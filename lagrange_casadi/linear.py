@@ -19,7 +19,7 @@ class LinearSystem:
 
     matrix: Any
     inverse: Any
-    reflections: tuple[Any, ...]
+    reflections: tuple[tuple[Any, Any], ...]
     triangle: Any
     volume: Any
 
@@ -42,13 +42,13 @@ class LinearSystem:
         for j in range(min(n, m - 1)):
             x = rest[j:, j]
             length = ca.sqrt(ca.sumsqr(x))
-            signed = ca.if_else(x[0] < 0, -length, length)
+            signed = ca.copysign(length, x[0])
             v = ca.vertcat(x[0] + signed, x[1:])
-            v = v / ca.sqrt(ca.sumsqr(v))
-            below = rest[j:, j:]
-            rest[j:, j:] = below - 2 * v @ (v.T @ below)
-            reflections.append(v)
-            volume *= -rest[j, j]
+            # 2 / v'v, for x and what it is reflected into, -signed, are of one length.
+            reflections.append((v, 1 / (signed * v[0])))
+            rest[j:, j] = ca.vertcat(-signed, ca.SX.zeros(m - j - 1))
+            rest[j:, j + 1 :] = _reflect(reflections[-1], rest[j:, j + 1 :])
+            volume *= signed
         if m == n:
             volume *= rest[n - 1, n - 1]
         return cls(matrix, None, tuple(reflections), rest[:n, :], volume)
@@ -63,8 +63,8 @@ class LinearSystem:
         if self.inverse is not None:
             return self.inverse @ right
         turned = right
-        for j, v in enumerate(self.reflections):
-            turned = ca.vertcat(turned[:j], _reflect(v, turned[j:]))
+        for j, reflection in enumerate(self.reflections):
+            turned = ca.vertcat(turned[:j], _reflect(reflection, turned[j:]))
         n = self.matrix.shape[1]
         x = [ca.SX(0)] * n
         for i in reversed(range(n)):
@@ -79,10 +79,12 @@ class LinearSystem:
         for i in range(self.matrix.shape[1]):
             x.append((right[i] - sum(self.triangle[j, i] * x[j] for j in range(i))) / self.triangle[i, i])
         turned = ca.vertcat(ca.SX(0, 1), *x, free)
-        for j, v in reversed(list(enumerate(self.reflections))):
-            turned = ca.vertcat(turned[:j], _reflect(v, turned[j:]))
+        for j, reflection in reversed(list(enumerate(self.reflections))):
+            turned = ca.vertcat(turned[:j], _reflect(reflection, turned[j:]))
         return turned
 
 
-def _reflect(v: Any, x: Any) -> Any:
-    return x - 2 * v * ca.dot(v, x)
+def _reflect(reflection: tuple[Any, Any], x: Any) -> Any:
+    """(1 - factor v v') x."""
+    v, factor = reflection
+    return x - v @ (factor * (v.T @ x))

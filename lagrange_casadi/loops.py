@@ -81,6 +81,8 @@ def _direction_on_line(phi: Any, angle: Coordinate, branch: Any) -> tuple[Any, A
         return (ca.vertcat(cross, along) if a.is_zero() else ca.vertcat(along, cross)), closure
     squared = _square(a) + _square(b)
     reach = ca.sqrt(squared)
+    if rest.is_zero():
+        return branch * ca.vertcat(-b, a) / reach, ca.SX(1)
     root = (reach - rest) * (reach + rest)
     w = branch * ca.sqrt(root)
     return ca.vertcat(-a * rest - b * w, -b * rest + a * w) / squared, root / squared
@@ -97,12 +99,13 @@ def _two_circles(phi: Any, unknown: Sequence[Coordinate], branch: Any) -> Closed
     px, py = -rest[0], -rest[1]
     squared = _square(px) + _square(py)
     d = ca.sqrt(squared)
-    root = ((l1 + l2 + d) * (l1 + l2 - d)) * ((d + l1 - l2) * (d - l1 + l2)) / 4
+    further, nearer = d + l2, d - l2
+    root = ((l1 + l2 + d) * (l1 + l2 - d)) * ((further - l1) * (nearer + l1)) / 4
     w = branch * ca.sqrt(root)
-    reach1 = (_square(l1) + (d - l2) * (d + l2)) / 2
-    reach2 = (_square(l2) + (d - l1) * (d + l1)) / 2
-    first = ((px * reach1 - py * w) / squared, (py * reach1 + px * w) / squared)
-    second = ((px * reach2 + py * w) / squared, (py * reach2 - px * w) / squared)
+    reach = (_square(l1) + nearer * further) / 2
+    first = ((px * reach - py * w) / squared, (py * reach + px * w) / squared)
+    # What is left of p: its error is what p's own rounding makes of this arm.
+    second = (px - first[0], py - first[1])
     directions = tuple(_variables(_direction(v, arm)) for v, arm in zip((first, second), arms, strict=True))
     return ClosedForm(branch, directions, root / _square(l1 * l2))
 
