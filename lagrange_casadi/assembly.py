@@ -2,106 +2,84 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import casadi as ca
 
 from .density import Density
 from .mechanism import Mechanism
-from .multibody import (
-    Applied,
-    Closure,
-    Coordinate,
-    Multibody,
-    RowGraph,
-    SectionCut,
-    change,
-    column,
-    joint_coordinate,
-)
+from .multibody import Applied, Closure, Coordinate, Multibody, RowGraph, change, column, joint_coordinate, joint_rates
 from .parts import Force, Joint, Link, Load, Point, PointMass, RigidMass, Spring, Torque
-from .planar import Displacement, Frame, Moments, Rotation, closure, slide
+from .planar import Frame, Pair, Rotation, Velocities, closure, gap_motion, reaction, slide
 from .tree import Branch, Tree
 
 
-def assemble(
-    mechanism: Mechanism, tree: Tree, driven: Collection[str], reactions: Collection[str], sections: Collection[str]
-) -> Multibody:
-    """The graphs of a frozen mechanism, with mobilities for the named joints' reactions and links' sections, and for nothing else.
+def assemble(mechanism: Mechanism, tree: Tree, driven: Collection[str], reactions: Collection[str]) -> Multibody:
+    """The graphs of a frozen mechanism, with mobilities for the named joints' reactions, and for nothing else.
 
     The frames and gaps that positions are solved from are built without any mobility: they do not depend on what is wanted.
+    Gravity is an acceleration of the ground, upward, in the frames that matter is weighed in (d'Alembert).
     """
-    carried = {branch.joint.name: _coordinate(branch, branch.joint.name in driven) for branch in tree.branches}
-    resting, moved = _Builder(mechanism, carried), _Builder(mechanism, carried)
+    carried = _coordinates(mechanism, tree, driven)
+    gravity = mechanism.gravity
+    resting = _Builder(mechanism, carried, Frame())
+    felt = _Builder(mechanism, carried, Frame(acceleration=(-gravity[0], -gravity[1])))
     for branch in tree.branches:
-        resting.hang(branch, displace=False, cut=False)
-        moved.hang(branch, displace=branch.joint.name in reactions, cut=branch.far.body.name in sections)
-    closures = [
-        _closure(joint.name, joint, closure(joint, *moved.ends(joint)), closure(joint, *resting.ends(joint)))
-        for joint in tree.closures
-    ]
+        resting.hang(branch, displace=False)
+        felt.hang(branch, displace=branch.joint.name in reactions)
+    closures = [_closure(joint.name, joint, *closure(joint, *resting.ends(joint))) for joint in tree.closures]
     for constraint in mechanism.constraints.values():
-        closures.append(_closure(constraint.name, None, moved.counted(constraint.phi), resting.counted(constraint.phi)))
+        gap = resting.counted(constraint.phi)
+        rate = change(gap, resting.coordinates, mechanism.time)
+        closures.append(_closure(constraint.name, None, gap, rate, change(rate, resting.coordinates, mechanism.time)))
     rows = tuple(_row(resting, row) for row in mechanism.rows.values())
     applied = tuple(part for load in mechanism.loads.values() for part in _apply(load, resting))
     held = [part for c in closures if c.joint is None for part in _hold(resting, c.name, mechanism.constraints[c.name].phi, c)]
     held += [part for graph in rows for part in _hold(resting, graph.row.name, graph.row.expression, graph)]
-    forces, mobility_forces = _generalized(moved, applied, rows)
+    velocities = Velocities()
+    kinetic = sum((_kinetic(body, felt, velocities) for body in mechanism.moving), ca.SX(0))
+    _work(felt, (*applied, *held), closures, velocities)
     return Multibody(
         mechanism=mechanism,
         tree=tree,
-        coordinates=moved.coordinates,
+        coordinates=resting.coordinates,
         closures=tuple(closures),
         rows=rows,
-        joint_mobilities=moved.mobilities,
-        cuts=moved.cuts,
+        mobilities=felt.mobilities,
         frames=resting.frames,
+        felt=felt.frames,
         applied=applied,
         held=tuple(held),
-        kinetic=moved.kinetic,
-        force_function=moved.force_function,
-        forces=forces,
-        mobility_forces=mobility_forces,
+        kinetic=kinetic,
+        velocities=velocities,
     )
 
 
 class _Builder:
-    """Frames and energies, grown body by body."""
+    """Frames, grown body by body."""
 
-    def __init__(self, mechanism: Mechanism, carried: Mapping[str, Coordinate | None]) -> None:
+    def __init__(self, mechanism: Mechanism, carried: Mapping[str, Coordinate | None], ground: Frame) -> None:
         self.mechanism = mechanism
         self.carried = carried
         self.coordinates = tuple(coordinate for coordinate in carried.values() if coordinate)
-        self.frames: dict[str, Frame] = {mechanism.ground.name: Frame()}
-        self.mobilities: dict[str, Displacement] = {}
-        self.cuts: dict[str, SectionCut] = {}
-        self.kinetic = ca.SX(0)
-        self.force_function = ca.SX(0)
+        self.frames: dict[str, Frame] = {mechanism.ground.name: ground}
+        self.mobilities: dict[str, Any] = {}
 
     def ends(self, joint: Joint) -> tuple[Frame, Frame]:
         """The frames of a joint's parent and child."""
         parent, child = joint.bodies
         return self.frames[parent.name], self.frames[child.name]
 
-    def hang(self, branch: Branch, *, displace: bool, cut: bool) -> None:
-        """Place a body on its branch and add its energy, with the branch's mobility and the body's section where wanted."""
-        joint, coordinate = branch.joint, self.carried[branch.joint.name]
-        frame = self._undisplaced(branch, coordinate)
+    def hang(self, branch: Branch, *, displace: bool) -> None:
+        """Place a body on its branch, with the branch's mobility where wanted."""
+        joint = branch.joint
+        frame = self._undisplaced(branch, self.carried[joint.name])
         if displace:
-            self.mobilities[joint.name] = Displacement.named(joint.name, rotates=joint.holds_direction)
-            frame = frame.displaced(self.mobilities[joint.name], *frame.anchor, _drift(branch, coordinate))
-        body = branch.far.body
-        assert isinstance(body, Link | PointMass)
-        self.frames[body.name] = frame
-        whole = moments(body)
-        if cut:
-            piece = Moments(*(ca.SX.sym(f"mu{i}_{body.name}") for i in range(3)))
-            displacement = Displacement.named(f"{body.name}_section", rotates=False)
-            self.cuts[body.name] = SectionCut(displacement, piece)
-            self._weigh(piece, frame.displaced(displacement, *frame.anchor))
-            whole = whole.without(piece)
-        self._weigh(whole, frame)
+            self.mobilities[joint.name] = ca.SX.sym(f"ed_{joint.name}", 3 if joint.holds_direction else 2)
+            frame = frame.displaced(self.mobilities[joint.name])
+        self.frames[branch.far.body.name] = frame
 
     def counted(self, expression: Any) -> Any:
         """An expression of what the user measures in the tree's own variables, angles counted by turns."""
@@ -118,10 +96,10 @@ class _Builder:
             symbols += [*measure.places, *measure.rates]
             of = measure.of
             if isinstance(of, Joint):
-                values += [self._joint_place(of, turns=turns), self._joint_rate(of)]
+                values += [self._joint_place(of, turns=turns), joint_rates(of, self.frames, self.coordinates)[0]]
             elif isinstance(of, Point):
                 frame = self.frames[of.body.name]
-                values += [*frame.place_of(of.x, of.y), *frame.speed_of(of.x, of.y)]
+                values += [*frame.place_of(of.x, of.y), *frame.motion_of(of.x, of.y)[0]]
             else:
                 values += [self.frames[of.name].rotation.angle, self.frames[of.name].rate]
         return ca.substitute(ca.SX(expression), column(symbols), column(values))
@@ -132,91 +110,99 @@ class _Builder:
             return ca.SX(child.rotation.angle - parent.rotation.angle)
         return joint_coordinate(joint, self.frames, self.coordinates)
 
-    def _joint_rate(self, joint: Joint) -> Any:
-        """The rate of a joint's coordinate, with the rates of the mobilities."""
-        parent, child = self.ends(joint)
-        if joint.coordinate == "angle":
-            return ca.SX(child.rate - parent.rate)
-        for coordinate in self.coordinates:
-            if coordinate.joint == joint.name:
-                return coordinate.rate
-        value = ca.SX(slide(joint, parent, child)[0])
-        rate = change(value, self.coordinates, self.mechanism.time)
-        for displacement in (*self.mobilities.values(), *(cut.displacement for cut in self.cuts.values())):
-            rate += ca.jtimes(value, displacement.symbols, displacement.rates)
-        return rate
-
     def _undisplaced(self, branch: Branch, coordinate: Coordinate | None) -> Frame:
         """The frame of the body that hangs on a branch, anchored at the joint's point on its child."""
         joint, near = branch.joint, branch.near
         base = self.frames[near.body.name]
-        rotation, rate = self._turn(branch, coordinate, base)
+        rotation, rate, angular = self._turn(branch, coordinate, base)
+        point, anchor = (near.x, near.y), (branch.far.x, branch.far.y)
         if not joint.slides:
-            at, speed = base.place_of(near.x, near.y), base.speed_of(near.x, near.y)
-            return Frame(at, speed, rotation, rate, (branch.far.x, branch.far.y))
+            return Frame(base.place_of(*point), *base.motion_of(*point), rotation, rate, angular, anchor)
         assert coordinate is not None
         along = (joint.axis[0] * coordinate.value, joint.axis[1] * coordinate.value)
-        carrier = rotation if branch.reverse else base.rotation
-        sliding = carrier.apply(joint.axis[0] * coordinate.rate, joint.axis[1] * coordinate.rate)
-        point, anchor = (near.x, near.y), (branch.far.x, branch.far.y)
         if branch.reverse:
             anchor = (anchor[0] + along[0], anchor[1] + along[1])
         else:
             point = (point[0] + along[0], point[1] + along[1])
-        at, speed = base.place_of(*point), base.speed_of(*point)
-        speed = (speed[0] + branch.sign * sliding[0], speed[1] + branch.sign * sliding[1])
-        return Frame(at, speed, rotation, rate, anchor)
+        carrier = rotation if branch.reverse else base.rotation
+        tx, ty = carrier.apply(branch.sign * joint.axis[0], branch.sign * joint.axis[1])
+        (vx, vy), (ax, ay) = base.motion_of(*point)
+        sliding, straight, turning = coordinate.rate, coordinate.acceleration, 2 * base.rate * coordinate.rate
+        speed = (vx + sliding * tx, vy + sliding * ty)
+        # The line turns under what slides on it (Coriolis).
+        acceleration = (ax + (straight * tx - turning * ty), ay + (straight * ty + turning * tx))
+        return Frame(base.place_of(*point), speed, acceleration, rotation, rate, angular, anchor)
 
     @staticmethod
-    def _turn(branch: Branch, coordinate: Coordinate | None, base: Frame) -> tuple[Rotation, Any]:
+    def _turn(branch: Branch, coordinate: Coordinate | None, base: Frame) -> tuple[Rotation, Any, Any]:
         if not branch.far.body.oriented:
-            return Rotation(), 0.0
+            return Rotation(), 0.0, 0.0
         if branch.joint.holds_direction:
             turn = Rotation.by(branch.joint.angle)
-            return base.rotation.then(turn.inverse if branch.reverse else turn), base.rate
+            return base.rotation.then(turn.inverse if branch.reverse else turn), base.rate, base.angular
         assert coordinate is not None
         own = Rotation(*ca.vertsplit(coordinate.variables))
         if not coordinate.driven:
-            return own, coordinate.rate
-        return base.rotation.then(own.inverse if branch.reverse else own), base.rate + branch.sign * coordinate.rate
+            return own, coordinate.rate, coordinate.acceleration
+        if coordinate.relative:
+            turned = base.rotation.then(own.inverse if branch.reverse else own)
+        else:
+            turned = replace(own, angle=base.rotation.angle + branch.sign * own.angle)
+        return turned, base.rate + branch.sign * coordinate.rate, base.angular + branch.sign * coordinate.acceleration
 
-    def _weigh(self, matter: Moments, frame: Frame) -> None:
-        self.kinetic += matter.kinetic(frame)
-        self.force_function += matter.force_function(frame, self.mechanism.gravity)
 
-
-def moments(body: Link | PointMass) -> Moments:
-    """Mass and moments of a whole body about its origin."""
-    matter = body.mass
+def _kinetic(body: Link | PointMass, felt: _Builder, velocities: Velocities) -> Any:
+    """Kinetic energy of a body (paper eq. 16), in its rate of turning and velocities of its points: no direction is in it."""
+    frame, matter = felt.frames[body.name], body.mass
+    points: list[tuple[Any, Pair]]
     if isinstance(body, Link) and isinstance(matter, Density):
-        return Moments(*matter.moments(body.length))
-    if isinstance(matter, RigidMass):
-        x, y = matter.centre
-        second = matter.inertia + matter.mass * (x * x + y * y)
-        return Moments(matter.mass, matter.mass * x, second, matter.mass * y)
-    return Moments(matter)
+        base, tip, inertia = matter.ends(body.length)
+        points = [(base, (0.0, 0.0)), (tip, (body.length, 0.0))]
+    elif isinstance(matter, RigidMass):
+        points, inertia = [(matter.mass, matter.centre)], matter.inertia
+    else:
+        points, inertia = [(matter, (0.0, 0.0))], 0.0
+    energy = sum((mass * ca.sumsqr(velocities.point(frame.motion_of(*place))) / 2 for mass, place in points), ca.SX(0))
+    return energy + inertia * velocities.turn(frame.rate, frame.angular) ** 2 / 2
 
 
-def _coordinate(branch: Branch, driven: bool) -> Coordinate | None:
-    joint, body = branch.joint, branch.far.body
-    if joint.kind == "weld" or (joint.kind == "revolute" and not body.oriented):
-        return None
-    q, rate, acceleration = (ca.SX.sym(f"{joint.name}{end}") for end in ("", "_rate", "_acceleration"))
-    if joint.slides:
-        return Coordinate(joint.name, body.name, "slide", driven, q, ca.SX(1), rate, acceleration)
-    c, s = ca.SX.sym(f"cos_{joint.name}"), ca.SX.sym(f"sin_{joint.name}")
-    return Coordinate(joint.name, body.name, "angle", driven, ca.vertcat(c, s, q), ca.vertcat(-s, c, 1), rate, acceleration)
+def _coordinates(mechanism: Mechanism, tree: Tree, driven: Collection[str]) -> dict[str, Coordinate | None]:
+    """The coordinate of every branch, by its joint; None where a branch leaves no freedom."""
+    # Directions that drives alone set, and their rates, by body.
+    turned: dict[str, tuple[Any, Any]] = {mechanism.ground.name: (ca.SX(0), ca.SX(0))}
+    found: dict[str, Coordinate | None] = {}
+    for branch in tree.branches:
+        joint, near, far = branch.joint, branch.near.body.name, branch.far.body
+        q, rate, acceleration = (ca.SX.sym(f"{joint.name}{end}") for end in ("", "_rate", "_acceleration"))
+        if joint.holds_direction and near in turned:
+            turned[far.name] = (turned[near][0] + branch.sign * joint.angle, turned[near][1])
+        if joint.kind == "weld" or (joint.kind == "revolute" and not far.oriented):
+            found[joint.name] = None
+        elif joint.slides:
+            found[joint.name] = Coordinate(joint.name, far.name, "slide", joint.name in driven, q, rate, rate, acceleration)
+        else:
+            turn, spin = q, rate
+            if joint.name in driven and near in turned:
+                turn, spin = (before + branch.sign * own for before, own in zip(turned[near], (q, rate), strict=True))
+                turned[far.name] = turn, spin
+            c, s = ca.SX.sym(f"cos_{joint.name}"), ca.SX.sym(f"sin_{joint.name}")
+            found[joint.name] = Coordinate(
+                joint.name,
+                far.name,
+                "angle",
+                joint.name in driven,
+                ca.vertcat(c, s, q),
+                ca.vertcat(-s * spin, c * spin, rate),
+                rate,
+                acceleration,
+                turn,
+                relative=joint.name in driven and near not in turned,
+            )
+    return found
 
 
-def _drift(branch: Branch, coordinate: Coordinate | None) -> tuple[Any, Any]:
-    """How a joint's point on its child moves in the axes of the body that hangs on the branch."""
-    if coordinate is None or not (branch.reverse and branch.joint.slides):
-        return 0.0, 0.0
-    return branch.joint.axis[0] * coordinate.rate, branch.joint.axis[1] * coordinate.rate
-
-
-def _closure(name: str, joint: Joint | None, phi: Any, gap: Any) -> Closure:
-    return Closure(name, joint, phi, gap, ca.SX.sym(f"lambda_{name}", phi.numel()))
+def _closure(name: str, joint: Joint | None, gap: Any, rate: Any, acceleration: Any) -> Closure:
+    return Closure(name, joint, gap, rate, acceleration, ca.SX.sym(f"lambda_{name}", gap.numel()))
 
 
 def _apply(load: Load, resting: _Builder) -> list[Applied]:
@@ -234,7 +220,8 @@ def _apply(load: Load, resting: _Builder) -> list[Applied]:
     assert isinstance(load, Spring)
     first, second = (resting.frames[point.body.name] for point in (load.first, load.second))
     (ax, ay), (bx, by) = first.place_of(load.first.x, load.first.y), second.place_of(load.second.x, load.second.y)
-    (au, av), (bu, bv) = first.speed_of(load.first.x, load.first.y), second.speed_of(load.second.x, load.second.y)
+    (au, av), _ = first.motion_of(load.first.x, load.first.y)
+    (bu, bv), _ = second.motion_of(load.second.x, load.second.y)
     dx, dy = bx - ax, by - ay
     distance = ca.sqrt(dx * dx + dy * dy)
     rate = (dx * (bu - au) + dy * (bv - av)) / distance
@@ -279,22 +266,16 @@ def _row(resting: _Builder, row: Any) -> RowGraph:
     return RowGraph(row, residual, ca.sum1(ca.fabs(slopes * rates)) + ca.fabs(rest), ca.SX.sym(f"mu_{row.name}"))
 
 
-def _generalized(moved: _Builder, applied: tuple[Applied, ...], rows: tuple[RowGraph, ...]) -> tuple[Any, Any]:
-    """Q* of the loads and of the rows' multipliers, along coordinates and mobilities: how their power goes with the rates."""
-    fx, fy, mz = (ca.SX.sym(name, len(applied)) for name in ("fx", "fy", "mz"))
-    power = ca.SX(0)
-    for i, part in enumerate(applied):
-        frame = moved.frames[part.point.body.name]
-        vx, vy = frame.speed_of(part.point.x, part.point.y)
-        power += fx[i] * vx + fy[i] * vy + mz[i] * frame.rate
-    for graph in rows:
-        power += graph.multiplier * moved.at_state(graph.row.expression)
-    displacements = (*moved.mobilities.values(), *(cut.displacement for cut in moved.cuts.values()))
-    rates = column([*(c.rate for c in moved.coordinates), *(d.rates for d in displacements)])
-    slopes = ca.gradient(power, rates)
-    resting = column(symbol for d in displacements for symbol in (d.symbols, d.rates))
-    slopes = ca.substitute(slopes, resting, ca.SX.zeros(resting.numel()))
-    forces = column([*(p.fx for p in applied), *(p.fy for p in applied), *(p.mz for p in applied)])
-    slopes = ca.substitute(slopes, ca.vertcat(fx, fy, mz), forces)
-    along, across = ca.vertsplit(slopes, [0, len(moved.coordinates), slopes.numel()])
-    return along, across
+def _work(felt: _Builder, applied: Iterable[Applied], closures: Iterable[Closure], velocities: Velocities) -> None:
+    """Let loads and multipliers do work: along the velocities of points, and of what a closing joint holds together."""
+    for part in applied:
+        frame = felt.frames[part.point.body.name]
+        velocities.point(frame.motion_of(part.point.x, part.point.y), (part.fx, part.fy))
+        velocities.turn(frame.rate, frame.angular, part.mz)
+    for closed in closures:
+        if closed.joint is not None:
+            parent, child = felt.ends(closed.joint)
+            action = reaction(closed.joint, parent, child, closed.multipliers, closing=True)
+            velocities.point(gap_motion(closed.joint, parent, child), (action["fx"], action["fy"]))
+            if "mz" in action:
+                velocities.turn(child.rate - parent.rate, child.angular - parent.angular, action["mz"])

@@ -29,6 +29,16 @@ class Block:
     form: ClosedForm | None
 
     @property
+    def gap_rate(self) -> Any:
+        """The total time derivative of the equations."""
+        return column(closure.gap_rate for closure in self.closures)
+
+    @property
+    def gap_acceleration(self) -> Any:
+        """Their second one."""
+        return column(closure.gap_acceleration for closure in self.closures)
+
+    @property
     def name(self) -> str:
         """The closure that stands for the block where one name is wanted: its last."""
         return self.closures[-1].name
@@ -40,9 +50,8 @@ class Block:
 
     @property
     def jacobian(self) -> Any:
-        """Phi_z, in symbols."""
-        columns = [ca.jacobian(self.gap, c.variables) @ c.tangent for c in self.unknown]
-        return ca.horzcat(ca.SX(self.gap.numel(), 0), *columns)
+        """Phi_z, in symbols: how Phi' goes with the rates."""
+        return ca.jacobian(self.gap_rate, column(c.rate for c in self.unknown))
 
 
 def plan(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block, ...]:

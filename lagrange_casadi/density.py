@@ -32,16 +32,19 @@ class Density:
     cells: tuple[tuple[Any, ...], ...]
     per_length: bool
 
-    def moments(self, length: Any) -> tuple[Any, Any, Any]:
-        """Mass, first and second moment about the base, as expressions."""
+    def ends(self, length: Any) -> tuple[Any, Any, Any]:
+        """Masses at the base and at the tip, and a moment of inertia, that together move just as the link does.
+
+        They have its mass, first and second moment: with p = dm/du int p (1 - u) du, int p u du, and l^2 int p u (u - 1) du.
+        """
         found: list[Any] = [0.0, 0.0, 0.0]
         for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
             for j, coefficient in enumerate(cell):
-                for k in range(3):
-                    n = j + k + 1
-                    found[k] = found[k] + coefficient * ((b**n - a**n) / n)
+                mass, first, second = ((b**n - a**n) / n for n in range(j + 1, j + 4))
+                for k, part in enumerate((mass - first, first, second - first)):
+                    found[k] = found[k] + coefficient * part
         scale = length if self.per_length else 1.0
-        return found[0] * scale, found[1] * scale * length, found[2] * scale * length * length
+        return found[0] * scale, found[1] * scale, found[2] * scale * length * length
 
     def at(self, number: Callable[[Any], float], length: float) -> NumericDensity:
         """The density at given parameters, per unit of the ratio."""

@@ -103,7 +103,8 @@ class _Solver:
         self.guess: list[float] = []
         self.scales: list[Any] = []
         self.residuals: list[Block] = []
-        self.known: dict[Coordinate, Any] = {c: _variables(c, self.d[i]) for i, c in enumerate(driven)}
+        values = column(c.value for c in driven)
+        self.known: dict[Coordinate, Any] = {c: _variables(c, values, self.d) for c in driven}
         self.closures: dict[str, Any] = {}
 
     def numbers(self) -> dict[str, Any]:
@@ -187,7 +188,7 @@ class _Solver:
             )
         for coordinate in block.unknown:
             symbol = ca.SX.sym(f"z_{coordinate.joint}")
-            self.known[coordinate] = _variables(coordinate, symbol)
+            self.known[coordinate] = _variables(coordinate, coordinate.value, symbol)
             self.iterated.append(symbol)
             self.guess.append(self.posture[_posture_name(coordinate)])
             self.scales.append(1 if coordinate.kind == "angle" else self._size())
@@ -223,19 +224,13 @@ class _Solver:
         accelerations = {c: self.ddd[i] for i, c in enumerate(c for c in body.coordinates if c.driven)}
         systems, misfits = [], {}
         for block in blocks:
-            unknown_rates, unknown_accelerations = (
-                column(c.rate for c in block.unknown),
-                column(c.acceleration for c in block.unknown),
-            )
-            gap_rate = body.change(block.gap)
-            left = ca.substitute(gap_rate, unknown_rates, ca.SX.zeros(unknown_rates.numel()))
-            gap_acceleration = ca.substitute(
-                body.change(gap_rate), unknown_accelerations, ca.SX.zeros(unknown_accelerations.numel())
-            )
+            still = ca.SX.zeros(len(block.unknown))
+            left = ca.substitute(block.gap_rate, column(c.rate for c in block.unknown), still)
+            left_over = ca.substitute(block.gap_acceleration, column(c.acceleration for c in block.unknown), still)
             system = LinearSystem.of(self._motion(block.jacobian, rates, accelerations))
             solved = system.solve(-self._motion(left, rates, accelerations))
             rates |= dict(zip(block.unknown, ca.vertsplit(solved) if block.unknown else (), strict=True))
-            solved = system.solve(-self._motion(gap_acceleration, rates, accelerations))
+            solved = system.solve(-self._motion(left_over, rates, accelerations))
             accelerations |= dict(zip(block.unknown, ca.vertsplit(solved) if block.unknown else (), strict=True))
             systems.append(system)
             if block in self.residuals:
@@ -291,8 +286,12 @@ def describe_coordinate(joint: str, kind: str, value: float) -> str:
     return f"{joint} = {value:.6g} rad ({math.degrees(value):.6g} deg)" if kind == "angle" else f"{joint} = {value:.6g} m"
 
 
-def _variables(coordinate: Coordinate, value: Any) -> Any:
-    return ca.vertcat(ca.cos(value), ca.sin(value), value) if coordinate.kind == "angle" else value
+def _variables(coordinate: Coordinate, symbols: Any, values: Any) -> Any:
+    """A coordinate's variables for values of the coordinates ``symbols``."""
+    if coordinate.kind == "slide":
+        return ca.substitute(coordinate.value, symbols, values)
+    turn, angle = ca.vertsplit(ca.substitute(ca.vertcat(coordinate.turn, coordinate.value), symbols, values))
+    return ca.vertcat(ca.cos(turn), ca.sin(turn), angle)
 
 
 def _posture_name(coordinate: Coordinate) -> str:

@@ -8,12 +8,14 @@ material from the section to the tip,
     bending = m0 + f0 (l - xi) + f1 (mu1 - xi mu0) + f2 (mu2 - xi mu1).
 
 Energy is linear in the moments, so n1, n2, f1, f2 are derivatives of the section mobility's Lagrange terms by the moments (paper
-eq. 20); they repeat in bending because d(bending)/d(xi) = -shear, the equilibrium of an element. n0, f0, m0 are what acts on the
-tip: the reactions, efforts and loads there. What acts at a station between base and tip is seen by the sections on its base side.
+eq. 20): n2 and f2 are the square of the link's rate and less its change. They repeat in bending because d(bending)/d(xi) = -shear,
+the equilibrium of an element. n0, f0, m0 are what acts on the tip: the reactions, efforts and loads there. What acts at a station
+between base and tip is seen by the sections on its base side.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -21,10 +23,11 @@ from typing import Any
 import casadi as ca
 
 from .kinematics import Kinematics
+from .lagrange import LagrangeSystem
 from .mechanism import Mechanism
 from .multibody import Multibody, column
 from .parts import Joint, Link, Point
-from .planar import Rotation, reaction, slide
+from .planar import Frame, Velocities, reaction, slide
 
 LAW = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
 STATION = ("n", "f", "m", "station")
@@ -63,15 +66,13 @@ def internal_forces(
 ) -> InternalForces:
     """Efforts of the drives, reactions of the named joints, multipliers of constraints and rows, and the laws of links."""
     along, across = multibody.system.terms()
-    moments = column(cut.moments for cut in multibody.cuts.values())
-    whole = ca.SX.zeros(moments.numel())
-    along = kinematics.evaluate(ca.substitute(along, moments, whole))
+    along = kinematics.evaluate(along)
     unknowns, values, free = _multipliers(multibody, kinematics, along)
 
     unaided = {graph.row.replaces for graph in multibody.rows}
     drives = {c.joint: along[i] for i, c in enumerate(multibody.coordinates) if c.driven and c.joint not in unaided}
-    actions = _split(across, [d.symbols.numel() for d in multibody.displacements])
-    by_joint = dict(zip(multibody.joint_mobilities, actions, strict=False))
+    starts = itertools.accumulate((rates.numel() for rates in multibody.mobilities.values()), initial=0)
+    by_joint = dict(zip(multibody.mobilities, ca.vertsplit(across, [*starts]), strict=True))
     joints = multibody.mechanism.joints
     borne = {
         name: _reaction(multibody, joints[name], by_joint) for name in needed_reactions(multibody.mechanism, reactions, sections)
@@ -86,20 +87,18 @@ def internal_forces(
         for number, part in enumerate(multibody.held):
             columns |= {f"_held:{number}:{member}": getattr(part, member) for member in ("fx", "fy", "mz")}
             columns |= {f"_held:{number}:{member}": ca.SX(getattr(part.point, member)) for member in ("x", "y")}
-    for name, action in zip(multibody.cuts, actions[len(by_joint) :], strict=True):
-        for coefficient, force in _section_law(multibody, name, action, borne, drives).items():
+    for name in sections:
+        for coefficient, force in _section_law(multibody, name, borne, drives).items():
             columns[f"section:{name}:{coefficient}"] = force
-    # All at once, for a substitution visits the whole graph: at the moments of an undisturbed link, with motion and multipliers.
-    still = kinematics.evaluate(ca.substitute(column(columns.values()), moments, whole))
-    known = ca.substitute(still, unknowns, values)
+    # All at once, for a substitution visits the whole graph.
+    known = ca.substitute(kinematics.evaluate(column(columns.values())), unknowns, values)
     return InternalForces(dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True)), free)
 
 
-def _section_law(multibody: Multibody, name: str, action: Any, borne: Any, drives: Any) -> dict[str, Any]:
+def _section_law(multibody: Multibody, name: str, borne: Any, drives: Any) -> dict[str, Any]:
     """The coefficients of a link's law: of its material from the section mobility, of the tip and stations from what acts there."""
-    link, frame, cut = multibody.mechanism.links[name], multibody.frames[name], multibody.cuts[name]
-    direction: Rotation = frame.rotation
-    slopes = ca.jacobian(ca.vertcat(*direction.resolve(action[0], action[1])), cut.moments[:2])
+    link, direction = multibody.mechanism.links[name], multibody.frames[name].rotation
+    slopes = _material(multibody, name)
     tip = [ca.SX(0), ca.SX(0), ca.SX(0)]
     stations: dict[str, Any] = {}
     for source, x, y, (fx, fy, mz) in _loads_on(multibody, link, borne, drives):
@@ -113,6 +112,32 @@ def _section_law(multibody: Multibody, name: str, action: Any, borne: Any, drive
     n0, f0, m0 = tip
     law = (n0, -slopes[0, 0], -slopes[0, 1], f0, -slopes[1, 0], -slopes[1, 1], m0)
     return dict(zip((f"law:{k}" for k in LAW), law, strict=True)) | stations
+
+
+def _material(multibody: Multibody, name: str) -> Any:
+    """What holds the piece of a link beyond a section, along the link and across, for a unit of its mass and of its first moment.
+
+    In axes at rest that lie along the link at the instant: the energy does not see which axes at rest it is written in, and in
+    these the first moment's forces are the rate squared and its change, to the last bit.
+    """
+    mass, first, second = (ca.SX.sym(f"mu{i}") for i in range(3))
+    released = ca.SX.sym(f"ed_{name}_section", 2)
+    frame, velocities = multibody.felt[name].along_axis(), Velocities()
+    base = velocities.point(frame.displaced(released).motion_of(0.0, 0.0))
+    lever = velocities.point(Frame(rate=frame.rate, angular=frame.angular).motion_of(1.0, 0.0))
+    piece = LagrangeSystem(
+        kinetic=mass * ca.sumsqr(base) / 2 + first * ca.dot(base, lever) + second * ca.sumsqr(lever) / 2,
+        force_function=ca.SX(0),
+        coordinates=ca.SX(0, 1),
+        rates=ca.SX(0, 1),
+        accelerations=ca.SX(0, 1),
+        mobility_rates=released,
+        velocities=column(velocities.symbols),
+        velocity_graphs=column(velocities.graphs),
+        velocity_rates=column(velocities.rates),
+    )
+    slopes = ca.jacobian(piece.terms()[1], ca.vertcat(mass, first))
+    return ca.substitute(slopes, multibody.mobility_rates, ca.SX.zeros(multibody.mobility_rates.numel()))
 
 
 def _loads_on(multibody: Multibody, link: Link, borne: Any, drives: Any) -> Iterator[tuple[str, Any, Any, tuple[Any, Any, Any]]]:
@@ -180,14 +205,9 @@ def _multipliers(multibody: Multibody, kinematics: Kinematics, along: Any) -> tu
 
 
 def _reaction(multibody: Multibody, joint: Joint, actions: dict[str, Any]) -> dict[str, Any]:
-    parent = multibody.frames[joint.parent.body.name]
+    parent, child = (multibody.frames[body.name] for body in joint.bodies)
     for closure in multibody.closures:
         if closure.joint is joint:
-            return reaction(joint, parent, closure.multipliers, closing=True)
+            return reaction(joint, parent, child, closure.multipliers, closing=True)
     branch = next(branch for branch in multibody.tree.branches if branch.joint is joint)
-    return reaction(joint, parent, branch.sign * actions[joint.name], closing=False)
-
-
-def _split(stacked: Any, sizes: list[int]) -> list[Any]:
-    starts = [sum(sizes[:i]) for i in range(len(sizes))]
-    return [stacked[start : start + size] for start, size in zip(starts, sizes, strict=True)]
+    return reaction(joint, parent, child, branch.sign * actions[joint.name], closing=False)

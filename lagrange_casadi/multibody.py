@@ -1,11 +1,13 @@
-"""A mechanism as graphs: kinetic energy, force function, power of the loads, loop equations, extra mobilities.
+"""A mechanism as graphs: kinetic energy over velocities, forces that do work along them, loop equations, extra mobilities.
 
 Every undriven pin on the tree takes the *absolute* direction of the body that hangs on it for its coordinate, which keeps the
-energy of a chain short; a driven pin takes the angle between its two bodies, the one its effort works on.
+energy of a chain short; a driven pin takes the angle between its two bodies, the one its effort works on. Its cosine and sine
+are still those of the body's direction where drives alone set it, since angles are added with less than directions are turned.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -14,7 +16,7 @@ import casadi as ca
 from .lagrange import LagrangeSystem
 from .mechanism import Mechanism
 from .parts import Joint, Point, Row
-from .planar import Displacement, Frame, Moments, slide
+from .planar import Frame, Velocities, slide, slide_motion
 from .tree import Tree
 
 
@@ -22,8 +24,9 @@ from .tree import Tree
 class Coordinate:
     """A coordinate of the tree: the joint that carries it, the body it places, and its symbols.
 
-    ``variables`` is what graphs are written in: (cosine, sine, angle) or the slide itself, the value last; ``tangent`` their change
-    with the coordinate.
+    ``variables`` is what graphs are written in: (cosine, sine, angle) or the slide itself, the value last; ``change`` their rates.
+    Cosine and sine are those of ``turn``, an expression in coordinates: the direction of the body, or of a driven body as seen from
+    the one it hangs on (``relative``).
     """
 
     joint: str
@@ -31,9 +34,11 @@ class Coordinate:
     kind: Literal["angle", "slide"]
     driven: bool
     variables: Any
-    tangent: Any
+    change: Any
     rate: Any
     acceleration: Any
+    turn: Any = None
+    relative: bool = False
 
     @property
     def value(self) -> Any:
@@ -45,27 +50,15 @@ class Coordinate:
 class Closure:
     """Equations that a joint or a constraint puts on the coordinates, and the symbols of their multipliers.
 
-    ``phi`` holds every mobility, ``gap`` is the same at rest. ``joint`` is None for a constraint of the user's.
+    ``gap`` is Phi, with its total time derivatives. ``joint`` is None for a constraint of the user's.
     """
 
     name: str
     joint: Joint | None
-    phi: Any
     gap: Any
+    gap_rate: Any
+    gap_acceleration: Any
     multipliers: Any
-
-
-@dataclass(frozen=True, eq=False)
-class SectionCut:
-    """A link's section mobility: it displaces material whose moments are the symbols of ``piece``."""
-
-    displacement: Displacement
-    piece: Moments
-
-    @property
-    def moments(self) -> Any:
-        """The symbols of the displaced material's mass and moments."""
-        return ca.vertcat(self.piece.mass, self.piece.first, self.piece.second)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,22 +87,24 @@ class RowGraph:
 
 @dataclass(frozen=True, eq=False)
 class Multibody:
-    """The graphs of a mechanism, over the symbols of its coordinates, mobilities, multipliers and time."""
+    """The graphs of a mechanism, over the symbols of its coordinates, mobilities, multipliers and time.
+
+    ``frames`` are without mobilities; ``felt`` are with them, and their accelerations are less that of gravity, as matter feels
+    them.
+    """
 
     mechanism: Mechanism
     tree: Tree
     coordinates: tuple[Coordinate, ...]
     closures: tuple[Closure, ...]
     rows: tuple[RowGraph, ...]
-    joint_mobilities: dict[str, Displacement]
-    cuts: dict[str, SectionCut]
+    mobilities: dict[str, Any]
     frames: dict[str, Frame]
+    felt: dict[str, Frame]
     applied: tuple[Applied, ...]
     held: tuple[Applied, ...]
     kinetic: Any
-    force_function: Any
-    forces: Any
-    mobility_forces: Any
+    velocities: Velocities
 
     @property
     def variables(self) -> Any:
@@ -127,41 +122,33 @@ class Multibody:
         return column(c.acceleration for c in self.coordinates)
 
     @property
-    def displacements(self) -> tuple[Displacement, ...]:
-        """All extra mobilities, the joints' first."""
-        return (*self.joint_mobilities.values(), *(cut.displacement for cut in self.cuts.values()))
+    def mobility_rates(self) -> Any:
+        """The rates of all extra mobilities, one column."""
+        return column(self.mobilities.values())
 
     @property
     def system(self) -> LagrangeSystem:
         """The Lagrange system of the whole."""
         return LagrangeSystem(
             kinetic=self.kinetic,
-            force_function=self.force_function,
+            force_function=ca.SX(0),
             coordinates=self.variables,
             rates=self.rates,
             accelerations=self.accelerations,
-            tangent=ca.diagcat(*(c.tangent for c in self.coordinates)) if self.coordinates else ca.SX(0, 0),
-            mobilities=column(d.symbols for d in self.displacements),
-            mobility_rates=column(d.rates for d in self.displacements),
-            forces=self.forces,
-            mobility_forces=self.mobility_forces,
-            constraints=column(c.phi for c in self.closures),
-            multipliers=column(c.multipliers for c in self.closures),
+            tangent=ca.jacobian(column(c.change for c in self.coordinates), self.rates),
+            mobility_rates=self.mobility_rates,
+            velocities=column(self.velocities.symbols),
+            velocity_graphs=column(self.velocities.graphs),
+            velocity_rates=column(self.velocities.rates),
+            velocity_forces=column(self.velocities.forces),
         )
-
-    def change(self, expression: Any) -> Any:
-        """The total time derivative of an expression in the variables, the rates and time."""
-        return change(expression, self.coordinates, self.mechanism.time)
 
     def joint_motion(self, joint: Joint) -> tuple[Any, Any, Any]:
         """Coordinate, rate and acceleration of any joint that has one, on the tree or closing a loop."""
-        value = joint_coordinate(joint, self.frames, self.coordinates)
-        if joint.coordinate == "angle":
-            parent, child = (self.frames[body.name] for body in joint.bodies)
-            rate = ca.SX(child.rate - parent.rate)
-        else:
-            rate = self.change(value)
-        return value, rate, self.change(rate)
+        return (
+            joint_coordinate(joint, self.frames, self.coordinates),
+            *joint_rates(joint, self.frames, self.coordinates),
+        )
 
 
 def joint_coordinate(joint: Joint, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]) -> Any:
@@ -171,15 +158,28 @@ def joint_coordinate(joint: Joint, frames: dict[str, Frame], coordinates: tuple[
             return coordinate.value
     parent, child = (frames[body.name] for body in joint.bodies)
     if joint.coordinate == "angle":
-        turn = child.rotation.against(parent.rotation)
-        return ca.atan2(turn.s, turn.c)
+        angle, turn = ca.SX(child.rotation.angle - parent.rotation.angle), 2 * math.pi
+        # Not ca.remainder: one instruction, but C's takes longer than these five.
+        return angle - turn * ca.ceil(angle * (1 / turn) - 0.5)
     return ca.SX(slide(joint, parent, child)[0])
+
+
+def joint_rates(joint: Joint, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]) -> tuple[Any, Any]:
+    """Rate and acceleration of a joint's coordinate."""
+    for coordinate in coordinates:
+        if coordinate.joint == joint.name and (coordinate.driven or coordinate.kind == "slide"):
+            return coordinate.rate, coordinate.acceleration
+    parent, child = (frames[body.name] for body in joint.bodies)
+    if joint.coordinate == "angle":
+        return ca.SX(child.rate - parent.rate), ca.SX(child.angular - parent.angular)
+    rate, acceleration = slide_motion(joint, parent, child)
+    return ca.SX(rate), ca.SX(acceleration)
 
 
 def change(expression: Any, coordinates: tuple[Coordinate, ...], time: Any) -> Any:
     """The total time derivative of an expression in coordinates' variables, their rates, and time."""
     moving = column([*(c.variables for c in coordinates), *(c.rate for c in coordinates), time])
-    speed = column([*(c.tangent * c.rate for c in coordinates), *(c.acceleration for c in coordinates), 1])
+    speed = column([*(c.change for c in coordinates), *(c.acceleration for c in coordinates), 1])
     return ca.jtimes(ca.SX(expression), moving, speed)
 
 

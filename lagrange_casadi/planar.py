@@ -1,13 +1,14 @@
-"""Poses and velocities in the plane, and what joints and links look like there.
+"""Poses, velocities and accelerations in the plane, and what joints look like there.
 
-Directions are carried as (cosine, sine) pairs. A *displacement* is an extra mobility: a translation in ground axes and a
-rotation about a point, small and at rest, whose generalized force is the action of the fixed side on the displaced side.
+Directions are carried as (cosine, sine) pairs. An extra mobility *displaces* what it moves: a translation in ground axes and a
+rotation about a point, small and at rest, whose generalized force is the action of the fixed side on the displaced side. Only
+its rates are ever needed, see :mod:`.lagrange`.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import casadi as ca
@@ -56,35 +57,19 @@ class Rotation:
 
 
 @dataclass(frozen=True, eq=False)
-class Displacement:
-    """The symbols of an extra mobility: two translations and, where ``rotates``, a rotation; and their rates."""
-
-    symbols: Any
-    rates: Any
-
-    @classmethod
-    def named(cls, name: str, *, rotates: bool) -> Displacement:
-        """Fresh symbols."""
-        size = 3 if rotates else 2
-        return cls(ca.SX.sym(f"e_{name}", size), ca.SX.sym(f"ed_{name}", size))
-
-    @property
-    def rotates(self) -> bool:
-        """Whether it turns what it displaces."""
-        return bool(self.symbols.numel() == 3)
-
-
-@dataclass(frozen=True, eq=False)
 class Frame:
     """Direction and motion of a body: it turns by ``rotation`` at ``rate``, and its point ``anchor`` is at ``at`` with ``speed``.
 
-    The anchor is the joint that holds the body, so what sits there moves with the joint exactly, without a lever that cancels.
+    ``acceleration`` is the anchor's, ``angular`` the rate's change. The anchor is the joint that holds the body, so what sits there
+    moves with the joint exactly, without a lever that cancels.
     """
 
     at: Pair = (0.0, 0.0)
     speed: Pair = (0.0, 0.0)
+    acceleration: Pair = (0.0, 0.0)
     rotation: Rotation = Rotation()
     rate: Expression = 0.0
+    angular: Expression = 0.0
     anchor: Pair = (0.0, 0.0)
 
     def place_of(self, x: Expression, y: Expression) -> Pair:
@@ -92,55 +77,66 @@ class Frame:
         rx, ry = self._lever(x, y)
         return self.at[0] + rx, self.at[1] + ry
 
-    def speed_of(self, x: Expression, y: Expression) -> Pair:
-        """The velocity of the body's point (x, y)."""
-        rx, ry = self._lever(x, y)
-        return self.speed[0] - self.rate * ry, self.speed[1] + self.rate * rx
+    def motion_of(self, x: Expression, y: Expression) -> tuple[Pair, Pair]:
+        """Velocity and acceleration of the body's point (x, y)."""
+        return self._motion(*self._lever(x, y))
+
+    def motion_at(self, place: Pair) -> tuple[Pair, Pair]:
+        """Velocity and acceleration of the body's point at a place."""
+        return self._motion(place[0] - self.at[0], place[1] - self.at[1])
 
     def local(self, place: Pair) -> Pair:
         """The body's point at a place."""
         x, y = self.rotation.resolve(place[0] - self.at[0], place[1] - self.at[1])
         return self.anchor[0] + x, self.anchor[1] + y
 
-    def displaced(self, displacement: Displacement, x: Expression, y: Expression, drift: Pair = (0.0, 0.0)) -> Frame:
-        """This frame displaced, a rotation being about its point (x, y), which moves in the frame with ``drift``."""
-        e, ed = displacement.symbols, displacement.rates
-        at, speed = self.place_of(x, y), self.speed_of(x, y)
-        rotation, rate = self.rotation, self.rate
-        if displacement.rotates:
-            rotation, rate = rotation.then(Rotation(1.0, e[2], e[2])), rate + ed[2]
-            across = self.rotation.apply(-drift[1], drift[0])
-            speed = (speed[0] - e[2] * across[0], speed[1] - e[2] * across[1])
-        return Frame((at[0] + e[0], at[1] + e[1]), (speed[0] + ed[0], speed[1] + ed[1]), rotation, rate, (x, y))
+    def displaced(self, rates: Any) -> Frame:
+        """This frame displaced at the anchor, by the rates of two translations and, where there are three, a rotation."""
+        speed = (self.speed[0] + rates[0], self.speed[1] + rates[1])
+        return replace(self, speed=speed, rate=self.rate + rates[2] if rates.numel() == 3 else self.rate)
+
+    def along_axis(self) -> Frame:
+        """The body at its origin, seen in axes at rest that lie along its own at the instant."""
+        speed, acceleration = (self.rotation.resolve(*v) for v in self.motion_of(0.0, 0.0))
+        return Frame(speed=speed, acceleration=acceleration, rate=self.rate, angular=self.angular)
 
     def _lever(self, x: Expression, y: Expression) -> Pair:
         return self.rotation.apply(x - self.anchor[0], y - self.anchor[1])
 
+    def _motion(self, rx: Expression, ry: Expression) -> tuple[Pair, Pair]:
+        centripetal = self.rate * self.rate
+        return (
+            (self.speed[0] - self.rate * ry, self.speed[1] + self.rate * rx),
+            (
+                self.acceleration[0] - (centripetal * rx + self.angular * ry),
+                self.acceleration[1] + (self.angular * rx - centripetal * ry),
+            ),
+        )
+
 
 @dataclass(frozen=True, eq=False)
-class Moments:
-    """Mass, first moment along and beside the axis, and second moment of a body or a piece of one, about its origin."""
+class Velocities:
+    """Velocities that energies and powers are written in, as :class:`.LagrangeSystem` takes them."""
 
-    mass: Expression
-    first: Expression = 0.0
-    second: Expression = 0.0
-    beside: Expression = 0.0
+    symbols: list[Any] = field(default_factory=list)
+    graphs: list[Any] = field(default_factory=list)
+    rates: list[Any] = field(default_factory=list)
+    forces: list[Any] = field(default_factory=list)
 
-    def kinetic(self, frame: Frame) -> Any:
-        """Kinetic energy (paper eq. 16), linear in the moments."""
-        nx, ny = frame.rotation.apply(-self.beside, self.first)
-        vx, vy = frame.speed_of(0.0, 0.0)
-        return self.mass * (vx * vx + vy * vy) / 2 + frame.rate * (vx * nx + vy * ny) + self.second * frame.rate * frame.rate / 2
+    def point(self, motion: tuple[Pair, Pair], force: Pair = (0.0, 0.0)) -> Any:
+        """The symbols of a velocity that moves so, with the force that works along it."""
+        speed, acceleration = motion
+        return ca.vertcat(*(self._add(*entry) for entry in zip(speed, acceleration, force, strict=True)))
 
-    def force_function(self, frame: Frame, gravity: Pair) -> Any:
-        """Work of gravity (paper eq. 18), linear in the moments."""
-        ex, ey = frame.rotation.apply(self.first, self.beside)
-        x, y = frame.place_of(0.0, 0.0)
-        return gravity[0] * (self.mass * x + ex) + gravity[1] * (self.mass * y + ey)
+    def turn(self, rate: Expression, angular: Expression, couple: Expression = 0.0) -> Any:
+        """The symbol of a rate of turning, with the couple that works along it."""
+        return self._add(rate, angular, couple)
 
-    def without(self, piece: Moments) -> Moments:
-        """What is left when a piece on the axis is taken off."""
-        return Moments(self.mass - piece.mass, self.first - piece.first, self.second - piece.second, self.beside)
+    def _add(self, graph: Any, rate: Any, force: Any) -> Any:
+        self.symbols.append(ca.SX.sym(f"w{len(self.symbols)}"))
+        for column, entry in ((self.graphs, graph), (self.rates, rate), (self.forces, force)):
+            column.append(ca.SX(entry))
+        return self.symbols[-1]
 
 
 def slide(joint: Joint, parent: Frame, child: Frame) -> Pair:
@@ -151,22 +147,45 @@ def slide(joint: Joint, parent: Frame, child: Frame) -> Pair:
     return dx * ax + dy * ay, dy * ax - dx * ay
 
 
-def closure(joint: Joint, parent: Frame, child: Frame) -> Any:
-    """Phi of a joint that closes a loop (paper eq. 5): gaps in ground axes or across a line, and of direction where it is held.
+def gap_motion(joint: Joint, parent: Frame, child: Frame) -> tuple[Pair, Pair]:
+    """Velocity and acceleration of a joint's point on the child, less those of the parent's point that it is at, in ground axes."""
+    x, y = joint.child.x, joint.child.y
+    own = child.motion_of(x, y)
+    under = parent.motion_at(child.place_of(x, y)) if joint.slides else parent.motion_of(joint.parent.x, joint.parent.y)
+    (vx, vy), (ax, ay) = ((a[0] - b[0], a[1] - b[1]) for a, b in zip(own, under, strict=True))
+    return (vx, vy), (ax, ay)
 
-    The multipliers of Phi are the action of the parent on the child along these gaps.
+
+def slide_motion(joint: Joint, parent: Frame, child: Frame) -> Pair:
+    """Rate and acceleration along the axis of a joint that slides, while nothing moves across it."""
+    tx, ty = parent.rotation.apply(*joint.axis)
+    (vx, vy), (ax, ay) = gap_motion(joint, parent, child)
+    return vx * tx + vy * ty, ax * tx + ay * ty
+
+
+def closure(joint: Joint, parent: Frame, child: Frame) -> tuple[Any, Any, Any]:
+    """Phi of a joint that closes a loop (paper eq. 5) with Phi' and Phi''.
+
+    Phi are gaps in ground axes or across a line, and of direction where it is held; its multipliers are the action of the parent
+    on the child along these gaps.
     """
+    (vx, vy), (ax, ay) = gap_motion(joint, parent, child)
     if joint.slides:
-        gaps = [ca.SX(slide(joint, parent, child)[1])]
+        tx, ty = parent.rotation.apply(*joint.axis)
+        across, along = vy * tx - vx * ty, vx * tx + vy * ty
+        # The line turns under what slides on it (Coriolis).
+        gaps = [(slide(joint, parent, child)[1], across, ay * tx - ax * ty - 2 * parent.rate * along)]
     else:
         a, b = child.place_of(joint.child.x, joint.child.y), parent.place_of(joint.parent.x, joint.parent.y)
-        gaps = [ca.SX(a[0] - b[0]), ca.SX(a[1] - b[1])]
+        gaps = [(a[0] - b[0], vx, ax), (a[1] - b[1], vy, ay)]
     if joint.holds_direction:
-        gaps.append(ca.SX(child.rotation.against(parent.rotation.then(Rotation.by(joint.angle))).s))
-    return ca.vertcat(*gaps)
+        turn, rate = _misalignment(joint, parent, child), child.rate - parent.rate
+        gaps.append((turn.s, turn.c * rate, turn.c * (child.angular - parent.angular) - turn.s * (rate * rate)))
+    phi, phi_rate, phi_acceleration = (ca.vertcat(*column) for column in zip(*gaps, strict=True))
+    return phi, phi_rate, phi_acceleration
 
 
-def reaction(joint: Joint, parent: Frame, action: Any, *, closing: bool) -> dict[str, Any]:
+def reaction(joint: Joint, parent: Frame, child: Frame, action: Any, *, closing: bool) -> dict[str, Any]:
     """The reaction by member, from the generalized forces ``action`` of its mobility, or of Phi where it closes a loop.
 
     What slides bears no force along its axis: what its mobility feels there is the drive's, not the joint's.
@@ -178,5 +197,9 @@ def reaction(joint: Joint, parent: Frame, action: Any, *, closing: bool) -> dict
     else:
         members = {"fx": action[0], "fy": action[1]}
     if joint.holds_direction:
-        members["mz"] = action[1 if closing and joint.slides else 2]
+        members["mz"] = _misalignment(joint, parent, child).c * action[-1] if closing else action[2]
     return members
+
+
+def _misalignment(joint: Joint, parent: Frame, child: Frame) -> Rotation:
+    return child.rotation.against(parent.rotation.then(Rotation.by(joint.angle)))

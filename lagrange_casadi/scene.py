@@ -216,7 +216,7 @@ def _derive(scene: Scene, want: Wanted) -> SceneGraph:
     mechanism = scene.mechanism
     p = mechanism.symbols
     tree = span(mechanism, scene.motion)
-    body = assemble(mechanism, tree, scene.motion, needed_reactions(mechanism, want.reactions, want.sections), want.sections)
+    body = assemble(mechanism, tree, scene.motion, needed_reactions(mechanism, want.reactions, want.sections))
     driven = tuple(c.joint for c in body.coordinates if c.driven)
     motion = motion_function({name: scene.motion[name] for name in driven}, p)
     defaults = list(mechanism.values().values())
@@ -292,5 +292,5 @@ def _motion_columns(body: Multibody, solved: kinematics.Kinematics, driven: Sequ
         x, y = frame.place_of(0.0, 0.0)
         columns |= {f"pose:{part.name}:x": x, f"pose:{part.name}:y": y}
         if part.oriented:
-            columns[f"pose:{part.name}:angle"] = ca.atan2(frame.rotation.s, frame.rotation.c)
+            columns[f"pose:{part.name}:angle"] = frame.rotation.angle
     return columns

@@ -36,6 +36,15 @@ def test_rates_are_the_derivatives_of_positions(scene):
             assert second == pytest.approx(columns[f"{name}_acceleration"][3], abs=1e-8, rel=1e-8)
 
 
+def test_an_undriven_angle_starts_within_half_a_turn():
+    """However far the drive has turned before."""
+    mechanism = slider_crank().mechanism
+    scenes = (Scene(mechanism, {"O": polynomial(start, 9.0)}, posture={"rod": 0.0}) for start in (0.5, 0.5 + 20 * math.pi))
+    near, far = (evaluate(scene, wanted=["motion"]).motion("A").value for scene in scenes)
+    assert -math.pi < far[0] <= math.pi
+    np.testing.assert_allclose(far, near, rtol=0, atol=1e-13)
+
+
 def test_the_posture_chooses_the_branch():
     for rocker, sign in ((1.5, 1), (-1.5, -1)):
         solution = evaluate(four_bar(rocker=rocker), wanted=["motion"])

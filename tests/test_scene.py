@@ -46,6 +46,21 @@ def test_what_is_not_wanted_costs_nothing():
     assert sum(motion.instructions.values()) < count[2]
 
 
+def test_instructions_do_not_creep_back():
+    """The paper's mechanism, beside its 41 columns, 8 inputs and few constants: everything, and the effort alone."""
+    counts = [derive(slider_crank(), wanted).instructions["instant"] for wanted in (["all"], ["effort"])]
+    assert counts[0] <= 170
+    assert counts[1] <= 77
+
+
+def test_the_law_of_a_driven_link_is_its_motion():
+    """Material turns with its link: n2 is the rate squared and f2 less the angular acceleration, to the last bit."""
+    solution = evaluate(slider_crank(), wanted=["motion", "section:crank"])
+    crank, law = solution.motion("O"), {name: solution.array(f"section:crank:law:{name}") for name in ("n2", "f2")}
+    np.testing.assert_array_equal(law["n2"], crank.rate**2)
+    np.testing.assert_array_equal(law["f2"], -crank.acceleration)
+
+
 def test_a_single_link_gives_each_output_alone():
     m = Mechanism("m")
     m.revolute("J", m.ground, m.link("a", length=1, mass=3))
