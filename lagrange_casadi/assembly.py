@@ -96,19 +96,14 @@ class _Builder:
             symbols += [*measure.places, *measure.rates]
             of = measure.of
             if isinstance(of, Joint):
-                values += [self._joint_place(of, turns=turns), joint_rates(of, self.frames, self.coordinates)[0]]
+                place = joint_coordinate(of, self.frames, self.coordinates, counted=turns)
+                values += [place, joint_rates(of, self.frames, self.coordinates)[0]]
             elif isinstance(of, Point):
                 frame = self.frames[of.body.name]
                 values += [*frame.place_of(of.x, of.y), *frame.motion_of(of.x, of.y)[0]]
             else:
                 values += [self.frames[of.name].rotation.angle, self.frames[of.name].rate]
         return ca.substitute(ca.SX(expression), column(symbols), column(values))
-
-    def _joint_place(self, joint: Joint, *, turns: bool) -> Any:
-        parent, child = self.ends(joint)
-        if turns and joint.coordinate == "angle":
-            return ca.SX(child.rotation.angle - parent.rotation.angle)
-        return joint_coordinate(joint, self.frames, self.coordinates)
 
     def _undisplaced(self, branch: Branch, coordinate: Coordinate | None) -> Frame:
         """The frame of the body that hangs on a branch, anchored at the joint's point on its child."""

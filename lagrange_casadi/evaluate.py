@@ -74,8 +74,9 @@ def evaluate(
     _refuse(graph, table, times, list(values.values()))
     series = {name: table.out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
     for name, column in series.items():
-        if _wraps(graph, name):
+        if name in graph.wrapped:
             column[:] = np.unwrap(column)
+            column -= math.tau * math.ceil(column[0] / math.tau - 0.5)
     series |= {name: np.full(times.size, np.nan) for name in graph.undetermined}
     description = describe(scene.mechanism, values, scene.motion)
     ordered = in_order(series, description)
@@ -169,12 +170,3 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
         return f"the loops closed by {graph.newton.joints} converge slowly {at}: they are near a dead centre"
     name = next(name for name, value in values.items() if not math.isfinite(value))
     return f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"
-
-
-def _wraps(graph: SceneGraph, name: str) -> bool:
-    """Whether a column is an angle known up to whole turns."""
-    group, part, *_ = name.split(":")
-    if group == "pose":
-        return name.endswith(":angle")
-    joint = graph.scene.mechanism.joints.get(part)
-    return group == "motion" and joint is not None and joint.coordinate == "angle" and part not in graph.driven

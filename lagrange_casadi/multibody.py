@@ -144,21 +144,26 @@ class Multibody:
         )
 
     def joint_motion(self, joint: Joint) -> tuple[Any, Any, Any]:
-        """Coordinate, rate and acceleration of any joint that has one, on the tree or closing a loop."""
+        """Coordinate, rate and acceleration of any joint that has one, on the tree or closing a loop.
+
+        Where loops set an angle, it is known up to whole turns.
+        """
         return (
-            joint_coordinate(joint, self.frames, self.coordinates),
+            joint_coordinate(joint, self.frames, self.coordinates, counted=True),
             *joint_rates(joint, self.frames, self.coordinates),
         )
 
 
-def joint_coordinate(joint: Joint, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]) -> Any:
-    """A joint's coordinate: a driven one counts turns, any other angle lies in (-pi, pi]."""
+def joint_coordinate(joint: Joint, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...], *, counted: bool = False) -> Any:
+    """A joint's coordinate: a driven one counts turns, any other angle does where ``counted``, else it lies in (-pi, pi]."""
     for coordinate in coordinates:
         if coordinate.joint == joint.name and (coordinate.driven or coordinate.kind == "slide"):
             return coordinate.value
     parent, child = (frames[body.name] for body in joint.bodies)
     if joint.coordinate == "angle":
         angle, turn = ca.SX(child.rotation.angle - parent.rotation.angle), 2 * math.pi
+        if counted:
+            return angle
         # Not ca.remainder: one instruction, but C's takes longer than these five.
         return angle - turn * ca.ceil(angle * (1 / turn) - 0.5)
     return ca.SX(slide(joint, parent, child)[0])

@@ -22,6 +22,7 @@ from .mechanism import Mechanism
 from .mobility import internal_forces, needed_reactions
 from .motion import Motion, motion_function
 from .multibody import Multibody
+from .reciprocals import share_reciprocals
 from .tree import span
 
 _OPEN = 1e-9
@@ -178,8 +179,8 @@ class SceneGraph:
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` a
     column name; ``newton`` where loops must be iterated. Columns that begin with ``_`` are no outputs. They tell whether there is a
     result: ``_closure:JOINT`` (see :mod:`.loops`), ``_misfit:JOINT``, ``_row:NAME`` and ``_rowsize:NAME``; or they are what the
-    certificate needs: ``_held:NUMBER:...``, what multipliers do to the bodies that ``held`` names. ``undetermined`` names the
-    outputs that equilibrium does not determine.
+    certificate needs: ``_held:NUMBER:...``, what multipliers do to the bodies that ``held`` names. ``wrapped`` names the angles
+    that are known up to whole turns, ``undetermined`` the outputs that equilibrium does not determine.
     """
 
     scene: Scene
@@ -189,6 +190,7 @@ class SceneGraph:
     instant: Any
     newton: NewtonLoop | None
     columns: tuple[str, ...]
+    wrapped: tuple[str, ...]
     undetermined: tuple[str, ...]
     held: tuple[str, ...]
 
@@ -227,8 +229,12 @@ def _derive(scene: Scene, want: Wanted) -> SceneGraph:
     columns |= {f"_misfit:{name}": misfit for name, misfit in solved.misfits.items()}
     for graph in body.rows:
         columns |= {f"_row:{graph.row.name}": graph.residual, f"_rowsize:{graph.row.name}": graph.size}
+    wrapped: tuple[str, ...] = ()
     if want.motion:
-        columns |= _motion_columns(body, solved, driven)
+        motions = _motion_columns(body, solved, driven)
+        loose = ca.vertcat(ca.SX(0, 1), *(c.value for c in body.coordinates if c.kind == "angle" and not c.driven))
+        wrapped = tuple(name for name, value in motions.items() if _is_angle(mechanism, name) and ca.depends_on(value, loose))
+        columns |= motions
     for part in reversed(body.applied):
         if part.source in want.loads:
             columns |= {f"load:{part.source}:{member}": getattr(part, member) for member in ("fx", "fy", "mz")}
@@ -253,8 +259,8 @@ def _derive(scene: Scene, want: Wanted) -> SceneGraph:
     held = tuple(part.point.body.name for part in body.held) if want.reactions else ()
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
-    instant = ca.Function("instant", inputs, [out], names, ["out"], {"cse": True})
-    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), undetermined, held)
+    instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
+    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), wrapped, undetermined, held)
 
 
 def _undetermined(
@@ -294,3 +300,10 @@ def _motion_columns(body: Multibody, solved: kinematics.Kinematics, driven: Sequ
         if part.oriented:
             columns[f"pose:{part.name}:angle"] = frame.rotation.angle
     return columns
+
+
+def _is_angle(mechanism: Mechanism, column: str) -> bool:
+    group, part, *_ = column.split(":")
+    if group == "pose":
+        return column.endswith(":angle")
+    return part in mechanism.joints and mechanism.joints[part].coordinate == "angle"

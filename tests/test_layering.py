@@ -31,6 +31,7 @@ ORDER = (
     "kinematics",
     "mobility",
     "motion",
+    "reciprocals",
     "scene",
     "codegen",
     "grids",

@@ -30,9 +30,9 @@ from ..errors import CompilerError
 
 Language = Literal["c", "c++"]
 
-_COMMON = ("-fno-math-errno", "-ffp-contract=off", "-fvisibility=hidden", "-fPIC", "-shared")
+_COMMON = ("-fno-math-errno", "-fno-tree-loop-distribute-patterns", "-ffp-contract=off", "-fvisibility=hidden", "-fPIC", "-shared")
 FLAGS: dict[Language, tuple[str, ...]] = {
-    "c": ("-std=c99", "-O2", *_COMMON),
+    "c": ("-std=c99", "-O3", *_COMMON),
     "c++": ("-std=c++11", "-O3", "-march=native", *_COMMON),
 }
 """No contraction: a product and a sum round as written. Nobody reads errno; without it a root is an instruction, no call."""

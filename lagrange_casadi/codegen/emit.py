@@ -24,9 +24,6 @@ NEWTON_ROUNDING = 1e-13
 OK, NOT_CONVERGED, NOT_FINITE, SLOW = 0, 1, 2, 3
 """Status of an instant."""
 
-_LARGEST_BLOCK = 32768
-_BLOCK = 64
-
 _START = """\
 #include <string.h>
 #ifdef LANES
@@ -58,69 +55,81 @@ _EVALUATE = """
    status[i], 0 where there is nothing to say against the instant, becomes {NOT_FINITE} where a value is not finite. */
 LAGRANGE_CASADI_EXPORT void {evaluate}(casadi_int n, casadi_int stride, const double* t, const double* p, const double* z,
                                        double* out, int* status) {{
-  casadi_int first, i, j, k, size, many, iw[{iw}];
-  double block[{rows}][{block}], finite[{block}], lanes[LANES];
-  casadi_real at[{inputs}], y[{rows}], w[{w}];
-  casadi_real *time = at, *d = at + 1, *place = d + 3*{nd}, *parameters = place + {nz};
+  casadi_int i, j, k, many, iw[{iw}];
+  double lanes[LANES];
+  casadi_real at[{inputs}], y[{rows}], w[{w}], sum[4];
+  casadi_real *time = at, *d = at + 1, *place = d + 3*{nd}, *parameters = place + {nz}, *constants = parameters + {np};
   const casadi_real* arg[{arg}];
   casadi_real* res[{res}];
   for (k = 0; k < {np}; ++k) parameters[k] = p[k];
-  for (first = 0; first < n; first += {block}) {{
-    size = n - first < {block} ? n - first : {block};
-    for (i = 0; i < size; i += LANES) {{
-      /* The last pack of all is filled up with its last instant. */
-      many = size - i < LANES ? size - i : LANES;
-      for (j = 0; j < LANES; ++j) lanes[j] = t[first + i + (j < many ? j : many - 1)];
+  arg[0] = parameters;
+  res[0] = constants;
+  constants_of(arg, res, iw, w, 0);
+  for (i = 0; i < n; i += LANES) {{
+    many = n - i < LANES ? n - i : LANES;
+    if (many == LANES) {{
+      memcpy(time, t + i, sizeof lanes);
+      for (k = 0; k < {nz}; ++k) memcpy(place + k, z + k*stride + i, sizeof lanes);
+    }} else {{
+      /* The last pack is filled up with the last instant. */
+      for (j = 0; j < LANES; ++j) lanes[j] = t[i + (j < many ? j : many - 1)];
       memcpy(time, lanes, sizeof lanes);
       for (k = 0; k < {nz}; ++k) {{
-        for (j = 0; j < LANES; ++j) lanes[j] = z[k*stride + first + i + (j < many ? j : many - 1)];
+        for (j = 0; j < LANES; ++j) lanes[j] = z[k*stride + i + (j < many ? j : many - 1)];
         memcpy(place + k, lanes, sizeof lanes);
       }}
-{motion}      arg[0] = time;
-      arg[1] = d;
-      arg[2] = d + {nd};
-      arg[3] = d + 2*{nd};
-      arg[4] = place;
-      arg[5] = parameters;
-      res[0] = y;
-      instant(arg, res, iw, w, 0);
-      for (k = 0; k < {columns}; ++k) memcpy(&block[k][i], y + k, sizeof lanes);
     }}
-    for (i = 0; i < size; ++i) finite[i] = 0;
-    for (k = 0; k < {columns}; ++k) {{
-      for (i = 0; i < size; ++i) finite[i] += block[k][i] - block[k][i];
-      memcpy(out + k*stride + first, block[k], (size_t) size*sizeof(double));
+{motion}    arg[0] = time;
+    arg[1] = d;
+    arg[2] = d + {nd};
+    arg[3] = d + 2*{nd};
+    arg[4] = place;
+    arg[5] = constants;
+    res[0] = y;
+    instant(arg, res, iw, w, 0);
+    if (many == LANES) {{
+      for (k = 0; k < {columns}; ++k) memcpy(out + k*stride + i, y + k, sizeof lanes);
+    }} else {{
+      for (k = 0; k < {columns}; ++k) memcpy(out + k*stride + i, y + k, (size_t) many*sizeof(double));
     }}
-    for (i = 0; i < size; ++i) if (!(finite[i] == 0) && status[first + i] == {OK}) status[first + i] = {NOT_FINITE};
+    /* One value that is not finite makes their sum so; four sums, for each addition waits for the one before. */
+    for (j = 0; j < 4; ++j) sum[j] = 0;
+    for (k = 0; k + 4 <= {columns}; k += 4) {{
+      for (j = 0; j < 4; ++j) sum[j] = sum[j] + y[k + j];
+    }}
+    for (; k < {columns}; ++k) sum[0] = sum[0] + y[k];
+    sum[0] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    memcpy(lanes, sum, sizeof lanes);
+    for (j = 0; j < many; ++j) if (!(lanes[j] - lanes[j] == 0) && status[i + j] == {OK}) status[i + j] = {NOT_FINITE};
   }}
 }}
 """
 
-_SMOOTH = """      arg[0] = time;
-      arg[1] = parameters;
-      res[0] = d;
-      res[1] = d + {nd};
-      res[2] = d + 2*{nd};
-      motion(arg, res, iw, w, 0);
+_SMOOTH = """    arg[0] = time;
+    arg[1] = parameters;
+    res[0] = d;
+    res[1] = d + {nd};
+    res[2] = d + 2*{nd};
+    motion(arg, res, iw, w, 0);
 """
 
-_SPLINE = """      {{
-        double drive[3*{nd}], narrow_w[{motion_w}];
-        double lane[3*{nd}][LANES];
-        for (j = 0; j < LANES; ++j) {{
-          const double* narrow_arg[{motion_arg}];
-          double* narrow_res[{motion_res}];
-          memcpy(lanes, time, sizeof lanes);
-          narrow_arg[0] = lanes + j;
-          narrow_arg[1] = p;
-          narrow_res[0] = drive;
-          narrow_res[1] = drive + {nd};
-          narrow_res[2] = drive + 2*{nd};
-          motion(narrow_arg, narrow_res, iw, narrow_w, 0);
-          for (k = 0; k < 3*{nd}; ++k) lane[k][j] = drive[k];
-        }}
-        memcpy(d, lane, sizeof lane);
+_SPLINE = """    {{
+      double drive[3*{nd}], narrow_w[{motion_w}];
+      double lane[3*{nd}][LANES];
+      for (j = 0; j < LANES; ++j) {{
+        const double* narrow_arg[{motion_arg}];
+        double* narrow_res[{motion_res}];
+        memcpy(lanes, time, sizeof lanes);
+        narrow_arg[0] = lanes + j;
+        narrow_arg[1] = p;
+        narrow_res[0] = drive;
+        narrow_res[1] = drive + {nd};
+        narrow_res[2] = drive + 2*{nd};
+        motion(narrow_arg, narrow_res, iw, narrow_w, 0);
+        for (k = 0; k < 3*{nd}; ++k) lane[k][j] = drive[k];
       }}
+      memcpy(d, lane, sizeof lane);
+    }}
 """
 
 _FOLLOW = """
@@ -162,11 +171,9 @@ def emit(graph: SceneGraph) -> str:
     smooth = bool(graph.motion.is_a("SXFunction"))
     loops = _loops(graph, smooth)
     narrow = [*([loops] if loops else []), *([] if smooth else [graph.motion])]
-    wide = [*([graph.motion] if smooth else []), graph.instant]
+    constants, instant = _hoisted(graph.instant)
+    wide = [*([graph.motion] if smooth else []), constants, instant]
     columns, nz, nd = len(graph.columns), graph.instant.size1_in("z"), graph.instant.size1_in("d")
-    block = _BLOCK
-    while block > 8 and 8 * block * columns > _LARGEST_BLOCK:
-        block //= 2
     codes = {"OK": OK, "NOT_CONVERGED": NOT_CONVERGED, "NOT_FINITE": NOT_FINITE, "SLOW": SLOW}
     motion = _SMOOTH.format(nd=nd) if smooth else _SPLINE.format(nd=nd, **_work("motion_", graph.motion))
     np = graph.instant.size1_in("p")
@@ -183,10 +190,18 @@ def emit(graph: SceneGraph) -> str:
         "nz": nz,
         "nd": nd,
         "np": np,
-        "block": block,
-        "inputs": max(1, 1 + 3 * nd + nz + np),
+        "inputs": 1 + 3 * nd + nz + np + constants.size1_out(0),
     }
     return text + _EVALUATE.format(evaluate=EVALUATE, motion=motion if nd else "", **sizes, **codes, **_work("", *wide, *narrow))
+
+
+def _hoisted(instant: ca.Function) -> tuple[ca.Function, ca.Function]:
+    """What of an instant depends on parameters alone, ``constants_of(p) -> c``, and the instant with c for p."""
+    inputs = instant.sx_in()
+    rest, symbols, constants = ca.extract_parametric(instant(*inputs), inputs[-1], {"extract_trivial": True})
+    c = ca.vertcat(ca.SX(0, 1), *symbols)
+    hoisted = ca.Function("constants_of", [inputs[-1]], [ca.densify(ca.vertcat(ca.SX(0, 1), *constants))], {"cse": True})
+    return hoisted, ca.Function("instant", [*inputs[:-1], c], [ca.densify(rest)], {"cse": True})
 
 
 def _loops(graph: SceneGraph, smooth: bool) -> ca.Function | None:

@@ -20,7 +20,10 @@ Array = npt.NDArray[np.float64]
 Status = npt.NDArray[np.int32]
 
 _SHARE = 8192
-"""Instants that are worth a thread of their own; a multiple of any pack and block, so that no cut falls into one."""
+"""Instants that are worth a thread of their own."""
+
+_CUT = 64
+"""A multiple of any pack, so that no cut falls into one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +48,7 @@ class Library:
         """
         assert z.strides == out.strides or not z.size
         shares = max(1, min(threads, t.size // _SHARE))
-        size = -(-t.size // (shares * _SHARE)) * _SHARE
+        size = -(-t.size // (shares * _CUT)) * _CUT
         cuts = [slice(start, start + size) for start in range(0, t.size, size)]
 
         def run(cut: slice) -> None:

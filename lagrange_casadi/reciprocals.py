@@ -1,0 +1,61 @@
+"""Fewer divisions: what is divided by more than once, or depends on parameters alone, is inverted once.
+
+A division takes as long as ten products, and a machine has few dividers; a product with a reciprocal rounds once more.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+import casadi as ca
+
+
+def share_reciprocals(function: Any, parameters: str) -> Any:
+    """The same function of one output with divisions shared; ``parameters`` names the input whose reciprocals always pay."""
+    steps = [
+        (function.instruction_id(k), function.instruction_input(k), function.instruction_output(k))
+        for k in range(function.n_instructions())
+    ]
+    divisors = _divisors(steps, function.index_in(parameters))
+    uses = Counter(divisor for divisor, _ in divisors.values())
+    inputs = function.sx_in()
+    work: dict[int, Any] = {}
+    inverses: dict[int, Any] = {}
+    out = ca.SX(function.sparsity_out(0))
+    for k, (operation, arguments, results) in enumerate(steps):
+        if operation == ca.OP_OUTPUT:
+            out.nz[results[1]] = work[arguments[0]]
+        elif operation == ca.OP_CONST:
+            work[results[0]] = ca.SX(function.instruction_constant(k))
+        elif operation == ca.OP_INPUT:
+            work[results[0]] = inputs[arguments[0]].nz[arguments[1]]
+        elif k in divisors and (divisors[k][1] or uses[divisors[k][0]] > 1):
+            x = work[arguments[-1]]
+            # It is given its own sign, for else CasADi writes (1/x) y as y/x again.
+            inverse = inverses.setdefault(divisors[k][0], ca.copysign(1 / x, x))
+            work[results[0]] = work[arguments[0]] * inverse if operation == ca.OP_DIV else inverse
+        elif len(arguments) == 1:
+            work[results[0]] = ca.SX.unary(operation, work[arguments[0]])
+        else:
+            work[results[0]] = ca.SX.binary(operation, work[arguments[0]], work[arguments[1]])
+    names = [function.name_in(i) for i in range(function.n_in())]
+    return ca.Function(function.name(), inputs, [out], names, [function.name_out(0)], {"cse": True})
+
+
+def _divisors(steps: list[tuple[int, list[int], list[int]]], parameters: int) -> dict[int, tuple[int, bool]]:
+    """By step that divides: the step that made its divisor, and whether that depends on parameters alone."""
+    made: dict[int, int] = {}
+    fixed: dict[int, bool] = {}
+    found = {}
+    for k, (operation, arguments, results) in enumerate(steps):
+        if operation == ca.OP_OUTPUT:
+            continue
+        if operation == ca.OP_INPUT:
+            fixed[k] = arguments[0] == parameters
+        else:
+            fixed[k] = all(fixed[made[a]] for a in arguments)
+        if operation in (ca.OP_DIV, ca.OP_INV):
+            found[k] = (made[arguments[-1]], fixed[made[arguments[-1]]])
+        made[results[0]] = k
+    return found

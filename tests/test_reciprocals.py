@@ -1,0 +1,43 @@
+"""Fewer divisions, the same values."""
+
+import casadi as ca
+import numpy as np
+from builders import slider_crank
+
+from lagrange_casadi import derive
+from lagrange_casadi.reciprocals import share_reciprocals
+
+
+def divisions(function):
+    kinds = [function.instruction_id(k) for k in range(function.n_instructions())]
+    return sum(kind in (ca.OP_DIV, ca.OP_INV) for kind in kinds)
+
+
+def example():
+    x, p = ca.SX.sym("x", 3), ca.SX.sym("p", 2)
+    length = ca.sqrt(x[0] + p[0])
+    out = ca.vertcat(x[1] / length, x[2] / length, 1 / length, x[0] / (p[0] * p[1]), x[1] / ca.sin(x[2]), ca.atan2(x[0], x[1]), 2)
+    return ca.Function("f", [x, p], [out], ["x", "p"], ["out"])
+
+
+def test_what_is_divided_by_twice_or_is_a_parameter_is_inverted_once():
+    before, after = example(), share_reciprocals(example(), "p")
+    assert (divisions(before), divisions(after)) == (5, 3)
+    x, p = [0.3, -0.7, 1.1], [2.0, 3.0]
+    np.testing.assert_allclose(after(x, p).full(), before(x, p).full(), rtol=4e-16, atol=0)
+    assert [after.name_in(i) for i in range(2)] == ["x", "p"]
+
+
+def test_infinities_keep_their_sign():
+    before, after = example(), share_reciprocals(example(), "p")
+    for p in ([-0.3, 0.0], [-0.3, -0.0]):
+        for sign in (1, -1):
+            x = [0.3, sign * 0.7, 1.1]
+            assert np.array_equal(after(x, p).full(), before(x, p).full(), equal_nan=True)
+
+
+def test_the_slider_crank_divides_by_what_moves_once():
+    graph = derive(slider_crank())
+    inputs = graph.instant.sx_in()
+    rest = ca.extract_parametric(graph.instant(*inputs), inputs[-1], {"extract_trivial": True})
+    assert divisions(ca.Function("rest", [*inputs[:-1], ca.vertcat(*rest[1])], [rest[0]])) == 1
