@@ -1,4 +1,4 @@
-"""``python -m benchmarks [PATTERN ...]``: measure on this machine; a table to read, and JSON lines with ``--json FILE``."""
+"""``python -m benchmarks [PATTERN ...]``: measure on this machine; tables to read, JSON lines, and a plot."""
 
 from __future__ import annotations
 
@@ -7,12 +7,7 @@ import fnmatch
 import json
 import os
 import platform
-import shutil
-import statistics
-import subprocess
 import sys
-import tempfile
-import time
 from pathlib import Path
 from typing import Any
 
@@ -22,83 +17,68 @@ from lagrange_casadi.codegen import find_compiler
 from lagrange_casadi.codegen.compiler import FLAGS
 from lagrange_casadi.version import __version__
 
-from .definitions import BENCHMARKS, Benchmark
-
-ROOT = Path(__file__).parent.parent
+from . import comparisons, plot, programs
+from .definitions import COMPARISONS, PROGRAMS
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("patterns", nargs="*", default=["*"], help="names, with wildcards; default: all")
-    parser.add_argument("--json", type=Path, help="append one JSON line a benchmark to this file")
+    parser.add_argument("patterns", nargs="*", default=["*"], help="names, with wildcards; default: all, for about half an hour")
+    parser.add_argument("--list", action="store_true", help="say which there are")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="append JSON lines to this file")
+    parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw what was compared")
     arguments = parser.parse_args()
-    chosen = [b for b in BENCHMARKS if any(fnmatch.fnmatch(b.name, pattern) for pattern in arguments.patterns)]
+    names = {b.name: b.what for b in PROGRAMS} | {b.name: b.what for b in COMPARISONS}
+    chosen = {name for name in names if any(fnmatch.fnmatch(name, pattern) for pattern in arguments.patterns)}
+    if arguments.list:
+        print("\n".join(f"{name:<20}{what}" for name, what in names.items()))
+        return 0
     if not chosen:
-        parser.error(f"no benchmark matches; valid: {', '.join(b.name for b in BENCHMARKS)}")
+        parser.error(f"no benchmark matches; valid: {', '.join(names)}")
     machine = describe_machine()
     print(" | ".join(f"{key} {value}" for key, value in machine.items()))
-    print(f"{'name':<16}{'median s':>10}{'min s':>10}{'peak MB':>10}{'over import':>15}  what")
-    floor = measure(BENCHMARKS[0])["peak"]
-    for benchmark in chosen:
-        result = measure(benchmark)
-        extra = result["peak"] - floor
-        ratio = f"{extra / benchmark.bytes_returned:.2f} x result" if benchmark.bytes_returned else ""
-        figures = f"{result['median']:>10.3f}{result['min']:>10.3f}{result['peak'] / 1e6:>10.0f}{ratio:>15}"
-        print(f"{benchmark.name:<16}{figures}  {benchmark.what}{': ' + result['says'] if result['says'] else ''}")
-        if arguments.json:
-            with arguments.json.open("a") as lines:
-                lines.write(json.dumps({"name": benchmark.name, **result, "memory_over_import": extra, **machine}) + "\n")
+    # Numerical libraries of the peers would else share the cores among themselves while one thread is timed.
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    rows = [*run_programs(chosen), *run_comparisons(chosen)]
+    if arguments.json:
+        with arguments.json.open("a") as lines:
+            lines.writelines(json.dumps(row | machine) + "\n" for row in rows)
+    if arguments.plot:
+        plot.draw(rows, arguments.plot)
     return 0
 
 
+def run_programs(chosen: set[str]) -> list[dict[str, Any]]:
+    rows: list[dict[str, Any]] = []
+    for program in PROGRAMS:
+        if program.name in chosen:
+            if not rows:
+                print(programs.HEADER)
+            found = programs.measure(program)
+            print(programs.row(program, found), flush=True)
+            rows.append({"name": program.name, **found})
+    return rows
+
+
+def run_comparisons(chosen: set[str]) -> list[dict[str, Any]]:
+    rows: list[dict[str, Any]] = []
+    for comparison in COMPARISONS:
+        if comparison.name in chosen:
+            print(comparisons.header(comparison), flush=True)
+            for found in comparisons.measure(comparison):
+                print(comparisons.row(found), flush=True)
+                rows.append(found)
+    return rows
+
+
 def describe_machine() -> dict[str, str]:
-    compiler = find_compiler()
+    compilers = {language: find_compiler(language) for language in FLAGS}
     return {
         "package": __version__,
         "python": platform.python_version(),
         "machine": f"{platform.machine()}, {psutil.cpu_count()} cores, {psutil.virtual_memory().total / 2**30:.0f} GiB",
-        "compiler": compiler.version if compiler else "none",
-        "flags": " ".join(FLAGS),
+        **{language: f"{c.version}: {' '.join(c.flags(''))}" if c else "none" for language, c in compilers.items()},
     }
-
-
-def measure(benchmark: Benchmark) -> dict[str, Any]:
-    """Whole processes, timed from outside; the peak is the process's own resident memory."""
-    with tempfile.TemporaryDirectory() as work:
-        (Path(work) / "cases").symlink_to(ROOT / "cases")
-        environment = os.environ | {"XDG_CACHE_HOME": f"{work}/cache", "PYTHONPATH": str(ROOT)}
-        if not benchmark.cold:
-            run_once(benchmark, work, environment)
-        runs = []
-        for _ in range(benchmark.repeat):
-            if benchmark.cold:
-                shutil.rmtree(f"{work}/cache", ignore_errors=True)
-            runs.append(run_once(benchmark, work, environment))
-    times = [seconds for seconds, _, _ in runs]
-    says = runs[-1][2] if benchmark.reports else ""
-    return {
-        "median": statistics.median(times),
-        "min": min(times),
-        "peak": max(peak for _, peak, _ in runs),
-        "runs": len(runs),
-        "says": says,
-    }
-
-
-def run_once(benchmark: Benchmark, work: str, environment: dict[str, str]) -> tuple[float, int, str]:
-    start = time.perf_counter()
-    process = subprocess.Popen(
-        [sys.executable, "-c", benchmark.program], cwd=work, env=environment, stdout=subprocess.PIPE, text=True
-    )
-    assert process.stdout is not None
-    with process.stdout as printed:
-        lines = printed.read().splitlines()
-    _, status, usage = os.wait4(process.pid, 0)
-    seconds = time.perf_counter() - start
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        raise SystemExit(f"benchmark {benchmark.name} failed with status {process.returncode}")
-    return seconds, usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024), lines[-1] if lines else ""
 
 
 if __name__ == "__main__":

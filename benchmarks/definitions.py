@@ -1,76 +1,174 @@
-"""What is measured, as data: one entry a figure, each a program that a fresh interpreter runs."""
+"""What is measured, as data: whole programs, methods, and the work that they are compared by."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
+from typing import Any
 
 CASE = "cases/slider_crank"
 CHAINS = (1, 2, 4, 8, 16, 32, 64)
 
 
 @dataclass(frozen=True)
-class Benchmark:
-    """A program, run ``repeat`` times in a process of its own.
+class Program:
+    """Python that a fresh interpreter runs ``repeat`` times.
 
-    ``program`` is Python, and where it ``reports``, the last line that it prints is shown; ``cold`` empties the compiler's cache
-    before every run. ``bytes_returned`` is the size of what the program returns, for the ratio of peak memory to it.
+    Where it ``reports``, the last line that it prints is shown; ``cold`` empties the compiler's cache before every run.
+    ``bytes_returned`` is the size of its result, to set its memory against.
     """
 
     name: str
     what: str
-    program: str
+    text: str
     cold: bool = False
     repeat: int = 5
     bytes_returned: int = 0
     reports: bool = False
 
 
+@dataclass(frozen=True)
+class Method:
+    """A module of this folder whose functions, named as the work is, make it ready and return what does it.
+
+    ``largest`` is how many values it can be waited for.
+    """
+
+    what: str
+    module: str
+    options: dict[str, Any] = field(default_factory=dict)
+    largest: float = math.inf
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Work that several methods do: ``t`` instants, ``xi`` ratios, of so many designs or links. Ratios are to ``base``."""
+
+    name: str
+    what: str
+    work: str
+    methods: tuple[str, ...]
+    base: str
+    unit: str
+    t: int
+    xi: int = 1
+    designs: int = 1
+    links: int = 1
+
+    @property
+    def units(self) -> int:
+        """How many of what the time is given for."""
+        return self.t * self.xi * self.designs
+
+    @property
+    def values(self) -> int:
+        """How many numbers the result has."""
+        each = {"instants": 40, "designs": 40, "efforts": self.links}.get(self.work, 3)
+        return self.units * each
+
+
 _RUN = f"from lagrange_casadi.cli import main; raise SystemExit(main(['run', '{CASE}'{{}}]))"
-_MILLION = (
+_LAW = (
     "from lagrange_casadi import load_case, evaluate; "
     f"evaluate(load_case('{CASE}').scene, t=(0, 0.08, 1_000_000), wanted=['section:rod'])"
 )
-
-_SQUEEZER = """
+_GRID = (
+    "from lagrange_casadi import load_case, evaluate; "
+    f"s = evaluate(load_case('{CASE}').scene, t=(0, 0.08, 100_000), xi=(0, 1, 101), wanted=['section:rod'])"
+    ".section('rod'); s.axial, s.shear, s.bending"
+)
+_STAGES = """
 import time
 from lagrange_casadi import codegen, derive, load_case
-from lagrange_casadi.codegen.compiler import build
+from lagrange_casadi.codegen.compiler import built
+scene = load_case("cases/{0}").scene
 start = time.perf_counter()
-source = codegen.emit(derive(load_case("cases/andrews_squeezer").scene))
+graph = derive(scene)
 derived = time.perf_counter()
-build(source, codegen.find_compiler())
-print(f"derive and emit {derived - start:.2f} s, compile {time.perf_counter() - derived:.2f} s")
+source = codegen.emit(graph)
+said = f"{{sum(graph.instructions.values())}} instructions; derive {{1e3 * (derived - start):.0f}} ms, "
+said += f"emit {{1e3 * (time.perf_counter() - derived):.0f}} ms"
+for language in ("c", "c++"):
+    compiler = codegen.find_compiler(language)
+    for state in ("cold", "warm"):
+        start = time.perf_counter()
+        codegen.load(source, compiler)
+        said += f", {{language}} {{state}} {{1e3 * (time.perf_counter() - start):.1f}} ms"
+print(said)
 """
-_CHAIN = """
-from lagrange_casadi import Mechanism, Scene, codegen, derive
-from lagrange_casadi.motion import polynomial
-m = Mechanism("chain")
-near, motion = m.ground, {{}}
-for i in range({0}):
-    link = m.link(f"link{{i}}", length=0.5, mass=1.0)
-    m.revolute(f"joint{{i}}", near, link)
-    motion[f"joint{{i}}"] = polynomial(0.1 * i, 1.0, 0.2)
-    near = link.tip
-scene = Scene(m, motion, t=(0, 1, 2))
-counts = {{wanted: derive(scene, [wanted]).instructions["instant"] for wanted in ("effort", "all")}}
-codegen.emit(derive(scene))
-print(", ".join(f"{{wanted}}: {{count}} instructions, {{count / {0}:.0f}} a link" for wanted, count in counts.items()))
-"""
+_LARGE = "from benchmarks.large import report; print(report({0}))"
 
-BENCHMARKS = (
-    Benchmark("import", "import lagrange_casadi", "import lagrange_casadi"),
-    Benchmark("run-cold", "run the paper's case with figures, nothing compiled", _RUN.format(""), cold=True, repeat=3),
-    Benchmark("run-warm", "the same, compiled before", _RUN.format("")),
-    Benchmark("run-warm-plain", "the same without figures", _RUN.format(", '--no-figures'")),
-    Benchmark(
-        "law-1e6",
-        "a million instants of one link's section law",
-        _MILLION,
-        bytes_returned=8 * 1_000_000 * 8,  # the instants and the seven coefficients
+PROGRAMS = (
+    Program("import", "import lagrange_casadi", "import lagrange_casadi"),
+    Program("run-cold", "run the paper's case with figures, nothing compiled", _RUN.format(""), cold=True, repeat=3),
+    Program("run-warm", "the same, compiled before", _RUN.format("")),
+    Program("run-warm-plain", "the same without figures: 801 x 101 values of each force", _RUN.format(", '--no-figures'")),
+    Program(
+        "run-1e8",
+        "10^8 section forces of one link, streamed to the file",
+        _RUN.format(", '--no-figures', '--want', 'section:rod', '--t', '0:0.08:330034'"),
+        repeat=1,
     ),
-    Benchmark("squeezer", "derive and emit the squeezer, and compile it cold", _SQUEEZER, cold=True, repeat=3, reports=True),
+    Program("memory-law", "a million instants of one link's law", _LAW, bytes_returned=8 * 1_000_000 * 8),
+    Program("memory-grid", "grids of 100 000 x 101 values of each force", _GRID, bytes_returned=3 * 8 * 100_000 * 101),
     *(
-        Benchmark(f"chain-{n}", f"derive and emit an open chain of {n} links", _CHAIN.format(n), repeat=3, reports=True)
+        Program(f"stages-{case}", f"{case}, everything", _STAGES.format(case), cold=True, repeat=3, reports=True)
+        for case in ("slider_crank", "six_bar", "andrews_squeezer", "rrr3")
+    ),
+    Program("stages-sympy", "SymPy derives and lambdifies the same three forces", "from benchmarks.peers.sympy_lambdify import *\n"
+            "from benchmarks.peers.paper_case import SliderCrank\nsections(SliderCrank(), np.zeros(1), np.zeros(1))", repeat=3),
+    *(
+        Program(f"large-{n}", f"an open chain of {n} links, everything", _LARGE.format(n), cold=True, repeat=1, reports=True)
+        for n in (16, 64, 256, 750)
+    ),
+)  # fmt: skip
+
+METHODS = {
+    "memcpy": Method("a copy of the result, from one place in memory to another", "peers.memory"),
+    "lanes x cores": Method("this package: packs of instants, a thread a core", "engine", {"backend": "lanes", "threads": 0}),
+    "lanes": Method("this package: packs of instants, one thread", "engine", {"backend": "lanes"}),
+    "c": Method("this package: scalar C, one thread", "engine", {"backend": "c"}),
+    "vm": Method("this package: CasADi's virtual machine", "engine", {"backend": "vm"}, largest=4e6),
+    "fill": Method("this package: the grids, one thread", "engine"),
+    "fill x cores": Method("this package: the grids, a thread a core", "engine", {"threads": 0}),
+    "by hand": Method("scalar C for this one mechanism, written by hand", "peers.handwritten"),
+    "by hand, vectors": Method(
+        "the same, as the compiler vectorises it: -O3 -march=native", "peers.handwritten", {"flags": ("-O3", "-march=native")}
+    ),
+    "numpy": Method("NumPy of the closed form, written by hand", "peers.numpy_closed", largest=1.2e7),
+    "sympy": Method("SymPy's lambdify with cse, to NumPy", "peers.sympy_lambdify", largest=1.2e7),
+    "pinocchio": Method("Pinocchio's rnea, the rod in as many pieces as ratios and one", "peers.pinocchio_split", largest=3e6),
+    "mujoco": Method("MuJoCo's inverse dynamics, the same pieces", "peers.mujoco_split", largest=3e6),
+    "exudyn": Method("Exudyn's residual, a rod split once for each ratio", "peers.exudyn_split", largest=3e5),
+    "pinocchio rnea": Method("Pinocchio's rnea", "peers.pinocchio_chain"),
+}
+
+_ENGINE = ("lanes x cores", "lanes", "c", "vm")
+_HAND = ("by hand", "by hand, vectors", "numpy")
+_RATIOS = 32
+
+COMPARISONS = (
+    *(
+        Comparison(f"instants-{n}", f"{n} instants of the slider-crank, all 40 outputs", "instants", (*_ENGINE, *_HAND),
+                   "by hand", "ns/instant", t=n)
+        for n in (1, 1000, 20_000, 1_000_000)
+    ),
+    *(
+        Comparison(f"grid-1e{e}", f"the law and its grids of (t, xi), 10^{e} values, {_RATIOS} ratios", "sections",
+                   (*_ENGINE, *_HAND, "sympy", "pinocchio", "mujoco", "exudyn"), "lanes", "ns/(t, xi)",
+                   t=max(2, round(10**e / 3 / _RATIOS)), xi=_RATIOS)
+        for e in range(3, 9)
+    ),
+    *(
+        Comparison(f"fill-1e{e}", f"grids filled from a law that is there, 10^{e} values, 101 ratios", "fill",
+                   ("memcpy", "fill x cores", "fill"), "memcpy", "ns/(t, xi)", t=max(2, round(10**e / 3 / 101)), xi=101)
+        for e in range(5, 9)
+    ),
+    Comparison("designs-1000", "1000 lengths of the rod x 128 instants, all 40 outputs", "designs",
+               ("lanes", "c", "vm", *_HAND), "by hand", "ns/instant", t=128, designs=1000),
+    *(
+        Comparison(f"chain-{n}", f"efforts of an open chain of {n} links, 1000 instants", "efforts",
+                   (*_ENGINE, "pinocchio rnea"), "pinocchio rnea", "ns/instant", t=1000, links=n)
         for n in CHAINS
     ),
-)
+)  # fmt: skip

@@ -16,12 +16,12 @@ from typing import Any
 
 import numpy as np
 
-from .codegen import cores, find_compiler
+from .codegen import find_compiler
 from .codegen.compiler import built
 from .density import Array
 from .errors import CompilerError, SizeError
 
-WORTH_COMPILING = 1 << 17
+WORTH_COMPILING = 1 << 14
 """Values from which on compiled code fills a grid."""
 
 _STREAMING = 1 << 24
@@ -35,7 +35,7 @@ Load = tuple[Array, Array, Array]
 """Station, constant and slope of what acts there: sections on its base side feel constant + slope (station - u)."""
 
 
-def fill(columns: Sequence[Array], basis: Sequence[Array], loads: Sequence[Load], u: Array, out: Array) -> None:
+def fill(columns: Sequence[Array], basis: Sequence[Array], loads: Sequence[Load], u: Array, out: Array, threads: int = 1) -> None:
     """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what acts at stations.
 
     ``columns`` and ``basis`` are three or four; ``u`` are the ratios.
@@ -47,7 +47,7 @@ def fill(columns: Sequence[Array], basis: Sequence[Array], loads: Sequence[Load]
     flat = [np.ascontiguousarray(row) for row in (*columns, *(row for load in loads for row in load))]
     functions, ratios = np.ascontiguousarray(np.stack(basis)), np.ascontiguousarray(u)
     n, k = out.shape
-    shares = max(1, min(cores(), out.size // _SHARE, n))
+    shares = max(1, min(threads, out.size // _SHARE, n))
     size = -(-n // shares)
 
     def run(start: int) -> None:

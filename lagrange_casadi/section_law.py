@@ -13,6 +13,7 @@ from typing import Any, Literal
 import numpy as np
 
 from . import grids
+from .codegen import cores
 from .density import Array, NumericDensity
 
 FORCES = ("axial", "shear", "bending")
@@ -49,14 +50,15 @@ class SectionLaw:
     coefficients: Mapping[str, Array]
     loads: tuple[StationLoad, ...] = ()
 
-    def on_grid(self, force: str, xi: Array, out: Array | None = None) -> Array:
+    def on_grid(self, force: str, xi: Array, out: Array | None = None, threads: int | None = None) -> Array:
         """A force at every instant and every ratio ``xi``, of shape (t, xi), in ``out`` where given; at a station, on its tip side.
 
-        Raises :class:`SizeError` where there is less memory than that.
+        By default one thread a core shares a grid that is worth it; the bits do not depend on it. Raises :class:`SizeError` where
+        there is less memory than that.
         """
         columns, basis = self._terms(force, xi)
         out = grids.empty(f"a grid of {force}", (columns[0].size, xi.size)) if out is None else out
-        grids.fill(columns, basis, [self._acting(force, load) for load in self.loads], xi, out)
+        grids.fill(columns, basis, [self._acting(force, load) for load in self.loads], xi, out, threads or cores())
         return out
 
     def during(self, instants: slice) -> SectionLaw:

@@ -48,17 +48,17 @@ class Library:
         """
         assert z.strides == out.strides or not z.size
         shares = max(1, min(threads, t.size // _SHARE))
+        if shares == 1:
+            self._call(self.entry, t, out, (p, z, out, status))
+            return
         size = -(-t.size // (shares * _CUT)) * _CUT
-        cuts = [slice(start, start + size) for start in range(0, t.size, size)]
 
-        def run(cut: slice) -> None:
+        def run(start: int) -> None:
+            cut = slice(start, start + size)
             self._call(self.entry, t[cut], out[:, cut], (p, z[:, cut], out[:, cut], status[cut]))
 
-        if len(cuts) <= 1:
-            run(slice(None))
-            return
-        with ThreadPoolExecutor(len(cuts)) as pool:
-            list(pool.map(run, cuts))
+        with ThreadPoolExecutor(shares) as pool:
+            list(pool.map(run, range(0, t.size, size)))
 
     @staticmethod
     def _call(entry: Any, t: Array, rows: Array, rest: tuple[npt.NDArray[Any], ...]) -> None:
@@ -71,11 +71,14 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def load(source: str, compiler: Compiler) -> Library:
-    """Build an emitted file, as C or with packs as C++, or take it from the cache, and load it. Raises :class:`CompilerError`."""
+def load(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Library:
+    """Build an emitted file, as C or with packs as C++, or take it from the cache, and load it.
+
+    ``extra`` flags come after the package's own. Raises :class:`CompilerError`.
+    """
     if compiler.language == "c++":
         source = resources.files(__package__).joinpath("lanes.h").read_text() + source
-    with built(source, compiler) as path:
+    with built(source, compiler, extra) as path:
         try:
             library = ctypes.CDLL(str(path))
             entry = getattr(library, EVALUATE)
@@ -85,4 +88,4 @@ def load(source: str, compiler: Compiler) -> Library:
     entry.restype, entry.argtypes = None, [ctypes.c_longlong] * 2 + [ctypes.c_void_p] * 5
     if follow is not None:
         follow.restype, follow.argtypes = None, [ctypes.c_longlong] * 2 + [ctypes.c_void_p] * 5
-    return Library(entry, follow, compiler.flags(source))
+    return Library(entry, follow, (*compiler.flags(source), *extra))

@@ -1,0 +1,136 @@
+"""The package's own ways to do each piece of work, into arrays that are made once; ``threads`` is 0 for one a core."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from lagrange_casadi import Mechanism, Scene, codegen, derive
+from lagrange_casadi.backends import Backend, run
+from lagrange_casadi.description import describe
+from lagrange_casadi.motion import polynomial
+from lagrange_casadi.scene import SceneGraph
+from lagrange_casadi.section_law import FORCES, SectionLaw
+from lagrange_casadi.solution import Provenance, Solution, in_order
+
+from .peers.paper_case import HALF_ACCELERATION, SPEED, Array, SliderCrank
+
+Work = Callable[[], Array]
+
+
+def slider_crank(wanted: tuple[str, ...]) -> SceneGraph:
+    """The paper's mechanism, as in ``cases/slider_crank``."""
+    m = Mechanism("slider_crank")
+    case = SliderCrank()
+    r, l, m1, m2, m3 = (m.parameter(name, getattr(case, name), unit) for name, unit in zip(NAMES, UNITS, strict=True))
+    crank, rod, slider = m.link("crank", length=r, mass=m1), m.link("rod", length=l, mass=m2), m.point_mass("slider", m3)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, slider)
+    m.prismatic("guide", m.ground, slider, axis=(1, 0))
+    return derive(Scene(m, {"O": polynomial(0, SPEED, HALF_ACCELERATION)}, wanted=wanted, posture={"rod": 0.0}))
+
+
+NAMES, UNITS = ("r", "l", "m1", "m2", "m3"), ("m", "m", "kg", "kg", "kg")
+
+
+def chain(n: int, wanted: tuple[str, ...] = ("effort",)) -> SceneGraph:
+    """An open chain of n uniform links that are driven at every joint."""
+    m = Mechanism("chain")
+    near: Any = m.ground
+    motion = {}
+    for i in range(n):
+        link = m.link(f"link{i}", length=0.5, mass=1.0)
+        m.revolute(f"joint{i}", near, link)
+        motion[f"joint{i}"] = polynomial(0.1 * i, 1.0, 0.2)
+        near = link.tip
+    return derive(Scene(m, motion, wanted=wanted))
+
+
+def instants(case: SliderCrank, t: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
+    """Every column of ``wanted="all"``, (columns, t)."""
+    return _columns(slider_crank(("all",)), np.array(case.parameters), t, backend, threads)
+
+
+def designs(case: SliderCrank, t: Array, lengths: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
+    """The same for one length of the rod after another; what is left is the last one's."""
+    p = np.array(case.parameters)
+    work = _columns(slider_crank(("all",)), p, t, backend, threads)
+
+    def call() -> Array:
+        for length in lengths:
+            p[1] = length
+            found = work()
+        return found
+
+    return call
+
+
+def sections(case: SliderCrank, t: Array, xi: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
+    """Axial, shear and bending of the rod, (3, t, xi): the law at every instant, and the grids from it."""
+    work, law, out = *_law(case, t, backend, threads), np.empty((3, t.size, xi.size))
+
+    def call() -> Array:
+        work()
+        for force, grid in zip(FORCES, out, strict=True):
+            law.on_grid(force, xi, grid, threads or codegen.cores())
+        return out
+
+    return call
+
+
+def fill(case: SliderCrank, t: Array, xi: Array, threads: int = 1) -> Work:
+    """The grids alone, from a law that is there."""
+    (_, law), out = _law(case, t, "lanes", 1), np.empty((3, t.size, xi.size))
+
+    def call() -> Array:
+        for force, grid in zip(FORCES, out, strict=True):
+            law.on_grid(force, xi, grid, threads or codegen.cores())
+        return out
+
+    return call
+
+
+def efforts(n: int, t: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
+    """Efforts of the chain, (n, t)."""
+    return _columns(chain(n), np.zeros(0), t, backend, threads)
+
+
+def columns() -> tuple[str, ...]:
+    """The names of what :func:`instants` gives."""
+    return _outputs(slider_crank(("all",)))
+
+
+def _columns(graph: SceneGraph, p: Array, t: Array, backend: Backend, threads: int) -> Work:
+    """The outputs, the same array at every call, (columns, t)."""
+    compiler = codegen.find_compiler("c++" if backend == "lanes" else "c")
+    if compiler is None:
+        raise RuntimeError(f"no compiler for the backend {backend}")
+    out, status = np.empty((len(graph.columns), 8 * (-(-t.size // 8) | 1)))[:, : t.size], np.zeros(t.size, dtype=np.int32)
+    library, z = codegen.load(codegen.emit(graph), compiler), np.empty((0, t.size))
+    first = sum(name.startswith("_") for name in graph.columns)
+
+    def call() -> Array:
+        if backend == "vm":
+            out[:] = run(graph, t, p, "vm")[0].out
+        else:
+            library.evaluate(t, p, z, out, status, threads or codegen.cores())
+        return out[first:]
+
+    return call
+
+
+def _law(case: SliderCrank, t: Array, backend: Backend, threads: int) -> tuple[Work, SectionLaw]:
+    """What works out the rod's law, and the law, whose arrays that fills."""
+    graph = slider_crank(("section:rod",))
+    work = _columns(graph, np.array(case.parameters), t, backend, threads)
+    mechanism = graph.scene.mechanism
+    description = describe(mechanism, mechanism.values(dict(zip(NAMES, case.parameters, strict=True))), graph.scene.motion)
+    series = in_order(dict(zip(_outputs(graph), work(), strict=True)), description)
+    return work, Solution("slider_crank", t, t, series, description, Provenance("", "", "", "", {})).section("rod").law
+
+
+def _outputs(graph: SceneGraph) -> tuple[str, ...]:
+    return tuple(name for name in graph.columns if not name.startswith("_"))
