@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive
-from lagrange_casadi.backends import Backend, run
+from lagrange_casadi.backends import Backend, rows, run
 from lagrange_casadi.description import describe
 from lagrange_casadi.motion import polynomial
 from lagrange_casadi.scene import SceneGraph
@@ -108,7 +108,7 @@ def _columns(graph: SceneGraph, p: Array, t: Array, backend: Backend, threads: i
     compiler = codegen.find_compiler("c++" if backend == "lanes" else "c")
     if compiler is None:
         raise RuntimeError(f"no compiler for the backend {backend}")
-    out, status = np.empty((len(graph.columns), 8 * (-(-t.size // 8) | 1)))[:, : t.size], np.zeros(t.size, dtype=np.int32)
+    out, status = rows(len(graph.columns), t.size), np.zeros(t.size, dtype=np.int32)
     library, z = codegen.load(codegen.emit(graph), compiler), np.empty((0, t.size))
     first = sum(name.startswith("_") for name in graph.columns)
 

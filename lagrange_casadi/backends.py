@@ -61,7 +61,7 @@ def run(graph: SceneGraph, t: Array, p: Array, backend: Backend = "auto", thread
         return _interpret(graph, t, p), _provenance("vm", "", "")
     compiler, library = compiled
     guess = np.array(graph.newton.guess if graph.newton else ())
-    table, z = _table(graph, t), _rows(guess.size, t.size)
+    table, z = _table(graph, t), rows(guess.size, t.size)
     library.follow(t, p, guess, z, table.status)
     library.evaluate(t, p, z, table.out, table.status, threads or codegen.cores())
     used = "lanes" if compiler.language == "c++" else "c"
@@ -95,10 +95,10 @@ def _library(graph: SceneGraph, compiler: codegen.Compiler) -> codegen.Library:
 
 
 def _table(graph: SceneGraph, t: Array) -> Table:
-    return Table(_rows(len(graph.columns), t.size), np.full(t.size, OK, dtype=np.int32))
+    return Table(rows(len(graph.columns), t.size), np.full(t.size, OK, dtype=np.int32))
 
 
-def _rows(count: int, size: int) -> Array:
+def rows(count: int, size: int) -> Array:
     """Rows an odd number of cache lines apart: at a power of two all would share the same few lines of the cache."""
     stride = 8 * (-(-size // 8) | 1)
     return grids.empty("a table of columns and instants", (count, stride))[:, :size]

@@ -90,8 +90,10 @@ def internal_forces(
     for name in sections:
         for coefficient, force in _section_law(multibody, name, borne, drives).items():
             columns[f"section:{name}:{coefficient}"] = force
-    # All at once, for a substitution visits the whole graph.
-    known = ca.substitute(kinematics.evaluate(column(columns.values())), unknowns, values)
+    # All at once, for a substitution visits the whole graph; and mobilities rest.
+    rates = multibody.mobility_rates
+    resting = ca.substitute(column(columns.values()), rates, ca.SX.zeros(rates.numel()))
+    known = ca.substitute(kinematics.evaluate(resting), unknowns, values)
     return InternalForces(dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True)), free)
 
 
@@ -120,11 +122,15 @@ def _material(multibody: Multibody, name: str) -> Any:
     In axes at rest that lie along the link at the instant: the energy does not see which axes at rest it is written in, and in
     these the first moment's forces are the rate squared and its change, to the last bit.
     """
+    frame = multibody.felt[name].along_axis()
+    motion = column([*frame.speed, *frame.acceleration, frame.rate, frame.angular])
+    # By symbols of its own, for the graphs of a long chain are deep, and every step would go through them.
+    vx, vy, ax, ay, rate, angular = symbols = ca.vertsplit(ca.SX.sym("motion", 6))
+    base_frame = Frame(speed=(vx, vy), acceleration=(ax, ay), rate=rate, angular=angular)
     mass, first, second = (ca.SX.sym(f"mu{i}") for i in range(3))
-    released = ca.SX.sym(f"ed_{name}_section", 2)
-    frame, velocities = multibody.felt[name].along_axis(), Velocities()
-    base = velocities.point(frame.displaced(released).motion_of(0.0, 0.0))
-    lever = velocities.point(Frame(rate=frame.rate, angular=frame.angular).motion_of(1.0, 0.0))
+    released, velocities = ca.SX.sym("ed_section", 2), Velocities()
+    base = velocities.point(base_frame.displaced(released).motion_of(0.0, 0.0))
+    lever = velocities.point(Frame(rate=rate, angular=angular).motion_of(1.0, 0.0))
     piece = LagrangeSystem(
         kinetic=mass * ca.sumsqr(base) / 2 + first * ca.dot(base, lever) + second * ca.sumsqr(lever) / 2,
         force_function=ca.SX(0),
@@ -136,8 +142,7 @@ def _material(multibody: Multibody, name: str) -> Any:
         velocity_graphs=column(velocities.graphs),
         velocity_rates=column(velocities.rates),
     )
-    slopes = ca.jacobian(piece.terms()[1], ca.vertcat(mass, first))
-    return ca.substitute(slopes, multibody.mobility_rates, ca.SX.zeros(multibody.mobility_rates.numel()))
+    return ca.substitute(ca.jacobian(piece.terms()[1], ca.vertcat(mass, first)), ca.vertcat(*symbols), motion)
 
 
 def _loads_on(multibody: Multibody, link: Link, borne: Any, drives: Any) -> Iterator[tuple[str, Any, Any, tuple[Any, Any, Any]]]:

@@ -10,6 +10,7 @@ from builders import slider_crank
 from test_codegen import SCENES, columns
 
 from lagrange_casadi import codegen, derive, evaluate
+from lagrange_casadi.codegen import library
 
 HEADER = resources.files("lagrange_casadi.codegen").joinpath("lanes.h")
 ULP = np.finfo(float).eps
@@ -37,10 +38,11 @@ def test_a_tail_of_any_length_has_the_same_bits(name):
 
 @pytest.mark.parametrize("language", ["c", "c++"])
 @pytest.mark.parametrize("name", ["effort_alone", "iterated"])
-def test_the_bytes_do_not_depend_on_the_threads(name, language):
+def test_the_bytes_do_not_depend_on_the_threads(name, language, monkeypatch):
     scene = SCENES[name]()
     graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 40_001)
     one = columns(graph, t, language)
+    monkeypatch.setattr(library, "_WORTH_A_THREAD", 0)
     for threads in (2, 3, 5):
         assert columns(graph, t, language, threads).tobytes() == one.tobytes()
 
@@ -48,10 +50,10 @@ def test_the_bytes_do_not_depend_on_the_threads(name, language):
 def test_a_tail_that_cannot_be_closed_is_found_in_its_pack():
     """Instants beyond the reach of the links have a status; their neighbours in the pack have their numbers."""
     graph, t = derive(slider_crank()), np.linspace(0, 0.08, 21)
-    library = codegen.load(codegen.emit(graph), codegen.find_compiler("c++"))
+    code = codegen.load(codegen.emit(graph), codegen.find_compiler("c++"))
     p = np.array([0.1, 0.1 * np.sin(1.2), 0.1, 0.1, 0.1])
     out, status = np.full((len(graph.columns), t.size), np.nan), np.zeros(t.size, dtype=np.int32)
-    library.evaluate(t, p, np.empty((0, t.size)), out, status)
+    code.evaluate(t, p, np.empty((0, t.size)), out, status)
     reach = np.abs(np.sin(out[graph.columns.index("motion:O")])) < np.sin(1.2)
     assert 0 < reach.sum() < t.size
     assert np.array_equal(status == 0, reach)

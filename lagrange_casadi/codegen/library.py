@@ -13,14 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import CompilerError
-from .compiler import Compiler, built
+from .compiler import Compiler, built, statements
 from .emit import EVALUATE, FOLLOW
 
 Array = npt.NDArray[np.float64]
 Status = npt.NDArray[np.int32]
 
-_SHARE = 8192
-"""Instants that are worth a thread of their own."""
+_WORTH_A_THREAD = 1 << 24
+"""Statements, those of an instant times the instants: about a millisecond, some times what it takes to start a thread."""
 
 _CUT = 64
 """A multiple of any pack, so that no cut falls into one."""
@@ -28,11 +28,15 @@ _CUT = 64
 
 @dataclass(frozen=True, eq=False)
 class Library:
-    """The loaded code of one scene graph. Its calls release the interpreter and allocate nothing."""
+    """The loaded code of one scene graph. Its calls release the interpreter and allocate nothing.
+
+    ``share`` is how many instants are worth a thread of their own.
+    """
 
     entry: Any
     entry_follow: Any | None
     flags: tuple[str, ...]
+    share: int
 
     def follow(self, t: Array, p: Array, guess: Array, z: Array, status: Status) -> None:
         """Fill the iterated coordinates ``z`` (k, n), each instant from the one before; ``guess`` (k) begins, and moves along."""
@@ -47,7 +51,7 @@ class Library:
         ``status`` (n) is what :meth:`follow` left; what is not finite is noted there. The bytes do not depend on ``threads``.
         """
         assert z.strides == out.strides or not z.size
-        shares = max(1, min(threads, t.size // _SHARE))
+        shares = max(1, min(threads, t.size // self.share))
         if shares == 1:
             self._call(self.entry, t, out, (p, z, out, status))
             return
@@ -88,4 +92,4 @@ def load(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Librar
     entry.restype, entry.argtypes = None, [ctypes.c_longlong] * 2 + [ctypes.c_void_p] * 5
     if follow is not None:
         follow.restype, follow.argtypes = None, [ctypes.c_longlong] * 2 + [ctypes.c_void_p] * 5
-    return Library(entry, follow, (*compiler.flags(source), *extra))
+    return Library(entry, follow, (*compiler.flags(source), *extra), max(_CUT, _WORTH_A_THREAD // statements(source)))
