@@ -101,7 +101,7 @@ def _table(graph: SceneGraph, t: Array) -> Table:
 def rows(count: int, size: int) -> Array:
     """Rows an odd number of cache lines apart: at a power of two all would share the same few lines of the cache."""
     stride = 8 * (-(-size // 8) | 1)
-    return grids.empty("a table of columns and instants", (count, stride))[:, :size]
+    return grids.empty("the outputs over time", (count, stride))[:, :size]
 
 
 def _provenance(backend: str, compiler: str, flags: str) -> Provenance:

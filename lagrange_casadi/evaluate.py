@@ -15,8 +15,9 @@ from .codegen.emit import NOT_CONVERGED, OK, SLOW
 from .density import Array
 from .description import describe
 from .errors import AssemblyError, DeclarationError
+from .grids import require
 from .kinematics import where
-from .scene import Grid, Scene, SceneGraph, derive, instants, ratios
+from .scene import Grid, Scene, SceneGraph, checked, checked_ratios, derive
 from .solution import Solution, in_order
 
 MISFIT = 1e-8
@@ -54,22 +55,28 @@ def evaluate(
     certificate
         Whether to check the solution by :mod:`.certificate`, as far as the wanted outputs allow.
 
-    Raises :class:`AssemblyError` where a loop does not close at some instant, :class:`CompilerError`, and for mistakes in the
-    arguments :class:`UnknownNameError`, :class:`ParameterError` or :class:`DeclarationError`.
+    Raises :class:`AssemblyError` where a loop does not close at some instant, :class:`SizeError` where the outputs over time do not
+    fit into memory, :class:`CompilerError`, and for mistakes in the arguments :class:`UnknownNameError`, :class:`ParameterError` or
+    :class:`DeclarationError`.
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"evaluate: expected a Scene, got {scene!r}")
+    if threads is not None and (not isinstance(threads, int) or threads < 1):
+        raise DeclarationError(f"threads: expected a whole number of at least 1, got {threads!r}")
     values = scene.mechanism.values(parameters)
-    times = instants("t", scene.t if t is None else t)
-    places = ratios(scene.xi if xi is None else xi)
+    start, stop, count = checked("t", scene.t if t is None else t)
+    ratios = checked_ratios(scene.xi if xi is None else xi)
     for joint, law in scene.motion.items():
         low, high = law.span
-        if times[0] < low or times[-1] > high:
+        if start < low or stop > high:
             raise DeclarationError(
                 f"the samples of the motion of joint '{joint}' cover t from {low:g} to {high:g} s, but t from "
-                f"{times[0]:g} to {times[-1]:g} s is asked for"
+                f"{start:g} to {stop:g} s is asked for"
             )
     graph = derive(scene, wanted)
+    require("the outputs over time", (len(graph.columns), count))
+    require("the grid of ratios", (ratios[2],))
+    times, places = np.linspace(start, stop, count), np.linspace(*ratios)
     table, provenance = run(graph, times, np.array(list(values.values())), backend, threads)
     _refuse(graph, table, times, list(values.values()))
     series = {name: table.out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}

@@ -23,6 +23,8 @@ from .solution import Solution
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_PIXELS = 1600
+
 
 @dataclass(frozen=True)
 class TimePlot:
@@ -79,7 +81,9 @@ class SpanPlot:
         """The figure."""
         figure, axes = _figure()
         i = int(np.argmin(np.abs(solution.t - self.t)))
-        axes.plot(solution.xi, self.factor * solution.array(self.quantity)[i])
+        _, link, force = self.quantity.split(":")
+        values = solution.section(link).law.during(slice(i, i + 1)).on_grid(force, solution.xi)
+        axes.plot(solution.xi, self.factor * values[0])
         title = f"{self.title}, t = {solution.t[i]:.4g} s" if self.title else f"t = {solution.t[i]:.4g} s"
         _finish(figure, axes, solution, self.quantity, title, self.note, r"$\xi/l$")
         return figure
@@ -87,7 +91,7 @@ class SpanPlot:
 
 @dataclass(frozen=True)
 class SectionMaps:
-    """The three section forces of a link as maps of time and xi/l, the peaks marked."""
+    """The three section forces of a link as maps of time and xi/l, the peaks marked; a grid finer than the picture is thinned."""
 
     kind: ClassVar[str] = "maps"
     name: str
@@ -102,12 +106,12 @@ class SectionMaps:
         from matplotlib.figure import Figure
 
         figure = Figure(figsize=(8.0, 8.4), layout="constrained")
-        for axes, name in zip(figure.subplots(3, 1, sharex=True), self.needs(), strict=True):
-            values, peak = solution.array(name), solution.peak(name)
+        instants, ratios = (slice(None, None, 1 + size // _PIXELS) for size in (solution.t.size, solution.xi.size))
+        law, t, xi = solution.section(self.link).law.during(instants), solution.t[instants], solution.xi[ratios]
+        for axes, force, name in zip(figure.subplots(3, 1, sharex=True), FORCES, self.needs(), strict=True):
+            values, peak = law.on_grid(force, xi), solution.peak(name)
             bound = abs(peak.value) or 1.0
-            picture = axes.pcolormesh(
-                solution.t, solution.xi, values.T, cmap="RdBu_r", vmin=-bound, vmax=bound, shading="nearest", rasterized=True
-            )
+            picture = axes.pcolormesh(t, xi, values.T, cmap="RdBu_r", vmin=-bound, vmax=bound, shading="nearest", rasterized=True)
             axes.plot(peak.t, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
             axes.set_title(
                 f"{quantity_of(name).long_name}: peak {peak.value:.4g} {peak.unit} at t = {peak.t:.4g} s, "

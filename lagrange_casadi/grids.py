@@ -68,21 +68,25 @@ def fill(columns: Sequence[Array], basis: Sequence[Array], loads: Sequence[Load]
         list(pool.map(run, range(0, n, size)))
 
 
+def require(what: str, shape: tuple[int, ...]) -> None:
+    """Raise :class:`SizeError` where this machine has less memory than an array takes."""
+    try:
+        there = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (ValueError, OSError, AttributeError):
+        return
+    size = 8.0 * math.prod(shape)
+    if size > there:
+        values = " x ".join(map(str, shape))
+        raise SizeError(f"{what}, {values} values, takes {size / 1e9:.4g} GB, and this machine has {there / 1e9:.3g} GB")
+
+
 def empty(what: str, shape: tuple[int, ...]) -> Array:
     """An array to fill, from the start of a cache line: what crosses lines is stored at half the speed.
 
     Raises :class:`SizeError` where this machine has less memory than that.
     """
+    require(what, shape)
     count = math.prod(shape)
-    try:
-        there = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
-    except (ValueError, OSError, AttributeError):
-        there = math.inf
-    if 8.0 * count > there:
-        raise SizeError(
-            f"{what} of {' x '.join(map(str, shape))} values needs {8.0 * count / 1e9:.3g} GB, "
-            f"and this machine has {there / 1e9:.3g} GB"
-        )
     room = np.empty(count + _LINE)
     first = -room.ctypes.data // room.itemsize % _LINE
     return room[first : first + count].reshape(shape)

@@ -11,7 +11,6 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
 from . import kinematics
 from .assembly import assemble
@@ -32,8 +31,8 @@ Grid = tuple[float, float, int]
 """Start, stop and count; both ends are included."""
 
 
-def instants(what: str, grid: Grid) -> npt.NDArray[np.float64]:
-    """The points of a grid. Raises :class:`DeclarationError` for a count below 1 or ends that are not finite or fall."""
+def checked(what: str, grid: Grid) -> Grid:
+    """A grid in numbers. Raises :class:`DeclarationError` for a count below 1 or ends that are not finite or fall."""
     try:
         start, stop, count = float(grid[0]), float(grid[1]), int(grid[2])
         if len(grid) != 3:
@@ -46,15 +45,15 @@ def instants(what: str, grid: Grid) -> npt.NDArray[np.float64]:
         raise DeclarationError(f"{what}: START and STOP must be finite, got {start:g} and {stop:g}")
     if stop < start or (count > 1 and stop == start):
         raise DeclarationError(f"{what}: STOP must be after START, got {start:g} and {stop:g}")
-    return np.linspace(start, stop, count)
+    return start, stop, count
 
 
-def ratios(grid: Grid) -> npt.NDArray[np.float64]:
-    """The section ratios xi/l of a grid. Raises :class:`DeclarationError` outside [0, 1]."""
-    xi = instants("xi", grid)
-    if xi[0] < 0.0 or xi[-1] > 1.0:
-        raise DeclarationError(f"xi: ratios xi/l must lie in [0, 1], got {xi[0]:g} to {xi[-1]:g}")
-    return xi
+def checked_ratios(grid: Grid) -> Grid:
+    """A grid of section ratios xi/l in numbers. Raises :class:`DeclarationError` outside [0, 1]."""
+    start, stop, count = checked("xi", grid)
+    if start < 0.0 or stop > 1.0:
+        raise DeclarationError(f"xi: ratios xi/l must lie in [0, 1], got {start:g} to {stop:g}")
+    return start, stop, count
 
 
 @dataclass(frozen=True)
@@ -167,8 +166,8 @@ class Scene:
                 raise DeclarationError(f"row '{row.name}' replaces the drive of joint '{row.replaces}', which has no motion")
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)
-        instants("t", self.t)
-        ratios(self.xi)
+        checked("t", self.t)
+        checked_ratios(self.xi)
         self.mechanism.values()
 
 

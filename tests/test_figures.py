@@ -41,6 +41,12 @@ def test_maps_mark_the_peaks(solution):
     np.testing.assert_array_equal(marks, [(peak.t, peak.xi) for peak in peaks])
 
 
+def test_maps_of_a_grid_finer_than_the_picture_are_thinned(slider_crank):
+    solution = evaluate(slider_crank.scene, t=(0, 0.08, 4001), xi=(0, 1, 1700), wanted=["section:rod"])
+    figure = SectionMaps("maps", "rod").draw(solution)
+    assert figure.axes[0].collections[0].get_array().shape == (850, 1334)
+
+
 def test_drawing_puts_the_links_where_they_are(solution):
     figure = MechanismDrawing(count=4).draw(solution)
     assert len(figure.axes) == 4

@@ -64,5 +64,5 @@ def test_a_file_written_in_blocks_holds_the_whole_grid(tmp_path, monkeypatch):
 
 
 def test_what_does_not_fit_into_memory_is_one_line_with_its_size():
-    with pytest.raises(SizeError, match=r"a grid of axial of 11 x 1000000000000 values needs 8\.8e\+04 GB, and this machine has"):
+    with pytest.raises(SizeError, match=r"a grid of axial, 11 x 1000000000000 values, takes 8\.8e\+04 GB, and this machine has"):
         grids.empty("a grid of axial", (11, 10**12))

@@ -5,9 +5,9 @@ import pytest
 from builders import four_bar, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.errors import DeclarationError, UnknownNameError
+from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.scene import instants, outputs, ratios
+from lagrange_casadi.scene import outputs
 
 
 def test_outputs():
@@ -138,6 +138,32 @@ def test_misuse_is_named(keywords, says):
 
 
 def test_grids_include_both_ends():
-    assert instants("t", (0.0, 2.0, 5)).tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
-    assert instants("t", (0.3, 0.3, 1)).tolist() == [0.3]
-    assert ratios((0.0, 1.0, 3)).tolist() == [0.0, 0.5, 1.0]
+    solution = evaluate(slider_crank(), t=(0.0, 2.0, 5), xi=(0.0, 1.0, 3))
+    assert solution.t.tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
+    assert solution.xi.tolist() == [0.0, 0.5, 1.0]
+    assert evaluate(slider_crank(), t=(0.3, 0.3, 1)).t.tolist() == [0.3]
+
+
+@pytest.mark.parametrize(
+    ("keywords", "says"),
+    [
+        ({"t": (0, 1, 10**12)}, r"the outputs over time, 41 x 1000000000000 values, takes 3\.28e\+05 GB, and this machine has"),
+        ({"xi": (0, 1, 10**12)}, r"the grid of ratios, 1000000000000 values, takes 8000 GB"),
+    ],
+)
+def test_what_does_not_fit_into_memory_is_refused_before_it_is_tried(keywords, says):
+    with pytest.raises(SizeError, match=says):
+        evaluate(slider_crank(), **keywords)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "says"),
+    [
+        ({"backend": "gpu"}, "unknown backend 'gpu'; valid: auto, lanes, c, vm"),
+        ({"threads": 0}, "threads: expected a whole number of at least 1, got 0"),
+        ({"threads": 1.5}, "threads: expected a whole number of at least 1, got 1.5"),
+    ],
+)
+def test_a_way_to_run_that_there_is_not_is_named(keywords, says):
+    with pytest.raises(DeclarationError, match=says):
+        evaluate(slider_crank(), **keywords)

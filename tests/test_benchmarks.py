@@ -1,0 +1,75 @@
+"""The benchmarks' own machinery: what they measure is right, and what is wrong gets no time."""
+
+import numpy as np
+import pytest
+
+from benchmarks import comparisons
+from benchmarks.definitions import COMPARISONS, METHODS, PROGRAMS, Comparison, Method
+
+
+@pytest.fixture(autouse=True)
+def _short(monkeypatch):
+    monkeypatch.setattr(comparisons, "_ROUNDS", 1)
+    monkeypatch.setattr(comparisons, "_ROUND", 0.0)
+
+
+def rows(work, methods, base="by hand", **sizes):
+    comparison = Comparison("trial", "a trial", work, methods, base, "ns", **sizes)
+    return {row["method"]: row for row in comparisons.measure(comparison)}
+
+
+ENGINE = ("lanes x cores", "lanes", "c", "vm")
+
+
+@pytest.mark.parametrize(
+    ("work", "others", "sizes"),
+    [
+        ("instants", ("by hand", "by hand, vectors", "numpy"), {"t": 21}),
+        ("sections", ("by hand", "numpy"), {"t": 21, "xi": 9}),
+        ("designs", ("by hand", "numpy"), {"t": 21, "designs": 3}),
+        ("efforts", (), {"t": 11, "links": 3}),
+    ],
+)
+def test_every_method_of_ours_does_the_work(work, others, sizes):
+    found = rows(work, (*ENGINE, *others), **sizes)
+    for name, row in found.items():
+        assert row["error"] < 1e-13, name
+        assert row["ns"] > 0
+    if others:
+        assert found["by hand"]["ratio"] == 1.0
+
+
+def test_grids_are_filled_and_copied_alike():
+    found = rows("fill", ("memcpy", "fill", "fill x cores"), "memcpy", t=30, xi=9)
+    assert all(row["error"] < 1e-13 for row in found.values())
+
+
+def test_a_method_whose_result_is_wrong_reports_no_time(monkeypatch):
+    right = comparisons._work
+
+    def wrong(comparison, name):
+        work = right(comparison, name)
+        return (lambda: work() * (1 + 1e-8)) if name == "c" else work
+
+    monkeypatch.setattr(comparisons, "_work", wrong)
+    found = rows("instants", ("c", "by hand"), t=9)
+    assert "ns" not in found["c"]
+    assert found["c"]["why"].startswith("wrong: 1.0e-08 of the peak")
+    assert "wrong" in comparisons.row(found["c"])
+
+
+def test_a_peer_that_is_not_installed_is_said(monkeypatch):
+    monkeypatch.setitem(METHODS, "numpy", Method("absent", "peers.absent"))
+    found = rows("sections", ("numpy", "by hand"), t=9, xi=3)
+    assert found["numpy"]["why"] == "not installed (benchmarks.peers.absent): pip install '.[bench]'"
+    assert found["by hand"]["ns"] > 0
+
+
+def test_definitions_are_whole():
+    names = [b.name for b in (*PROGRAMS, *COMPARISONS)]
+    assert len(set(names)) == len(names)
+    for comparison in COMPARISONS:
+        assert set(comparison.methods) <= set(METHODS)
+        assert comparison.base in comparison.methods
+    sizes = [c.values for c in COMPARISONS if c.name.startswith("grid-")]
+    assert np.allclose(sizes, np.logspace(3, 8, 6), rtol=0.05)
