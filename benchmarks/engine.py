@@ -74,8 +74,9 @@ def sections(case: SliderCrank, t: Array, xi: Array, backend: Backend = "lanes",
 
     def call() -> Array:
         work()
+        basis = law.basis(xi)
         for force, grid in zip(FORCES, out, strict=True):
-            law.on_grid(force, xi, grid, threads or codegen.cores())
+            law.on_grid(force, basis, grid, threads or codegen.cores())
         return out
 
     return call
@@ -86,8 +87,9 @@ def fill(case: SliderCrank, t: Array, xi: Array, threads: int = 1) -> Work:
     (_, law), out = _law(case, t, "lanes", 1), np.empty((3, t.size, xi.size))
 
     def call() -> Array:
+        basis = law.basis(xi)
         for force, grid in zip(FORCES, out, strict=True):
-            law.on_grid(force, xi, grid, threads or codegen.cores())
+            law.on_grid(force, basis, grid, threads or codegen.cores())
         return out
 
     return call

@@ -108,8 +108,9 @@ class SectionMaps:
         figure = Figure(figsize=(8.0, 8.4), layout="constrained")
         instants, ratios = (slice(None, None, 1 + size // _PIXELS) for size in (solution.t.size, solution.xi.size))
         law, t, xi = solution.section(self.link).law.during(instants), solution.t[instants], solution.xi[ratios]
+        basis = law.basis(xi)
         for axes, force, name in zip(figure.subplots(3, 1, sharex=True), FORCES, self.needs(), strict=True):
-            values, peak = law.on_grid(force, xi), solution.peak(name)
+            values, peak = law.on_grid(force, basis), solution.peak(name)
             bound = abs(peak.value) or 1.0
             picture = axes.pcolormesh(t, xi, values.T, cmap="RdBu_r", vmin=-bound, vmax=bound, shading="nearest", rasterized=True)
             axes.plot(peak.t, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)

@@ -37,17 +37,17 @@ Load = tuple[Array, Array, Array]
 """Station, constant and slope of what acts there: sections on its base side feel constant + slope (station - u)."""
 
 
-def fill(columns: Sequence[Array], basis: Sequence[Array], loads: Sequence[Load], u: Array, out: Array, threads: int = 1) -> None:
+def fill(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array, threads: int = 1) -> None:
     """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what acts at stations.
 
-    ``columns`` and ``basis`` are three or four; ``u`` are the ratios.
+    ``columns`` and the rows of ``basis`` are three or four; ``u`` are the ratios.
     """
     entry = _compiled() if out.size >= WORTH_COMPILING else None
     if entry is None:
         _fill_in_blocks(columns, basis, loads, u, out)
         return
     flat = [np.ascontiguousarray(row) for row in (*columns, *(row for load in loads for row in load))]
-    functions, ratios = np.ascontiguousarray(np.stack(basis)), np.ascontiguousarray(u)
+    functions, ratios = np.ascontiguousarray(basis), np.ascontiguousarray(u)
     n, k = out.shape
     shares = max(1, min(threads, out.size // _SHARE, n))
     size = -(-n // shares)
@@ -92,7 +92,7 @@ def empty(what: str, shape: tuple[int, ...]) -> Array:
     return room[first : first + count].reshape(shape)
 
 
-def _fill_in_blocks(columns: Sequence[Array], basis: Sequence[Array], loads: Sequence[Load], u: Array, out: Array) -> None:
+def _fill_in_blocks(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array) -> None:
     height = max(1, _BLOCK // max(1, out.shape[1]))
     for start in range(0, out.shape[0], height):
         block = slice(start, start + height)

@@ -42,6 +42,15 @@ class StationLoad:
 
 
 @dataclass(frozen=True, eq=False)
+class Basis:
+    """Ratios ``u`` along a link, and there the functions that its forces are combined of: a row each, of shape (terms, u...)."""
+
+    u: Array
+    force: Array
+    bending: Array
+
+
+@dataclass(frozen=True, eq=False)
 class SectionLaw:
     """The law of one link: ``coefficients`` by name (n0 ... m0), each (t,); length [m], density, and loads at stations."""
 
@@ -50,15 +59,23 @@ class SectionLaw:
     coefficients: Mapping[str, Array]
     loads: tuple[StationLoad, ...] = ()
 
-    def on_grid(self, force: str, xi: Array, out: Array | None = None, threads: int | None = None) -> Array:
+    def basis(self, xi: Array) -> Basis:
+        """The functions along the link at ratios ``xi`` of any shape; they serve every force, and the law at any instants."""
+        t0, t1, t2 = self.density.tails(xi)
+        l, one = self.length, np.ones_like(xi)
+        bending = [one, l * (1.0 - xi), l * t1, l * l * (xi * t1 + t2)]
+        return Basis(xi, np.stack([one, t0, l * (xi * t0 + t1)]), np.stack(bending))
+
+    def on_grid(self, force: str, xi: Array | Basis, out: Array | None = None, threads: int | None = None) -> Array:
         """A force at every instant and every ratio ``xi``, of shape (t, xi), in ``out`` where given; at a station, on its tip side.
 
-        By default one thread a core shares a grid that is worth it; the bits do not depend on it. Raises :class:`SizeError` where
-        there is less memory than that.
+        Where several forces are wanted, a :meth:`basis` of the ratios serves all. By default one thread a core shares a grid that
+        is worth it; the bits do not depend on it. Raises :class:`SizeError` where there is less memory than that.
         """
-        columns, basis = self._terms(force, xi)
-        out = grids.empty(f"a grid of {force}", (columns[0].size, xi.size)) if out is None else out
-        grids.fill(columns, basis, [self._acting(force, load) for load in self.loads], xi, out, threads or cores())
+        basis = xi if isinstance(xi, Basis) else self.basis(xi)
+        columns, rows = self._terms(force, basis)
+        out = grids.empty(f"a grid of {force}", (columns[0].size, basis.u.size)) if out is None else out
+        grids.fill(columns, rows, [self._acting(force, load) for load in self.loads], basis.u, out, threads or cores())
         return out
 
     def during(self, instants: slice) -> SectionLaw:
@@ -92,18 +109,13 @@ class SectionLaw:
         best = np.argmax(np.abs(values), axis=1)[:, None]
         return np.take_along_axis(stacked, best, 1)[:, 0], np.take_along_axis(values, best, 1)[:, 0]
 
-    def _terms(self, force: str, u: Array) -> tuple[list[Array], list[Array]]:
-        c, l = self.coefficients, self.length
-        t0, t1, t2 = self.density.tails(u)
-        one = np.ones_like(u)
-        if force == "bending":
-            return [c["m0"], c["f0"], c["f1"], c["f2"]], [one, l * (1.0 - u), l * t1, l * l * (u * t1 + t2)]
-        names = ("n0", "n1", "n2") if force == "axial" else ("f0", "f1", "f2")
-        return [c[name] for name in names], [one, t0, l * (u * t0 + t1)]
+    def _terms(self, force: str, basis: Basis) -> tuple[list[Array], Array]:
+        names = {"axial": ("n0", "n1", "n2"), "shear": ("f0", "f1", "f2"), "bending": ("m0", "f0", "f1", "f2")}[force]
+        return [self.coefficients[name] for name in names], basis.bending if force == "bending" else basis.force
 
     def _smooth(self, force: str, u: Array) -> Array:
-        columns, basis = self._terms(force, u)
-        return np.asarray(sum(_column(column, u) * factor for column, factor in zip(columns, basis, strict=True)))
+        columns, rows = self._terms(force, self.basis(u))
+        return np.asarray(sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True)))
 
     def _acting(self, force: str, load: StationLoad) -> grids.Load:
         if force == "axial":

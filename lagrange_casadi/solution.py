@@ -13,7 +13,7 @@ from .density import Array
 from .description import Description, density_of
 from .errors import LagrangeCasadiError, UnknownNameError
 from .quantities import QUANTITIES, quantity_of
-from .section_law import FORCES, SectionLaw, StationLoad
+from .section_law import FORCES, Basis, SectionLaw, StationLoad
 
 if TYPE_CHECKING:
     import xarray
@@ -78,17 +78,21 @@ class Section:
     @cached_property
     def axial(self) -> Array:
         """Axial force (t, xi) [N], tension positive."""
-        return self.law.on_grid("axial", self.xi)
+        return self.law.on_grid("axial", self._basis)
 
     @cached_property
     def shear(self) -> Array:
         """Shear force (t, xi) [N]."""
-        return self.law.on_grid("shear", self.xi)
+        return self.law.on_grid("shear", self._basis)
 
     @cached_property
     def bending(self) -> Array:
         """Bending moment (t, xi) [N m]."""
-        return self.law.on_grid("bending", self.xi)
+        return self.law.on_grid("bending", self._basis)
+
+    @cached_property
+    def _basis(self) -> Basis:
+        return self.law.basis(self.xi)
 
 
 def in_order(series: Mapping[str, Array], description: Description) -> dict[str, Array]:

@@ -124,13 +124,15 @@ def _read_through(dataset: h5py.Dataset, solution: Solution, name: str) -> tuple
     """How far a grid is from its law, and whether all values are finite, block by block."""
     gap, finite = 0.0, True
     height = max(1, _BLOCK_BYTES // (8 * math.prod(dataset.shape[1:])))
+    link, force = name.split(":")[1:] if dataset.ndim == 2 else ("", "")
+    law = solution.section(link).law if link else None
+    basis = law.basis(solution.xi) if law else None
     for start in range(0, dataset.shape[0], height):
         block = slice(start, start + height)
         stored = dataset[block]
         finite = finite and bool(np.isfinite(stored).all())
-        if stored.ndim == 2:
-            _, link, force = name.split(":")
-            gap = float(np.fmax(gap, np.max(np.abs(stored - solution.section(link).law.during(block).on_grid(force, solution.xi)))))
+        if law and basis:
+            gap = float(np.fmax(gap, np.max(np.abs(stored - law.during(block).on_grid(force, basis)))))
     return gap, finite
 
 
@@ -176,10 +178,11 @@ def _add_grid(file: h5py.File, solution: Solution, link: str, force: str) -> Non
     dataset = _create(file, solution, f"section:{link}:{force}", (solution.t.size, xi.size))
     height, width = dataset.chunks
     height *= max(1, _BLOCK_BYTES // (8 * height * width))
-    for start in range(0, solution.t.size, height):
-        block = law.during(slice(start, start + height))
-        for left in range(0, xi.size, width):
-            dataset[start : start + height, left : left + width] = block.on_grid(force, xi[left : left + width])
+    for left in range(0, xi.size, width):
+        basis = law.basis(xi[left : left + width])
+        for start in range(0, solution.t.size, height):
+            block = law.during(slice(start, start + height))
+            dataset[start : start + height, left : left + width] = block.on_grid(force, basis)
 
 
 def _create(file: h5py.File, solution: Solution, name: str, shape: tuple[int, ...]) -> h5py.Dataset:
