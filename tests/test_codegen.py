@@ -66,10 +66,10 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
     assert result.returncode == 0, result.stderr
 
 
-def columns(graph, t, language, threads=1):
+def columns(graph, t, language, threads=1, extra=()):
     """Every column by the compiled code, into arrays that held NaN."""
     p = np.array(list(graph.scene.mechanism.values().values()))
-    library = codegen.load(codegen.emit(graph), codegen.find_compiler(language))
+    library = codegen.load(codegen.emit(graph), codegen.find_compiler(language), extra)
     guess = np.array(graph.newton.guess if graph.newton else ())
     z, status = np.full((guess.size, t.size), np.nan), np.full(t.size, -1, dtype=np.int32)
     out = np.full((len(graph.columns), t.size), np.nan)
@@ -89,6 +89,14 @@ def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
     machine, _ = run(graph, t, p, "vm")
     scale = np.max(np.abs(machine.out), axis=1, keepdims=True) + 1e-300
     assert np.max(np.abs(out - machine.out) / scale) <= (0.0 if name in ("slider_crank", "four_bar") else 1e-13)
+
+
+@pytest.mark.parametrize("language", ["c", "c++"])
+@pytest.mark.parametrize("name", SCENES)
+def test_the_level_of_optimization_changes_no_bit(name, language):
+    scene = SCENES[name]()
+    graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 37)
+    assert columns(graph, t, language, extra=("-O1",)).tobytes() == columns(graph, t, language).tobytes()
 
 
 def test_emission_is_the_same_in_every_process(tmp_path):
