@@ -11,7 +11,7 @@ from lagrange_casadi import Mechanism, Scene, codegen, derive
 from lagrange_casadi.backends import Backend, rows, run
 from lagrange_casadi.description import describe
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.scene import SceneGraph
+from lagrange_casadi.scene_graph import SceneGraph
 from lagrange_casadi.section_law import FORCES, SectionLaw
 from lagrange_casadi.solution import Provenance, Solution, in_order
 

@@ -3,11 +3,12 @@
 from . import density, figures, motion
 from .case import Case, load_case
 from .curves import table
+from .derive import derive
 from .errors import LagrangeCasadiError
 from .evaluate import evaluate
 from .lagrange import LagrangeSystem
 from .mechanism import Mechanism
-from .scene import Scene, derive
+from .scene import Scene
 from .solution import Peak, Solution
 from .store import check, load, save
 from .version import __version__

@@ -26,7 +26,7 @@ from .codegen.emit import (
 )
 from .density import Array
 from .errors import CompilerError, UnknownNameError
-from .scene import SceneGraph
+from .scene_graph import SceneGraph
 from .solution import Provenance
 from .version import __version__
 

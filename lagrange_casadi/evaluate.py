@@ -13,11 +13,13 @@ from .backends import Backend, Table, run
 from .certificate import Held, certify
 from .codegen.emit import NOT_CONVERGED, OK, SLOW
 from .density import Array
+from .derive import derive
 from .description import describe
 from .errors import AssemblyError, DeclarationError
 from .grids import require
 from .kinematics import where
-from .scene import Grid, Scene, SceneGraph, checked, checked_ratios, derive
+from .scene import Grid, Scene, checked, checked_ratios
+from .scene_graph import SceneGraph
 from .solution import Solution, in_order
 
 MISFIT = 1e-8

@@ -29,16 +29,15 @@ _LARGEST_STEP = 0.3
 
 @dataclass(frozen=True, eq=False)
 class NewtonLoop:
-    """What is left to iterate: ``step(z, t, d, p) -> (correction, relative size)`` and the guess for the first instant."""
+    """What is left to iterate: ``step(z, t, d, p) -> (correction, relative size)`` and the guess for the first instant.
+
+    ``names`` are those of its blocks; ``joints`` says what closes them, for messages.
+    """
 
     step: Any
     guess: tuple[float, ...]
-    blocks: tuple[Block, ...]
-
-    @property
-    def joints(self) -> str:
-        """What closes its loops, for messages."""
-        return ", ".join(block.joints for block in self.blocks)
+    names: tuple[str, ...]
+    joints: str
 
 
 @dataclass(frozen=True)
@@ -270,9 +269,9 @@ class _Solver:
         relative = ca.mmax(ca.fabs(correction / column(self.scales)))
         bounded = correction * ca.fmin(1.0, _LARGEST_STEP / relative)
         inputs = [iterated, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
-        names = ["z", "t", "d", "p"]
-        step = ca.Function("loops", inputs, [bounded, relative], names, ["correction", "size"], {"cse": True})
-        return NewtonLoop(step, tuple(self.guess), tuple(self.residuals))
+        step = ca.Function("loops", inputs, [bounded, relative], ["z", "t", "d", "p"], ["correction", "size"], {"cse": True})
+        names, joints = tuple(block.name for block in self.residuals), ", ".join(block.joints for block in self.residuals)
+        return NewtonLoop(step, tuple(self.guess), names, joints)
 
 
 def where(coordinates: Iterable[tuple[str, str, float]]) -> str:

@@ -26,6 +26,13 @@ def _cache(tmp_path_factory):
         yield
 
 
+@pytest.fixture
+def fresh_cache(tmp_path, monkeypatch):
+    """An empty cache, and where it is."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    return tmp_path / "cache" / "lagrange_casadi"
+
+
 @pytest.fixture(scope="session")
 def slider_crank():
     """The paper's case."""

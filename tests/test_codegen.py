@@ -49,12 +49,6 @@ SCENES = {
 PEDANTIC = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter"]
 
 
-@pytest.fixture
-def fresh_cache(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    return tmp_path / "cache" / "lagrange_casadi"
-
-
 @pytest.mark.parametrize("name", SCENES)
 def test_emitted_c_is_pedantically_clean(name, tmp_path):
     source = tmp_path / "scene.c"
@@ -123,13 +117,13 @@ def test_wanting_the_effort_alone_emits_no_section_term():
     assert alone == codegen.emit(derive(without_ends()))
 
 
-def test_a_changed_parameter_compiles_nothing(fresh_cache):
+def test_a_changed_parameter_derives_and_compiles_nothing(fresh_cache):
     scene = slider_crank()
     evaluate(scene, backend="c")
     before = sorted(fresh_cache.iterdir())
     evaluate(scene, backend="c", parameters={"l": 0.3, "m2": 1.0}, t=(0, 1, 7))
     assert sorted(fresh_cache.iterdir()) == before
-    assert [path.suffix for path in before] == [".c", ".sha256", ".so"]
+    assert sorted(path.suffix for path in before) == [".c", ".graph", ".sha256", ".so"]
 
 
 def test_several_builds_at_once(fresh_cache):
@@ -137,7 +131,7 @@ def test_several_builds_at_once(fresh_cache):
     with ThreadPoolExecutor(8) as pool:
         libraries = list(pool.map(lambda _: codegen.load(source, found), range(8)))
     assert len(libraries) == 8
-    assert sorted(path.suffix for path in fresh_cache.iterdir()) == [".c", ".sha256", ".so"]
+    assert sorted(path.suffix for path in fresh_cache.iterdir()) == [".c", ".graph", ".sha256", ".so"]
 
 
 def test_a_damaged_library_is_built_again_and_said(fresh_cache):
@@ -208,5 +202,5 @@ def test_a_failing_cxx_compiler_is_said_and_c_serves(tmp_path, fresh_cache, monk
 def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    with pytest.warns(UserWarning, match=r"cannot write into the cache folder .*; compiled for this time only"):
+    with pytest.warns(UserWarning, match=r"cannot write into the cache folder .*; nothing is kept"):
         assert evaluate(slider_crank(), backend="c").provenance.backend == "c"

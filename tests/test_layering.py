@@ -12,6 +12,7 @@ PACKAGE = Path(lagrange_casadi.__file__).parent
 ORDER = (
     "version",
     "errors",
+    "cache",
     "quantities",
     "curves",
     "density",
@@ -33,6 +34,9 @@ ORDER = (
     "motion",
     "reciprocals",
     "scene",
+    "scene_graph",
+    "fingerprint",
+    "derive",
     "codegen",
     "grids",
     "description",
@@ -90,7 +94,10 @@ def test_the_engine_knows_no_mechanism():
             "kinematics",
             "mobility",
             "scene",
+            "scene_graph",
+            "derive",
             "codegen",
+            "backends",
             "evaluate",
         ):
             for number, line in enumerate(path.read_text().splitlines(), 1):

@@ -9,8 +9,9 @@ import click
 
 from .. import store
 from ..case import load_case
+from ..derive import derive
 from ..description import Description, describe
-from ..scene import Scene, derive, outputs
+from ..scene import Scene, outputs
 from ..solution import Solution
 
 

@@ -24,8 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-import platformdirs
-
+from .. import cache
 from ..errors import CompilerError
 
 Language = Literal["c", "c++"]
@@ -103,11 +102,6 @@ def _version(command: tuple[str, ...]) -> str | None:
     return run.stdout.partition("\n")[0].strip() or "unknown version"
 
 
-def cache_folder() -> Path:
-    """Where built libraries are kept: the user's cache directory."""
-    return Path(platformdirs.user_cache_dir("lagrange_casadi", appauthor=False))
-
-
 @contextmanager
 def built(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Iterator[Path]:
     """The shared library of a source, from the cache or newly built; it need not outlive the block.
@@ -117,17 +111,12 @@ def built(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Itera
     Warns where the cache cannot be written, and where what it held was damaged. Raises :class:`CompilerError` where the compiler
     refuses the source; its whole message is kept beside the source in the cache.
     """
-    folder = cache_folder()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        warnings.warn(f"cannot write into the cache folder {folder}: {error.strerror}; compiled for this time only", stacklevel=2)
-        with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as temporary:
-            yield _build(source, compiler, extra, Path(temporary))
-    else:
+    folder = cache.folder()
+    if folder is not None:
         yield _build(source, compiler, extra, folder)
+        return
+    with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as temporary:
+        yield _build(source, compiler, extra, Path(temporary))
 
 
 def _build(source: str, compiler: Compiler, extra: tuple[str, ...], folder: Path) -> Path:

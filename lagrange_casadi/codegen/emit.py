@@ -11,7 +11,7 @@ import re
 
 import casadi as ca
 
-from ..scene import SceneGraph
+from ..scene_graph import SceneGraph
 from .split import split
 
 EVALUATE, FOLLOW = "lagrange_casadi_evaluate", "lagrange_casadi_follow"

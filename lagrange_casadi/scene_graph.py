@@ -1,0 +1,70 @@
+"""What a scene computes, as CasADi functions that hold nothing else; and the same as text, to be kept."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from .kinematics import NewtonLoop
+from .scene import Scene, Wanted
+
+
+@dataclass(frozen=True, eq=False)
+class SceneGraph:
+    """What a scene computes, as CasADi functions that hold nothing else.
+
+    ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` a
+    column name; ``newton`` where loops must be iterated. Columns that begin with ``_`` are no outputs. They tell whether there is a
+    result: ``_closure:JOINT`` (see :mod:`.loops`), ``_misfit:JOINT``, ``_row:NAME`` and ``_rowsize:NAME``; or they are what the
+    certificate needs: ``_held:NUMBER:...``, what multipliers do to the bodies that ``held`` names. ``wrapped`` names the angles
+    that are known up to whole turns, ``undetermined`` the outputs that equilibrium does not determine.
+    """
+
+    scene: Scene
+    wanted: Wanted
+    driven: tuple[str, ...]
+    motion: Any
+    instant: Any
+    newton: NewtonLoop | None
+    columns: tuple[str, ...]
+    wrapped: tuple[str, ...]
+    undetermined: tuple[str, ...]
+    held: tuple[str, ...]
+
+    def iterates(self, closure: str) -> bool:
+        """Whether the loops that stand under the name of a closure are iterated."""
+        return self.newton is not None and closure in self.newton.names
+
+    @property
+    def instructions(self) -> dict[str, int]:
+        """Instructions of each function."""
+        functions = {"motion": self.motion, "instant": self.instant} | ({"loops": self.newton.step} if self.newton else {})
+        return {name: f.n_instructions() if f.is_a("SXFunction") else f.n_nodes() for name, f in functions.items()}
+
+    def dumps(self) -> str:
+        """The graph as text, without the scene that it is of."""
+        newton = None
+        if self.newton is not None:
+            loop = self.newton
+            newton = {"step": loop.step.serialize(), "guess": loop.guess, "names": loop.names, "joints": loop.joints}
+        kept = {name: getattr(self, name) for name in _KEPT}
+        return json.dumps(kept | {"motion": self.motion.serialize(), "instant": self.instant.serialize(), "newton": newton})
+
+    @classmethod
+    def loads(cls, text: str, scene: Scene, wanted: Wanted) -> SceneGraph:
+        """The graph that :meth:`dumps` made a text of."""
+        kept = json.loads(text)
+        motion, instant = (ca.Function.deserialize(kept[name]) for name in ("motion", "instant"))
+        newton = None
+        if kept["newton"] is not None:
+            loop = kept["newton"]
+            step = ca.Function.deserialize(loop["step"])
+            newton = NewtonLoop(step, tuple(loop["guess"]), tuple(loop["names"]), loop["joints"])
+        rest = {name: tuple(kept[name]) for name in _KEPT}
+        return cls(scene=scene, wanted=wanted, motion=motion, instant=instant, newton=newton, **rest)
+
+
+_KEPT = ("driven", "columns", "wrapped", "undetermined", "held")
