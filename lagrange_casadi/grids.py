@@ -109,11 +109,11 @@ def _fill_in_blocks(columns: Sequence[Array], basis: Array, loads: Sequence[Load
 @functools.cache
 def _compiled() -> Any | None:
     """The C function, or None where there is no compiler that takes it."""
-    compiler = find_compiler()
-    if compiler is None:
-        return None
     source = resources.files("lagrange_casadi.codegen").joinpath("grids.c").read_text()
     try:
+        compiler = find_compiler()
+        if compiler is None:
+            return None
         with built(source, compiler, _OPTIONS) as path:
             entry = ctypes.CDLL(str(path)).lagrange_casadi_grid
     except (CompilerError, OSError):

@@ -106,14 +106,18 @@ def _version(command: tuple[str, ...]) -> str | None:
 def built(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Iterator[Path]:
     """The shared library of a source, from the cache or newly built; it need not outlive the block.
 
-    ``extra`` flags come after the package's own.
-
-    Warns where the cache cannot be written, and where what it held was damaged. Raises :class:`CompilerError` where the compiler
-    refuses the source; its whole message is kept beside the source in the cache.
+    ``extra`` flags come after the package's own. Warns where the cache cannot be used, and where what it held was damaged. Raises
+    :class:`CompilerError` where the compiler refuses the source; its whole message is kept beside the source in the cache.
     """
     folder = cache.folder()
+    path = None
     if folder is not None:
-        yield _build(source, compiler, extra, folder)
+        try:
+            path = _build(source, compiler, extra, folder)
+        except OSError as error:
+            warnings.warn(f"cannot build in the cache folder {folder}: {error.strerror}; compiled for this time only", stacklevel=3)
+    if path is not None:
+        yield path
         return
     with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as temporary:
         yield _build(source, compiler, extra, Path(temporary))
