@@ -29,7 +29,7 @@ from ..errors import CompilerError
 
 Language = Literal["c", "c++"]
 
-_COMMON = ("-fno-math-errno", "-fno-tree-loop-distribute-patterns", "-ffp-contract=off", "-fvisibility=hidden", "-fPIC", "-shared")
+_COMMON = ("-fno-math-errno", "-ffp-contract=off", "-fvisibility=hidden", "-fPIC", "-shared")
 FLAGS: dict[Language, tuple[str, ...]] = {
     "c": ("-std=c99", "-O3", *_COMMON),
     "c++": ("-std=c++11", "-O3", "-march=native", *_COMMON),
