@@ -55,7 +55,7 @@ def run(graph: SceneGraph, t: Array, p: Array, backend: Backend = "auto", thread
     Raises :class:`CompilerError` where the backend needs a compiler and there is none, or it fails.
     """
     if backend not in BACKENDS:
-        raise UnknownNameError("backend", backend, BACKENDS)
+        raise UnknownNameError("backend", str(backend), BACKENDS)
     compiled = _compiled(graph, backend)
     if compiled is None:
         return _interpret(graph, t, p), _provenance("vm", "", "")
@@ -83,9 +83,8 @@ def _compiled(graph: SceneGraph, backend: Backend) -> tuple[codegen.Compiler, co
     if backend in _NEEDS:
         raise CompilerError(_NEEDS[backend])
     if backend == "auto":
-        warnings.warn(
-            "no C or C++ compiler found (c++, cc, gcc, clang, ziglang): CasADi's virtual machine serves, slowly", stacklevel=4
-        )
+        tried = "c++, g++, clang++, cc, gcc, clang, ziglang"
+        warnings.warn(f"no C or C++ compiler found ({tried}): CasADi's virtual machine serves, slowly", stacklevel=4)
     return None
 
 

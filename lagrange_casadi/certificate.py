@@ -316,7 +316,7 @@ def _balance(
 
 
 def _ends(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Action]) -> tuple[Array, float]:
-    """A link's section at its base is the opposite of all that acts on it there; beside the largest force."""
+    """A link's section at its base is the opposite of all that acts on it there; beside the largest force on a link."""
     worst, scale = np.zeros_like(solution.t), 0.0
     base = np.zeros((solution.t.size, 1))
     for link in solution.links_with_sections:
@@ -324,10 +324,11 @@ def _ends(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Acti
         # What slides over the base just now counts as at the base, here and there.
         law = replace(law, loads=tuple(replace(x, station=np.where(np.abs(x.station) < _EDGE, 0.0, x.station)) for x in law.loads))
         axial, shear, bending = (law.at(force, base)[:, 0] for force in ("axial", "shear", "bending"))
-        force, moment = _before(bodies[link], [part for part in acting if part[0] == link], _EDGE * law.length)
+        own = [part for part in acting if part[0] == link]
+        force, moment = _before(bodies[link], own, _EDGE * law.length)
         worst = np.maximum(worst, np.abs(force + axial + 1j * shear))
         worst = np.maximum(worst, np.abs(moment + bending) / _size(solution))
-        scale = max(scale, float(np.max(np.abs(axial + 1j * shear))), float(np.max(np.abs(bending))) / _size(solution))
+        scale = max(scale, *(float(np.max(np.abs(push) + np.abs(couple) / _size(solution))) for _, _, push, couple, _ in own))
     return worst, scale
 
 

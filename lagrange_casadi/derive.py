@@ -64,12 +64,13 @@ def _derive(scene: Scene, want: Wanted) -> SceneGraph:
     columns |= {f"_misfit:{name}": misfit for name, misfit in solved.misfits.items()}
     for graph in body.rows:
         columns |= {f"_row:{graph.row.name}": graph.residual, f"_rowsize:{graph.row.name}": graph.size}
-    wrapped: tuple[str, ...] = ()
+    wrapped: dict[str, dict[str, int]] = {}
     if want.motion:
         motions = _motion_columns(body, solved, driven)
-        loose = ca.vertcat(ca.SX(0, 1), *(c.value for c in body.coordinates if c.kind == "angle" and not c.driven))
-        wrapped = tuple(name for name, value in motions.items() if _is_angle(mechanism, name) and ca.depends_on(value, loose))
-        columns |= motions
+        loose = {f"_angle:{c.joint}": c.value for c in body.coordinates if c.joint in solved.loose}
+        wrapped = {name: _turns(value, loose) for name, value in motions.items() if _is_angle(mechanism, name)}
+        wrapped = {name: turns for name, turns in wrapped.items() if turns}
+        columns |= {name: value for name, value in loose.items() if any(name in turns for turns in wrapped.values())} | motions
     for part in reversed(body.applied):
         if part.source in want.loads:
             columns |= {f"load:{part.source}:{member}": getattr(part, member) for member in ("fx", "fy", "mz")}
@@ -142,3 +143,11 @@ def _is_angle(mechanism: Mechanism, column: str) -> bool:
     if group == "pose":
         return column.endswith(":angle")
     return part in mechanism.joints and mechanism.joints[part].coordinate == "angle"
+
+
+def _turns(angle: Any, loose: dict[str, Any]) -> dict[str, int]:
+    """How often each angle that is known up to whole turns goes into another angle: once, or less once."""
+    if not loose:
+        return {}
+    slopes = ca.evalf(ca.densify(ca.jacobian(ca.SX(angle), ca.vertcat(*loose.values())))).full().ravel()
+    return {name: int(slope) for name, slope in zip(loose, slopes, strict=True) if slope}

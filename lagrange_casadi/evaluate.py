@@ -26,6 +26,7 @@ MISFIT = 1e-8
 """How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
 
 _NEAR = 0.3
+_BESIDE = 8
 
 
 def evaluate(
@@ -63,7 +64,7 @@ def evaluate(
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"evaluate: expected a Scene, got {scene!r}")
-    if threads is not None and (not isinstance(threads, int) or threads < 1):
+    if threads is not None and (not isinstance(threads, int) or isinstance(threads, bool) or threads < 1):
         raise DeclarationError(f"threads: expected a whole number of at least 1, got {threads!r}")
     values = scene.mechanism.values(parameters)
     start, stop, count = checked("t", scene.t if t is None else t)
@@ -76,16 +77,18 @@ def evaluate(
                 f"{start:g} to {stop:g} s is asked for"
             )
     graph = derive(scene, wanted)
-    require("the outputs over time", (len(graph.columns), count))
+    require("the outputs over time", (len(graph.columns) + _BESIDE, count))
     require("the grid of ratios", (ratios[2],))
     times, places = np.linspace(start, stop, count), np.linspace(*ratios)
     table, provenance = run(graph, times, np.array(list(values.values())), backend, threads)
     _refuse(graph, table, times, list(values.values()))
     series = {name: table.out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
-    for name, column in series.items():
-        if name in graph.wrapped:
-            column[:] = np.unwrap(column)
-            column -= math.tau * math.ceil(column[0] / math.tau - 0.5)
+    loose = {name: table.out[k] for k, name in enumerate(graph.columns) if name.startswith("_angle:")}
+    turns = {name: np.unwrap(angle) - angle for name, angle in loose.items()}
+    for name, parts in graph.wrapped.items():
+        for part, sign in parts.items():
+            series[name] += sign * turns[part]
+        series[name] -= math.tau * math.ceil(series[name][0] / math.tau - 0.5)
     series |= {name: np.full(times.size, np.nan) for name in graph.undetermined}
     description = describe(scene.mechanism, values, scene.motion)
     ordered = in_order(series, description)

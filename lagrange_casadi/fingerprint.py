@@ -24,16 +24,33 @@ def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
     mechanism = scene.mechanism
     expressions: list[Any] = []
     words: list[str] = []
-    content = [vars(mechanism), mechanism.gravity, mechanism.symbols, scene.t[:2], scene.posture, wanted, list(scene.motion)]
+    content = [
+        type(mechanism).__qualname__,
+        vars(mechanism),
+        mechanism.gravity,
+        mechanism.symbols,
+        scene.t[:2],
+        scene.posture,
+        wanted,
+        list(scene.motion),
+    ]
     try:
         _spell(content, words, expressions)
     except _UntoldError:
         return None
+    laws = motion_function(scene.motion, mechanism.symbols)
+    if any(f.class_name() in _UNTOLD for f in [laws, *laws.find_functions()]):
+        return None
     written = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.vec(ca.densify(e)) for e in expressions)))
-    declared = ca.Function("declared", ca.symvar(written), [written]).serialize()
-    laws = motion_function(scene.motion, mechanism.symbols).serialize()
-    identity = "\0".join([_code(), ca.CasadiMeta.version(), *words, declared, laws])
+    declared = ca.Function("declared", ca.symvar(written), [written])
+    if any(f.class_name() in _UNTOLD for f in declared.find_functions()):
+        return None
+    identity = "\0".join([_code(), ca.CasadiMeta.version(), *words, declared.serialize(), laws.serialize()])
     return hashlib.sha256(identity.encode()).hexdigest()[:32]
+
+
+_UNTOLD = ("CallbackInternal", "External", "GenericExternal")
+"""Functions that CasADi writes down by name, not by content."""
 
 
 class _UntoldError(Exception):

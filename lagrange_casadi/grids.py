@@ -20,7 +20,7 @@ import numpy as np
 from .codegen import find_compiler
 from .codegen.compiler import built
 from .density import Array
-from .errors import CompilerError, SizeError
+from .errors import CompilerError, DeclarationError, SizeError
 
 WORTH_COMPILING = 1 << 14
 """Values from which on compiled code fills a grid."""
@@ -40,14 +40,18 @@ Load = tuple[Array, Array, Array]
 def fill(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array, threads: int = 1) -> None:
     """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what acts at stations.
 
-    ``columns`` and the rows of ``basis`` are three or four; ``u`` are the ratios.
+    ``columns`` and the rows of ``basis`` are three or four; ``u`` are the ratios. Raises :class:`DeclarationError` for an ``out``
+    of another shape.
     """
-    entry = _compiled() if out.size >= WORTH_COMPILING else None
+    if out.shape != (columns[0].size, u.size):
+        raise DeclarationError(f"out: expected an array of shape {(columns[0].size, u.size)}, got {out.shape}")
+    plain = out.flags.c_contiguous and out.dtype == np.float64
+    entry = _compiled() if plain and out.size >= WORTH_COMPILING else None
     if entry is None:
         _fill_in_blocks(columns, basis, loads, u, out)
         return
-    flat = [np.ascontiguousarray(row) for row in (*columns, *(row for load in loads for row in load))]
-    functions, ratios = np.ascontiguousarray(basis), np.ascontiguousarray(u)
+    flat = [np.ascontiguousarray(row, dtype=np.float64) for row in (*columns, *(row for load in loads for row in load))]
+    functions, ratios = (np.ascontiguousarray(array, dtype=np.float64) for array in (basis, u))
     n, k = out.shape
     shares = max(1, min(threads, out.size // _SHARE, n))
     size = -(-n // shares)
@@ -76,8 +80,8 @@ def require(what: str, shape: tuple[int, ...]) -> None:
         return
     size = 8.0 * math.prod(shape)
     if size > there:
-        values = " x ".join(map(str, shape))
-        raise SizeError(f"{what}, {values} values, takes {size / 1e9:.4g} GB, and this machine has {there / 1e9:.3g} GB")
+        values = " x ".join(f"{count:,}".replace(",", " ") for count in shape)
+        raise SizeError(f"no room for {what}: {values} values are {size / 1e9:.4g} GB, and this machine has {there / 1e9:.3g} GB")
 
 
 def empty(what: str, shape: tuple[int, ...]) -> Array:

@@ -55,7 +55,7 @@ class Kinematics:
 
     ``symbols`` and ``values`` pair every variable, rate and acceleration of a :class:`.Multibody` with its expression; ``systems``
     are the factorized Phi_z of ``blocks``. ``closures`` say by joint how far each loop is from a dead centre, ``misfits`` how
-    far the equations that are too many are from holding.
+    far the equations that are too many are from holding. ``loose`` names the joints whose angles are known up to whole turns.
     """
 
     driven: Any
@@ -69,6 +69,7 @@ class Kinematics:
     closures: dict[str, Any]
     misfits: dict[str, Any]
     newton: NewtonLoop | None
+    loose: frozenset[str]
 
     def evaluate(self, expression: Any) -> Any:
         """An expression in the multibody's symbols, as one in t, d, d', d'', z and the parameters."""
@@ -105,16 +106,17 @@ class _Solver:
         values = column(c.value for c in driven)
         self.known: dict[Coordinate, Any] = {c: _variables(c, values, self.d) for c in driven}
         self.closures: dict[str, Any] = {}
+        self.loose: set[str] = set()
 
     def numbers(self) -> dict[str, Any]:
         """What the count of freedoms needs: the rough posture, and the inputs with their values at the start."""
         told = {c: self.posture[_posture_name(c)] for c in self.multibody.coordinates if _posture_name(c) in self.posture}
         symbols = [c.variables for c in self.known]
-        numbers = [ca.DM(ca.evalf(ca.substitute(v, self.d, ca.SX(ca.DM(self.start.driven))))) for v in self.known.values()]
+        numbers = self._at_start(column(self.known.values()))
         return {
             "posture": told,
             "inputs": [ca.vertcat(ca.SX(0, 1), *symbols), self.multibody.mechanism.time, self.multibody.mechanism.symbols],
-            "values": [ca.vertcat(ca.DM(0, 1), *numbers), self.start.t, self.start.parameters],
+            "values": [numbers, self.start.t, self.start.parameters],
         }
 
     def place(self, expression: Any) -> Any:
@@ -137,6 +139,7 @@ class _Solver:
             sizes = itertools.accumulate(c.variables.numel() for c in block.unknown)
             solved = ca.vertsplit(ca.substitute(variables, form.branch, sign), [0, *sizes])
             self.known.update(zip(block.unknown, solved, strict=True))
+            self.loose |= {c.joint for c in block.unknown if c.kind == "angle"}
             self.closures[block.name] = closure
 
     def _at_start(self, expression: Any, extra: Any = None, value: float = 0.0) -> list[float]:
@@ -250,6 +253,7 @@ class _Solver:
             closures=self.closures,
             misfits=misfits,
             newton=self.newton(),
+            loose=frozenset(self.loose),
         )
 
     def _substitution(self, rates: Mapping[Coordinate, Any], accelerations: Mapping[Coordinate, Any]) -> tuple[Any, Any]:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import io
 import os
+import signal
 import tempfile
-from collections.abc import Iterator
+import threading
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -36,6 +38,29 @@ def replacing(target: Path) -> Iterator[Path]:
         with draft.open("rb") as written:
             os.fsync(written.fileno())
         os.replace(draft, target)
+
+
+@contextmanager
+def uninterrupted() -> Iterator[Callable[[], None]]:
+    """Hold interrupts back, for HDF5 does not survive an exception in its midst.
+
+    What is yielded lets one through where it is called; one that nobody let through comes at the end.
+    """
+    seen = threading.Event()
+
+    def breathe() -> None:
+        if seen.is_set():
+            raise KeyboardInterrupt
+
+    numbers = [getattr(signal, name) for name in ("SIGINT", "SIGALRM", "SIGTERM") if hasattr(signal, name)]
+    able = threading.current_thread() is threading.main_thread()
+    before = [(number, signal.signal(number, lambda *_: seen.set())) for number in numbers] if able else []
+    try:
+        yield breathe
+    finally:
+        for number, handler in before:
+            signal.signal(number, handler)
+    breathe()
 
 
 class PatientFile(io.FileIO):

@@ -12,11 +12,16 @@ import casadi as ca
 
 
 def share_reciprocals(function: Any, parameters: str) -> Any:
-    """The same function of one output with divisions shared; ``parameters`` names the input whose reciprocals always pay."""
+    """The same function of one output with divisions shared; ``parameters`` names the input whose reciprocals always pay.
+
+    A function that calls others stays as it is.
+    """
     steps = [
         (function.instruction_id(k), function.instruction_input(k), function.instruction_output(k))
         for k in range(function.n_instructions())
     ]
+    if any(operation == ca.OP_CALL for operation, _, _ in steps):
+        return function
     divisors = _divisors(steps, function.index_in(parameters))
     uses = Counter(divisor for divisor, _ in divisors.values())
     inputs = function.sx_in()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +21,8 @@ class SceneGraph:
     column name; ``newton`` where loops must be iterated. Columns that begin with ``_`` are no outputs. They tell whether there is a
     result: ``_closure:JOINT`` (see :mod:`.loops`), ``_misfit:JOINT``, ``_row:NAME`` and ``_rowsize:NAME``; or they are what the
     certificate needs: ``_held:NUMBER:...``, what multipliers do to the bodies that ``held`` names. ``wrapped`` names the angles
-    that are known up to whole turns, ``undetermined`` the outputs that equilibrium does not determine.
+    that loops set, and by ``_angle:JOINT`` the directions known up to whole turns that they are sums and differences of.
+    ``undetermined`` names the outputs that equilibrium does not determine.
     """
 
     scene: Scene
@@ -30,7 +32,7 @@ class SceneGraph:
     instant: Any
     newton: NewtonLoop | None
     columns: tuple[str, ...]
-    wrapped: tuple[str, ...]
+    wrapped: Mapping[str, Mapping[str, int]]
     undetermined: tuple[str, ...]
     held: tuple[str, ...]
 
@@ -50,7 +52,7 @@ class SceneGraph:
         if self.newton is not None:
             loop = self.newton
             newton = {"step": loop.step.serialize(), "guess": loop.guess, "names": loop.names, "joints": loop.joints}
-        kept = {name: getattr(self, name) for name in _KEPT}
+        kept = {name: getattr(self, name) for name in _KEPT} | {"wrapped": self.wrapped}
         return json.dumps(kept | {"motion": self.motion.serialize(), "instant": self.instant.serialize(), "newton": newton})
 
     @classmethod
@@ -64,7 +66,7 @@ class SceneGraph:
             step = ca.Function.deserialize(loop["step"])
             newton = NewtonLoop(step, tuple(loop["guess"]), tuple(loop["names"]), loop["joints"])
         rest = {name: tuple(kept[name]) for name in _KEPT}
-        return cls(scene=scene, wanted=wanted, motion=motion, instant=instant, newton=newton, **rest)
+        return cls(scene=scene, wanted=wanted, motion=motion, instant=instant, newton=newton, wrapped=kept["wrapped"], **rest)
 
 
-_KEPT = ("driven", "columns", "wrapped", "undetermined", "held")
+_KEPT = ("driven", "columns", "undetermined", "held")

@@ -61,6 +61,7 @@ class SectionLaw:
 
     def basis(self, xi: Array) -> Basis:
         """The functions along the link at ratios ``xi`` of any shape; they serve every force, and the law at any instants."""
+        xi = np.asarray(xi, dtype=float)
         t0, t1, t2 = self.density.tails(xi)
         l, one = self.length, np.ones_like(xi)
         bending = [one, l * (1.0 - xi), l * t1, l * l * (xi * t1 + t2)]
@@ -72,9 +73,12 @@ class SectionLaw:
         Where several forces are wanted, a :meth:`basis` of the ratios serves all. By default one thread a core shares a grid that
         is worth it; the bits do not depend on it. Raises :class:`SizeError` where there is less memory than that.
         """
+        size = (self.coefficients["n0"].size, xi.u.size if isinstance(xi, Basis) else xi.size)
+        if out is None:
+            grids.require(f"a grid of {force}", size)
         basis = xi if isinstance(xi, Basis) else self.basis(xi)
         columns, rows = self._terms(force, basis)
-        out = grids.empty(f"a grid of {force}", (columns[0].size, basis.u.size)) if out is None else out
+        out = grids.empty(f"a grid of {force}", size) if out is None else out
         grids.fill(columns, rows, [self._acting(force, load) for load in self.loads], basis.u, out, threads or cores())
         return out
 

@@ -12,6 +12,7 @@ import numpy as np
 from .density import Array
 from .description import Description, density_of
 from .errors import LagrangeCasadiError, UnknownNameError
+from .grids import require
 from .quantities import QUANTITIES, quantity_of
 from .section_law import FORCES, Basis, SectionLaw, StationLoad
 
@@ -78,17 +79,21 @@ class Section:
     @cached_property
     def axial(self) -> Array:
         """Axial force (t, xi) [N], tension positive."""
-        return self.law.on_grid("axial", self._basis)
+        return self._grid("axial")
 
     @cached_property
     def shear(self) -> Array:
         """Shear force (t, xi) [N]."""
-        return self.law.on_grid("shear", self._basis)
+        return self._grid("shear")
 
     @cached_property
     def bending(self) -> Array:
         """Bending moment (t, xi) [N m]."""
-        return self.law.on_grid("bending", self._basis)
+        return self._grid("bending")
+
+    def _grid(self, force: str) -> Array:
+        require(f"a grid of {force}", (self.law.coefficients["n0"].size, self.xi.size))
+        return self.law.on_grid(force, self._basis)
 
     @cached_property
     def _basis(self) -> Basis:

@@ -9,7 +9,8 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Iterator
+import shutil
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ import numpy as np
 from .certificate import TOLERANCE, certify
 from .density import Array
 from .errors import DeclarationError, PathError, StoreError
-from .publish import PatientFile, replacing
+from .publish import PatientFile, replacing, uninterrupted
 from .quantities import CONVENTIONS, quantity_of
 from .section_law import FORCES
 from .solution import Provenance, Solution, in_order
@@ -45,10 +46,27 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
     if not isinstance(solution, Solution) or not isinstance(path, (str, os.PathLike)):
         raise DeclarationError(f"save: expected a solution and a path, got {solution!r} and {path!r}")
     target = Path(path)
-    with replacing(target) as draft, PatientFile(draft, "x+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
-        _write(file, solution, figures)
+    _require_room(solution, target)
+    with (
+        replacing(target) as draft,
+        uninterrupted() as breathe,
+        PatientFile(draft, "x+") as bytes_,
+        h5py.File(bytes_, "w", track_order=True) as file,
+    ):
+        _write(file, solution, figures, breathe)
         file.flush()
         file.attrs["complete"] = True
+
+
+def _require_room(solution: Solution, target: Path) -> None:
+    """Raise :class:`StoreError` where the disk has less room than the grids take."""
+    size = 8 * solution.t.size * (len(solution.series) + 3 * solution.xi.size * len(solution.links_with_sections))
+    try:
+        free = shutil.disk_usage(target.parent).free
+    except OSError:
+        return
+    if size > free:
+        raise StoreError(f"cannot write {target}: it takes {size / 1e9:.4g} GB, and the disk has {free / 1e9:.3g} GB left")
 
 
 def load(path: str | os.PathLike[str]) -> Solution:
@@ -140,18 +158,19 @@ def _place(name: str) -> str:
     return name.replace(":", "/")
 
 
-def _write(file: h5py.File, solution: Solution, figures: str) -> None:
+def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[[], None]) -> None:
     for axis, values in (("t", solution.t), ("xi", solution.xi)):
         scale = file.create_dataset(axis, data=values, fletcher32=True)
         scale.attrs["units"], scale.attrs["long_name"] = _AXES[axis]
         scale.make_scale(axis)
     for name, values in solution.series.items():
+        breathe()
         _add(file, solution, name, values)
     for name, values in solution.certificate.items():
         _add(file, solution, f"certificate:{name}", values)
     for link in solution.links_with_sections:
         for force in FORCES:
-            _add_grid(file, solution, link, force)
+            _add_grid(file, solution, link, force, breathe)
     provenance = solution.provenance
     file.attrs["schema"] = SCHEMA
     file.attrs["schema_version"] = SCHEMA_VERSION
@@ -172,7 +191,7 @@ def _add(file: h5py.File, solution: Solution, name: str, values: Array) -> None:
     _create(file, solution, name, values.shape)[...] = values
 
 
-def _add_grid(file: h5py.File, solution: Solution, link: str, force: str) -> None:
+def _add_grid(file: h5py.File, solution: Solution, link: str, force: str, breathe: Callable[[], None]) -> None:
     """A grid block by block: it need not fit into memory."""
     law, xi = solution.section(link).law, solution.xi
     dataset = _create(file, solution, f"section:{link}:{force}", (solution.t.size, xi.size))
@@ -181,6 +200,7 @@ def _add_grid(file: h5py.File, solution: Solution, link: str, force: str) -> Non
     for left in range(0, xi.size, width):
         basis = law.basis(xi[left : left + width])
         for start in range(0, solution.t.size, height):
+            breathe()
             block = law.during(slice(start, start + height))
             dataset[start : start + height, left : left + width] = block.on_grid(force, basis)
 

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
+import casadi as ca
 import numpy as np
 import pytest
 from builders import four_bar, slider_crank
@@ -93,6 +94,19 @@ def test_the_level_of_optimization_changes_no_bit(name, language):
     assert columns(graph, t, language, extra=("-O1",)).tobytes() == columns(graph, t, language).tobytes()
 
 
+@pytest.mark.parametrize("backend", ["vm", "c", "lanes"])
+def test_a_load_may_call_a_function_that_is_not_inlined(backend):
+    x = ca.SX.sym("x")
+    called = ca.Function("called", [x], [ca.sin(x) * x], {"never_inline": True})
+    m = Mechanism("arm")
+    k, arm = m.parameter("k", 2.0), m.link("arm", length=1, mass=1)
+    joint = m.revolute("J", m.ground, arm)
+    m.torque("t", arm, called(m.coordinate(joint)) * called(k))
+    solution = evaluate(Scene(m, {"J": motion.polynomial(0.3, 1)}, t=(0, 1, 9)), backend=backend)
+    angle = solution.motion("J").value
+    np.testing.assert_allclose(solution.series["load:t:mz"], np.sin(angle) * angle * np.sin(2.0) * 2.0, rtol=1e-14)
+
+
 def test_emission_is_the_same_in_every_process(tmp_path):
     """Two interpreters with different hash seeds emit the same bytes; no path, no clock."""
     program = "import sys; sys.path[:0] = {!r}; from builders import slider_crank; from lagrange_casadi import codegen, derive; "
@@ -132,6 +146,17 @@ def test_several_builds_at_once(fresh_cache):
         libraries = list(pool.map(lambda _: codegen.load(source, found), range(8)))
     assert len(libraries) == 8
     assert sorted(path.suffix for path in fresh_cache.iterdir()) == [".c", ".graph", ".sha256", ".so"]
+
+
+@pytest.mark.parametrize("seal", [b"", bytes(range(128, 192))])
+def test_a_damaged_seal_is_as_a_damaged_library(fresh_cache, seal):
+    evaluate(slider_crank(), backend="c")
+    (path,) = fresh_cache.glob("*.sha256")
+    whole = path.read_bytes()
+    path.write_bytes(seal)
+    with pytest.warns(UserWarning, match="was damaged and is built again"):
+        evaluate(slider_crank(), backend="c")
+    assert path.read_bytes() == whole
 
 
 def test_a_damaged_library_is_built_again_and_said(fresh_cache):

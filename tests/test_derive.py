@@ -12,7 +12,7 @@ from test_codegen import SCENES
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate
 from lagrange_casadi.fingerprint import fingerprint
-from lagrange_casadi.motion import expression, harmonic, polynomial, samples
+from lagrange_casadi.motion import Motion, expression, harmonic, polynomial, samples
 from lagrange_casadi.scene import Wanted
 from lagrange_casadi.scene_graph import SceneGraph
 
@@ -114,3 +114,29 @@ def test_a_damaged_graph_is_derived_again_and_said(fresh_cache):
         again = evaluate(pendulum())
     assert path.read_text() == whole
     assert np.array_equal(again.effort("pin"), first.effort("pin"))
+
+
+class Doubled(ca.Callback):
+    """A function whose content CasADi does not write down."""
+
+    def __init__(self):
+        ca.Callback.__init__(self)
+        self.construct("doubled", {"enable_fd": True})
+
+    def get_n_in(self):
+        return 1
+
+    def get_n_out(self):
+        return 1
+
+    def eval(self, arguments):
+        return [2 * arguments[0]]
+
+
+def test_a_motion_by_a_callback_is_not_kept(fresh_cache):
+    callback = Doubled()
+    scene = pendulum(law=Motion(callback, spline=True))
+    assert name_of(scene) is None
+    for _ in range(2):
+        assert evaluate(scene, backend="vm", wanted=["motion"], certificate=False).motion("pin").value[-1] == 2.0
+    assert not list(fresh_cache.glob("*.graph"))

@@ -6,7 +6,7 @@ from builders import slider_crank
 
 from lagrange_casadi import evaluate, grids, load, save
 from lagrange_casadi.density import NumericDensity
-from lagrange_casadi.errors import SizeError
+from lagrange_casadi.errors import DeclarationError, SizeError
 from lagrange_casadi.section_law import FORCES, SectionLaw, StationLoad
 
 random = np.random.default_rng(4)
@@ -64,5 +64,21 @@ def test_a_file_written_in_blocks_holds_the_whole_grid(tmp_path, monkeypatch):
 
 
 def test_what_does_not_fit_into_memory_is_one_line_with_its_size():
-    with pytest.raises(SizeError, match=r"a grid of axial, 11 x 1000000000000 values, takes 8\.8e\+04 GB, and this machine has"):
+    with pytest.raises(
+        SizeError, match=r"no room for a grid of axial: 11 x 1 000 000 000 000 values are 8\.8e\+04 GB, and this machine has"
+    ):
         grids.empty("a grid of axial", (11, 10**12))
+
+
+def test_an_array_of_another_layout_is_filled_too(monkeypatch):
+    law, xi = loaded_law(60), np.linspace(0, 1, 41)
+    plain = law.on_grid("bending", xi)
+    monkeypatch.setattr(grids, "WORTH_COMPILING", 0)
+    wide = np.full((60, 82), -1.0)
+    law.on_grid("bending", xi, wide[:, ::2])
+    assert np.array_equal(wide[:, ::2], plain)
+    assert np.all(wide[:, 1::2] == -1.0)
+    assert np.array_equal(law.on_grid("bending", xi, np.zeros((60, 41), order="F")), plain)
+    np.testing.assert_allclose(law.on_grid("bending", xi.astype(np.float32)), plain, atol=1e-5)
+    with pytest.raises(DeclarationError, match=r"out: expected an array of shape \(60, 41\), got \(59, 41\)"):
+        law.on_grid("bending", xi, np.zeros((59, 41)))

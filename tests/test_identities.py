@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from builders import slider_crank
 
-from lagrange_casadi import derive, evaluate
+from lagrange_casadi import Mechanism, Scene, derive, evaluate
+from lagrange_casadi.certificate import certify
+from lagrange_casadi.motion import polynomial
 
 G = 9.81
 
@@ -107,3 +109,17 @@ def test_forces_scale_with_speed():
         forces = [k for k, name in enumerate(graph.columns) if name.startswith(("effort", "reaction", "section"))]
         gap = (fast - still - 4 * (slow - still))[forces]
         assert cycle(gap) < 1e-13 * cycle(fast[forces])
+
+
+def test_a_link_that_bears_nothing_at_its_base_is_certified_by_what_acts_on_it():
+    m = Mechanism("beam")
+    m.revolute("J", m.ground, m.link("a", length=1, mass=1).at(0.3))
+    certificate = evaluate(Scene(m, {"J": polynomial(0, 1)}, t=(0, 1, 20))).certificate
+    assert np.max(certificate["ends"]) < 1e-14
+
+
+def test_blocks_change_no_certificate(solution, monkeypatch):
+    whole = certify(solution)
+    monkeypatch.setattr("lagrange_casadi.certificate._BLOCK", 77)
+    for name, values in certify(solution).items():
+        assert np.array_equal(values, whole[name])

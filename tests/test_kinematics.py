@@ -190,3 +190,39 @@ def test_linear_systems(n):
     assert volume[0] == pytest.approx(np.linalg.det(matrix) / np.prod(np.linalg.norm(matrix, axis=0)), rel=1e-11)
     np.testing.assert_allclose(one, np.linalg.solve(matrix, right), rtol=1e-11)
     np.testing.assert_allclose(two, np.linalg.solve(matrix.T, right), rtol=1e-11)
+
+
+@pytest.mark.parametrize("given", [{"ratio": -2, "offset": 7.0}, {"ratio": -2, "start": 20.0}, {"ratio": 10, "count": 11}])
+def test_a_gear_counts_turns_however_coarse_the_instants(given):
+    m = Mechanism("gear")
+    a, b = m.link("a", length=0.1, mass=1), m.link("b", length=0.2, mass=1)
+    first, second = m.revolute("A", m.ground, a), m.revolute("B", m.ground.at(1, 0), b)
+    m.gear("mesh", first, second, ratio=given["ratio"], offset=given.get("offset", 0.0))
+    law = polynomial(given.get("start", 0.0), 30.0)
+    solution = evaluate(Scene(m, {"A": law}, t=(0, 1, given.get("count", 101))))
+    expected = given["ratio"] * solution.motion("A").value + given.get("offset", 0.0)
+    np.testing.assert_allclose(solution.motion("B").value, expected, rtol=1e-14)
+    np.testing.assert_allclose(solution.pose("b").angle, expected, rtol=1e-14)
+
+
+def test_what_a_drive_turns_is_counted_and_what_a_loop_turns_unwrapped():
+    """A drive of many turns between two instants: the pin between it and a rod that only swings turns as the drive does."""
+    solution = evaluate(slider_crank(), t=(0, 1, 40))
+    assert np.abs(solution.pose("rod").angle).max() < 0.6
+    np.testing.assert_allclose(solution.motion("A").value, solution.pose("rod").angle - solution.motion("O").value, atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["weld", "prismatic"])
+def test_a_drive_on_a_link_held_at_a_parameters_angle(kind):
+    m = Mechanism("held")
+    angle = m.parameter("angle", 0.3, "rad")
+    a, b = m.link("a", length=1, mass=1), m.link("b", length=1, mass=1)
+    motion = {"J": polynomial(0, 1)}
+    if kind == "weld":
+        m.weld("W", m.ground, a, angle=angle)
+    else:
+        m.prismatic("W", m.ground, a, axis=(1, 0), angle=angle)
+        motion["W"] = polynomial(0, 1)
+    m.revolute("J", a.tip, b)
+    solution = evaluate(Scene(m, motion))
+    assert solution.effort("J")[0] == pytest.approx(9.81 / 2 * math.cos(0.3), rel=1e-14)

@@ -41,3 +41,10 @@ def test_the_slider_crank_divides_by_what_moves_once():
     inputs = graph.instant.sx_in()
     rest = ca.extract_parametric(graph.instant(*inputs), inputs[-1], {"extract_trivial": True})
     assert divisions(ca.Function("rest", [*inputs[:-1], ca.vertcat(*rest[1])], [rest[0]])) == 1
+
+
+def test_a_function_that_calls_others_stays_as_it_is():
+    x, p = ca.SX.sym("x"), ca.SX.sym("p")
+    inner = ca.Function("inner", [x], [ca.sin(x) * x], {"never_inline": True})
+    outer = ca.Function("outer", [x, p], [inner(x) + 1 / p + x / p], ["x", "p"], ["out"])
+    assert share_reciprocals(outer, "p")(0.3, 2.0) == outer(0.3, 2.0)

@@ -147,8 +147,11 @@ def test_grids_include_both_ends():
 @pytest.mark.parametrize(
     ("keywords", "says"),
     [
-        ({"t": (0, 1, 10**12)}, r"the outputs over time, 41 x 1000000000000 values, takes 3\.28e\+05 GB, and this machine has"),
-        ({"xi": (0, 1, 10**12)}, r"the grid of ratios, 1000000000000 values, takes 8000 GB"),
+        (
+            {"t": (0, 1, 10**12)},
+            r"no room for the outputs over time: 50 x 1 000 000 000 000 values are 4e\+05 GB, and this machine has",
+        ),
+        ({"xi": (0, 1, 10**12)}, r"no room for the grid of ratios: 1 000 000 000 000 values are 8000 GB"),
     ],
 )
 def test_what_does_not_fit_into_memory_is_refused_before_it_is_tried(keywords, says):
@@ -160,6 +163,8 @@ def test_what_does_not_fit_into_memory_is_refused_before_it_is_tried(keywords, s
     ("keywords", "says"),
     [
         ({"backend": "gpu"}, "unknown backend 'gpu'; valid: auto, lanes, c, vm"),
+        ({"backend": None}, "unknown backend 'None'; valid: auto, lanes, c, vm"),
+        ({"threads": True}, "threads: expected a whole number of at least 1, got True"),
         ({"threads": 0}, "threads: expected a whole number of at least 1, got 0"),
         ({"threads": 1.5}, "threads: expected a whole number of at least 1, got 1.5"),
     ],

@@ -79,7 +79,9 @@ def _insistent() -> Iterator[None]:
         raise KeyboardInterrupt
 
     able = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")
-    before = [(number, signal.signal(number, interrupt)) for number in (signal.SIGINT, signal.SIGALRM)] if able else []
+    before = (
+        [(number, signal.signal(number, interrupt)) for number in (signal.SIGINT, signal.SIGALRM, signal.SIGTERM)] if able else []
+    )
     try:
         yield
     except KeyboardInterrupt:

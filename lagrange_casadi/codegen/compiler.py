@@ -19,7 +19,7 @@ import sys
 import tempfile
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -109,48 +109,68 @@ def built(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Itera
     ``extra`` flags come after the package's own. Warns where the cache cannot be used, and where what it held was damaged. Raises
     :class:`CompilerError` where the compiler refuses the source; its whole message is kept beside the source in the cache.
     """
-    folder = cache.folder()
-    path = None
-    if folder is not None:
-        try:
-            path = _build(source, compiler, extra, folder)
-        except OSError as error:
-            warnings.warn(f"cannot build in the cache folder {folder}: {error.strerror}; compiled for this time only", stacklevel=3)
-    if path is not None:
-        yield path
-        return
-    with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as temporary:
-        yield _build(source, compiler, extra, Path(temporary))
-
-
-def _build(source: str, compiler: Compiler, extra: tuple[str, ...], folder: Path) -> Path:
     flags = (*compiler.flags(source), *extra)
     machine = _machine() if "-march=native" in flags else ""
     identity = "\0".join([source, *flags, *compiler.command, compiler.version, machine])
     name = hashlib.sha256(identity.encode()).hexdigest()[:32]
-    library, seal = folder / f"{name}.so", folder / f"{name}.sha256"
-    if library.exists():
-        if seal.exists() and seal.read_text() == _digest(library):
-            return library
-        warnings.warn(f"the cached library {library} was damaged and is built again", stacklevel=4)
-    code = folder / f"{name}.{'c' if compiler.language == 'c' else 'cpp'}"
-    with tempfile.TemporaryDirectory(dir=folder, prefix="build-") as work:
-        draft, fresh, sealed = Path(work) / code.name, Path(work) / library.name, Path(work) / seal.name
-        draft.write_text(source)
-        run = subprocess.run(
-            [*compiler.command, *flags, str(draft), "-o", str(fresh), "-lm"], capture_output=True, text=True, check=False
-        )
-        os.replace(draft, code)
-        if run.returncode != 0 or not fresh.exists():
-            log = folder / f"{name}.log"
-            log.write_text(run.stderr)
-            first = next((line for line in run.stderr.splitlines() if "error" in line.lower()), run.stderr.strip() or "no message")
-            raise CompilerError(
-                f"{' '.join(compiler.command)} failed with status {run.returncode}: {first.strip()} (whole message in {log})"
-            )
-        sealed.write_text(_digest(fresh))
-        os.replace(sealed, seal)
-        os.replace(fresh, library)
+    folder = cache.folder()
+    kept = None if folder is None else _kept(folder / f"{name}.so")
+    if kept is not None:
+        yield kept
+        return
+    with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as work:
+        fresh = _compile(source, compiler, flags, Path(work) / name, folder)
+        if folder is not None:
+            try:
+                _keep([fresh.with_suffix(suffix) for suffix in (_suffix(compiler), ".sha256", ".so")], folder)
+            except OSError as error:
+                warnings.warn(f"cannot keep a library in {folder}: {error.strerror}; compiled for this time only", stacklevel=3)
+        yield fresh
+
+
+def _kept(library: Path) -> Path | None:
+    if not library.exists():
+        return None
+    seal = library.with_suffix(".sha256")
+    if seal.exists() and seal.read_bytes() == _digest(library).encode():
+        return library
+    warnings.warn(f"the cached library {library} was damaged and is built again", stacklevel=4)
+    return None
+
+
+def _keep(files: list[Path], folder: Path) -> None:
+    """Put files into the cache, each whole or not at all."""
+    with tempfile.TemporaryDirectory(dir=folder, prefix="build-") as near:
+        for file in files:
+            shutil.copy2(file, Path(near) / file.name)
+        for file in files:
+            os.replace(Path(near) / file.name, folder / file.name)
+
+
+def _suffix(compiler: Compiler) -> str:
+    return ".c" if compiler.language == "c" else ".cpp"
+
+
+def _compile(source: str, compiler: Compiler, flags: tuple[str, ...], base: Path, folder: Path | None) -> Path:
+    """Compile beside ``base``; a message of the compiler's is kept in ``folder``."""
+    code, library = base.with_suffix(_suffix(compiler)), base.with_suffix(".so")
+    command = [*compiler.command, *flags, str(code), "-o", str(library), "-lm"]
+    try:
+        code.write_text(source)
+        run = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise CompilerError(f"cannot compile in {base.parent}: {error.strerror}") from None
+    if run.returncode != 0 or not library.exists():
+        first = next((line for line in run.stderr.splitlines() if "error" in line.lower()), run.stderr.strip() or "no message")
+        where = ""
+        if folder is not None:
+            log = base.with_suffix(".log")
+            with suppress(OSError):
+                log.write_text(run.stderr)
+                _keep([code, log], folder)
+                where = f" (whole message in {folder / log.name})"
+        raise CompilerError(f"{' '.join(compiler.command)} failed with status {run.returncode}: {first.strip()}{where}")
+    library.with_suffix(".sha256").write_text(_digest(library))
     return library
 
 

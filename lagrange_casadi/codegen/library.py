@@ -22,6 +22,7 @@ Status = npt.NDArray[np.int32]
 _WORTH_A_THREAD = 1 << 24
 """Statements, those of an instant times the instants: about a millisecond, some times what it takes to start a thread."""
 
+_LONGEST = 128
 _CUT = 64
 """A multiple of any pack, so that no cut falls into one."""
 
@@ -42,8 +43,10 @@ class Library:
         """Fill the iterated coordinates ``z`` (k, n), each instant from the one before; ``guess`` (k) begins, and moves along."""
         if self.entry_follow is None:
             status[:] = 0
-        else:
-            self._call(self.entry_follow, t, z, (p, guess, z, status))
+            return
+        for start in range(0, t.size, self._stretch):
+            cut = slice(start, start + self._stretch)
+            self._call(self.entry_follow, t[cut], z[:, cut], (p, guess, z[:, cut], status[cut]))
 
     def evaluate(self, t: Array, p: Array, z: Array, out: Array, status: Status, threads: int = 1) -> None:
         """Fill ``out`` (columns, n) for the instants ``t`` (n), where the iterated coordinates are ``z`` (k, n).
@@ -52,17 +55,25 @@ class Library:
         """
         assert z.strides == out.strides or not z.size
         shares = max(1, min(threads, t.size // self.share))
-        if shares == 1:
+        size = min(self._stretch, -(-t.size // (shares * _CUT)) * _CUT)
+        if size >= t.size:
             self._call(self.entry, t, out, (p, z, out, status))
             return
-        size = -(-t.size // (shares * _CUT)) * _CUT
 
         def run(start: int) -> None:
             cut = slice(start, start + size)
             self._call(self.entry, t[cut], out[:, cut], (p, z[:, cut], out[:, cut], status[cut]))
 
-        with ThreadPoolExecutor(shares) as pool:
+        pool = ThreadPoolExecutor(shares)
+        try:
             list(pool.map(run, range(0, t.size, size)))
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+    @property
+    def _stretch(self) -> int:
+        """Instants of one call, in some tenths of a second: between calls an interrupt comes through."""
+        return _LONGEST * self.share // _CUT * _CUT
 
     @staticmethod
     def _call(entry: Any, t: Array, rows: Array, rest: tuple[npt.NDArray[Any], ...]) -> None:
