@@ -31,10 +31,18 @@ def main() -> int:
     names = {b.name: b.what for b in PROGRAMS} | {b.name: b.what for b in COMPARISONS}
     chosen = {name for name in names if any(fnmatch.fnmatch(name, pattern) for pattern in arguments.patterns)}
     if arguments.list:
-        print("\n".join(f"{name:<20}{what}" for name, what in names.items()))
+        print("\n".join(f"{name:<26}{what}" for name, what in names.items()))
         return 0
     if not chosen:
         parser.error(f"no benchmark matches; valid: {', '.join(names)}")
+    for target in (arguments.json, arguments.plot):
+        try:
+            if target:
+                target.open("a").close()
+        except OSError as error:
+            parser.error(f"cannot write {target}: {error.strerror}")
+    if arguments.plot and arguments.plot.suffix not in (".png", ".svg", ".pdf"):
+        parser.error(f"--plot {arguments.plot}: expected a name that ends in .png, .svg or .pdf")
     machine = describe_machine()
     print(" | ".join(f"{key} {value}" for key, value in machine.items()))
     # Numerical libraries of the peers would else share the cores among themselves while one thread is timed.

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import importlib
+import io
 import math
 import statistics
 import time
 from collections.abc import Callable, Iterator
+from contextlib import redirect_stdout
 from typing import Any
 
 import numpy as np
@@ -34,7 +36,8 @@ def measure(comparison: Comparison) -> Iterator[dict[str, Any]]:
     for name in comparison.methods:
         rows[name] = {"name": comparison.name, "method": name, "values": comparison.values}
         try:
-            works[name] = _work(comparison, name)
+            with redirect_stdout(io.StringIO()):  # some say hello when they are imported
+                works[name] = _work(comparison, name)
             error = _error(comparison, works[name]())
         except ImportError as missing:
             rows[name]["why"] = f"not installed ({missing.name or missing}): pip install '.[bench]'"

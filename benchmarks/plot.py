@@ -7,10 +7,12 @@ from typing import Any
 
 import matplotlib as mpl
 
-from .definitions import COMPARISONS
+from .definitions import COMPARISONS, METHODS
 
+MARKERS = "osv^D<>Xph*8PHd"
 PANELS = (
-    ("grid-", "values", "section forces of the slider-crank's rod: values of a grid", "ns for axial, shear, bending"),
+    ("grid-", "values", "section forces of the slider-crank's rod: values of a grid", "ns a (t, xi): axial, shear, bending"),
+    ("fill-", "values", "grids filled from a law that is there: values", "ns a (t, xi): axial, shear, bending"),
     ("instants-", "t", "all 40 outputs of the slider-crank: instants", "ns an instant"),
     ("chain-", "links", "efforts of an open chain: links", "ns an instant"),
 )
@@ -28,10 +30,19 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
     figure, axes = plt.subplots(1, len(panels), figsize=(6.5 * len(panels), 5), squeeze=False, layout="constrained")
     for (family, size, along, up), axis in zip(panels, axes[0], strict=True):
         found = [row for row in rows if row["name"].startswith(family) and "ns" in row]
-        for number, method in enumerate(dict.fromkeys(row["method"] for row in found)):
+        for method in dict.fromkeys(row["method"] for row in found):
+            number = list(METHODS).index(method)
+            looks = {"marker": MARKERS[number], "color": mpl.colormaps["tab20"](number), "markersize": 4}
             points = [(getattr(sizes[row["name"]], size), row["ns"]) for row in found if row["method"] == method]
             style = "-" if method in ("lanes x cores", "lanes", "c", "vm") else "--"
-            axis.loglog(*zip(*points, strict=True), style, marker="osv^D<>Xph*"[number % 11], label=method, markersize=4)
+            axis.loglog(
+                *zip(*points, strict=True),
+                style,
+                marker=MARKERS[number],
+                color=mpl.colormaps["tab20"](number),
+                label=method,
+                markersize=4,
+            )
         axis.set_xlabel(along)
         axis.set_ylabel(up)
         axis.grid(alpha=0.3, which="both")

@@ -47,10 +47,10 @@ def row(program: Program, found: dict[str, Any]) -> str:
     if program.bytes_returned:
         memory += f" = result {(found['over_import'] - program.bytes_returned) / 1e6:+.0f}"
     says = f": {found['says']}" if found["says"] else ""
-    return f"{program.name:<18}{found['median']:>9.3f}{found['min']:>9.3f}{memory:<24}  {program.what}{says}"
+    return f"{program.name:<26}{found['median']:>9.3f}{found['min']:>9.3f}{memory:<24}  {program.what}{says}"
 
 
-HEADER = f"{'program':<18}{'median s':>9}{'min s':>9}{'MB over import':>15}"
+HEADER = f"{'program':<26}{'median s':>9}{'min s':>9}{'MB over import':>15}"
 
 
 @cache

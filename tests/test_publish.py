@@ -1,11 +1,12 @@
 """Files that appear whole or not at all."""
 
 import os
+import signal
 
 import pytest
 
 from lagrange_casadi.errors import PathError
-from lagrange_casadi.publish import check_writable, filling, replacing
+from lagrange_casadi.publish import check_writable, filling, replacing, uninterrupted
 
 
 def test_a_folder_keeps_what_else_is_in_it(tmp_path):
@@ -45,3 +46,23 @@ def test_what_is_in_the_way_is_named(tmp_path):
         check_writable(tmp_path / "file", folder=True)
     with pytest.raises(PathError, match="it is a folder"):
         check_writable(tmp_path)
+
+
+def test_an_interrupt_waits_until_it_is_let_through():
+    reached = []
+
+    def work(*, breathes):
+        with uninterrupted() as breathe:
+            os.kill(os.getpid(), signal.SIGINT)
+            reached.append("after the signal")
+            if breathes:
+                breathe()
+            reached.append("at the end")
+
+    with pytest.raises(KeyboardInterrupt):
+        work(breathes=True)
+    assert reached == ["after the signal"]
+    with pytest.raises(KeyboardInterrupt):
+        work(breathes=False)
+    assert reached[1:] == ["after the signal", "at the end"]
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

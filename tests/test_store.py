@@ -3,6 +3,7 @@
 import errno
 import json
 import re
+import shutil
 
 import h5py
 import numpy as np
@@ -189,3 +190,10 @@ def test_places_that_cannot_be_written(solution, tmp_path):
         save(solution, tmp_path)
     with pytest.raises(PathError, match=r"folder .*nowhere does not exist"):
         save(solution, tmp_path / "nowhere" / "result.h5")
+
+
+def test_a_file_that_the_disk_has_no_room_for_is_refused(solution, tmp_path, monkeypatch):
+    monkeypatch.setattr("lagrange_casadi.store.shutil.disk_usage", lambda _: shutil._ntuple_diskusage(10**6, 0, 10**6))
+    with pytest.raises(StoreError, match=r"cannot write .*x\.h5: it takes 0\.004\d+ GB, and the disk has 0\.001 GB left"):
+        save(solution, tmp_path / "x.h5")
+    assert not list(tmp_path.iterdir())
