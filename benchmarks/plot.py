@@ -27,22 +27,17 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
     panels = [panel for panel in PANELS if any(row["name"].startswith(panel[0]) and "ns" in row for row in rows)]
     if not panels:
         return
-    figure, axes = plt.subplots(1, len(panels), figsize=(6.5 * len(panels), 5), squeeze=False, layout="constrained")
-    for (family, size, along, up), axis in zip(panels, axes[0], strict=True):
+    across, down = min(2, len(panels)), -(-len(panels) // 2)
+    figure = plt.figure(figsize=(6.5 * across, 4.8 * down), layout="constrained")
+    for place, (family, size, along, up) in enumerate(panels, 1):
+        axis = figure.add_subplot(down, across, place)
         found = [row for row in rows if row["name"].startswith(family) and "ns" in row]
         for method in dict.fromkeys(row["method"] for row in found):
             number = list(METHODS).index(method)
             looks = {"marker": MARKERS[number], "color": mpl.colormaps["tab20"](number), "markersize": 4}
             points = [(getattr(sizes[row["name"]], size), row["ns"]) for row in found if row["method"] == method]
             style = "-" if method in ("lanes x cores", "lanes", "c", "vm") else "--"
-            axis.loglog(
-                *zip(*points, strict=True),
-                style,
-                marker=MARKERS[number],
-                color=mpl.colormaps["tab20"](number),
-                label=method,
-                markersize=4,
-            )
+            axis.loglog(*zip(*points, strict=True), style, label=method, **looks)
         axis.set_xlabel(along)
         axis.set_ylabel(up)
         axis.grid(alpha=0.3, which="both")
