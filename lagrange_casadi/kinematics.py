@@ -22,6 +22,7 @@ from .linear import LinearSystem
 from .loops import ClosedForm
 from .multibody import Coordinate, Multibody, column, joint_coordinate
 from .parts import Link
+from .planar import misalignment
 
 _LARGEST_STEP = 0.3
 """Of an angle [rad], or of a slide over the length of all links: a full step from afar may land on another branch."""
@@ -239,7 +240,7 @@ class _Solver:
                 side = math.copysign(1.0, self._at_start(system.volume)[0])
                 self.closures[block.name] = ca.fabs(system.volume) if system.free else side * system.volume
             if system.free:
-                misfits[block.name] = ca.mmax(ca.fabs(self.place(block.gap))) / self._size()
+                misfits[block.name] = self._misfit(block)
         symbols, values = self._substitution(rates, accelerations)
         return Kinematics(
             driven=self.d,
@@ -255,6 +256,15 @@ class _Solver:
             newton=self.newton(),
             loose=frozenset(self.loose),
         )
+
+    def _misfit(self, block: Block) -> Any:
+        """Gaps over the length of all links; and a direction is missed by its sine as by a half turn, which has none."""
+        misfit = ca.mmax(ca.fabs(self.place(block.gap))) / self._size()
+        for closure in block.closures:
+            if closure.joint is not None and closure.joint.holds_direction:
+                ends = (self.multibody.frames[body.name] for body in closure.joint.bodies)
+                misfit = ca.fmax(misfit, self.place(1 - misalignment(closure.joint, *ends).c))
+        return misfit
 
     def _substitution(self, rates: Mapping[Coordinate, Any], accelerations: Mapping[Coordinate, Any]) -> tuple[Any, Any]:
         symbols = [*(c.variables for c in self.known), *(c.rate for c in rates), *(c.acceleration for c in accelerations)]

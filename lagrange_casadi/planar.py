@@ -179,7 +179,7 @@ def closure(joint: Joint, parent: Frame, child: Frame) -> tuple[Any, Any, Any]:
         a, b = child.place_of(joint.child.x, joint.child.y), parent.place_of(joint.parent.x, joint.parent.y)
         gaps = [(a[0] - b[0], vx, ax), (a[1] - b[1], vy, ay)]
     if joint.holds_direction:
-        turn, rate = _misalignment(joint, parent, child), child.rate - parent.rate
+        turn, rate = misalignment(joint, parent, child), child.rate - parent.rate
         gaps.append((turn.s, turn.c * rate, turn.c * (child.angular - parent.angular) - turn.s * (rate * rate)))
     phi, phi_rate, phi_acceleration = (ca.vertcat(*column) for column in zip(*gaps, strict=True))
     return phi, phi_rate, phi_acceleration
@@ -197,9 +197,10 @@ def reaction(joint: Joint, parent: Frame, child: Frame, action: Any, *, closing:
     else:
         members = {"fx": action[0], "fy": action[1]}
     if joint.holds_direction:
-        members["mz"] = _misalignment(joint, parent, child).c * action[-1] if closing else action[2]
+        members["mz"] = misalignment(joint, parent, child).c * action[-1] if closing else action[2]
     return members
 
 
-def _misalignment(joint: Joint, parent: Frame, child: Frame) -> Rotation:
+def misalignment(joint: Joint, parent: Frame, child: Frame) -> Rotation:
+    """How far a joint that holds its child's direction misses it."""
     return child.rotation.against(parent.rotation.then(Rotation.by(joint.angle)))

@@ -1,5 +1,7 @@
 """Mechanisms with more equations than unknowns, and structures that do not move."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -95,3 +97,19 @@ def test_two_gears_between_the_same_wheels_share_their_couple():
     np.testing.assert_allclose(two.effort("A"), one.effort("A"), rtol=1e-12)
     np.testing.assert_allclose(two.reaction("B").fy, one.reaction("B").fy, rtol=1e-12)
     np.testing.assert_allclose(two.section("b").bending, one.section("b").bending, atol=1e-12)
+
+
+def test_a_weld_that_misses_by_half_a_turn_does_not_fit():
+    """The sine of the misalignment is zero there, as it is where the weld fits."""
+
+    def bridge(angle):
+        m = Mechanism("bridge")
+        a, b = m.link("a", length=1, mass=1), m.link("b", length=1, mass=1)
+        m.weld("W1", m.ground, a)
+        m.weld("W2", m.ground.at(1, 0), b)
+        m.weld("W3", a.tip, b, angle=angle)
+        return Scene(m, {}, t=(0, 1, 3))
+
+    assert evaluate(bridge(0.0), wanted=["motion"]).certificate["closure"].max() == 0.0
+    with pytest.raises(AssemblyError, match="over-constrained and do not fit"):
+        evaluate(bridge(math.pi), wanted=["motion"])
