@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,11 @@ settings.register_profile("ci", derandomize=True, print_blob=True)
 if os.environ.get("CI"):
     settings.load_profile("ci")
 
-CASES = Path(__file__).parent.parent / "cases"
+ROOT = Path(__file__).parent.parent
+CASES = ROOT / "cases"
+
+# For the benchmarks, which are not installed; last, so that the package is the installed one.
+sys.path.append(str(ROOT))
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -37,14 +37,14 @@ def test_a_graph_comes_back_from_its_text_as_it_was(name):
         )
 
 
-def test_a_second_process_derives_nothing(fresh_cache):
+def test_a_second_process_derives_nothing(fresh_cache, tmp_path):
     first = evaluate(slider_crank(), backend="c")
     program = (
         f"import sys; sys.path[:0] = {[os.path.dirname(__file__)]!r}; from builders import slider_crank; "
         "sys.modules['lagrange_casadi.derive'].assemble = None; "
         "from lagrange_casadi import evaluate; print(evaluate(slider_crank(), backend='c').effort('O').tobytes().hex())"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=tmp_path)
     assert bytes.fromhex(done.stdout.strip()) == first.effort("O").tobytes()
 
 
@@ -88,12 +88,13 @@ def test_what_is_asked_of_an_evaluation_has_no_part_in_the_name():
     assert name_of(pendulum(xi=(0, 1, 7), t=(0.0, 1.0, 3))) == name_of(pendulum())
 
 
-def test_names_are_the_same_in_every_process():
+def test_names_are_the_same_in_every_process(tmp_path):
     program = "import sys; sys.path[:0] = {!r}; from test_derive import *; print(name_of(four_bar()), name_of(pendulum()))"
     program = program.format([os.path.dirname(__file__)])
     for seed in ("1", "2"):
         environment = os.environ | {"PYTHONHASHSEED": seed}
-        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, env=environment)
+        command = [sys.executable, "-c", program]
+        done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment, cwd=tmp_path)
         assert done.stdout.split() == [name_of(four_bar()), name_of(pendulum())]
 
 
