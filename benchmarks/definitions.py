@@ -141,6 +141,7 @@ METHODS = {
     "mujoco": Method("MuJoCo's inverse dynamics, the same pieces", "peers.mujoco_split", largest=3e6),
     "exudyn": Method("Exudyn's residual, a rod split once for each ratio", "peers.exudyn_split", largest=3e5),
     "pinocchio rnea": Method("Pinocchio's rnea", "peers.pinocchio_chain"),
+    "pinocchio casadi": Method("Pinocchio's rnea as a graph of CasADi, in its virtual machine", "peers.pinocchio_casadi"),
 }
 
 _ENGINE = ("lanes x cores", "lanes", "c", "vm")
@@ -168,7 +169,7 @@ COMPARISONS = (
                ("lanes", "c", "vm", *_HAND), "by hand", "ns/instant", t=128, designs=1000),
     *(
         Comparison(f"chain-{n}", f"efforts of an open chain of {n} links, 1000 instants", "efforts",
-                   (*_ENGINE, "pinocchio rnea"), "pinocchio rnea", "ns/instant", t=1000, links=n)
+                   (*_ENGINE, "pinocchio rnea", "pinocchio casadi"), "pinocchio rnea", "ns/instant", t=1000, links=n)
         for n in CHAINS
     ),
 )  # fmt: skip

@@ -9,7 +9,7 @@ import matplotlib as mpl
 
 from .definitions import COMPARISONS, METHODS
 
-MARKERS = "osv^D<>Xph*8PHd"
+MARKERS = "osv^D<>Xph*8PHd1"
 PANELS = (
     ("grid-", "values", "section forces of the slider-crank's rod: values of a grid", "ns a (t, xi): axial, shear, bending"),
     ("fill-", "values", "grids filled from a law that is there: values", "ns a (t, xi): axial, shear, bending"),

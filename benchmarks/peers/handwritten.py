@@ -19,7 +19,6 @@ COLUMNS = 40
 
 SCALAR = ("-fno-tree-vectorize",)
 """gcc 12 vectorises at -O2 what is as regular as this; a scalar code it is only without."""
-VECTORISED = ("-O3", "-march=native")
 
 
 @cache
