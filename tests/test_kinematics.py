@@ -226,3 +226,19 @@ def test_a_drive_on_a_link_held_at_a_parameters_angle(kind):
     m.revolute("J", a.tip, b)
     solution = evaluate(Scene(m, motion))
     assert solution.effort("J")[0] == pytest.approx(9.81 / 2 * math.cos(0.3), rel=1e-14)
+
+
+def test_a_gear_on_what_a_loop_turns_goes_on_where_that_is_wrapped():
+    """A drag link: the follower goes all the way round, and a gear with it."""
+    m = Mechanism("drag_link")
+    a, b, c = (m.link(name, length=length, mass=1) for name, length in (("a", 0.3), ("b", 0.25), ("c", 0.3)))
+    wheel = m.link("wheel", length=0.1, mass=1)
+    m.revolute("A", m.ground, a)
+    m.revolute("B", a.tip, b)
+    m.revolute("C", b.tip, c.tip)
+    follower = m.revolute("D", m.ground.at(0.1, 0), c)
+    m.gear("mesh", follower, m.revolute("E", m.ground.at(1, 0), wheel), ratio=-2.0)
+    solution = evaluate(Scene(m, {"A": polynomial(0.5, 7.0)}, t=(0, 2, 401), posture={"b": 2.5, "c": 1.7}))
+    turned, driven = solution.motion("D").value, solution.motion("E").value
+    assert np.ptp(turned) > 4 * math.pi
+    np.testing.assert_allclose(np.diff(driven), -2.0 * np.diff(turned), atol=1e-12)
