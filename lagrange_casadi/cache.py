@@ -5,8 +5,11 @@ from __future__ import annotations
 import functools
 import hashlib
 import os
+import shutil
 import tempfile
 import warnings
+from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import platformdirs
@@ -35,10 +38,10 @@ def read(name: str) -> str | None:
     if place is None or not (place / name).exists():
         return None
     try:
-        digest, _, text = (place / name).read_text().partition("\n")
+        seal, _, text = (place / name).read_text().partition("\n")
     except (OSError, UnicodeDecodeError):
-        digest, text = "", ""
-    if digest == _digest(text):
+        seal, text = "", ""
+    if seal == digest(text.encode()):
         return text
     warnings.warn(f"the cached {place / name} was damaged and is made again", stacklevel=2)
     return None
@@ -49,14 +52,21 @@ def write(name: str, text: str) -> None:
     place = folder()
     if place is None:
         return
-    try:
-        with tempfile.TemporaryDirectory(dir=place, prefix="build-") as work:
-            draft = Path(work) / name
-            draft.write_text(f"{_digest(text)}\n{text}")
-            os.replace(draft, place / name)
-    except OSError:
-        pass
+    with suppress(OSError), tempfile.TemporaryDirectory() as work:
+        draft = Path(work) / name
+        draft.write_text(f"{digest(text.encode())}\n{text}")
+        keep([draft], place)
 
 
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()
+def keep(files: Sequence[Path], place: Path) -> None:
+    """Copy files into the cache, each whole or not at all. Raises ``OSError``."""
+    with tempfile.TemporaryDirectory(dir=place, prefix="build-") as near:
+        for file in files:
+            shutil.copy2(file, Path(near) / file.name)
+        for file in files:
+            os.replace(Path(near) / file.name, place / file.name)
+
+
+def digest(content: bytes) -> str:
+    """What tells whether a content is whole."""
+    return hashlib.sha256(content).hexdigest()

@@ -122,7 +122,7 @@ def built(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Itera
         fresh = _compile(source, compiler, flags, Path(work) / name, folder)
         if folder is not None:
             try:
-                _keep([fresh.with_suffix(suffix) for suffix in (_suffix(compiler), ".sha256", ".so")], folder)
+                cache.keep([fresh.with_suffix(suffix) for suffix in (_suffix(compiler), ".sha256", ".so")], folder)
             except OSError as error:
                 warnings.warn(f"cannot keep a library in {folder}: {error.strerror}; compiled for this time only", stacklevel=3)
         yield fresh
@@ -132,19 +132,10 @@ def _kept(library: Path) -> Path | None:
     if not library.exists():
         return None
     seal = library.with_suffix(".sha256")
-    if seal.exists() and seal.read_bytes() == _digest(library).encode():
+    if seal.exists() and seal.read_bytes() == cache.digest(library.read_bytes()).encode():
         return library
     warnings.warn(f"the cached library {library} was damaged and is built again", stacklevel=4)
     return None
-
-
-def _keep(files: list[Path], folder: Path) -> None:
-    """Put files into the cache, each whole or not at all."""
-    with tempfile.TemporaryDirectory(dir=folder, prefix="build-") as near:
-        for file in files:
-            shutil.copy2(file, Path(near) / file.name)
-        for file in files:
-            os.replace(Path(near) / file.name, folder / file.name)
 
 
 def _suffix(compiler: Compiler) -> str:
@@ -167,15 +158,11 @@ def _compile(source: str, compiler: Compiler, flags: tuple[str, ...], base: Path
             log = base.with_suffix(".log")
             with suppress(OSError):
                 log.write_text(run.stderr)
-                _keep([code, log], folder)
+                cache.keep([code, log], folder)
                 where = f" (whole message in {folder / log.name})"
         raise CompilerError(f"{' '.join(compiler.command)} failed with status {run.returncode}: {first.strip()}{where}")
-    library.with_suffix(".sha256").write_text(_digest(library))
+    library.with_suffix(".sha256").write_text(cache.digest(library.read_bytes()))
     return library
-
-
-def _digest(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def _machine() -> str:

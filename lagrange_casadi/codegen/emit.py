@@ -116,10 +116,10 @@ _SMOOTH = """    arg[0] = time;
 _SPLINE = """    {{
       double drive[3*{nd}], narrow_w[{motion_w}];
       double lane[3*{nd}][LANES];
+      memcpy(lanes, time, sizeof lanes);
       for (j = 0; j < LANES; ++j) {{
         const double* narrow_arg[{motion_arg}];
         double* narrow_res[{motion_res}];
-        memcpy(lanes, time, sizeof lanes);
         narrow_arg[0] = lanes + j;
         narrow_arg[1] = p;
         narrow_res[0] = drive;
