@@ -7,7 +7,7 @@ import io
 import math
 import statistics
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import redirect_stdout
 from typing import Any
 
@@ -17,9 +17,7 @@ import psutil
 from . import engine
 from .definitions import METHODS, Comparison
 from .peers import reference
-from .peers.paper_case import Array, SliderCrank
-
-Work = Callable[[], Array]
+from .peers.paper_case import Array, SliderCrank, Work
 
 TOLERANCE = 1e-9
 """Of the peak. A method that misses by more has done other work, and its time is not reported."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from lagrange_casadi import Mechanism, Scene, codegen, derive
+from lagrange_casadi import Mechanism, Scene, codegen, derive, load_case
 from lagrange_casadi.backends import Backend, rows, run
 from lagrange_casadi.description import describe
 from lagrange_casadi.motion import polynomial
@@ -15,25 +15,9 @@ from lagrange_casadi.scene_graph import SceneGraph
 from lagrange_casadi.section_law import FORCES, SectionLaw
 from lagrange_casadi.solution import Provenance, Solution, in_order
 
-from .peers.paper_case import HALF_ACCELERATION, SPEED, Array, SliderCrank
+from .peers.paper_case import Array, SliderCrank, Work
 
-Work = Callable[[], Array]
-
-
-def slider_crank(wanted: tuple[str, ...]) -> SceneGraph:
-    """The paper's mechanism, as in ``cases/slider_crank``."""
-    m = Mechanism("slider_crank")
-    case = SliderCrank()
-    r, l, m1, m2, m3 = (m.parameter(name, getattr(case, name), unit) for name, unit in zip(NAMES, UNITS, strict=True))
-    crank, rod, slider = m.link("crank", length=r, mass=m1), m.link("rod", length=l, mass=m2), m.point_mass("slider", m3)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, slider)
-    m.prismatic("guide", m.ground, slider, axis=(1, 0))
-    return derive(Scene(m, {"O": polynomial(0, SPEED, HALF_ACCELERATION)}, wanted=wanted, posture={"rod": 0.0}))
-
-
-NAMES, UNITS = ("r", "l", "m1", "m2", "m3"), ("m", "m", "kg", "kg", "kg")
+SCENE = load_case(Path(__file__).parent.parent / "cases" / "slider_crank").scene
 
 
 def chain(n: int, wanted: tuple[str, ...] = ("effort",)) -> SceneGraph:
@@ -51,13 +35,13 @@ def chain(n: int, wanted: tuple[str, ...] = ("effort",)) -> SceneGraph:
 
 def instants(case: SliderCrank, t: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
     """Every column of ``wanted="all"``, (columns, t)."""
-    return _columns(slider_crank(("all",)), np.array(case.parameters), t, backend, threads)
+    return _columns(derive(SCENE, ["all"]), np.array(case.parameters), t, backend, threads)
 
 
 def designs(case: SliderCrank, t: Array, lengths: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
     """The same for one length of the rod after another; what is left is the last one's."""
     p = np.array(case.parameters)
-    work = _columns(slider_crank(("all",)), p, t, backend, threads)
+    work = _columns(derive(SCENE, ["all"]), p, t, backend, threads)
 
     def call() -> Array:
         for length in lengths:
@@ -70,26 +54,28 @@ def designs(case: SliderCrank, t: Array, lengths: Array, backend: Backend = "lan
 
 def sections(case: SliderCrank, t: Array, xi: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
     """Axial, shear and bending of the rod, (3, t, xi): the law at every instant, and the grids from it."""
-    work, law, out = *_law(case, t, backend, threads), np.empty((3, t.size, xi.size))
+    work, law = _law(case, t, backend, threads)
+    fills = _fills(law, t, xi, threads)
 
     def call() -> Array:
         work()
-        basis = law.basis(xi)
-        for force, grid in zip(FORCES, out, strict=True):
-            law.on_grid(force, basis, grid, threads or codegen.cores())
-        return out
+        return fills()
 
     return call
 
 
 def fill(case: SliderCrank, t: Array, xi: Array, threads: int = 1) -> Work:
     """The grids alone, from a law that is there."""
-    (_, law), out = _law(case, t, "lanes", 1), np.empty((3, t.size, xi.size))
+    return _fills(_law(case, t, "lanes", 1)[1], t, xi, threads)
+
+
+def _fills(law: SectionLaw, t: Array, xi: Array, threads: int) -> Work:
+    out = np.empty((3, t.size, xi.size))
 
     def call() -> Array:
         basis = law.basis(xi)
         for force, grid in zip(FORCES, out, strict=True):
-            law.on_grid(force, basis, grid, threads or codegen.cores())
+            law.on_grid(force, basis, grid, threads or None)
         return out
 
     return call
@@ -102,7 +88,7 @@ def efforts(n: int, t: Array, backend: Backend = "lanes", threads: int = 1) -> W
 
 def columns() -> tuple[str, ...]:
     """The names of what :func:`instants` gives."""
-    return _outputs(slider_crank(("all",)))
+    return _outputs(derive(SCENE, ["all"]))
 
 
 def _columns(graph: SceneGraph, p: Array, t: Array, backend: Backend, threads: int) -> Work:
@@ -126,10 +112,11 @@ def _columns(graph: SceneGraph, p: Array, t: Array, backend: Backend, threads: i
 
 def _law(case: SliderCrank, t: Array, backend: Backend, threads: int) -> tuple[Work, SectionLaw]:
     """What works out the rod's law, and the law, whose arrays that fills."""
-    graph = slider_crank(("section:rod",))
+    graph = derive(SCENE, ["section:rod"])
     work = _columns(graph, np.array(case.parameters), t, backend, threads)
     mechanism = graph.scene.mechanism
-    description = describe(mechanism, mechanism.values(dict(zip(NAMES, case.parameters, strict=True))), graph.scene.motion)
+    values = mechanism.values(dict(zip(mechanism.parameters, case.parameters, strict=True)))
+    description = describe(mechanism, values, graph.scene.motion)
     series = in_order(dict(zip(_outputs(graph), work(), strict=True)), description)
     return work, Solution("slider_crank", t, t, series, description, Provenance("", "", "", "", {})).section("rod").law
 

@@ -6,7 +6,8 @@ import sys
 
 import numpy as np
 
-from .case import Array, Case, Work, close_loop, joint_motion
+from .paper_case import Array, SliderCrank, Work
+from .split_rod import close_loop, joint_motion
 
 sys.exudynFast = True  # type: ignore[attr-defined]  # its module without range checks, if this is the first import
 import exudyn as exu  # noqa: E402
@@ -16,7 +17,7 @@ JOINTS = (*[exu.JointType.RevoluteZ] * 2, exu.JointType.PrismaticX, exu.JointTyp
 SIZE = len(JOINTS)
 
 
-def sections(case: Case, t: Array, xi: Array) -> Work:
+def sections(case: SliderCrank, t: Array, xi: Array) -> Work:
     """What works out axial, shear and bending of the rod, (3, t, xi), by a loop over the instants.
 
     Exudyn has no inverse dynamics, but M a - f, the residual of its implicit solver's equations of motion at a given state and
@@ -55,7 +56,7 @@ def sections(case: Case, t: Array, xi: Array) -> Work:
     return work
 
 
-def _add_tree(system: exu.MainSystem, case: Case, ratio: float) -> None:
+def _add_tree(system: exu.MainSystem, case: SliderCrank, ratio: float) -> None:
     near, far = case.l * ratio, case.l * (1.0 - ratio)
     inner, outer = case.m2 * ratio, case.m2 * (1.0 - ratio)
     centre = far * (outer / 2 + case.m3) / (outer + case.m3)  # of the outer half and the slider

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import numpy as np
 
 from lagrange_casadi.codegen.compiler import built, find_compiler
 
-from .paper_case import Array, SliderCrank
+from .paper_case import Array, SliderCrank, Work
 
 SOURCE = Path(__file__).with_name("slider_crank.c")
 COLUMNS = 40
@@ -31,14 +30,14 @@ def library(flags: tuple[str, ...]) -> ctypes.CDLL:
         return ctypes.CDLL(str(path))
 
 
-def instants(case: SliderCrank, t: Array, flags: tuple[str, ...] = SCALAR) -> Callable[[], Array]:
+def instants(case: SliderCrank, t: Array, flags: tuple[str, ...] = SCALAR) -> Work:
     """What fills the package's columns of ``wanted="all"``, (columns, t); the array is the same at every call."""
     entry = library(flags).slider_crank_instants
     times, parameters, out = _flat(t), _flat(case.parameters), np.empty((COLUMNS, len(t)))
     return _caller(entry, (len(t),), times, parameters, out)
 
 
-def designs(case: SliderCrank, t: Array, lengths: Array, flags: tuple[str, ...] = SCALAR) -> Callable[[], Array]:
+def designs(case: SliderCrank, t: Array, lengths: Array, flags: tuple[str, ...] = SCALAR) -> Work:
     """The same for one length of the rod after another; what is left is the last one's."""
     parameters, out = _flat(case.parameters), np.empty((COLUMNS, len(t)))
     call = _caller(library(flags).slider_crank_instants, (len(t),), _flat(t), parameters, out)
@@ -52,7 +51,7 @@ def designs(case: SliderCrank, t: Array, lengths: Array, flags: tuple[str, ...] 
     return work
 
 
-def sections(case: SliderCrank, t: Array, xi: Array, flags: tuple[str, ...] = SCALAR) -> Callable[[], Array]:
+def sections(case: SliderCrank, t: Array, xi: Array, flags: tuple[str, ...] = SCALAR) -> Work:
     """What fills axial, shear and bending of the rod, (3, t, xi); the array is the same at every call."""
     entry = library(flags).slider_crank_sections
     times, parameters, ratios, out = _flat(t), _flat(case.parameters), _flat(xi), np.empty((3, len(t), len(xi)))
@@ -63,7 +62,7 @@ def _flat(values: Array | tuple[float, ...]) -> Array:
     return np.ascontiguousarray(values, dtype=np.float64)
 
 
-def _caller(entry: ctypes._NamedFuncPointer, sizes: tuple[int, ...], *arrays: Array) -> Callable[[], Array]:
+def _caller(entry: ctypes._NamedFuncPointer, sizes: tuple[int, ...], *arrays: Array) -> Work:
     """A call with every argument ready; the last array is the result, and the arrays live as long as the call."""
     entry.restype = None
     entry.argtypes = [ctypes.c_longlong] * len(sizes) + [ctypes.c_void_p] * len(arrays)

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from .numpy_closed import sections
-from .paper_case import Array, SliderCrank
+from .paper_case import Array, SliderCrank, Work
 
 
-def fill(case: SliderCrank, t: Array, xi: Array) -> Callable[[], Array]:
+def fill(case: SliderCrank, t: Array, xi: Array) -> Work:
     """What copies the section forces, (3, t, xi), from one place to another."""
     source = np.concatenate([sections(case, part, xi)() for part in np.array_split(t, 1 + t.size * xi.size // 10**6)], axis=1)
     out = np.empty_like(source)

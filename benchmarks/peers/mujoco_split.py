@@ -7,10 +7,11 @@ from itertools import pairwise
 import mujoco
 import numpy as np
 
-from .case import Array, Case, Work, close_loop, joint_motion
+from .paper_case import Array, SliderCrank, Work
+from .split_rod import close_loop, joint_motion
 
 
-def sections(case: Case, t: Array, xi: Array) -> Work:
+def sections(case: SliderCrank, t: Array, xi: Array) -> Work:
     """What works out axial, shear and bending of the rod, (3, t, xi), by a loop over the instants.
 
     Only what ``mj_rnePostConstraint`` reads is run before it, which takes three quarters of the time of ``mj_inverse`` and it. The
@@ -44,7 +45,7 @@ def sections(case: Case, t: Array, xi: Array) -> Work:
     return work
 
 
-def _model(case: Case, xi: Array) -> mujoco.MjModel:
+def _model(case: SliderCrank, xi: Array) -> mujoco.MjModel:
     spec = mujoco.MjSpec()
     spec.option.gravity = [0.0, -case.g, 0.0]
     body = _bar(spec.worldbody, "O", 0.0, case.m1, case.r)

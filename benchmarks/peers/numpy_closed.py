@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .paper_case import Array, SliderCrank
+from .paper_case import Array, SliderCrank, Work
 
 
 @dataclass(frozen=True)
@@ -32,7 +31,7 @@ class _Rod:
         return *along, self.bx * s - self.by * c, self.ax * s - up * c, -self.turn
 
 
-def instants(case: SliderCrank, t: Array) -> Callable[[], Array]:
+def instants(case: SliderCrank, t: Array) -> Work:
     """What returns the package's columns of ``wanted="all"``, (columns, t)."""
 
     def call() -> Array:
@@ -55,13 +54,13 @@ def instants(case: SliderCrank, t: Array) -> Callable[[], Array]:
     return call
 
 
-def designs(case: SliderCrank, t: Array, lengths: Array) -> Callable[[], Array]:
+def designs(case: SliderCrank, t: Array, lengths: Array) -> Work:
     """The same for one length of the rod after another; what is left is the last one's."""
     works = [instants(replace(case, l=float(length)), t) for length in lengths]
     return lambda: [work() for work in works][-1]
 
 
-def sections(case: SliderCrank, t: Array, xi: Array) -> Callable[[], Array]:
+def sections(case: SliderCrank, t: Array, xi: Array) -> Work:
     """What returns axial, shear and bending of the rod, (3, t, xi), as polynomials of the part beyond the section."""
 
     def call() -> Array:

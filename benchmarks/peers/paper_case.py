@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
+Work = Callable[[], Array]
+"""What does the work, everything else being ready, and returns its result."""
 
 SPEED = 25 * math.pi
 HALF_ACCELERATION = math.pi / 200

@@ -5,7 +5,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 
-from .case import Array, Work
+from .paper_case import Array, Work
 from .pinocchio_chain import model, motion
 
 MISSING = "this Pinocchio has no pinocchio.casadi, as the wheels of PyPI have none: build it with BUILD_WITH_CASADI_SUPPORT"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
-from .case import Array, Work
+from .paper_case import Array, Work
 
 LENGTH, MASS, GRAVITY = 0.5, 1.0, 9.81
 

@@ -7,10 +7,11 @@ from itertools import pairwise
 import numpy as np
 import pinocchio as pin
 
-from .case import Array, Case, Work, close_loop, joint_motion
+from .paper_case import Array, SliderCrank, Work
+from .split_rod import close_loop, joint_motion
 
 
-def sections(case: Case, t: Array, xi: Array, threads: int = 1) -> Work:
+def sections(case: SliderCrank, t: Array, xi: Array, threads: int = 1) -> Work:
     """What works out axial, shear and bending of the rod, (3, t, xi), by one ``rneaInParallel`` over the instants.
 
     A welded joint's efforts are the section's forces. One model with a cut at every ratio costs a planar joint a point, a third of
@@ -31,7 +32,7 @@ def sections(case: Case, t: Array, xi: Array, threads: int = 1) -> Work:
     return work
 
 
-def _model(case: Case, xi: Array) -> pin.Model:
+def _model(case: SliderCrank, xi: Array) -> pin.Model:
     model = pin.Model()
     model.gravity.linear = np.array([0.0, -case.g, 0.0])
     joint = model.addJoint(0, pin.JointModelRZ(), _along(0.0), "O")

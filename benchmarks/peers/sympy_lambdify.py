@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from .paper_case import Array, SliderCrank
+from .paper_case import Array, SliderCrank, Work
 
 
-def sections(case: SliderCrank, t: Array, xi: Array) -> Callable[[], Array]:
+def sections(case: SliderCrank, t: Array, xi: Array) -> Work:
     """What returns axial, shear and bending of the rod, (3, t, xi); they are derived here, before."""
     forces, ratios = _forces(), xi[None, :]
 

@@ -7,37 +7,12 @@ effort less N times its arm is that of the closed loop.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Protocol
-
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
-Work = Callable[[], Array]
+from .paper_case import Array, SliderCrank
 
 
-class Case(Protocol):
-    """Crank ``r`` and rod ``l`` [m], uniform slender bars; masses of crank, rod and slider [kg]; gravity [m/s^2] along -y."""
-
-    @property
-    def r(self) -> float: ...
-    @property
-    def l(self) -> float: ...  # noqa: E743
-    @property
-    def m1(self) -> float: ...
-    @property
-    def m2(self) -> float: ...
-    @property
-    def m3(self) -> float: ...
-    @property
-    def g(self) -> float: ...
-
-    def motion(self, t: Array) -> tuple[Array, Array, Array]:
-        """Angle [rad], rate and acceleration of the crank."""
-
-
-def joint_motion(case: Case, t: Array) -> tuple[Array, Array, Array]:
+def joint_motion(case: SliderCrank, t: Array) -> tuple[Array, Array, Array]:
     """Coordinates of the pins O and A, the latter relative to the crank, their rates and accelerations: (t, 2) each."""
     theta, omega, alpha = case.motion(t)
     s, c = case.r / case.l * np.sin(theta), case.r / case.l * np.cos(theta)
@@ -47,7 +22,7 @@ def joint_motion(case: Case, t: Array) -> tuple[Array, Array, Array]:
     return np.stack([theta, phi - theta], -1), np.stack([omega, rate - omega], -1), np.stack([alpha, acceleration - alpha], -1)
 
 
-def close_loop(case: Case, q: Array, xi: Array, pin: Array, welds: Array) -> Array:
+def close_loop(case: SliderCrank, q: Array, xi: Array, pin: Array, welds: Array) -> Array:
     """Axial, shear and bending, (3, t, xi), from the open tree's efforts: of the pin A, (t,), and of the welds, (3, t, xi).
 
     A weld's effort is what the part towards A does to the part towards B, along the rod, across it and about the section.
