@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, load_case
-from lagrange_casadi.backends import Backend, rows, run
+from lagrange_casadi.backends import rows, run
 from lagrange_casadi.description import describe
 from lagrange_casadi.motion import polynomial
+from lagrange_casadi.rung import Backend, Rung
 from lagrange_casadi.scene_graph import SceneGraph
 from lagrange_casadi.section_law import FORCES, SectionLaw
 from lagrange_casadi.solution import Provenance, Solution, in_order
@@ -102,7 +103,7 @@ def _columns(graph: SceneGraph, p: Array, t: Array, backend: Backend, threads: i
 
     def call() -> Array:
         if backend == "vm":
-            out[:] = run(graph, t, p, "vm")[0].out
+            out[:] = run(graph, t, p, Rung("vm"))[0].out
         else:
             library.evaluate(t, p, z, out, status, threads or codegen.cores())
         return out[first:]

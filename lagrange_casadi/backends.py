@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import functools
 import math
+import shlex
 import warnings
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any
 
 import casadi as ca
 import h5py
@@ -14,30 +15,22 @@ import numpy as np
 import numpy.typing as npt
 
 from . import codegen, grids
-from .codegen.emit import (
-    NEWTON_DONE,
-    NEWTON_RATE,
-    NEWTON_ROUNDING,
-    NEWTON_STEPS,
-    NOT_CONVERGED,
-    NOT_FINITE,
-    OK,
-    SLOW,
-)
+from .codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
+from .compensated import DTYPES, Precision
 from .density import Array
-from .errors import CompilerError, UnknownNameError
+from .errors import CompilerError
+from .rung import Backend, Rung
 from .scene_graph import SceneGraph
 from .solution import Provenance
+from .stages import Stages, compensated, counts, plain
 from .version import __version__
-
-Backend = Literal["auto", "lanes", "c", "vm"]
-BACKENDS: tuple[Backend, ...] = ("auto", "lanes", "c", "vm")
 
 _LANGUAGES: dict[Backend, tuple[codegen.Language, ...]] = {"auto": ("c++", "c"), "lanes": ("c++",), "c": ("c",), "vm": ()}
 _NEEDS = {
     "lanes": "backend 'lanes' needs a C++ compiler: none of $CXX, c++, g++, clang++ or the Python package ziglang is there",
     "c": "backend 'c' needs a C compiler: none of $CC, cc, gcc, clang or the Python package ziglang is there",
 }
+_TRIED = "c++, g++, clang++, cc, gcc, clang, ziglang"
 _VM_BLOCK = 4096
 
 
@@ -49,61 +42,75 @@ class Table:
     status: npt.NDArray[np.int32]
 
 
-def run(graph: SceneGraph, t: Array, p: Array, backend: Backend = "auto", threads: int | None = None) -> tuple[Table, Provenance]:
-    """The columns of a graph at instants ``t`` and parameters ``p``, by the given backend; nothing is checked.
+def run(graph: SceneGraph, t: Array, p: Array, rung: Rung | None = None, threads: int | None = None) -> tuple[Table, Provenance]:
+    """The columns of a graph at instants ``t`` and parameters ``p``, on a rung; nothing is checked.
 
     Raises :class:`CompilerError` where the backend needs a compiler and there is none, or it fails.
     """
-    if backend not in BACKENDS:
-        raise UnknownNameError("backend", str(backend), BACKENDS)
-    compiled = _compiled(graph, backend)
+    rung = rung or Rung()
+    many = rung.precision == "single" or counts(graph, t, p)
+    stages = compensated(graph, rung.precision)[0] if many else plain(graph)
+    compiled = _compiled(graph, stages, rung)
     if compiled is None:
-        return _interpret(graph, t, p), _provenance("vm", "", "")
+        return _interpret(graph, stages, t, p, rung.newton), _provenance("vm", "", "", rung)
     compiler, library = compiled
-    guess = np.array(graph.newton.guess if graph.newton else ())
-    table, z = _table(graph, t), rows(guess.size, t.size)
+    dtype = DTYPES[rung.precision]
+    guess = np.array(graph.newton.guess if graph.newton else (), dtype)
+    table, z = _table(graph, t, rung.precision), rows(guess.size, t.size, dtype)
+    if rung.precision == "single":
+        t, p = _paired(t, rows(2, t.size, dtype)), _paired(p, np.empty((2, p.size), dtype))
     library.follow(t, p, guess, z, table.status)
     library.evaluate(t, p, z, table.out, table.status, threads or codegen.cores())
     used = "lanes" if compiler.language == "c++" else "c"
-    return table, _provenance(used, compiler.version, " ".join(library.flags))
+    return table, _provenance(used, compiler.version, " ".join(library.flags), rung)
 
 
-def _compiled(graph: SceneGraph, backend: Backend) -> tuple[codegen.Compiler, codegen.Library] | None:
+def _paired(values: Array, out: Array) -> Array:
+    """Doubles as the nearest singles, and what these leave of them."""
+    out[0] = values
+    out[1] = values - out[0]
+    return out
+
+
+def _compiled(graph: SceneGraph, stages: Stages, rung: Rung) -> tuple[codegen.Compiler, codegen.Library] | None:
     """The library that a backend takes, and what built it; None for the virtual machine."""
+    backend = rung.backend
     for language in _LANGUAGES[backend]:
         compiler = codegen.find_compiler(language)
         if compiler is None:
             continue
         try:
-            return compiler, _library(graph, compiler)
+            return compiler, _library(graph, stages, rung.newton, rung.flags, compiler)
         except CompilerError as error:
             if backend != "auto" or language == "c":
                 raise
             warnings.warn(f"{error}; scalar C serves", stacklevel=4)
     if backend in _NEEDS:
         raise CompilerError(_NEEDS[backend])
+    if rung.precision == "single":
+        raise CompilerError(f"precision 'single' needs a compiler: none of {_TRIED} is there")
     if backend == "auto":
-        tried = "c++, g++, clang++, cc, gcc, clang, ziglang"
-        warnings.warn(f"no C or C++ compiler found ({tried}): CasADi's virtual machine serves, slowly", stacklevel=4)
+        warnings.warn(f"no C or C++ compiler found ({_TRIED}): CasADi's virtual machine serves, slowly", stacklevel=4)
     return None
 
 
 @functools.lru_cache(maxsize=32)
-def _library(graph: SceneGraph, compiler: codegen.Compiler) -> codegen.Library:
-    return codegen.load(codegen.emit(graph), compiler)
+def _library(graph: SceneGraph, stages: Stages, newton: int | None, flags: str, compiler: codegen.Compiler) -> codegen.Library:
+    return codegen.load(codegen.emit(graph, stages, newton), compiler, tuple(shlex.split(flags)))
 
 
-def _table(graph: SceneGraph, t: Array) -> Table:
-    return Table(rows(len(graph.columns), t.size), np.full(t.size, OK, dtype=np.int32))
+def _table(graph: SceneGraph, t: Array, precision: Precision = "double") -> Table:
+    return Table(rows(len(graph.columns), t.size, DTYPES[precision]), np.full(t.size, OK, dtype=np.int32))
 
 
-def rows(count: int, size: int) -> Array:
+def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
     """Rows an odd number of cache lines apart: at a power of two all would share the same few lines of the cache."""
-    stride = 8 * (-(-size // 8) | 1)
-    return grids.empty("the outputs over time", (count, stride))[:, :size]
+    line = 64 // np.dtype(dtype).itemsize
+    stride = line * (-(-size // line) | 1)
+    return grids.empty("the outputs over time", (count, stride), dtype)[:, :size]
 
 
-def _provenance(backend: str, compiler: str, flags: str) -> Provenance:
+def _provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenance:
     versions = {
         "lagrange_casadi": __version__,
         "casadi": ca.CasadiMeta.version(),
@@ -111,36 +118,42 @@ def _provenance(backend: str, compiler: str, flags: str) -> Provenance:
         "h5py": h5py.__version__,
         "hdf5": h5py.version.hdf5_version,
     }
-    return Provenance(backend, "double", compiler, flags, versions)
+    return Provenance(backend, rung.precision, compiler, flags, versions)
 
 
-def _interpret(graph: SceneGraph, t: Array, p: Array) -> Table:
+def _interpret(graph: SceneGraph, stages: Stages, t: Array, p: Array, newton: int | None) -> Table:
     """What the emitted C does, by CasADi's virtual machine."""
     table = _table(graph, t)
     guess = np.array(graph.newton.guess) if graph.newton else np.zeros(0)
+    rule = newton_rule("double", newton)
     for start in range(0, t.size, _VM_BLOCK):
         block = slice(start, min(start + _VM_BLOCK, t.size))
-        d, rate, acceleration = (np.atleast_2d(x.full()) for x in graph.motion(t[None, block], p))
-        z = np.zeros((guess.size, d.shape[1]))
-        if graph.newton:
-            for i in range(d.shape[1]):
-                z[:, i], table.status[start + i] = _iterate(graph.newton.step, guess, t[start + i], d[:, i], p)
+        counted, rate, acceleration = (np.atleast_2d(x.full()) for x in stages.drive(t[None, block], p))
+        z = np.zeros((guess.size, counted.shape[1]))
+        if stages.loops is not None:
+            for i in range(counted.shape[1]):
+                z[:, i], table.status[start + i] = _iterate(graph, stages.loops, guess, counted[:, i], p, rule)
                 guess = guess if table.status[start + i] == NOT_CONVERGED else z[:, i]
-        table.out[:, block] = graph.instant(t[None, block], d, rate, acceleration, z, p).full()
+        table.out[:, block] = stages.instant(counted, rate, acceleration, z, p).full()
     unclean = ~np.isfinite(table.out).all(axis=0) & (table.status == OK)
     table.status[unclean] = NOT_FINITE
     return table
 
 
-def _iterate(step: ca.Function, z: Array, t: float, d: Array, p: Array) -> tuple[Array, int]:
-    guess, size = z, 1.0
-    for _ in range(NEWTON_STEPS):
-        before = size
-        correction, relative = (x.full().ravel() for x in step(z, t, d, p))
+def _iterate(
+    graph: SceneGraph, loops: ca.Function, guess: Array, counted: Array, p: Array, rule: dict[str, float]
+) -> tuple[Array, int]:
+    assert graph.newton is not None
+    z, size, before, step = guess, 1.0, 1.0, 0
+    while step < rule["steps"] and not size < rule["done"]:
+        before, step = size, step + 1
+        correction, relative = (x.full().ravel() for x in loops(z, counted, p))
         size = float(relative[0])
         if not math.isfinite(size):
             break
         z = z + correction
-        if size < NEWTON_DONE:
-            return z, SLOW if size > NEWTON_RATE * before and size > NEWTON_ROUNDING else OK
-    return guess, NOT_CONVERGED
+    if not size < rule["lost"]:
+        return guess, NOT_CONVERGED
+    turns = np.where(graph.newton.turning, np.floor(z * (1.0 / math.tau) + 0.5), 0.0)
+    slow = rule["done"] > 0.0 and size > rule["rate"] * before and size > rule["rounding"]
+    return z - math.tau * turns, SLOW if slow else OK

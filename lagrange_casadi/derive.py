@@ -26,30 +26,31 @@ _OPEN = 1e-9
 _SAMPLES, _STEPS = 6, 8
 
 
-def derive(scene: Scene, wanted: Sequence[str] | None = None) -> SceneGraph:
-    """Derive the graphs of a scene, for its own wanted outputs or for others.
+def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool = False) -> SceneGraph:
+    """Derive the graphs of a scene, for its own wanted outputs or for others; with ``iterate``, without closed forms of loops.
 
     A graph is derived once: it is kept while the process lasts, and in the cache folder by the content of the declaration.
 
     Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the loops cannot be solved.
     """
-    return _kept(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted))
+    return _kept(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted), iterate)
 
 
 @functools.lru_cache(maxsize=32)
-def _kept(scene: Scene, want: Wanted) -> SceneGraph:
+def _kept(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     """The graph from the cache, or derived and kept there."""
     key = fingerprint(scene, want)
+    key = f"{key}-iterated" if key and iterate else key
     text = cache.read(f"{key}.graph") if key else None
     if text is not None:
         return SceneGraph.loads(text, scene, want)
-    graph = _derive(scene, want)
+    graph = _derive(scene, want, iterate)
     if key:
         cache.write(f"{key}.graph", graph.dumps())
     return graph
 
 
-def _derive(scene: Scene, want: Wanted) -> SceneGraph:
+def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     mechanism = scene.mechanism
     p = mechanism.symbols
     tree = span(mechanism, scene.motion)
@@ -58,7 +59,8 @@ def _derive(scene: Scene, want: Wanted) -> SceneGraph:
     motion = motion_function({name: scene.motion[name] for name in driven}, p)
     defaults = list(mechanism.values().values())
     first = [float(x) for x in ca.DM(motion(scene.t[0], defaults)[0]).full().ravel()]
-    solved = kinematics.solve(body, scene.posture, Start(float(scene.t[0]), first, defaults))
+    start = Start(float(scene.t[0]), first, defaults)
+    solved = kinematics.solve(body, scene.posture, start, iterate=iterate)
 
     columns = {f"_closure:{name}": closure for name, closure in solved.closures.items()}
     columns |= {f"_misfit:{name}": misfit for name, misfit in solved.misfits.items()}

@@ -9,15 +9,17 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from .backends import Backend, Table, run
+from .backends import Table, run
 from .certificate import Held, certify
 from .codegen.emit import NOT_CONVERGED, OK, SLOW
+from .compensated import Precision
 from .density import Array
 from .derive import derive
 from .description import describe
 from .errors import AssemblyError, DeclarationError
 from .grids import require
 from .kinematics import where
+from .rung import Backend, Rung
 from .scene import Grid, Scene, checked, checked_ratios
 from .scene_graph import SceneGraph
 from .solution import Solution, in_order
@@ -37,6 +39,10 @@ def evaluate(
     xi: Grid | None = None,
     wanted: Sequence[str] | None = None,
     backend: Backend = "auto",
+    precision: Precision = "double",
+    newton: int | None = None,
+    table: float | None = None,
+    flags: str = "",
     threads: int | None = None,
     certificate: bool = True,
 ) -> Solution:
@@ -50,9 +56,8 @@ def evaluate(
         Start, stop and count of the instants [s] and of the section ratios xi/l.
     wanted
         Output names.
-    backend
-        ``lanes`` compiles for packs of instants, by a C++ compiler; ``c`` for one instant at a time; ``vm`` runs in CasADi's
-        virtual machine. ``auto`` takes the first of them that there is a compiler for, and warns where there is none.
+    backend, precision, newton, table, flags
+        How it is evaluated: see :class:`.Rung`.
     threads
         How many threads share the instants; default: one a core. The result does not depend on it.
     certificate
@@ -66,6 +71,7 @@ def evaluate(
         raise DeclarationError(f"evaluate: expected a Scene, got {scene!r}")
     if threads is not None and (not isinstance(threads, int) or isinstance(threads, bool) or threads < 1):
         raise DeclarationError(f"threads: expected a whole number of at least 1, got {threads!r}")
+    rung = Rung(backend, precision, newton, table, flags)
     values = scene.mechanism.values(parameters)
     start, stop, count = checked("t", scene.t if t is None else t)
     ratios = checked_ratios(scene.xi if xi is None else xi)
@@ -76,14 +82,14 @@ def evaluate(
                 f"the samples of the motion of joint '{joint}' cover t from {low:g} to {high:g} s, but t from "
                 f"{start:g} to {stop:g} s is asked for"
             )
-    graph = derive(scene, wanted)
+    graph = derive(scene, wanted, iterate=newton is not None)
     require("the outputs over time", (len(graph.columns) + _BESIDE, count))
     require("the grid of ratios", (ratios[2],))
     times, places = np.linspace(start, stop, count), np.linspace(*ratios)
-    table, provenance = run(graph, times, np.array(list(values.values())), backend, threads)
-    _refuse(graph, table, times, list(values.values()))
-    series = {name: table.out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
-    loose = {name: table.out[k] for k, name in enumerate(graph.columns) if name.startswith("_angle:")}
+    found, provenance = run(graph, times, np.array(list(values.values())), rung, threads)
+    _refuse(graph, found, times, list(values.values()))
+    series = {name: found.out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
+    loose = {name: found.out[k] for k, name in enumerate(graph.columns) if name.startswith("_angle:")}
     turns = {name: np.unwrap(angle) - angle for name, angle in loose.items()}
     for name, parts in graph.wrapped.items():
         for part, sign in parts.items():
@@ -95,7 +101,7 @@ def evaluate(
     solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, graph.undetermined)
     if not certificate:
         return solution
-    return replace(solution, certificate=certify(solution, _held(graph, table)) | _condition(graph, table))
+    return replace(solution, certificate=certify(solution, _held(graph, found)) | _condition(graph, found))
 
 
 def _held(graph: SceneGraph, table: Table) -> list[Held] | None:

@@ -29,7 +29,7 @@ _STREAMING = 1 << 24
 """Bytes from which on a grid goes past the caches."""
 
 _BLOCK = 1 << 14
-_LINE = 8
+_LINE = 64
 _SHARE = 1 << 21
 _OPTIONS = ("-O3", "-march=native")
 
@@ -84,15 +84,15 @@ def require(what: str, shape: tuple[int, ...]) -> None:
         raise SizeError(f"no room for {what}: {values} values are {size / 1e9:.4g} GB, and this machine has {there / 1e9:.3g} GB")
 
 
-def empty(what: str, shape: tuple[int, ...]) -> Array:
+def empty(what: str, shape: tuple[int, ...], dtype: Any = np.float64) -> Array:
     """An array to fill, from the start of a cache line: what crosses lines is stored at half the speed.
 
     Raises :class:`SizeError` where this machine has less memory than that.
     """
     require(what, shape)
     count = math.prod(shape)
-    room = np.empty(count + _LINE)
-    first = -room.ctypes.data // room.itemsize % _LINE
+    room = np.empty(count + _LINE // np.dtype(dtype).itemsize, dtype)
+    first = -room.ctypes.data // room.itemsize % (_LINE // room.itemsize)
     return room[first : first + count].reshape(shape)
 
 

@@ -32,11 +32,13 @@ _LARGEST_STEP = 0.3
 class NewtonLoop:
     """What is left to iterate: ``step(z, t, d, p) -> (correction, relative size)`` and the guess for the first instant.
 
-    ``names`` are those of its blocks; ``joints`` says what closes them, for messages.
+    ``names`` are those of its blocks; ``joints`` says what closes them, for messages. ``turning`` tells which unknowns are angles
+    that matter up to whole turns only.
     """
 
     step: Any
     guess: tuple[float, ...]
+    turning: tuple[bool, ...]
     names: tuple[str, ...]
     joints: str
 
@@ -77,14 +79,15 @@ class Kinematics:
         return ca.substitute(ca.SX(expression), self.symbols, self.values)
 
 
-def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> Kinematics:
+def solve(multibody: Multibody, posture: Mapping[str, float], start: Start, *, iterate: bool = False) -> Kinematics:
     """Close every loop, on the branch that is nearest to ``posture`` at the start of the motion.
 
-    ``posture`` gives rough directions of links [rad] and places of slides [m], by the link's or the joint's name.
+    ``posture`` gives rough directions of links [rad] and places of slides [m], by the link's or the joint's name. With ``iterate``
+    dyads are left to Newton's method too; their closed form gives the guess.
     Raises :class:`MobilityError` where drives and degrees of freedom do not match, :class:`DeclarationError` for a posture that
     leaves the branch open, :class:`AssemblyError` where the mechanism cannot be assembled at the start.
     """
-    solver = _Solver(multibody, dict(posture), start)
+    solver = _Solver(multibody, dict(posture), start, iterate)
     blocks = plan(multibody, solver.numbers())
     for block in blocks:
         solver.close(block)
@@ -94,7 +97,8 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start) -> K
 class _Solver:
     """Carries the expressions known so far while the blocks are closed in order."""
 
-    def __init__(self, multibody: Multibody, posture: dict[str, float], start: Start) -> None:
+    def __init__(self, multibody: Multibody, posture: dict[str, float], start: Start, iterate: bool) -> None:
+        self.iterate = iterate
         self.multibody = multibody
         self.posture = posture
         self.start = start
@@ -103,6 +107,7 @@ class _Solver:
         self.iterated: list[Any] = []
         self.guess: list[float] = []
         self.scales: list[Any] = []
+        self.turning: list[bool] = []
         self.residuals: list[Block] = []
         values = column(c.value for c in driven)
         self.known: dict[Coordinate, Any] = {c: _variables(c, values, self.d) for c in driven}
@@ -129,7 +134,7 @@ class _Solver:
         form = block.form
         if form is None:
             if block.unknown:
-                self._iterate(block)
+                self._iterate(block, self._told(block))
         elif form.closure is None:
             for coordinate, value in zip(block.unknown, form.variables, strict=True):
                 self.known[coordinate] = self.place(value)
@@ -137,6 +142,9 @@ class _Solver:
             variables = self.place(ca.vertcat(*form.variables))
             closure = self.place(form.closure)
             sign = self._branch(block, form, variables, closure)
+            if self.iterate:
+                self._iterate(block, _numbers(block.unknown, self._at_start(variables, form.branch, sign)))
+                return
             sizes = itertools.accumulate(c.variables.numel() for c in block.unknown)
             solved = ca.vertsplit(ca.substitute(variables, form.branch, sign), [0, *sizes])
             self.known.update(zip(block.unknown, solved, strict=True))
@@ -183,18 +191,26 @@ class _Solver:
                 total += abs(math.remainder(gap, 2.0 * math.pi)) if name in self.multibody.frames else abs(gap)
         return total
 
-    def _iterate(self, block: Block) -> None:
+    def _told(self, block: Block) -> dict[Coordinate, float]:
+        """What the posture says of a block that has no closed form."""
         missing = [_posture_name(c) for c in block.unknown if _posture_name(c) not in self.posture]
         if missing:
             raise DeclarationError(
                 f"the loops closed by {block.joints} have no closed form; give a rough posture of {', '.join(missing)} too"
             )
+        return {c: self.posture[_posture_name(c)] for c in block.unknown}
+
+    def _iterate(self, block: Block, guess: Mapping[Coordinate, float]) -> None:
         for coordinate in block.unknown:
             symbol = ca.SX.sym(f"z_{coordinate.joint}")
             self.known[coordinate] = _variables(coordinate, coordinate.value, symbol)
             self.iterated.append(symbol)
-            self.guess.append(self.posture[_posture_name(coordinate)])
+            self.guess.append(guess[coordinate])
             self.scales.append(1 if coordinate.kind == "angle" else self._size())
+            counted = any(ca.depends_on(closure.gap, coordinate.value) for closure in self.multibody.closures)
+            self.turning.append(coordinate.kind == "angle" and not counted)
+            if self.turning[-1]:
+                self.loose.add(coordinate.joint)
         self.residuals.append(block)
         self._settle()
 
@@ -285,7 +301,7 @@ class _Solver:
         inputs = [iterated, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
         step = ca.Function("loops", inputs, [bounded, relative], ["z", "t", "d", "p"], ["correction", "size"], {"cse": True})
         names, joints = tuple(block.name for block in self.residuals), ", ".join(block.joints for block in self.residuals)
-        return NewtonLoop(step, tuple(self.guess), names, joints)
+        return NewtonLoop(step, tuple(self.guess), tuple(self.turning), names, joints)
 
 
 def where(coordinates: Iterable[tuple[str, str, float]]) -> str:

@@ -51,7 +51,13 @@ class SceneGraph:
         newton = None
         if self.newton is not None:
             loop = self.newton
-            newton = {"step": loop.step.serialize(), "guess": loop.guess, "names": loop.names, "joints": loop.joints}
+            newton = {
+                "step": loop.step.serialize(),
+                "guess": loop.guess,
+                "turning": loop.turning,
+                "names": loop.names,
+                "joints": loop.joints,
+            }
         kept = {name: getattr(self, name) for name in _KEPT} | {"wrapped": self.wrapped}
         return json.dumps(kept | {"motion": self.motion.serialize(), "instant": self.instant.serialize(), "newton": newton})
 
@@ -64,7 +70,7 @@ class SceneGraph:
         if kept["newton"] is not None:
             loop = kept["newton"]
             step = ca.Function.deserialize(loop["step"])
-            newton = NewtonLoop(step, tuple(loop["guess"]), tuple(loop["names"]), loop["joints"])
+            newton = NewtonLoop(step, tuple(loop["guess"]), tuple(loop["turning"]), tuple(loop["names"]), loop["joints"])
         rest = {name: tuple(kept[name]) for name in _KEPT}
         return cls(scene=scene, wanted=wanted, motion=motion, instant=instant, newton=newton, wrapped=kept["wrapped"], **rest)
 

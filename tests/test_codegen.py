@@ -18,6 +18,7 @@ from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
 from lagrange_casadi.backends import run
 from lagrange_casadi.codegen import compiler
 from lagrange_casadi.errors import CompilerError
+from lagrange_casadi.rung import Rung
 
 
 def spline_arm():
@@ -81,7 +82,7 @@ def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
     graph = derive(scene)
     t, p = np.linspace(*scene.t), np.array(list(scene.mechanism.values().values()))
     out = columns(graph, t, "c")
-    machine, _ = run(graph, t, p, "vm")
+    machine, _ = run(graph, t, p, Rung("vm"))
     scale = np.max(np.abs(machine.out), axis=1, keepdims=True) + 1e-300
     assert np.max(np.abs(out - machine.out) / scale) <= (0.0 if name in ("slider_crank", "four_bar") else 1e-13)
 

@@ -12,6 +12,9 @@ PACKAGE = Path(lagrange_casadi.__file__).parent
 ORDER = (
     "version",
     "errors",
+    "interpret",
+    "compensated",
+    "rung",
     "cache",
     "quantities",
     "curves",
@@ -37,6 +40,7 @@ ORDER = (
     "scene_graph",
     "fingerprint",
     "derive",
+    "stages",
     "codegen",
     "grids",
     "description",

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import click
 
+from ..compensated import PRECISIONS
+from ..rung import BACKENDS
 from ..scene import Grid
+
+GRID = "START:STOP:COUNT"
 
 
 def grid(text: str) -> Grid:
@@ -37,3 +43,33 @@ def parameters(settings: Sequence[tuple[str, float]]) -> dict[str, float]:
             raise click.UsageError(f"--set: parameter '{name}' is set twice")
         found[name] = value
     return found
+
+
+def table(text: str) -> float:
+    """A number of nodes, or an accuracy."""
+    try:
+        return int(text) if re.fullmatch(r"[0-9]+", text) else float(text)
+    except ValueError:
+        raise click.BadParameter(f"expected a number of nodes or an accuracy, as in 128 or 1e-6, got '{text}'") from None
+
+
+def rung(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The options of a :class:`.Rung`."""
+    steps = "Close every loop by so many Newton steps from the instant before."
+    for option in reversed(
+        (
+            click.option(
+                "--backend",
+                type=click.Choice(BACKENDS),
+                default="auto",
+                show_default=True,
+                help="Packs in C++, C, or CasADi's VM.",
+            ),
+            click.option("--precision", type=click.Choice(PRECISIONS), default="double", show_default=True),
+            click.option("--newton", type=int, metavar="STEPS", help=steps),
+            click.option("--table", type=table, metavar="NODES|ACCURACY", help="Read outputs from a table over a turn."),
+            click.option("--flags", default="", metavar="FLAGS", help="Further flags of the compiler, as one word."),
+        )
+    ):
+        command = option(command)
+    return command

@@ -8,19 +8,18 @@ from pathlib import Path
 
 import click
 
-from ..backends import BACKENDS, Backend
 from ..case import load_case
 from ..certificate import summary
+from ..compensated import Precision
 from ..evaluate import evaluate
 from ..figures import dump_specs
 from ..publish import check_writable, filling
+from ..rung import Backend
 from ..scene import Grid
 from ..solution import Solution
 from ..store import save
 from .drawing import draw_with_progress
-from .options import grid, parameters, setting
-
-GRID = "START:STOP:COUNT"
+from .options import GRID, grid, parameters, rung, setting
 
 
 @click.command()
@@ -31,9 +30,7 @@ GRID = "START:STOP:COUNT"
 @click.option("--t", type=grid, metavar=GRID, help="Instants [s]; default: the case's.")
 @click.option("--xi", type=grid, metavar=GRID, help="Section ratios xi/l, within 0 and 1; default: the case's.")
 @click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
-@click.option(
-    "--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="C++ in packs, C, or CasADi's machine."
-)
+@rung
 @click.option("--threads", type=click.IntRange(1), metavar="N", help="Threads; default: one a core.")
 @click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>.h5 here.")
 @click.option("--figures", type=click.Path(path_type=Path), help="The figures' folder; default: <case>_figures here.")
@@ -46,6 +43,10 @@ def run(
     xi: Grid | None,
     want: Sequence[str],
     backend: Backend,
+    precision: Precision,
+    newton: int | None,
+    table: float | None,
+    flags: str,
     threads: int | None,
     out: Path | None,
     figures: Path | None,
@@ -70,6 +71,10 @@ def run(
         xi=xi,
         wanted=want or None,
         backend=backend,
+        precision=precision,
+        newton=newton,
+        table=table,
+        flags=flags,
         threads=threads,
         certificate=not no_certificate,
     )

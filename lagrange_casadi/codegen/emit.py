@@ -7,31 +7,46 @@ stays with doubles.
 
 from __future__ import annotations
 
+import math
 import re
+from typing import Any
 
 import casadi as ca
+import numpy as np
 
+from ..compensated import Precision
+from ..errors import SizeError
 from ..scene_graph import SceneGraph
+from ..stages import Stages, plain
 from .split import split
 
 EVALUATE, FOLLOW = "lagrange_casadi_evaluate", "lagrange_casadi_follow"
 NEWTON_STEPS = 50
-NEWTON_DONE = 1e-9
+NEWTON_DONE, NEWTON_DONE_SINGLE = 1e-9, 1e-4
+"""A correction after which the next one would be rounding."""
 
 NEWTON_RATE = 1e-2
-NEWTON_ROUNDING = 1e-13
+NEWTON_ROUNDING, NEWTON_ROUNDING_SINGLE = 1e-13, 1e-5
+NEWTON_LOST = 0.1
+"""A last correction, of a fixed number, after which nothing is known."""
 
 OK, NOT_CONVERGED, NOT_FINITE, SLOW = 0, 1, 2, 3
 """Status of an instant."""
 
-_START = """\
-#include <string.h>
+LANES_PLACE = "/* As C++ for packs of instants, lanes.h goes here. */\n"
+
+_START = f"""\
+{LANES_PLACE}#include <string.h>
 #ifdef LANES
 #define LAGRANGE_CASADI_C extern "C"
 #else
 #define LANES 1
 #define LAGRANGE_CASADI_C
+#ifdef LANES_SINGLE
+#define lanes_pack float
+#else
 #define lanes_pack double
+#endif
 #define lanes_choose(where, a) ((where) ? (a) : 0)
 #define lanes_sign(x) ((x) < 0 ? -1 : (x) > 0 ? 1 : (x))
 #endif
@@ -44,6 +59,11 @@ _START = """\
 #endif
 """
 
+_START_SINGLE = """\
+#define LANES_SINGLE
+#define casadi_real float
+"""
+
 _WIDE = """
 #undef CASADI_PREFIX
 #undef casadi_real
@@ -52,45 +72,47 @@ _WIDE = """
 
 _EVALUATE = """
 /* n instants t, for parameters p. out[k*stride + i] becomes column k at instant i, z[k*stride + i] is iterated coordinate k there.
-   status[i], 0 where there is nothing to say against the instant, becomes {NOT_FINITE} where a value is not finite. */
-LAGRANGE_CASADI_EXPORT void {evaluate}(casadi_int n, casadi_int stride, const double* t, const double* p, const double* z,
-                                       double* out, int* status) {{
+   status[i], {OK} where there is nothing to say against the instant, becomes {NOT_FINITE} where a value is not finite.{single} */
+LAGRANGE_CASADI_EXPORT void {evaluate}(casadi_int n, casadi_int stride, const {real}* t, const {real}* p, const {real}* z,
+                                       {real}* out, int* status) {{
   casadi_int i, j, k, many, iw[{iw}];
-  double lanes[LANES];
+  {real} lanes[LANES];
   casadi_real at[{inputs}], y[{rows}], w[{w}], sum[4];
-  casadi_real *time = at, *d = at + 1, *place = d + 3*{nd}, *parameters = place + {nz}, *constants = parameters + {np};
+  casadi_real *time = at, *counted = at + {nt}, *rates = counted + {nc}, *place = rates + 2*{nd};
+  casadi_real *parameters = place + {nz}, *constants = parameters + {nt}*{np};
   const casadi_real* arg[{arg}];
   casadi_real* res[{res}];
-  for (k = 0; k < {np}; ++k) parameters[k] = p[k];
+  for (k = 0; k < {nt}*{np}; ++k) parameters[k] = p[k];
   arg[0] = parameters;
   res[0] = constants;
   constants_of(arg, res, iw, w, 0);
   for (i = 0; i < n; i += LANES) {{
     many = n - i < LANES ? n - i : LANES;
     if (many == LANES) {{
-      memcpy(time, t + i, sizeof lanes);
+      for (k = 0; k < {nt}; ++k) memcpy(time + k, t + k*stride + i, sizeof lanes);
       for (k = 0; k < {nz}; ++k) memcpy(place + k, z + k*stride + i, sizeof lanes);
     }} else {{
       /* The last pack is filled up with the last instant. */
-      for (j = 0; j < LANES; ++j) lanes[j] = t[i + (j < many ? j : many - 1)];
-      memcpy(time, lanes, sizeof lanes);
+      for (k = 0; k < {nt}; ++k) {{
+        for (j = 0; j < LANES; ++j) lanes[j] = t[k*stride + i + (j < many ? j : many - 1)];
+        memcpy(time + k, lanes, sizeof lanes);
+      }}
       for (k = 0; k < {nz}; ++k) {{
         for (j = 0; j < LANES; ++j) lanes[j] = z[k*stride + i + (j < many ? j : many - 1)];
         memcpy(place + k, lanes, sizeof lanes);
       }}
     }}
-{motion}    arg[0] = time;
-    arg[1] = d;
-    arg[2] = d + {nd};
-    arg[3] = d + 2*{nd};
-    arg[4] = place;
-    arg[5] = constants;
+{drive}    arg[0] = counted;
+    arg[1] = rates;
+    arg[2] = rates + {nd};
+    arg[3] = place;
+    arg[4] = constants;
     res[0] = y;
     instant(arg, res, iw, w, 0);
     if (many == LANES) {{
       for (k = 0; k < {columns}; ++k) memcpy(out + k*stride + i, y + k, sizeof lanes);
     }} else {{
-      for (k = 0; k < {columns}; ++k) memcpy(out + k*stride + i, y + k, (size_t) many*sizeof(double));
+      for (k = 0; k < {columns}; ++k) memcpy(out + k*stride + i, y + k, (size_t) many*sizeof({real}));
     }}
     /* One value that is not finite makes their sum so; four sums, for each addition waits for the one before. */
     for (j = 0; j < 4; ++j) sum[j] = 0;
@@ -105,49 +127,61 @@ LAGRANGE_CASADI_EXPORT void {evaluate}(casadi_int n, casadi_int stride, const do
 }}
 """
 
+_IN_PAIRS = """
+   Times and parameters are pairs, a value rounded to single and what that leaves of it: t[stride + i] is the rest of t[i],
+   p[{np} + k] that of p[k]."""
+
 _SMOOTH = """    arg[0] = time;
     arg[1] = parameters;
-    res[0] = d;
-    res[1] = d + {nd};
-    res[2] = d + 2*{nd};
-    motion(arg, res, iw, w, 0);
+    res[0] = counted;
+    res[1] = rates;
+    res[2] = rates + {nd};
+    drive(arg, res, iw, w, 0);
 """
 
 _SPLINE = """    {{
-      double drive[3*{nd}], narrow_w[{motion_w}];
-      double lane[3*{nd}][LANES];
-      memcpy(lanes, time, sizeof lanes);
+      {real} found[{nc} + 2*{nd}], narrow_w[{lead_w}], moment[{nt}];
+      {real} lane[{nc} + 2*{nd}][LANES], times[{nt}][LANES];
+      memcpy(times, time, sizeof times);
       for (j = 0; j < LANES; ++j) {{
-        const double* narrow_arg[{motion_arg}];
-        double* narrow_res[{motion_res}];
-        narrow_arg[0] = lanes + j;
+        const {real}* narrow_arg[{lead_arg}];
+        {real}* narrow_res[{lead_res}];
+        for (k = 0; k < {nt}; ++k) moment[k] = times[k][j];
+        narrow_arg[0] = moment;
         narrow_arg[1] = p;
-        narrow_res[0] = drive;
-        narrow_res[1] = drive + {nd};
-        narrow_res[2] = drive + 2*{nd};
-        motion(narrow_arg, narrow_res, iw, narrow_w, 0);
-        for (k = 0; k < 3*{nd}; ++k) lane[k][j] = drive[k];
+        narrow_res[0] = found;
+        narrow_res[1] = found + {nc};
+        narrow_res[2] = found + {nc} + {nd};
+        lead(narrow_arg, narrow_res, iw, narrow_w, 0);
+        for (k = 0; k < {nc} + 2*{nd}; ++k) lane[k][j] = found[k];
       }}
-      memcpy(d, lane, sizeof lane);
+      memcpy(counted, lane, sizeof lane);
     }}
 """
 
 _FOLLOW = """
 /* Iterated loops, each instant from the one before: z[k*stride + i] becomes coordinate k at instant i, and guess, on entry that for
-   the first instant, the last good one. status[i] becomes {OK}, or {NOT_CONVERGED} where a loop did not converge, {SLOW} where not
-   quadratically. */
-LAGRANGE_CASADI_EXPORT void {follow}(casadi_int n, casadi_int stride, const double* t, const double* p, double* guess, double* z,
+   the first instant, the last good one. {told} */
+LAGRANGE_CASADI_EXPORT void {follow}(casadi_int n, casadi_int stride, const {real}* t, const {real}* p, {real}* guess, {real}* z,
                                      int* status) {{
+  static const int turns[{nz}] = {{{turns}}};
   casadi_int i, k, step, iw[{iw}];
-  double correction[{nz}], at[{nz}], w[{w}], size, before;
-  const double* arg[{arg}];
-  double* res[{res}];
+  {real} correction[{nz}], at[{nz}], w[{w}], counted[{nc} + 2*{nd}], moment[{nt}], size, before;
+  const {real}* arg[{arg}];
+  {real}* res[{res}];
   for (i = 0; i < n; ++i) {{
+    for (k = 0; k < {nt}; ++k) moment[k] = t[k*stride + i];
+    arg[0] = moment;
+    arg[1] = p;
+    res[0] = counted;
+    res[1] = counted + {nc};
+    res[2] = counted + {nc} + {nd};
+    lead(arg, res, iw, w, 0);
     size = before = 1;
     for (k = 0; k < {nz}; ++k) at[k] = guess[k];
     for (step = 0; step < {steps} && !(size < {done:.17g}); ++step) {{
       arg[0] = at;
-      arg[1] = t + i;
+      arg[1] = counted;
       arg[2] = p;
       before = size;
       res[0] = correction;
@@ -156,8 +190,9 @@ LAGRANGE_CASADI_EXPORT void {follow}(casadi_int n, casadi_int stride, const doub
       if (!(size - size == 0)) break;
       for (k = 0; k < {nz}; ++k) at[k] += correction[k];
     }}
-    status[i] = !(size < {done:.17g}) ? {NOT_CONVERGED} : size > {rate:.17g}*before && size > {rounding:.17g} ? {SLOW} : {OK};
+    status[i] = !(size < {lost:.17g}) ? {NOT_CONVERGED} : {slow} ? {SLOW} : {OK};
     for (k = 0; k < {nz}; ++k) {{
+      if (turns[k]) at[k] -= {turn:.17g}*floor(at[k]*{inverse:.17g} + 0.5);
       if (status[i] != {NOT_CONVERGED}) guess[k] = at[k];
       z[k*stride + i] = guess[k];
     }}
@@ -166,33 +201,78 @@ LAGRANGE_CASADI_EXPORT void {follow}(casadi_int n, casadi_int stride, const doub
 """
 
 
-def emit(graph: SceneGraph) -> str:
-    """The whole C file of a scene; the same text in every process, on every machine, for the same version of CasADi."""
-    smooth = bool(graph.motion.is_a("SXFunction"))
-    loops = _loops(graph, smooth)
-    narrow = [*([loops] if loops else []), *([] if smooth else [graph.motion])]
-    constants, instant = _hoisted(graph.instant)
-    wide = [*([graph.motion] if smooth else []), constants, instant]
-    columns, nz, nd = len(graph.columns), graph.instant.size1_in("z"), graph.instant.size1_in("d")
-    codes = {"OK": OK, "NOT_CONVERGED": NOT_CONVERGED, "NOT_FINITE": NOT_FINITE, "SLOW": SLOW}
-    motion = _SMOOTH.format(nd=nd) if smooth else _SPLINE.format(nd=nd, **_work("motion_", graph.motion))
-    np = graph.instant.size1_in("p")
+def emit(graph: SceneGraph, stages: Stages | None = None, newton: int | None = None) -> str:
+    """The whole C file of a scene; the same text in every process, on every machine, for the same version of CasADi.
+
+    ``stages`` say in which arithmetic, default: :func:`.plain`. ``newton`` is how many steps iterated loops take an
+    instant, None for as many as they need.
+    """
+    stages = plain(graph) if stages is None else stages
+    smooth = bool(stages.drive.is_a("SXFunction"))
+    constants, instant = _hoisted(stages.instant)
+    narrow = [] if smooth and stages.loops is None else [_lead(stages.drive), *([stages.loops] if stages.loops else [])]
+    wide = [*([stages.drive] if smooth else []), constants, instant]
+    sizes = _sizes(graph, stages) | _work("", *wide, *narrow)
     text = _START
     if narrow:
         text += _dump("follow", narrow)
-    if loops:
-        limits = {"steps": NEWTON_STEPS, "done": NEWTON_DONE, "rate": NEWTON_RATE, "rounding": NEWTON_ROUNDING}
-        text += _FOLLOW.format(follow=FOLLOW, nz=nz, **limits, **codes, **_work("", loops))
+    if stages.loops:
+        assert graph.newton is not None
+        rule = newton_rule(stages.precision, newton)
+        turns = ", ".join(str(int(turning)) for turning in graph.newton.turning)
+        slow = "size > {rate:.17g}*before && size > {rounding:.17g}".format(**rule) if newton is None else "0"
+        text += _FOLLOW.format(**sizes, **rule, told=_told(newton), turns=turns, slow=slow)
+    drive = _SMOOTH.format(**sizes) if smooth else _SPLINE.format(**sizes, **_work("lead_", *narrow))
+    pairs = _IN_PAIRS.format(**sizes) if stages.precision == "single" else ""
+    inputs = sizes["nc"] + 2 * sizes["nd"] + sizes["nz"] + sizes["nt"] * (1 + sizes["np"]) + constants.size1_out(0)
     text += _WIDE + _dump("scene", wide)
-    sizes = {
+    text += _EVALUATE.format(**sizes, drive=drive if sizes["nc"] + sizes["nd"] else "", single=pairs, inputs=inputs)
+    return _in_single(text) if stages.precision == "single" else text
+
+
+def _lead(drive: ca.Function) -> ca.Function:
+    """The drive under a name of its own, for one instant at a time."""
+    inputs = [ca.MX.sym(drive.name_in(i), drive.size1_in(i)) for i in range(drive.n_in())]
+    return ca.Function("lead", inputs, drive.call(inputs))
+
+
+def newton_rule(precision: Precision, steps: int | None) -> dict[str, float]:
+    """When iterated loops are done, and lost: the numbers that the emitted C and the virtual machine share."""
+    done, rounding = (NEWTON_DONE, NEWTON_ROUNDING) if precision == "double" else (NEWTON_DONE_SINGLE, NEWTON_ROUNDING_SINGLE)
+    if steps is not None:
+        return {"steps": steps, "done": 0.0, "lost": NEWTON_LOST, "rate": NEWTON_RATE, "rounding": rounding}
+    return {"steps": NEWTON_STEPS, "done": done, "lost": done, "rate": NEWTON_RATE, "rounding": rounding}
+
+
+def _told(newton: int | None) -> str:
+    if newton is None:
+        return f"""status[i] becomes {OK}, or {NOT_CONVERGED} where a loop did not converge, {SLOW} where not
+   quadratically."""
+    return f"""status[i] becomes {OK}, or {NOT_CONVERGED} where the last of {newton} steps is
+   too large to believe."""
+
+
+def _sizes(graph: SceneGraph, stages: Stages) -> dict[str, Any]:
+    """What the templates are filled with."""
+    columns = len(graph.columns)
+    return {
+        "evaluate": EVALUATE,
+        "follow": FOLLOW,
+        "real": "double" if stages.precision == "double" else "float",
         "columns": columns,
         "rows": max(1, columns),
-        "nz": nz,
-        "nd": nd,
-        "np": np,
-        "inputs": 1 + 3 * nd + nz + np + constants.size1_out(0),
+        "nt": stages.drive.size1_in(0),
+        "np": graph.instant.size1_in("p"),
+        "nc": stages.drive.size1_out(0),
+        "nd": graph.instant.size1_in("d"),
+        "nz": graph.instant.size1_in("z"),
+        "turn": math.tau,
+        "inverse": 1.0 / math.tau,
+        "OK": OK,
+        "NOT_CONVERGED": NOT_CONVERGED,
+        "NOT_FINITE": NOT_FINITE,
+        "SLOW": SLOW,
     }
-    return text + _EVALUATE.format(evaluate=EVALUATE, motion=motion if nd else "", **sizes, **codes, **_work("", *wide, *narrow))
 
 
 def _hoisted(instant: ca.Function) -> tuple[ca.Function, ca.Function]:
@@ -202,16 +282,6 @@ def _hoisted(instant: ca.Function) -> tuple[ca.Function, ca.Function]:
     c = ca.vertcat(ca.SX(0, 1), *symbols)
     hoisted = ca.Function("constants_of", [inputs[-1]], [ca.densify(ca.vertcat(ca.SX(0, 1), *constants))], {"cse": True})
     return hoisted, ca.Function("instant", [*inputs[:-1], c], [ca.densify(rest)], {"cse": True})
-
-
-def _loops(graph: SceneGraph, smooth: bool) -> ca.Function | None:
-    """One Newton step from the time alone: ``loops(z, t, p) -> (correction, size)``."""
-    if graph.newton is None:
-        return None
-    inputs = [ca.MX.sym(name, graph.instant.size1_in(name)) for name in ("z", "t", "p")]
-    z, t, p = inputs
-    step = ca.Function("loops", inputs, graph.newton.step(z, t, graph.motion(t, p)[0], p))
-    return step.expand() if smooth else step
 
 
 def _dump(name: str, functions: list[ca.Function]) -> str:
@@ -229,3 +299,22 @@ def _work(prefix: str, *functions: ca.Function) -> dict[str, int]:
     """The largest sizes of the working arrays of some functions."""
     sizes = {name: max(getattr(f, f"sz_{name}")() for f in functions) for name in ("arg", "res", "iw", "w")}
     return {f"{prefix}{name}": max(1, size) for name, size in sizes.items()}
+
+
+def _in_single(text: str) -> str:
+    """The same C with literals and functions of single precision, so that nothing is done in doubles."""
+    text = _LITERAL.sub(lambda found: f"{_nearest(found.group())}f", text)
+    return _START_SINGLE + _FUNCTION.sub(r"\1f(", text)
+
+
+def _nearest(literal: str) -> str:
+    """A literal's nearest single, by as many digits as tell it; no subnormal becomes a warning of the compiler's."""
+    value = np.float32(literal)
+    if not np.isfinite(value):
+        raise SizeError(f"the number {literal} is too large for single precision, which ends at {np.finfo(np.float32).max:.3g}")
+    return literal if value == float(literal) else f"{float(value):.8e}"
+
+
+_LITERAL = re.compile(r"(?<![\w.])(?:\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+)(?![\w.])")
+_NAMES = "sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp log log1p expm1 erf sqrt floor ceil fabs fmin fmax fmod"
+_FUNCTION = re.compile(rf"\b({'|'.join(_NAMES.split())}|pow|atan2|copysign|hypot|remainder)\(")

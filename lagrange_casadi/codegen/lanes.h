@@ -1,4 +1,5 @@
-/* A pack of doubles, as many as the machine's vectors hold, that stands where an emitted file says casadi_real.
+/* A pack of doubles, or with LANES_SINGLE of floats, as many as the machine's vectors hold, that stands where an emitted file says
+   casadi_real.
 
    Compiled as C++ by gcc or clang: operators are the compiler's own on vectors, functions are libmvec's where it is there, and a
    loop over the pack where not. */
@@ -8,19 +9,43 @@
 #include <math.h>
 #include <string.h>
 
+#ifdef LANES_SINGLE
+typedef float lanes_real;
+typedef int lanes_whole;
+#define LANES_A_DOUBLE 2
+#define LANES_OF(name) name##f
+#else
+typedef double lanes_real;
+typedef long long lanes_whole;
+#define LANES_A_DOUBLE 1
+#define LANES_OF(name) name
+#endif
+
+#define LANES_JOIN(vector, count, arguments, name) _ZGV##vector##N##count##arguments##_##name
+#define LANES_JOINED(vector, count, arguments, name) LANES_JOIN(vector, count, arguments, name)
 #if defined(__AVX512F__)
-#define LANES 8
-#define LANES_MVEC(arguments, name) _ZGVeN8##arguments##_##name
+#define LANES_BYTES 64
+#define LANES_VECTOR e
 #elif defined(__AVX2__)
-#define LANES 4
-#define LANES_MVEC(arguments, name) _ZGVdN4##arguments##_##name
+#define LANES_BYTES 32
+#define LANES_VECTOR d
 #elif defined(__aarch64__)
-#define LANES 2
-#define LANES_MVEC(arguments, name) _ZGVnN2##arguments##_##name
+#define LANES_BYTES 16
+#define LANES_VECTOR n
+#else
+#define LANES_BYTES 16
+#define LANES_VECTOR b
+#endif
+#if LANES_BYTES * LANES_A_DOUBLE == 128
+#define LANES 16
+#elif LANES_BYTES * LANES_A_DOUBLE == 64
+#define LANES 8
+#elif LANES_BYTES * LANES_A_DOUBLE == 32
+#define LANES 4
 #else
 #define LANES 2
-#define LANES_MVEC(arguments, name) _ZGVbN2##arguments##_##name
 #endif
+#define LANES_MVEC(arguments, name) LANES_JOINED(LANES_VECTOR, LANES, arguments, name)
 
 /* Which of its functions a libmvec has: glibc 2.22 began with five on x86-64, 2.35 has nearly all; on AArch64 2.38 began with four. */
 #ifndef LANES_LIBMVEC
@@ -35,15 +60,15 @@
 
 #define LANES_INLINE static inline __attribute__((always_inline))
 
-typedef double lanes_vector __attribute__((vector_size(8 * LANES)));
-typedef long long lanes_mask __attribute__((vector_size(8 * LANES)));
+typedef lanes_real lanes_vector __attribute__((vector_size(LANES_BYTES)));
+typedef lanes_whole lanes_mask __attribute__((vector_size(LANES_BYTES)));
 
 struct lanes_pack {
   lanes_vector v;
   lanes_pack() = default;
   __attribute__((always_inline)) lanes_pack(lanes_vector x) : v(x) {}
   /* Less zero, for -0.0 + 0.0 would lose its sign. */
-  __attribute__((always_inline)) lanes_pack(double x) : v(x - lanes_vector{}) {}
+  __attribute__((always_inline)) lanes_pack(lanes_real x) : v(x - lanes_vector{}) {}
 };
 
 LANES_INLINE lanes_pack operator+(lanes_pack a, lanes_pack b) { return a.v + b.v; }
@@ -57,28 +82,30 @@ LANES_INLINE lanes_pack lanes_pick(lanes_mask where, lanes_pack a, lanes_pack b)
 }
 
 /* As in C, a comparison is one or zero. */
-LANES_INLINE lanes_pack lanes_truth(lanes_mask where) { return lanes_pick(where, 1.0, 0.0); }
+LANES_INLINE lanes_pack lanes_truth(lanes_mask where) { return lanes_pick(where, lanes_real(1), lanes_real(0)); }
 LANES_INLINE lanes_pack operator<(lanes_pack a, lanes_pack b) { return lanes_truth(a.v < b.v); }
 LANES_INLINE lanes_pack operator<=(lanes_pack a, lanes_pack b) { return lanes_truth(a.v <= b.v); }
 LANES_INLINE lanes_pack operator==(lanes_pack a, lanes_pack b) { return lanes_truth(a.v == b.v); }
 LANES_INLINE lanes_pack operator!=(lanes_pack a, lanes_pack b) { return lanes_truth(a.v != b.v); }
-LANES_INLINE lanes_pack operator!(lanes_pack a) { return a == 0.0; }
-LANES_INLINE lanes_pack operator&&(lanes_pack a, lanes_pack b) { return (a != 0.0) * (b != 0.0); }
+LANES_INLINE lanes_pack operator!(lanes_pack a) { return a == lanes_pack(lanes_real(0)); }
+LANES_INLINE lanes_pack operator&&(lanes_pack a, lanes_pack b) { return !!a * !!b; }
 LANES_INLINE lanes_pack operator||(lanes_pack a, lanes_pack b) { return !(!a && !b); }
 
 /* What CasADi writes as (a ? b : 0), and its sign of x: a pack has no one truth to branch on. */
-LANES_INLINE lanes_pack lanes_choose(lanes_pack a, lanes_pack b) { return lanes_pick(a.v != 0.0, b, 0.0); }
-LANES_INLINE lanes_pack lanes_sign(lanes_pack x) { return lanes_pick(x.v < 0.0, -1.0, lanes_pick(x.v > 0.0, 1.0, x)); }
-LANES_INLINE double lanes_choose(double a, double b) { return a != 0.0 ? b : 0.0; }
-LANES_INLINE double lanes_sign(double x) { return x < 0.0 ? -1.0 : x > 0.0 ? 1.0 : x; }
+LANES_INLINE lanes_pack lanes_choose(lanes_pack a, lanes_pack b) { return lanes_pick(a.v != lanes_vector{}, b, lanes_real(0)); }
+LANES_INLINE lanes_pack lanes_sign(lanes_pack x) {
+  return lanes_pick(x.v < lanes_vector{}, lanes_real(-1), lanes_pick(x.v > lanes_vector{}, lanes_real(1), x));
+}
+LANES_INLINE lanes_real lanes_choose(lanes_real a, lanes_real b) { return a != 0 ? b : 0; }
+LANES_INLINE lanes_real lanes_sign(lanes_real x) { return x < 0 ? -1 : x > 0 ? 1 : x; }
 
-LANES_INLINE lanes_pack fmin(lanes_pack a, lanes_pack b) { return lanes_pick((a.v < b.v) | (b.v != b.v), a, b); }
-LANES_INLINE lanes_pack fmax(lanes_pack a, lanes_pack b) { return lanes_pick((a.v > b.v) | (b.v != b.v), a, b); }
-LANES_INLINE lanes_pack copysign(lanes_pack a, lanes_pack b) {
-  const lanes_mask sign = (lanes_mask)lanes_pack(-0.0).v;
+LANES_INLINE lanes_pack LANES_OF(fmin)(lanes_pack a, lanes_pack b) { return lanes_pick((a.v < b.v) | (b.v != b.v), a, b); }
+LANES_INLINE lanes_pack LANES_OF(fmax)(lanes_pack a, lanes_pack b) { return lanes_pick((a.v > b.v) | (b.v != b.v), a, b); }
+LANES_INLINE lanes_pack LANES_OF(copysign)(lanes_pack a, lanes_pack b) {
+  const lanes_mask sign = (lanes_mask)lanes_pack(-lanes_real(0)).v;
   return lanes_pick(sign, b, a);
 }
-LANES_INLINE lanes_pack fabs(lanes_pack a) { return copysign(a, 1.0); }
+LANES_INLINE lanes_pack LANES_OF(fabs)(lanes_pack a) { return LANES_OF(copysign)(a, lanes_real(1)); }
 
 #define LANES_EACH(name)                               \
   LANES_INLINE lanes_pack name(lanes_pack a) {         \
@@ -99,58 +126,58 @@ LANES_INLINE lanes_pack fabs(lanes_pack a) { return copysign(a, 1.0); }
   extern "C" lanes_vector LANES_MVEC(vv, name)(lanes_vector, lanes_vector); \
   LANES_INLINE lanes_pack name(lanes_pack a, lanes_pack b) { return LANES_MVEC(vv, name)(a.v, b.v); }
 
-LANES_EACH(sqrt)
-LANES_EACH(floor)
-LANES_EACH(ceil)
-LANES_EACH_OF_TWO(fmod)
-LANES_EACH_OF_TWO(remainder)
+LANES_EACH(LANES_OF(sqrt))
+LANES_EACH(LANES_OF(floor))
+LANES_EACH(LANES_OF(ceil))
+LANES_EACH_OF_TWO(LANES_OF(fmod))
+LANES_EACH_OF_TWO(LANES_OF(remainder))
 
 #if LANES_LIBMVEC >= 1
-LANES_CALL(sin)
-LANES_CALL(cos)
-LANES_CALL(exp)
-LANES_CALL(log)
+LANES_CALL(LANES_OF(sin))
+LANES_CALL(LANES_OF(cos))
+LANES_CALL(LANES_OF(exp))
+LANES_CALL(LANES_OF(log))
 #else
-LANES_EACH(sin)
-LANES_EACH(cos)
-LANES_EACH(exp)
-LANES_EACH(log)
+LANES_EACH(LANES_OF(sin))
+LANES_EACH(LANES_OF(cos))
+LANES_EACH(LANES_OF(exp))
+LANES_EACH(LANES_OF(log))
 #endif
 
 #if LANES_LIBMVEC >= 2
-LANES_CALL(tan)
-LANES_CALL(asin)
-LANES_CALL(acos)
-LANES_CALL(atan)
-LANES_CALL(sinh)
-LANES_CALL(cosh)
-LANES_CALL(tanh)
-LANES_CALL(asinh)
-LANES_CALL(acosh)
-LANES_CALL(atanh)
-LANES_CALL(log1p)
-LANES_CALL(expm1)
-LANES_CALL(erf)
-LANES_CALL_OF_TWO(atan2)
-LANES_CALL_OF_TWO(hypot)
-LANES_CALL_OF_TWO(pow)
+LANES_CALL(LANES_OF(tan))
+LANES_CALL(LANES_OF(asin))
+LANES_CALL(LANES_OF(acos))
+LANES_CALL(LANES_OF(atan))
+LANES_CALL(LANES_OF(sinh))
+LANES_CALL(LANES_OF(cosh))
+LANES_CALL(LANES_OF(tanh))
+LANES_CALL(LANES_OF(asinh))
+LANES_CALL(LANES_OF(acosh))
+LANES_CALL(LANES_OF(atanh))
+LANES_CALL(LANES_OF(log1p))
+LANES_CALL(LANES_OF(expm1))
+LANES_CALL(LANES_OF(erf))
+LANES_CALL_OF_TWO(LANES_OF(atan2))
+LANES_CALL_OF_TWO(LANES_OF(hypot))
+LANES_CALL_OF_TWO(LANES_OF(pow))
 #else
-LANES_EACH(tan)
-LANES_EACH(asin)
-LANES_EACH(acos)
-LANES_EACH(atan)
-LANES_EACH(sinh)
-LANES_EACH(cosh)
-LANES_EACH(tanh)
-LANES_EACH(asinh)
-LANES_EACH(acosh)
-LANES_EACH(atanh)
-LANES_EACH(log1p)
-LANES_EACH(expm1)
-LANES_EACH(erf)
-LANES_EACH_OF_TWO(atan2)
-LANES_EACH_OF_TWO(hypot)
-LANES_EACH_OF_TWO(pow)
+LANES_EACH(LANES_OF(tan))
+LANES_EACH(LANES_OF(asin))
+LANES_EACH(LANES_OF(acos))
+LANES_EACH(LANES_OF(atan))
+LANES_EACH(LANES_OF(sinh))
+LANES_EACH(LANES_OF(cosh))
+LANES_EACH(LANES_OF(tanh))
+LANES_EACH(LANES_OF(asinh))
+LANES_EACH(LANES_OF(acosh))
+LANES_EACH(LANES_OF(atanh))
+LANES_EACH(LANES_OF(log1p))
+LANES_EACH(LANES_OF(expm1))
+LANES_EACH(LANES_OF(erf))
+LANES_EACH_OF_TWO(LANES_OF(atan2))
+LANES_EACH_OF_TWO(LANES_OF(hypot))
+LANES_EACH_OF_TWO(LANES_OF(pow))
 #endif
 
 /* CasADi's helpers take C99's functions where they see C99. */

@@ -14,9 +14,10 @@ import numpy.typing as npt
 
 from ..errors import CompilerError
 from .compiler import Compiler, built, statements
-from .emit import EVALUATE, FOLLOW
+from .emit import EVALUATE, FOLLOW, LANES_PLACE
 
-Array = npt.NDArray[np.float64]
+Array = npt.NDArray[Any]
+"""Of the precision that the code was emitted in."""
 Status = npt.NDArray[np.int32]
 
 _WORTH_A_THREAD = 1 << 24
@@ -44,29 +45,31 @@ class Library:
         if self.entry_follow is None:
             status[:] = 0
             return
-        for start in range(0, t.size, self._stretch):
+        for start in range(0, t.shape[-1], self._stretch):
             cut = slice(start, start + self._stretch)
-            self._call(self.entry_follow, t[cut], z[:, cut], (p, guess, z[:, cut], status[cut]))
+            self._call(self.entry_follow, t[..., cut], z[:, cut], (p, guess, z[:, cut], status[cut]))
 
     def evaluate(self, t: Array, p: Array, z: Array, out: Array, status: Status, threads: int = 1) -> None:
-        """Fill ``out`` (columns, n) for the instants ``t`` (n), where the iterated coordinates are ``z`` (k, n).
+        """Fill ``out`` (columns, n) for the instants ``t``, where the iterated coordinates are ``z`` (k, n).
 
-        ``status`` (n) is what :meth:`follow` left; what is not finite is noted there. The bytes do not depend on ``threads``.
+        ``t`` is (n,), in single precision (2, n): rounded, and the rest; ``p`` likewise. All rows are equally far apart. ``status``
+        (n) is what :meth:`follow` left; what is not finite is noted there. The bytes do not depend on ``threads``.
         """
-        assert z.strides == out.strides or not z.size
-        shares = max(1, min(threads, t.size // self.share))
-        size = min(self._stretch, -(-t.size // (shares * _CUT)) * _CUT)
-        if size >= t.size:
+        assert all(rows.ndim == 1 or rows.strides == out.strides or not rows.size for rows in (t, z))
+        n = t.shape[-1]
+        shares = max(1, min(threads, n // self.share))
+        size = min(self._stretch, -(-n // (shares * _CUT)) * _CUT)
+        if size >= n:
             self._call(self.entry, t, out, (p, z, out, status))
             return
 
         def run(start: int) -> None:
             cut = slice(start, start + size)
-            self._call(self.entry, t[cut], out[:, cut], (p, z[:, cut], out[:, cut], status[cut]))
+            self._call(self.entry, t[..., cut], out[:, cut], (p, z[:, cut], out[:, cut], status[cut]))
 
         pool = ThreadPoolExecutor(shares)
         try:
-            list(pool.map(run, range(0, t.size, size)))
+            list(pool.map(run, range(0, n, size)))
         finally:
             pool.shutdown(cancel_futures=True)
 
@@ -77,8 +80,7 @@ class Library:
 
     @staticmethod
     def _call(entry: Any, t: Array, rows: Array, rest: tuple[npt.NDArray[Any], ...]) -> None:
-        stride = rows.strides[0] // rows.itemsize if rows.size else t.size
-        entry(t.size, stride, t.ctypes.data, *(array.ctypes.data for array in rest))
+        entry(t.shape[-1], rows.strides[0] // rows.itemsize, t.ctypes.data, *(array.ctypes.data for array in rest))
 
 
 def cores() -> int:
@@ -92,7 +94,7 @@ def load(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Librar
     ``extra`` flags come after the package's own. Raises :class:`CompilerError`.
     """
     if compiler.language == "c++":
-        source = resources.files(__package__).joinpath("lanes.h").read_text() + source
+        source = source.replace(LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1)
     with built(source, compiler, extra) as path:
         try:
             library = ctypes.CDLL(str(path))

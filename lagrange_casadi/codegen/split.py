@@ -38,12 +38,16 @@ def _split(found: re.Match[str]) -> str:
         declared = ", ".join(f"a{v}=a[{int(v)}]" if v in reads[i] else f"a{v}" for v in variables)
         leaving = "".join(f"  a[{int(v)}]=a{v};\n" for v in sorted(kept[i], key=int))
         pieces.append(
-            f"static LAGRANGE_CASADI_PART void {name}_{i}(const casadi_real** arg, casadi_real** res, casadi_real* a) {{\n"
+            f"static LAGRANGE_CASADI_PART void {_part(name, i)}(const casadi_real** arg, casadi_real** res, casadi_real* a) {{\n"
             f"  casadi_real {declared};\n{''.join(part)}{leaving}}}\n\n"
         )
-        calls.append(f"  {name}_{i}(arg, res, a);\n")
+        calls.append(f"  {_part(name, i)}(arg, res, a);\n")
     size = 1 + max(int(v) for v in _VARIABLE.findall(body))
     return f"{''.join(pieces)}static int {name}({arguments}) {{\n  casadi_real a[{size}];\n{''.join(calls)}  return 0;\n}}\n"
+
+
+def _part(name: str, i: int) -> str:
+    return f"CASADI_PREFIX({name.removeprefix('casadi_')}_{i})"
 
 
 def _flow(part: list[str]) -> tuple[set[str], set[str]]:

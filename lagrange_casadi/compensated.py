@@ -1,0 +1,228 @@
+"""Pairs of numbers as expressions: a value and what its rounding left of it, for phases that must outlast many turns.
+
+An angle of 1e10 rad in a double has lost six digits of its phase, one of 1e3 rad in a single nearly all. Followed as an
+unevaluated sum high + low, with error-free sums and products (Knuth; Dekker, *A floating-point technique for extending the
+available precision*, Numer. Math. 18, 1971), it keeps twice the digits, in arithmetic of the one precision throughout. Compilers
+must not reassociate: ``-ffast-math`` takes the low parts away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+import casadi as ca
+import numpy as np
+
+from .interpret import Arithmetic
+
+Precision = Literal["double", "single"]
+PRECISIONS: tuple[Precision, ...] = ("double", "single")
+DTYPES: dict[Precision, Any] = {"double": np.dtype(np.float64), "single": np.dtype(np.float32)}
+ROUNDING: dict[Precision, float] = {name: float(np.finfo(dtype).eps) / 2 for name, dtype in DTYPES.items()}
+"""The largest relative error of one rounding."""
+
+_SPLITTER: dict[Precision, float] = {"double": 134217729.0, "single": 4097.0}
+_TURN = (6.283185307179586, 2.4492935982947064e-16, -5.989539619436679e-33)
+"""2 pi as the sum of three doubles."""
+
+
+@contextmanager
+def unsimplified() -> Iterator[None]:
+    """Expressions as they are written: CasADi knows that (a + b) - a is b, which is just what does not hold here."""
+    before = ca.GlobalOptions.getSimplificationOnTheFly()
+    ca.GlobalOptions.setSimplificationOnTheFly(False)
+    try:
+        yield
+    finally:
+        ca.GlobalOptions.setSimplificationOnTheFly(before)
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """high + low, expressions of scalars; ``low`` is None where the value is exact. ``number`` is the value where it is known."""
+
+    high: Any
+    low: Any = None
+    number: float | None = None
+
+    @property
+    def value(self) -> Any:
+        """The one number that is nearest."""
+        return self.high if self.low is None else self.high + self.low
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """The arithmetic of pairs in a precision; to be used where CasADi does not simplify (:func:`unsimplified`).
+
+    ``reductions`` collects the angles that were reduced.
+    """
+
+    precision: Precision
+    reductions: list[Pair] = field(default_factory=list, compare=False)
+
+    @property
+    def arithmetic(self) -> Arithmetic:
+        """What :func:`.interpret` asks for."""
+        rules = {
+            ca.OP_ADD: self.add,
+            ca.OP_SUB: lambda x, y: self.add(x, self.negate(y)),
+            ca.OP_NEG: self.negate,
+            ca.OP_MUL: self.multiply,
+            ca.OP_SQ: lambda x: self.multiply(x, x),
+            ca.OP_TWICE: lambda x: self.add(x, x),
+            ca.OP_DIV: self.divide,
+            ca.OP_INV: lambda x: self.divide(self.constant(1.0), x),
+            ca.OP_SIN: self.sine,
+            ca.OP_COS: self.cosine,
+            ca.OP_FABS: _size,
+            ca.OP_FLOOR: _floor,
+            ca.OP_CEIL: lambda x: self.negate(_floor(self.negate(x))),
+            ca.OP_FMOD: self.remainder,
+            ca.OP_IF_ELSE_ZERO: _choose,
+        }
+        rounded = {code: _rounded(code) for code in _UNARY + _BINARY}
+        return Arithmetic(self.constant, rounded | rules)
+
+    def constant(self, value: float) -> Pair:
+        """A double, in as many parts as it takes."""
+        kind = DTYPES[self.precision].type
+        high = float(kind(value))
+        low = float(kind(value - high)) if np.isfinite(high) else 0.0
+        return Pair(ca.SX(high), ca.SX(low) if low else None, value)
+
+    def add(self, x: Pair, y: Pair) -> Pair:
+        """x + y, to the last digits also where they nearly cancel."""
+        total, error = _sum(x.high, y.high)
+        if x.low is None and y.low is None:
+            return Pair(total, error)
+        if x.low is None or y.low is None:
+            return _normal(total, error + (y.low if x.low is None else x.low))
+        lows, rest = _sum(x.low, y.low)
+        first = _normal(total, error + lows)
+        return _normal(first.high, first.low + rest)
+
+    def negate(self, x: Pair) -> Pair:
+        """Less x."""
+        return Pair(-x.high, None if x.low is None else -x.low, None if x.number is None else -x.number)
+
+    def multiply(self, x: Pair, y: Pair) -> Pair:
+        """x y; a power of two only scales."""
+        for one, other in ((x, y), (y, x)):
+            if other.number is not None and other.number and np.frexp(abs(other.number))[0] == 0.5:
+                return Pair(one.high * other.high, None if one.low is None else one.low * other.high)
+        product, error = self._product(x.high, y.high)
+        for part in ((x.high, y.low), (x.low, y.high)):
+            if part[0] is not None and part[1] is not None:
+                error = error + part[0] * part[1]
+        return _normal(product, error)
+
+    def divide(self, x: Pair, y: Pair) -> Pair:
+        """x / y by what a first quotient leaves."""
+        first = x.high / y.high
+        left = self.add(x, self.negate(self.multiply(Pair(first), y)))
+        return _normal(first, left.value / y.high)
+
+    def reduced(self, x: Pair) -> Pair:
+        """x less whole turns, between -pi and pi."""
+        self.reductions.append(x)
+        turns = ca.floor(x.high * (1.0 / _TURN[0]) + 0.5)
+        for part in self._turn():
+            product, error = self._product(turns, ca.SX(part))
+            x = self.add(x, Pair(-product, -error))
+        return x
+
+    def sine(self, x: Pair) -> Pair:
+        """The sine of a counted angle."""
+        return self._turning(x, ca.sin, ca.cos)
+
+    def cosine(self, x: Pair) -> Pair:
+        """The cosine of a counted angle."""
+        return self._turning(x, ca.cos, lambda angle: -ca.sin(angle))
+
+    def remainder(self, x: Pair, y: Pair) -> Pair:
+        """C's fmod: x less y as often as it goes into x, towards zero."""
+        self.reductions.append(x)
+        quotient = self.divide(x, y)
+        whole = _floor(_size(quotient))
+        signed = Pair(ca.copysign(whole.high, quotient.high), None if whole.low is None else ca.copysign(whole.low, quotient.high))
+        return self.add(x, self.negate(self.multiply(signed, y)))
+
+    def _turning(self, x: Pair, function: Any, slope: Any) -> Pair:
+        angle = self.reduced(x)
+        return Pair(function(angle.high), None if angle.low is None else slope(angle.high) * angle.low)
+
+    def _turn(self) -> tuple[float, ...]:
+        if self.precision == "double":
+            return _TURN
+        kind = DTYPES[self.precision].type
+        parts, rest = [], _TURN[0]
+        for later in (_TURN[1], 0.0, 0.0):
+            parts.append(float(kind(rest)))
+            rest = (rest - parts[-1]) + later
+        return tuple(parts)
+
+    def _product(self, a: Any, b: Any) -> tuple[Any, Any]:
+        """a b and its error (Dekker)."""
+        product = a * b
+        (ah, al), (bh, bl) = self._split(a), self._split(b)
+        return product, ((ah * bh - product) + ah * bl + al * bh) + al * bl
+
+    def _split(self, a: Any) -> tuple[Any, Any]:
+        """The halves of a number's digits. A constant's are taken here: CasADi would fold them in doubles."""
+        if a.is_constant():
+            kind = DTYPES[self.precision].type
+            number, splitter = kind(float(a)), kind(_SPLITTER[self.precision])
+            half = splitter * number - (splitter * number - number)
+            return ca.SX(float(half)), ca.SX(float(number - half))
+        c = _SPLITTER[self.precision] * a
+        high = c - (c - a)
+        return high, a - high
+
+
+def _sum(a: Any, b: Any) -> tuple[Any, Any]:
+    """a + b and its error (Knuth)."""
+    total = a + b
+    other = total - a
+    return total, (a - (total - other)) + (b - other)
+
+
+def _normal(high: Any, low: Any) -> Pair:
+    total = high + low
+    return Pair(total, low - (total - high))
+
+
+def _size(x: Pair) -> Pair:
+    return replace(x, high=ca.fabs(x.high), low=None if x.low is None else x.low * ca.copysign(1.0, x.high), number=None)
+
+
+def _floor(x: Pair) -> Pair:
+    high = ca.floor(x.high)
+    if x.low is None:
+        return Pair(high)
+    return _normal(high, ca.SX.binary(ca.OP_IF_ELSE_ZERO, high == x.high, ca.floor(x.low)))
+
+
+def _choose(where: Pair, x: Pair) -> Pair:
+    high, low = (None if part is None else ca.SX.binary(ca.OP_IF_ELSE_ZERO, where.high, part) for part in (x.high, x.low))
+    return Pair(high, low)
+
+
+def _rounded(code: int) -> Any:
+    """An operation on the nearest numbers: what it gives is rounded once, as are its arguments."""
+    if code in _UNARY:
+        return lambda x: Pair(ca.SX.unary(code, x.value))
+    return lambda x, y: Pair(ca.SX.binary(code, x.value, y.value))
+
+
+_UNARY = (
+    *(ca.OP_SQRT, ca.OP_EXP, ca.OP_LOG, ca.OP_TAN, ca.OP_ASIN, ca.OP_ACOS, ca.OP_ATAN, ca.OP_SINH, ca.OP_COSH, ca.OP_TANH),
+    *(ca.OP_ASINH, ca.OP_ACOSH, ca.OP_ATANH, ca.OP_LOG1P, ca.OP_EXPM1, ca.OP_ERF, ca.OP_SIGN, ca.OP_NOT, ca.OP_ASSIGN),
+)
+_BINARY = (
+    *(ca.OP_POW, ca.OP_CONSTPOW, ca.OP_ATAN2, ca.OP_HYPOT, ca.OP_FMIN, ca.OP_FMAX, ca.OP_COPYSIGN, ca.OP_REMAINDER),
+    *(ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR),
+)
