@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import bisect
 import math
 
 import casadi as ca
 import numpy as np
 import oracle
+from arithmetic import DOUBLE
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.motion import polynomial
@@ -63,20 +65,9 @@ def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
     """
     m = scene.mechanism
     values = m.values(parameters)
-    p = list(values.values())
     graph = derive(scene)
-    driven = np.array([x.full().ravel() for x in graph.motion(t, p)])
-    z = settle(graph, t, p, scene.t[0])
-    found = dict(zip(graph.columns, graph.instant(t, *driven, z, p).full().ravel(), strict=True))
-    # Where a drive from the ground counts turns, so must the oracle's guess.
-    turned = {
-        m.joints[j].child.body.name: d for j, d in zip(graph.driven, driven[0], strict=True) if m.joints[j].parent.body is m.ground
-    }
-    rough = {body: d for body, d in turned.items() if f"pose:{body}:angle" in found} | dict(rough)
-    solved = oracle_of(m, values, **beside).solve(
-        {joint: tuple(driven[:, i]) for i, joint in enumerate(graph.driven)},
-        {b.name: (*_rough(found, b.name, nudge)[:2], rough.get(b.name, _rough(found, b.name, nudge)[2])) for b in m.moving},
-    )
+    found, drives = columns_at(graph, t, values)
+    solved = oracle_of(m, values, **beside).solve(drives, postures(m, found, drives, nudge, rough))
     size = max((abs(x) for forces in solved.reactions.values() for x in forces), default=0.0) or 1.0
     gaps = {f"effort:{joint}": (found[f"effort:{joint}"] - effort) / size for joint, effort in solved.efforts.items()}
     for name, multiplier in solved.multipliers.items():
@@ -100,6 +91,31 @@ def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
     worst = max(gaps, key=lambda name: abs(gaps[name]))
     assert all(math.isfinite(gap) for gap in gaps.values()), [name for name, gap in gaps.items() if not math.isfinite(gap)]
     return worst, abs(gaps[worst])
+
+
+def columns_at(graph, t, values):
+    """A graph's columns at an instant, by name, and its drives as (coordinate, rate, acceleration)."""
+    p = list(values.values())
+    driven = np.array([x.full().ravel() for x in graph.motion(t, p)])
+    found = graph.instant(t, *driven, settle(graph, t, p, graph.scene.t[0]), p).full().ravel()
+    return dict(zip(graph.columns, found, strict=True)), {joint: tuple(driven[:, i]) for i, joint in enumerate(graph.driven)}
+
+
+def postures(m, found, drives, nudge, rough=()):
+    """Rough (x, y, angle) of every body, off by ``nudge`` from a graph's columns; ``rough`` gives directions with their turns."""
+    size = max(abs(v) for k, v in found.items() if k.startswith("pose:") and not k.endswith("angle")) or 1.0
+    at = {
+        b.name: (
+            found[f"pose:{b.name}:x"] + nudge * size / 5,
+            found[f"pose:{b.name}:y"] - nudge * size / 5,
+            found.get(f"pose:{b.name}:angle", 0.0) + nudge,
+        )
+        for b in m.moving
+    }
+    # Where a drive from the ground counts turns, so must the oracle's guess.
+    turned = {m.joints[j].child.body.name: drive[0] for j, drive in drives.items() if m.joints[j].parent.body is m.ground}
+    turned = {body: angle for body, angle in turned.items() if f"pose:{body}:angle" in found} | dict(rough)
+    return {body: (x, y, turned.get(body, angle)) for body, (x, y, angle) in at.items()}
 
 
 def instant_at(graph, t, p=()):
@@ -126,11 +142,11 @@ def section_forces(law, m, l, u):
     )
 
 
-def oracle_of(m, values, **beside):
+def oracle_of(m, values, arithmetic=DOUBLE, **beside):
     """The oracle of a mechanism: its numbers, and nothing else of the package."""
 
     def number(expression):
-        return m.number(expression, values)
+        return arithmetic.number(m.number(expression, values))
 
     def point(p):
         return p.body.name, number(p.x), number(p.y)
@@ -141,30 +157,21 @@ def oracle_of(m, values, **beside):
         if isinstance(b.mass, RigidMass):
             centre = tuple(number(c) for c in b.mass.centre)
             return oracle.Body(b.name, number(b.mass.mass), number(b.length), centre, number(b.mass.inertia))
-        length, breaks = number(b.length), b.mass.breaks
+        length, breaks = number(b.length), [number(ratio) for ratio in b.mass.breaks]
         cells = [[number(c) * (length if b.mass.per_length else 1.0) for c in cell] for cell in b.mass.cells]
 
         def density(u):
-            i = min(max(int(np.searchsorted(breaks, u, side="right")) - 1, 0), len(cells) - 1)
+            i = min(max(bisect.bisect_right(breaks, u) - 1, 0), len(cells) - 1)
             return sum(c * u**j for j, c in enumerate(cells[i]))
 
-        return oracle.from_density(b.name, length, density, breaks)
+        return oracle.from_density(b.name, length, density, breaks, arithmetic)
 
     joints = [
         oracle.Joint(j.name, j.kind, point(j.parent), point(j.child), (number(j.axis[0]), number(j.axis[1])), number(j.angle))
         for j in m.joints.values()
     ]
     gravity = (number(m.gravity[0]), number(m.gravity[1]))
-    return oracle.Oracle([body(b) for b in m.moving], joints, gravity, **beside)
-
-
-def _rough(found, body, nudge):
-    size = max(abs(v) for k, v in found.items() if k.startswith("pose:") and not k.endswith("angle")) or 1.0
-    return (
-        found[f"pose:{body}:x"] + nudge * size / 5,
-        found[f"pose:{body}:y"] - nudge * size / 5,
-        found.get(f"pose:{body}:angle", 0.0) + nudge,
-    )
+    return oracle.Oracle([body(b) for b in m.moving], joints, gravity, arithmetic=arithmetic, **beside)
 
 
 def assert_balanced(scene, **keywords):

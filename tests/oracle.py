@@ -3,17 +3,17 @@
 It imports nothing of the package. Every body has a place (x, y) and a direction; every joint is written as gaps between bodies;
 Newton's method finds the postures, and truncated power series in time (:class:`Jet`) give rates and accelerations. The forces
 are the unknowns of the balance of force and moment of every body, all solved at once; a section's forces are the balance of
-the piece towards the tip. It shares no formula with an energy method.
+the piece towards the tip. It shares no formula with an energy method. The numbers are those of an :mod:`arithmetic`.
 """
 
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from arithmetic import DOUBLE, Digits, Double
 
 
 @dataclass(frozen=True)
@@ -25,33 +25,18 @@ class Jet:
     a: float = 0.0
 
     def __add__(self, o):
-        o = _jet(o)
-        return Jet(self.v + o.v, self.d + o.d, self.a + o.a)
+        return Jet(self.v + o.v, self.d + o.d, self.a + o.a) if isinstance(o, Jet) else Jet(self.v + o, self.d, self.a)
 
     def __sub__(self, o):
-        o = _jet(o)
-        return Jet(self.v - o.v, self.d - o.d, self.a - o.a)
+        return Jet(self.v - o.v, self.d - o.d, self.a - o.a) if isinstance(o, Jet) else Jet(self.v - o, self.d, self.a)
 
     def __mul__(self, o):
-        o = _jet(o)
+        if not isinstance(o, Jet):
+            return Jet(self.v * o, self.d * o, self.a * o)
         return Jet(self.v * o.v, self.d * o.v + self.v * o.d, self.a * o.v + 2 * self.d * o.d + self.v * o.a)
 
     __radd__ = __add__
     __rmul__ = __mul__
-
-
-def _jet(x):
-    return x if isinstance(x, Jet) else Jet(x)
-
-
-def _cos(q: Jet) -> Jet:
-    c, s = math.cos(q.v), math.sin(q.v)
-    return Jet(c, -s * q.d, -s * q.a - c * q.d * q.d)
-
-
-def _sin(q: Jet) -> Jet:
-    c, s = math.cos(q.v), math.sin(q.v)
-    return Jet(s, c * q.d, c * q.a - s * q.d * q.d)
 
 
 @dataclass(frozen=True)
@@ -71,23 +56,23 @@ class Body:
     breaks: tuple[float, ...] = (0.0, 1.0)
 
 
-def from_density(name: str, length: float, density: Callable[[float], float], breaks=(0.0, 1.0)) -> Body:
+def from_density(name: str, length: float, density: Callable[[float], float], breaks=(0.0, 1.0), arithmetic=DOUBLE) -> Body:
     """A straight body, its mass, centre and inertia by quadrature."""
-    mass, first, second = _moments(density, breaks, 0.0)
+    mass, first, second = _moments(arithmetic, density, breaks, 0.0)
     centre = first / mass if mass else 0.0
     inertia = (second - first * centre) * length**2
     return Body(name, mass, length, (centre * length, 0.0), inertia, True, density, tuple(breaks))
 
 
-def _moments(density, breaks, start):
+def _moments(arithmetic, density, breaks, start):
     """Integrals of density, density u and density u^2 from ``start`` to 1, by Gauss' rule on each smooth piece."""
-    nodes, weights = np.polynomial.legendre.leggauss(12)
-    total = np.zeros(3)
+    nodes, weights = arithmetic.gauss
+    total = arithmetic.zeros(3)
     for a, b in itertools.pairwise(breaks):
         a = max(a, start)
         if b > a:
             u = a + (nodes + 1) / 2 * (b - a)
-            w = weights * (b - a) / 2 * np.array([density(x) for x in u])
+            w = weights * (b - a) / 2 * arithmetic.array([density(x) for x in u])
             total += [np.sum(w), np.sum(w * u), np.sum(w * u * u)]
     return total
 
@@ -144,34 +129,39 @@ class Oracle:
     loads: Sequence[Callable] = ()
     extras: Sequence[Extra] = ()
     unaided: Sequence[str] = ()
+    arithmetic: Double | Digits = DOUBLE
 
     def solve(self, drives: dict[str, tuple[float, float, float]], guess: dict[str, tuple[float, float, float]]) -> Result:
         """The instant at which the driven joints have the given (coordinate, rate, acceleration), from a rough posture."""
-        names = [b.name for b in self.bodies]
-        q = np.array([x for n in names for x in guess[n]], dtype=float)
+        names, a = [b.name for b in self.bodies], self.arithmetic
+        drives = {joint: tuple(map(a.number, drive)) for joint, drive in drives.items()}
+        q = a.array([a.number(x) for n in names for x in guess[n]])
+        rest = np.zeros_like(q)
         for _ in range(50):
-            gap, slope = self._gaps(q, drives, 0)
-            step, *_ = np.linalg.lstsq(slope, -gap, rcond=1e-9)
+            step = a.solve(self._slope(q, drives), -self._gaps(q, rest, drives)[0], 1e-9)
             q = q + step
-            if np.max(np.abs(step)) < 1e-14 * (1 + np.max(np.abs(q))):
+            left, size = np.max(np.abs(step)), 1 + np.max(np.abs(q))
+            if left < a.tolerance * size:
                 break
-        else:
-            assert np.max(np.abs(step)) < 1e-11, "the oracle does not close its loops"
-        _, slope = self._gaps(q, drives, 0)
-        rate = np.linalg.lstsq(slope, -self._gaps(q, drives, 1)[0], rcond=1e-9)[0]
-        acceleration = np.linalg.lstsq(slope, -self._gaps(q, drives, 2, rate)[0], rcond=1e-9)[0]
+        left = max(left, np.max(np.abs(self._gaps(q, rest, drives)[0])))
+        assert left < 1000 * a.tolerance * size, "the oracle does not close its loops"
+        slope = self._slope(q, drives)
+        rate = a.solve(slope, -self._gaps(q, rest, drives)[1], 1e-9)
+        acceleration = a.solve(slope, -self._gaps(q, rate, drives)[2], 1e-9)
         jets = [Jet(*x) for x in zip(q, rate, acceleration, strict=True)]
         result = Result({n: tuple(jets[3 * i : 3 * i + 3]) for i, n in enumerate(names)})
         self._balance(result, drives)
         return result
 
-    def _place(self, q, point):
-        name, x, y = point
-        if name == "ground":
-            return Jet(x), Jet(y), Jet(0.0)
-        bx, by, phi = q[name]
-        c, s = _cos(phi), _sin(phi)
-        return bx + x * c - y * s, by + x * s + y * c, phi
+    def _frames(self, q):
+        """Of every body, and the ground, the place of its base, its direction, and the direction's cosine and sine."""
+        zero, one = self.arithmetic.number(0), self.arithmetic.number(1)
+        frames = {"ground": (Jet(zero), Jet(zero), Jet(zero), Jet(one), Jet(zero))}
+        for name, (x, y, phi) in q.items():
+            c, s = self.arithmetic.cos(phi.v), self.arithmetic.sin(phi.v)
+            cosine = Jet(c, -s * phi.d, -s * phi.a - c * phi.d * phi.d)
+            frames[name] = (x, y, phi, cosine, Jet(s, c * phi.d, c * phi.a - s * phi.d * phi.d))
+        return frames
 
     def _oriented(self, name):
         return name == "ground" or next(b.oriented for b in self.bodies if b.name == name)
@@ -179,13 +169,12 @@ class Oracle:
     def _holds_direction(self, joint):
         return joint.kind in ("prismatic", "weld") and self._oriented(joint.child[0])
 
-    def _joint_gaps(self, q, joint, drives):
-        px, py, pphi = self._place(q, joint.parent)
-        cx, cy, cphi = self._place(q, joint.child)
+    def _joint_gaps(self, frames, joint, drives):
+        px, py, pphi = _place(frames, joint.parent)
+        cx, cy, cphi = _place(frames, joint.child)
         gaps = [cx - px, cy - py]
         if joint.slides:
-            c, s = _cos(pphi), _sin(pphi)
-            ax, ay = joint.axis[0] * c - joint.axis[1] * s, joint.axis[0] * s + joint.axis[1] * c
+            ax, ay = _along(frames, joint)
             gaps = [ax * (cy - py) - ay * (cx - px)]
         if self._holds_direction(joint):
             gaps.append(cphi - pphi - joint.angle)
@@ -194,30 +183,27 @@ class Oracle:
             gaps.append(coordinate - Jet(*drives[joint.name]))
         return gaps
 
-    def _gaps(self, q, drives, order, rate=None):
-        """Gaps of the given order of derivative with all higher rates of q at zero, and their slope by q."""
-        names = [b.name for b in self.bodies]
-        rate = np.zeros_like(q) if rate is None else rate
+    def _gaps(self, q, rate, drives):
+        """Gaps with their first and second derivative, all accelerations of q at zero: (3, gaps)."""
+        jets = [Jet(*x) for x in zip(q, rate, np.zeros_like(q), strict=True)]
+        frames = self._frames({b.name: tuple(jets[3 * i : 3 * i + 3]) for i, b in enumerate(self.bodies)})
+        found = [g for j in self.joints for g in self._joint_gaps(frames, j, drives)]
+        found += [extra.gap(lambda point: _place(frames, point)) for extra in self.extras if extra.gap]
+        found += [frames[b.name][2] for b in self.bodies if not b.oriented]
+        return self.arithmetic.array([(g.v, g.d, g.a) for g in found]).T
 
-        def gaps(seed, take):
-            jets = [Jet(*x) for x in zip(q, seed, np.zeros_like(q), strict=True)]
-            at = {n: tuple(jets[3 * i : 3 * i + 3]) for i, n in enumerate(names)}
-            still = {k: (v[0], 0.0, 0.0) for k, v in drives.items()} if take == "slope" else drives
-            found = [g for j in self.joints for g in self._joint_gaps(at, j, still)]
-            found += [extra.gap(lambda point: self._place(at, point)) for extra in self.extras if extra.gap]
-            found += [at[b.name][2] for b in self.bodies if not b.oriented]
-            return np.array([{"slope": g.d, 0: g.v, 1: g.d, 2: g.a}[take] for g in found])
-
-        still = gaps(np.zeros_like(q), "slope")
-        slope = np.column_stack([gaps(e, "slope") - still for e in np.eye(q.size)])
-        return gaps(rate, order), slope
+    def _slope(self, q, drives):
+        """Slope of the gaps by q."""
+        still = {joint: (coordinate, 0, 0) for joint, (coordinate, *_) in drives.items()}
+        rest = self._gaps(q, np.zeros_like(q), still)[1]
+        return np.column_stack([self._gaps(q, e, still)[1] - rest for e in np.eye(q.size, dtype=q.dtype)])
 
     def _balance(self, result, drives):
         """Force and moment balance of every body, for all joint forces, efforts and multipliers together."""
-        q = result.q
+        frames = self._frames(result.q)
 
         def place(point):
-            return self._place(q, point)
+            return _place(frames, point)
 
         labels, unknowns = [], []  # an unknown is what a unit of it does: a list of (point, fx, fy, mz)
 
@@ -225,14 +211,12 @@ class Oracle:
             at = joint.child
             meets = joint.parent
             if meets[0] != "ground":
-                meets = (meets[0], *self._local(q, meets[0], place(at)))
+                meets = (meets[0], *_local(frames, meets[0], place(at)))
             labels.append((joint.name, label, (*force, moment)))
             unknowns.append([(at, *force, moment), (meets, -force[0], -force[1], -moment)])
 
         for joint in self.joints:
-            phi = place(joint.parent)[2].v
-            ax = joint.axis[0] * math.cos(phi) - joint.axis[1] * math.sin(phi)
-            ay = joint.axis[0] * math.sin(phi) + joint.axis[1] * math.cos(phi)
+            ax, ay = (component.v for component in _along(frames, joint))
             for force in [(-ay, ax)] if joint.slides else [(1.0, 0.0), (0.0, 1.0)]:
                 pair(joint, "reaction", force, 0.0)
             if self._holds_direction(joint):
@@ -243,14 +227,17 @@ class Oracle:
             labels.append((extra.name, "multiplier", (0.0, 0.0, 0.0)))
             unknowns.append(extra.effect(place))
         given = [part for load in self.loads for part in load(place)]
-        matrix = np.column_stack([self._on_bodies(q, parts) for parts in unknowns])
+        matrix = np.column_stack([self._on_bodies(frames, parts) for parts in unknowns])
         inertia = []
         for b in self.bodies:
-            cx, cy, phi = self._place(q, (b.name, *b.centre))
+            cx, cy, phi = _place(frames, (b.name, *b.centre))
             inertia += [b.mass * (cx.a - self.gravity[0]), b.mass * (cy.a - self.gravity[1]), b.inertia * phi.a]
-        right = np.array(inertia) - self._on_bodies(q, given)
+        right = self.arithmetic.array(inertia) - self._on_bodies(frames, given)
         keep = np.array([b.oriented or k < 2 for b in self.bodies for k in range(3)])
-        found, *_ = np.linalg.lstsq(matrix[keep], right[keep], rcond=1e-11)
+        matrix, right = matrix[keep], right[keep]
+        found = self.arithmetic.solve(matrix, right, 1e-11)
+        left, size = np.max(np.abs(matrix @ found - right)), np.max(np.abs(right)) + np.max(np.abs(found))
+        assert left <= 1000 * self.arithmetic.tolerance * size, "the oracle's forces do not balance its bodies"
         for (name, label, (fx, fy, mz)), x in zip(labels, found, strict=True):
             if label == "reaction":
                 before = result.reactions.get(name, (0.0, 0.0, 0.0))
@@ -260,46 +247,39 @@ class Oracle:
         acting = [(p, x * fx, x * fy, x * mz) for parts, x in zip(unknowns, found, strict=True) for p, fx, fy, mz in parts]
         for b in self.bodies:
             if b.density is not None:
-                result.sections[b.name] = self._section(result, b, acting + given)
+                result.sections[b.name] = self._section(frames, b, acting + given)
 
-    def _on_bodies(self, q, parts):
+    def _on_bodies(self, frames, parts):
         """Force and moment about each body's centre, stacked."""
         row = {b.name: 3 * i for i, b in enumerate(self.bodies)}
-        stacked = np.zeros(3 * len(self.bodies))
+        stacked = self.arithmetic.zeros(3 * len(self.bodies))
         for (name, px, py), fx, fy, mz in parts:
             if name == "ground":
                 continue
             body = next(b for b in self.bodies if b.name == name)
-            at, centre = self._place(q, (name, px, py)), self._place(q, (name, *body.centre))
+            at, centre = _place(frames, (name, px, py)), _place(frames, (name, *body.centre))
             arm = (at[0].v - centre[0].v, at[1].v - centre[1].v)
             stacked[row[name] : row[name] + 3] += [fx, fy, arm[0] * fy - arm[1] * fx + mz]
         return stacked
 
-    def _local(self, q, name, at):
-        """A place in a body's axes."""
-        bx, by, phi = q[name]
-        dx, dy, c, s = at[0].v - bx.v, at[1].v - by.v, math.cos(phi.v), math.sin(phi.v)
-        return c * dx + s * dy, c * dy - s * dx
-
-    def _section(self, result, body, acting):
+    def _section(self, frames, body, acting):
         """Action of the piece towards the tip on the piece towards the base: (axial, shear, bending) at a ratio xi/l."""
 
         def at(ratio: float) -> tuple[float, float, float]:
-            phi = result.q[body.name][2]
-            c, s = math.cos(phi.v), math.sin(phi.v)
-            l = body.length
-            cut = self._place(result.q, (body.name, ratio * l, 0.0))
+            ratio, l, near = self.arithmetic.number(ratio), body.length, 100 * self.arithmetic.tolerance * body.length
+            phi, c, s = frames[body.name][2], frames[body.name][3].v, frames[body.name][4].v
+            cut = _place(frames, (body.name, ratio * l, 0.0))
             fx = fy = mz = 0.0  # what acts on the piece towards the tip
             for (name, px, py), gx, gy, couple in acting:
                 # At the very tip of the link what acts there still acts beyond the section.
-                if name == body.name and (px > ratio * l + 1e-12 * l or (ratio == 1.0 and abs(px - l) < 1e-12 * l)):
-                    point = self._place(result.q, (name, px, py))
+                if name == body.name and (px > ratio * l + near or (ratio == 1 and abs(px - l) < near)):
+                    point = _place(frames, (name, px, py))
                     arm = (point[0].v - cut[0].v, point[1].v - cut[1].v)
                     fx, fy, mz = fx + gx, fy + gy, mz + arm[0] * gy - arm[1] * gx + couple
-            mass, first, second = _moments(body.density, body.breaks, ratio)
+            mass, first, second = _moments(self.arithmetic, body.density, body.breaks, ratio)
             if mass:
                 middle = first / mass
-                centre = self._place(result.q, (body.name, middle * l, 0.0))
+                centre = _place(frames, (body.name, middle * l, 0.0))
                 gx, gy = mass * (self.gravity[0] - centre[0].a), mass * (self.gravity[1] - centre[1].a)
                 arm = (centre[0].v - cut[0].v, centre[1].v - cut[1].v)
                 fx, fy = fx + gx, fy + gy
@@ -307,3 +287,23 @@ class Oracle:
             return fx * c + fy * s, fy * c - fx * s, mz
 
         return at
+
+
+def _place(frames, point):
+    """The place of a body's point, and the body's direction."""
+    name, x, y = point
+    bx, by, phi, c, s = frames[name]
+    return bx + x * c - y * s, by + x * s + y * c, phi
+
+
+def _along(frames, joint):
+    """The axis that a joint's parent carries, in ground axes."""
+    (x, y), (_, _, _, c, s) = joint.axis, frames[joint.parent[0]]
+    return x * c - y * s, x * s + y * c
+
+
+def _local(frames, name, at):
+    """A place in a body's axes."""
+    bx, by, _, c, s = frames[name]
+    dx, dy = at[0].v - bx.v, at[1].v - by.v
+    return c.v * dx + s.v * dy, c.v * dy - s.v * dx

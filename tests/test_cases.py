@@ -5,8 +5,9 @@ from pathlib import Path
 
 import casadi as ca
 import numpy as np
-import oracle
 import pytest
+from arithmetic import DOUBLE
+from beside import of_case
 from builders import compare
 
 from lagrange_casadi import LagrangeSystem, evaluate, figures, load_case
@@ -15,50 +16,13 @@ CASES = Path(__file__).parent.parent / "cases"
 NAMES = sorted(path.parent.name for path in CASES.glob("*/case.py"))
 
 
-def gas(place):
-    """The engine's gas force at the oracle's posture: the same table, read by NumPy."""
-    angle = place(("crank", 0.0, 0.0))[2].v
-    turned = math.fmod(angle - math.pi / 2, 4 * math.pi) * 180 / math.pi
-    pressure = 1e5 * float(np.interp(turned, ANGLES, PRESSURES))
-    return [(("piston", 0.0, 0.0), 0.0, -pressure * math.pi / 4 * 0.08**2, 0.0)]
-
-
-ANGLES = (0, 20, 180, 220, 260, 300, 320, 335, 350, 360, 368, 375, 390, 410, 440, 480, 520, 540, 560, 600, 700, 720)
-PRESSURES = (0.3, -0.2, -0.2, 0.1, 0.9, 3.4, 6.5, 10.5, 18, 27, 42, 45, 30, 15, 6.5, 3.2, 2.0, 1.4, 0.6, 0.3, 0.3, 0.3)
-
-
-def cut(place):
-    x = place(("ram", 0.0, 0.0))[0]
-    return [(("ram", 0.0, 0.0), -400.0 * (x.d > 0), 0.0, 0.0)]
-
-
-def spring(place):
-    (ax, ay, _), (bx, by, _) = place(("ground", 0.014, 0.072)), place(("k3", 0.018, 0.02))
-    dx, dy = bx.v - ax.v, by.v - ay.v
-    length = math.hypot(dx, dy)
-    pull = 4530.0 * (length - 0.07785) / length
-    return [(("k3", 0.018, 0.02), -pull * dx, -pull * dy, 0.0)]
-
-
-def blade(place):
-    phi = place(("body", 0.0, 0.0))[2]
-    return [(("body", 0.0, 0.0), -math.sin(phi.v), math.cos(phi.v), 0.0)]
-
-
-BESIDE = {
-    "engine": {"loads": [gas]},
-    "quick_return": {"loads": [cut]},
-    "andrews_squeezer": {"loads": [spring]},
-    "sleigh": {"extras": [oracle.Extra("blade", None, blade)], "unaided": ["Y"]},
-}
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_against_newton_euler(name):
     scene = load_case(CASES / name).scene
     start, stop, _ = scene.t
+    acting = of_case(name, DOUBLE, scene.mechanism.values())
     for part in (0.0, 0.13, 0.4, 0.77):
-        worst, gap = compare(scene, t=start + part * (stop - start), nudge=1e-4, **BESIDE.get(name, {}))
+        worst, gap = compare(scene, t=start + part * (stop - start), nudge=1e-4, **acting)
         assert gap < 1e-12, f"{worst} at {part}"
 
 

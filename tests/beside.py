@@ -1,0 +1,66 @@
+"""What acts in the cases beside joints and weights, written again for the oracle, in any arithmetic."""
+
+from __future__ import annotations
+
+import bisect
+import math
+
+import oracle
+
+ANGLES = (0, 20, 180, 220, 260, 300, 320, 335, 350, 360, 368, 375, 390, 410, 440, 480, 520, 540, 560, 600, 700, 720)
+PRESSURES = (0.3, -0.2, -0.2, 0.1, 0.9, 3.4, 6.5, 10.5, 18, 27, 42, 45, 30, 15, 6.5, 3.2, 2.0, 1.4, 0.6, 0.3, 0.3, 0.3)
+
+
+def of_case(name, arithmetic, values):
+    """What the oracle of a case needs beside its mechanism, at the parameters' values: loads, extras and unaided drives."""
+    return _CASES[name](arithmetic, values) if name in _CASES else {}
+
+
+def _engine(arithmetic, values):
+    """The gas's force on the piston: the table over the crank's angle, which only grows."""
+    number = arithmetic.number
+    pi, bore = number(math.pi), number(values["bore"])
+    angles, pressures = ([number(x) for x in row] for row in (ANGLES, PRESSURES))
+
+    def gas(place):
+        turned = (place(("crank", 0, 0))[2].v - pi / 2) % (4 * pi) * 180 / pi
+        i = min(bisect.bisect_right(angles, turned), len(angles) - 1)
+        slope = (pressures[i] - pressures[i - 1]) / (angles[i] - angles[i - 1])
+        pressure = 100_000 * (pressures[i - 1] + slope * (turned - angles[i - 1]))
+        return [(("piston", 0, 0), 0, -pressure * pi / 4 * bore**2, 0)]
+
+    return {"loads": [gas]}
+
+
+def _quick_return(arithmetic, values):
+    cutting = arithmetic.number(values["cutting"])
+
+    def cut(place):
+        return [(("ram", 0, 0), -cutting * (place(("ram", 0, 0))[0].d > 0), 0, 0)]
+
+    return {"loads": [cut]}
+
+
+def _andrews_squeezer(arithmetic, values):
+    number = arithmetic.number
+    foot, end = ("ground", number(0.014), number(0.072)), ("k3", number(0.018), number(0.02))
+
+    def spring(place):
+        (ax, ay, _), (bx, by, _) = place(foot), place(end)
+        dx, dy = bx.v - ax.v, by.v - ay.v
+        length = arithmetic.sqrt(dx * dx + dy * dy)
+        pull = 4530 * (length - number(0.07785)) / length
+        return [(end, -pull * dx, -pull * dy, 0)]
+
+    return {"loads": [spring]}
+
+
+def _sleigh(arithmetic, values):
+    def effect(place):
+        phi = place(("body", 0, 0))[2].v
+        return [(("body", 0, 0), -arithmetic.sin(phi), arithmetic.cos(phi), 0)]
+
+    return {"extras": [oracle.Extra("blade", None, effect)], "unaided": ["Y"]}
+
+
+_CASES = {"engine": _engine, "quick_return": _quick_return, "andrews_squeezer": _andrews_squeezer, "sleigh": _sleigh}

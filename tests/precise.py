@@ -1,0 +1,57 @@
+"""The oracle's solution of a scene in as many digits as one likes."""
+
+from __future__ import annotations
+
+import functools
+
+from arithmetic import Digits
+from beside import of_case
+from builders import columns_at, oracle_of, postures
+
+from lagrange_casadi import derive
+
+
+def precise(scene, t, drives=None, parameters=None, digits=50, beside=None):
+    """What a scene has at an instant, by full name: numbers, and under ``section:LINK:FORCE`` functions of the ratio xi/l.
+
+    There are efforts, reactions, poses, multipliers and section forces, less what the mechanism leaves undetermined. The numbers of
+    the declaration are doubles and taken as exact. ``drives`` are (coordinate, rate, acceleration) of the driven joints, numbers of
+    any kind, by default the doubles of the scene's graph. ``beside(arithmetic, values)`` gives the oracle its loads, extras and
+    unaided drives, by default those of the case of the mechanism's name. Angles count a drive's turns: a graph's may differ by
+    whole ones.
+    """
+    m, arithmetic = scene.mechanism, Digits(digits)
+    values = m.values(parameters)
+    graph = derive(scene, ["all"])
+    found, motion = columns_at(graph, t, values)
+    acting = (beside or functools.partial(of_case, m.name))(arithmetic, values)
+    for given, declared in (("loads", [*m.loads]), ("extras", [*m.constraints, *m.rows])):
+        assert bool(acting.get(given)) == bool(declared), f"'{m.name}' declares {declared}: give the oracle the same {given}"
+    solved = oracle_of(m, values, arithmetic, **acting).solve(drives or motion, postures(m, found, motion, 0.0))
+    return {name: value for name, value in _named(m, solved).items() if _determined(name, graph.undetermined)}
+
+
+def _named(m, solved):
+    named = {f"effort:{joint}": effort for joint, effort in solved.efforts.items()}
+    for joint, forces in solved.reactions.items():
+        named |= {f"reaction:{joint}:{member}": force for member, force in zip(("fx", "fy", "mz"), forces, strict=True)}
+    for body in m.moving:
+        x, y, angle = (jet.v for jet in solved.q[body.name])
+        named |= {f"pose:{body.name}:x": x, f"pose:{body.name}:y": y} | (
+            {f"pose:{body.name}:angle": angle} if body.oriented else {}
+        )
+    named |= {f"multiplier:{name}": multiplier for name, multiplier in solved.multipliers.items()}
+    for link, forces in solved.sections.items():
+        named |= {f"section:{link}:{force}": _member(forces, k) for k, force in enumerate(("axial", "shear", "bending"))}
+    return named
+
+
+def _member(forces, k):
+    return lambda ratio: forces(ratio)[k]
+
+
+def _determined(name, undetermined):
+    """Whether equilibrium determines a quantity; of a link, all its section forces or none."""
+    if name.startswith("section:"):
+        return not any(other.startswith(name.rpartition(":")[0] + ":") for other in undetermined)
+    return name not in undetermined
