@@ -119,7 +119,7 @@ def _law(case: SliderCrank, t: Array, backend: Backend, threads: int) -> tuple[W
     values = mechanism.values(dict(zip(mechanism.parameters, case.parameters, strict=True)))
     description = describe(mechanism, values, graph.scene.motion)
     series = in_order(dict(zip(_outputs(graph), work(), strict=True)), description)
-    return work, Solution("slider_crank", t, t, series, description, Provenance("", "", "", "", {})).section("rod").law
+    return work, Solution("slider_crank", t, t, series, description, Provenance("", "", "", "", "", {})).section("rod").law
 
 
 def _outputs(graph: SceneGraph) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from . import codegen, grids
 from .codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
-from .compensated import DTYPES, Precision
+from .compensated import DTYPES
 from .density import Array
 from .errors import CompilerError
 from .rung import Backend, Rung
@@ -36,10 +36,15 @@ _VM_BLOCK = 4096
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """The columns of a scene graph over instants: ``out`` (columns, t) and the status of each instant (t)."""
+    """The columns of a scene graph over instants: ``out`` (columns, t) and the status of each instant (t).
+
+    ``iterated`` (k, t) are the coordinates of iterated loops; ``stages`` say what was evaluated.
+    """
 
     out: Array
     status: npt.NDArray[np.int32]
+    iterated: Array
+    stages: Stages
 
 
 def run(graph: SceneGraph, t: Array, p: Array, rung: Rung | None = None, threads: int | None = None) -> tuple[Table, Provenance]:
@@ -56,11 +61,11 @@ def run(graph: SceneGraph, t: Array, p: Array, rung: Rung | None = None, threads
     compiler, library = compiled
     dtype = DTYPES[rung.precision]
     guess = np.array(graph.newton.guess if graph.newton else (), dtype)
-    table, z = _table(graph, t, rung.precision), rows(guess.size, t.size, dtype)
+    table = _table(graph, stages, t.size)
     if rung.precision == "single":
         t, p = _paired(t, rows(2, t.size, dtype)), _paired(p, np.empty((2, p.size), dtype))
-    library.follow(t, p, guess, z, table.status)
-    library.evaluate(t, p, z, table.out, table.status, threads or codegen.cores())
+    library.follow(t, p, guess, table.iterated, table.status)
+    library.evaluate(t, p, table.iterated, table.out, table.status, threads or codegen.cores())
     used = "lanes" if compiler.language == "c++" else "c"
     return table, _provenance(used, compiler.version, " ".join(library.flags), rung)
 
@@ -99,8 +104,10 @@ def _library(graph: SceneGraph, stages: Stages, newton: int | None, flags: str, 
     return codegen.load(codegen.emit(graph, stages, newton), compiler, tuple(shlex.split(flags)))
 
 
-def _table(graph: SceneGraph, t: Array, precision: Precision = "double") -> Table:
-    return Table(rows(len(graph.columns), t.size, DTYPES[precision]), np.full(t.size, OK, dtype=np.int32))
+def _table(graph: SceneGraph, stages: Stages, size: int) -> Table:
+    dtype = DTYPES[stages.precision]
+    out, iterated = (rows(count, size, dtype) for count in (len(graph.columns), graph.instant.size1_in("z")))
+    return Table(out, np.full(size, OK, dtype=np.int32), iterated, stages)
 
 
 def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
@@ -118,18 +125,18 @@ def _provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenan
         "h5py": h5py.__version__,
         "hdf5": h5py.version.hdf5_version,
     }
-    return Provenance(backend, rung.precision, compiler, flags, versions)
+    return Provenance(backend, rung.precision, compiler, flags, rung.options, versions)
 
 
 def _interpret(graph: SceneGraph, stages: Stages, t: Array, p: Array, newton: int | None) -> Table:
     """What the emitted C does, by CasADi's virtual machine."""
-    table = _table(graph, t)
+    table = _table(graph, stages, t.size)
     guess = np.array(graph.newton.guess) if graph.newton else np.zeros(0)
     rule = newton_rule("double", newton)
     for start in range(0, t.size, _VM_BLOCK):
         block = slice(start, min(start + _VM_BLOCK, t.size))
         counted, rate, acceleration = (np.atleast_2d(x.full()) for x in stages.drive(t[None, block], p))
-        z = np.zeros((guess.size, counted.shape[1]))
+        z = table.iterated[:, block]
         if stages.loops is not None:
             for i in range(counted.shape[1]):
                 z[:, i], table.status[start + i] = _iterate(graph, stages.loops, guess, counted[:, i], p, rule)

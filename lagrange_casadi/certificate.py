@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from .density import Array
 from .description import Description, density_of
-from .solution import Solution
+from .solution import Provenance, Solution
 
 Complex = npt.NDArray[np.complexfloating[Any, Any]]
 
@@ -26,8 +26,8 @@ _BLOCK = 1 << 14
 _Matter = tuple[float, complex, float]
 _Action = tuple[str, Complex, Any, Any, bool]
 
-TOLERANCE = 1e-9
-"""A residual above it means that the solution is wrong, not that it is rounded."""
+TOLERANCE, LOOSE = 1e-9, 1e-3
+"""A residual above it means that the solution is wrong, not that it is rounded; in doubles, and where less was asked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +124,12 @@ def _residuals(solution: Solution, held: Sequence[Held] | None) -> dict[str, tup
         if solution.links_with_sections:
             found["ends"] = _ends(solution, bodies, acting)
     return found
+
+
+def tolerance(provenance: Provenance) -> float:
+    """What residuals are held to."""
+    exact = provenance.precision == "double" and not any(word in provenance.rung for word in ("--newton", "--table"))
+    return TOLERANCE if exact else LOOSE
 
 
 def summary(residuals: Mapping[str, Array]) -> str:

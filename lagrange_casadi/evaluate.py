@@ -9,10 +9,11 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from .accuracy import estimate, explained
 from .backends import Table, run
 from .certificate import Held, certify
 from .codegen.emit import NOT_CONVERGED, OK, SLOW
-from .compensated import Precision
+from .compensated import ROUNDING, Precision
 from .density import Array
 from .derive import derive
 from .description import describe
@@ -24,8 +25,11 @@ from .scene import Grid, Scene, checked, checked_ratios
 from .scene_graph import SceneGraph
 from .solution import Solution, in_order
 
-MISFIT = 1e-8
+MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 """How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
+
+_DEAD = 64.0
+"""Roundings below which a closure says nothing but that it is zero."""
 
 _NEAR = 0.3
 _BESIDE = 8
@@ -61,7 +65,8 @@ def evaluate(
     threads
         How many threads share the instants; default: one a core. The result does not depend on it.
     certificate
-        Whether to check the solution by :mod:`.certificate`, as far as the wanted outputs allow.
+        Whether to check the solution by :mod:`.certificate`, as far as the wanted outputs allow, and to estimate its errors by
+        :mod:`.accuracy`.
 
     Raises :class:`AssemblyError` where a loop does not close at some instant, :class:`SizeError` where the outputs over time do not
     fit into memory, :class:`CompilerError`, and for mistakes in the arguments :class:`UnknownNameError`, :class:`ParameterError` or
@@ -86,10 +91,12 @@ def evaluate(
     require("the outputs over time", (len(graph.columns) + _BESIDE, count))
     require("the grid of ratios", (ratios[2],))
     times, places = np.linspace(start, stop, count), np.linspace(*ratios)
-    found, provenance = run(graph, times, np.array(list(values.values())), rung, threads)
+    p = np.array(list(values.values()))
+    found, provenance = run(graph, times, p, rung, threads)
     _refuse(graph, found, times, list(values.values()))
-    series = {name: found.out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
-    loose = {name: found.out[k] for k, name in enumerate(graph.columns) if name.startswith("_angle:")}
+    out = np.asarray(found.out, float)
+    series = {name: out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
+    loose = {name: out[k] for k, name in enumerate(graph.columns) if name.startswith("_angle:")}
     turns = {name: np.unwrap(angle) - angle for name, angle in loose.items()}
     for name, parts in graph.wrapped.items():
         for part, sign in parts.items():
@@ -101,7 +108,9 @@ def evaluate(
     solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, graph.undetermined)
     if not certificate:
         return solution
-    return replace(solution, certificate=certify(solution, _held(graph, found)) | _condition(graph, found))
+    residuals = certify(solution, _held(graph, found))
+    errors = explained(solution, residuals, estimate(graph, found, solution, p))
+    return replace(solution, certificate=residuals | _condition(graph, found), errors=errors)
 
 
 def _held(graph: SceneGraph, table: Table) -> list[Held] | None:
@@ -127,15 +136,16 @@ def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:
 
 def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
     """Raise for the first instant that has no result, naming the joint and the driven coordinates."""
-    bad = table.status != OK
+    precision = table.stages.precision
+    bad, dead, misfit = table.status != OK, _DEAD * ROUNDING[precision], MISFIT[precision]
     for k, name in enumerate(graph.columns):
         if name.startswith("_closure:"):
-            bad |= ~(table.out[k] > 0.0) | _passes(table.out[k])
+            bad |= ~(table.out[k] > dead) | _passes(table.out[k])
         elif name.startswith("_misfit:"):
-            bad |= ~(table.out[k] <= MISFIT)
+            bad |= ~(table.out[k] <= misfit)
         elif name.startswith("_row:"):
             size = table.out[graph.columns.index(name.replace("_row:", "_rowsize:"))]
-            bad |= ~(np.abs(table.out[k]) <= MISFIT * size)
+            bad |= ~(np.abs(table.out[k]) <= misfit * size)
     if not bad.any():
         return
     i = int(np.argmax(bad))
@@ -162,26 +172,28 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
     if table.status[i] == NOT_CONVERGED:
         assert graph.newton is not None
         return f"the loops closed by {graph.newton.joints} did not converge {at}"
+    precision = table.stages.precision
     values = dict(zip(graph.columns, table.out[:, i], strict=True))
+    dead, misfit = _DEAD * ROUNDING[precision], MISFIT[precision]
     for name, value in values.items():
         kind, _, joint = name.partition(":")
         closed = f"{'joint' if joint in graph.scene.mechanism.joints else 'constraint'} '{joint}'"
-        if kind == "_closure" and value < 0.0:
+        if kind == "_closure" and value < -dead:
             if graph.iterates(joint):
                 return f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
             return f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
-        if kind == "_closure" and not value > 0.0:
-            return f"the loop closed by {closed} is at a dead centre {at}: its forces are not determined there"
+        if kind == "_closure" and not value > dead:
+            return f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces are not determined there"
         if kind == "_closure" and _passes(table.out[graph.columns.index(name)])[i]:
             return (
                 f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}, and how it goes on is open; "
                 "if it only comes near one, take more instants"
             )
-        if kind == "_misfit" and not value <= MISFIT:
+        if kind == "_misfit" and not value <= misfit:
             return (
                 f"the loops closed by {closed} are over-constrained and do not fit {at}: a gap of {value:.3g} of the links' length"
             )
-        if kind == "_row" and not abs(value) <= MISFIT * values[f"_rowsize:{joint}"]:
+        if kind == "_row" and not abs(value) <= misfit * values[f"_rowsize:{joint}"]:
             return f"the motion violates the non-holonomic row '{joint}' by {value:.6g} {at}"
     if table.status[i] == SLOW:
         assert graph.newton is not None

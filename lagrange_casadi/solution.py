@@ -22,12 +22,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Provenance:
-    """How the numbers were made. Holds no clock, no user and no path."""
+    """How the numbers were made. Holds no clock, no user and no path; ``rung`` are the options of the :class:`.Rung`."""
 
     backend: str
     precision: str
     compiler: str
     flags: str
+    rung: str
     versions: Mapping[str, str]
 
 
@@ -121,7 +122,8 @@ class Solution:
     ``series`` holds every array over time by full name (``effort:O``, ``reaction:guide:fy``, ``section:rod:law:n0``, ...), each of
     shape (t,); :mod:`.quantities` says what each means. ``xi`` are the ratios of the section grids. ``undetermined`` names what
     equilibrium does not determine, because the mechanism is over-constrained: its values are NaN. ``certificate`` holds the
-    residuals of :mod:`.certificate`, and how singular the loops are.
+    residuals of :mod:`.certificate`, and how singular the loops are. ``errors`` estimates by :mod:`.accuracy` how far
+    each quantity may be off, over all instants, in its unit.
     """
 
     case: str
@@ -132,6 +134,7 @@ class Solution:
     provenance: Provenance
     undetermined: tuple[str, ...] = ()
     certificate: Mapping[str, Array] = field(default_factory=dict)
+    errors: Mapping[str, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"<Solution of {self.case}: {self.t.size} instants, {self.xi.size} ratios, {', '.join(self.names())}>"

@@ -39,6 +39,7 @@ class Stages:
     loops: Any | None
     instant: Any
     precision: Precision = "double"
+    compensated: bool = False
 
 
 @functools.lru_cache(maxsize=32)
@@ -179,7 +180,7 @@ def _compensated(graph: SceneGraph, precision: Precision) -> tuple[Stages, Any]:
         t, values = ca.MX.sym("t", time.numel()), ca.MX.sym("p", parameters.numel())
         motion = graph.motion.call([t[0], values[: p.numel()]])
         drive = ca.Function("drive", [t, values], [following(t, values, motion[0]), *motion[1:]])
-    return Stages(drive, loops, instant, precision), angles
+    return Stages(drive, loops, instant, precision, compensated=True), angles
 
 
 def _column(parts: list[Any]) -> Any:

@@ -18,7 +18,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from .certificate import TOLERANCE, certify
+from .certificate import certify, tolerance
 from .density import Array
 from .errors import DeclarationError, PathError, StoreError
 from .publish import PatientFile, replacing, uninterrupted
@@ -32,7 +32,7 @@ SCHEMA_VERSION = 1
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
 _AXES = {"t": ("s", "time"), "xi": ("1", "place along a link, ratio xi/l")}
-_PROVENANCE = ("backend", "precision", "compiler", "flags")
+_PROVENANCE = ("backend", "precision", "compiler", "flags", "rung")
 _DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError)
 _GRID_TOLERANCE = 1e-12
 
@@ -178,7 +178,7 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     file.attrs["conventions"] = CONVENTIONS
     file.attrs["mechanism"] = json.dumps(solution.description)
     file.attrs["parameters"] = json.dumps({k: v["value"] for k, v in solution.description["parameters"].items()})
-    file.attrs["certificate_tolerance"] = TOLERANCE
+    file.attrs["certificate_tolerance"] = tolerance(solution.provenance)
     file.attrs["outputs"] = json.dumps(list(solution.series))
     file.attrs["undetermined"] = json.dumps(solution.undetermined)
     file.attrs["versions"] = json.dumps(dict(provenance.versions))
@@ -213,6 +213,8 @@ def _create(file: h5py.File, solution: Solution, name: str, shape: tuple[int, ..
     dataset.attrs["units"] = solution.unit(name)
     for key, text in quantity.attributes.items():
         dataset.attrs[key] = text
+    if name in solution.errors:
+        dataset.attrs["error_estimate"] = solution.errors[name]
     for axis, scale in enumerate(quantity.axes):
         dataset.dims[axis].attach_scale(file[scale])
     return dataset
@@ -221,21 +223,24 @@ def _create(file: h5py.File, solution: Solution, name: str, shape: tuple[int, ..
 def _read(file: h5py.File) -> Solution:
     description = json.loads(file.attrs["mechanism"])
     series: dict[str, Array] = {}
+    errors: dict[str, float] = {}
 
     def visit(place: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset) and place not in _AXES:
             name = place.replace("/", ":")
+            if "error_estimate" in item.attrs:
+                errors[name] = float(item.attrs["error_estimate"])
             if quantity_of(name).axes == ("t",) and not name.startswith("certificate:"):
                 series[name] = item[()]
 
     file.visititems(visit)
-    backend, precision, compiler, flags = (str(file.attrs[key]) for key in _PROVENANCE)
-    provenance = Provenance(backend, precision, compiler, flags, json.loads(file.attrs["versions"]))
+    words = {key: str(file.attrs[key]) for key in _PROVENANCE}
+    provenance = Provenance(**words, versions=json.loads(file.attrs["versions"]))
     undetermined = tuple(json.loads(file.attrs["undetermined"]))
     t, xi = file["t"][()], file["xi"][()]
     certificate = {name: file["certificate"][name][()] for name in file.get("certificate", ())}
     case = str(file.attrs["case"])
-    return Solution(case, t, xi, in_order(series, description), description, provenance, undetermined, certificate)
+    return Solution(case, t, xi, in_order(series, description), description, provenance, undetermined, certificate, errors)
 
 
 @contextmanager

@@ -41,6 +41,7 @@ ORDER = (
     "fingerprint",
     "derive",
     "stages",
+    "reference",
     "codegen",
     "grids",
     "description",
@@ -48,6 +49,7 @@ ORDER = (
     "solution",
     "certificate",
     "backends",
+    "accuracy",
     "evaluate",
     "publish",
     "store",
@@ -102,6 +104,7 @@ def test_the_engine_knows_no_mechanism():
             "derive",
             "codegen",
             "backends",
+            "accuracy",
             "evaluate",
         ):
             for number, line in enumerate(path.read_text().splitlines(), 1):

@@ -1,0 +1,203 @@
+"""How far a result may be from what its formulas mean: an estimate of the error of every output.
+
+The graphs are followed once more at some of the instants (:mod:`.interpret`), every operation with a random error as large as its
+rounding, several times over (Monte Carlo arithmetic: D. S. Parker, *Monte Carlo Arithmetic*, UCLA CSD-970002, 1997). What that does
+to an output is its condition, times the rounding. Iterated coordinates take the correction with them that they still want, so
+loops that were left half closed show, times what they do to each output.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from .backends import Table
+from .compensated import DTYPES, ROUNDING
+from .density import Array
+from .interpret import Arithmetic, followable, interpret
+from .scene_graph import SceneGraph
+from .section_law import FORCES
+from .solution import Solution
+from .stages import Stages
+
+TRIALS = 8
+INSTANTS = 48
+_FORCES = ("effort:", "reaction:", "multiplier:", "section:")
+_UNEXPLAINED = 100.0
+_ALONG = np.linspace(0.0, 1.0, 5)
+_FUNCTION = 2.0
+"""Roundings that a function such as a sine may be off: libraries differ."""
+
+
+def estimate(graph: SceneGraph, table: Table, solution: Solution, p: Array) -> dict[str, float]:
+    """How far each quantity of a solution may be off, by full name, in its unit: the largest error over the instants.
+
+    ``table`` are the columns that the solution was made of. Section forces are looked at from base to tip. Empty where the graphs
+    call functions that cannot be followed.
+    """
+    chosen = _chosen(graph, table)
+    found = disturbed(table.stages, solution.t[chosen], p, table.iterated[:, chosen])
+    if found is None:
+        return {}
+    after, before = ({n: x[k] for k, n in enumerate(graph.columns) if not n.startswith("_")} for x in found)
+    errors = {name: _worst(after[name] - before[name][None], name in graph.wrapped) for name in after}
+    undetermined = {name: np.full(chosen.size, np.nan) for name in graph.undetermined}
+    exact = replace(solution, series=before | undetermined, t=solution.t[chosen])
+    rough = replace(solution, series={name: x.ravel() for name, x in (after | undetermined).items()})
+    for link in solution.links_with_sections:
+        if not solution.determined(f"section:{link}:axial"):
+            continue
+        for force in FORCES:
+            off = rough.section(link).law.at(force, np.tile(_ALONG, (TRIALS * chosen.size, 1))).reshape(TRIALS, chosen.size, -1)
+            errors[f"section:{link}:{force}"] = _worst(
+                off - exact.section(link).law.at(force, np.tile(_ALONG, (chosen.size, 1)))[None]
+            )
+    return errors
+
+
+def explained(solution: Solution, residuals: Mapping[str, Array], errors: Mapping[str, float]) -> dict[str, float]:
+    """The estimates, made larger where the certificate's residuals are far above what they explain.
+
+    Such a residual is then taken for the relative error of every force: not rounding is at work, but something is wrong.
+    """
+    worst = max((float(np.max(values)) for values in residuals.values()), default=0.0)
+    largest = {name: float(np.max(np.abs(values), initial=0.0)) for name, values in solution.series.items()}
+    relative = [errors[n] / largest[n] for n in errors if n.startswith(_FORCES) and largest.get(n, 0.0) > errors[n]]
+    if not errors or worst <= _UNEXPLAINED * max(relative, default=0.0):
+        return dict(errors)
+    forces = [name for name in solution.names() if name.startswith(_FORCES) and solution.determined(name)]
+    return dict(errors) | {name: max(errors[name], worst * abs(solution.peak(name).value)) for name in forces}
+
+
+def _chosen(graph: SceneGraph, table: Table) -> Array:
+    """Instants to look at: evenly spread ones, those at which a loop is nearest to a dead centre, and where outputs peak."""
+    n = table.status.size
+    spread = np.linspace(0, n - 1, min(n, INSTANTS)).astype(int)
+    rows = [row if name.startswith("_closure:") else -np.abs(row) for name, row in zip(graph.columns, table.out, strict=True)]
+    peaks = [int(np.argmin(row)) for row in rows]
+    return np.unique([*spread, *peaks])
+
+
+def _worst(gaps: Array, angle: bool = False) -> float:
+    if angle:
+        gaps = gaps - math.tau * np.rint(gaps / math.tau)
+    return float(np.max(np.abs(gaps), initial=0.0))
+
+
+def disturbed(stages: Stages, t: Array, p: Array, z: Array) -> tuple[Array, Array] | None:
+    """The columns at instants ``t`` with errors put in, (columns, trials, n), and without them, (columns, n).
+
+    ``z`` (k, n) are the iterated coordinates there. None where the graphs call functions that cannot be followed.
+    """
+    if not all(followable(function) for function in (stages.instant, *([stages.loops] if stages.loops else []))):
+        return None
+    noise = _Noise(ROUNDING[stages.precision], np.random.default_rng(0), (TRIALS, t.size))
+    exact, rough = _arithmetic(float, lambda value, _: value), noise.arithmetic(DTYPES[stages.precision].type)
+    driven = _driven(stages, t, p)
+    values = [float(DTYPES[stages.precision].type(value)) for value in p]
+    with np.errstate(all="ignore"):
+        (before,) = interpret(stages.instant, [*driven, list(z), list(p)], exact)
+        if not stages.compensated and followable(stages.drive):
+            driven = interpret(stages.drive, [[t], values], rough)
+        else:
+            driven = [[noise.rounded(value) for value in row] for row in driven]
+        at = list(z)
+        if stages.loops is not None:
+            correction, _ = interpret(stages.loops, [at, driven[0], values], rough)
+            at = [noise.rounded(a + b) for a, b in zip(at, correction, strict=True)]
+        (after,) = interpret(stages.instant, [*driven, at, values], rough)
+    return _stack(after, (TRIALS, t.size)), _stack(before, (t.size,))
+
+
+def _driven(stages: Stages, t: Array, p: Array) -> list[list[Array]]:
+    """What the drive hands on at instants, in doubles."""
+    if stages.precision == "single":
+        pair = np.float32
+        t, p = (np.concatenate([pair(x)[None], pair(x - pair(x))[None]]).astype(float) for x in (t, p))
+        p = p.ravel()
+    return [list(np.atleast_2d(row.full())) for row in stages.drive(t if t.ndim == 2 else t[None], p)]
+
+
+def _stack(rows: list[Any], shape: tuple[int, ...]) -> Array:
+    return np.array([np.broadcast_to(row, shape) for row in rows]).reshape(-1, *shape)
+
+
+class _Noise:
+    """Random errors as large as roundings."""
+
+    def __init__(self, unit: float, generator: np.random.Generator, shape: tuple[int, ...]) -> None:
+        self.unit, self.generator, self.shape = unit, generator, shape
+
+    def rounded(self, value: Any, roundings: float = 1.0) -> Any:
+        """A value with an error of up to so many roundings."""
+        return value + value * (self.generator.random(self.shape) * (2.0 * roundings * self.unit) - roundings * self.unit)
+
+    def arithmetic(self, kind: Any) -> Arithmetic:
+        """NumPy's operations with such errors, on constants of a kind."""
+        return _arithmetic(lambda value: float(kind(value)), self.rounded)
+
+
+def _arithmetic(constant: Any, rounded: Any) -> Arithmetic:
+    """NumPy's operations on arrays, ``rounded(value, roundings)`` applied where an operation rounds."""
+
+    def of(function: Any, roundings: float) -> Any:
+        return lambda *values: rounded(function(*values), roundings)
+
+    known: dict[int, Any] = dict(_EXACT)
+    known |= {code: of(function, 1.0) for code, function in _ROUNDED.items()}
+    known |= {code: of(function, _FUNCTION) for code, function in _FUNCTIONS.items()}
+    return Arithmetic(constant, known)
+
+
+_EXACT = {
+    ca.OP_NEG: np.negative,
+    ca.OP_TWICE: lambda x: x + x,
+    ca.OP_ASSIGN: lambda x: x,
+    ca.OP_FABS: np.abs,
+    ca.OP_SIGN: np.sign,
+    ca.OP_FLOOR: np.floor,
+    ca.OP_CEIL: np.ceil,
+    ca.OP_FMIN: np.fmin,
+    ca.OP_FMAX: np.fmax,
+    ca.OP_FMOD: np.fmod,
+    ca.OP_COPYSIGN: np.copysign,
+    ca.OP_LT: lambda x, y: 1.0 * (x < y),
+    ca.OP_LE: lambda x, y: 1.0 * (x <= y),
+    ca.OP_EQ: lambda x, y: 1.0 * (x == y),
+    ca.OP_NE: lambda x, y: 1.0 * (x != y),
+    ca.OP_NOT: lambda x: 1.0 * (x == 0),
+    ca.OP_AND: lambda x, y: 1.0 * ((x != 0) & (y != 0)),
+    ca.OP_OR: lambda x, y: 1.0 * ((x != 0) | (y != 0)),
+    ca.OP_IF_ELSE_ZERO: lambda x, y: np.where(x, y, 0.0),
+    ca.OP_REMAINDER: lambda x, y: x - y * np.rint(x / y),
+}
+_ROUNDED = {
+    ca.OP_ADD: np.add,
+    ca.OP_SUB: np.subtract,
+    ca.OP_MUL: np.multiply,
+    ca.OP_DIV: np.divide,
+    ca.OP_SQ: np.square,
+    ca.OP_SQRT: np.sqrt,
+    ca.OP_INV: lambda x: 1.0 / x,
+}
+_FUNCTIONS = {
+    ca.OP_POW: np.power,
+    ca.OP_CONSTPOW: np.power,
+    ca.OP_ATAN2: np.arctan2,
+    ca.OP_HYPOT: np.hypot,
+    ca.OP_ASIN: np.arcsin,
+    ca.OP_ACOS: np.arccos,
+    ca.OP_ATAN: np.arctan,
+    ca.OP_ASINH: np.arcsinh,
+    ca.OP_ACOSH: np.arccosh,
+    ca.OP_ATANH: np.arctanh,
+    ca.OP_ERF: np.vectorize(math.erf),
+} | {
+    getattr(ca, f"OP_{name.upper()}"): getattr(np, name)
+    for name in ["sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "log1p", "expm1"]
+}
