@@ -47,21 +47,31 @@ class Table:
     stages: Stages
 
 
-def run(graph: SceneGraph, t: Array, p: Array, rung: Rung | None = None, threads: int | None = None) -> tuple[Table, Provenance]:
+def run(
+    graph: SceneGraph,
+    t: Array,
+    p: Array,
+    rung: Rung | None = None,
+    threads: int | None = None,
+    *,
+    into: Table | None = None,
+) -> tuple[Table, Provenance]:
     """The columns of a graph at instants ``t`` and parameters ``p``, on a rung; nothing is checked.
 
-    Raises :class:`CompilerError` where the backend needs a compiler and there is none, or it fails.
+    ``into`` is a table of an earlier run on the same rung and as many instants, to be filled anew. Raises :class:`CompilerError`
+    where the backend needs a compiler and there is none, or it fails.
     """
     rung = rung or Rung()
     many = rung.precision == "single" or counts(graph, t, p)
     stages = compensated(graph, rung.precision)[0] if many else plain(graph)
     compiled = _compiled(graph, stages, rung)
+    table = into or _table(graph, stages, t.size)
     if compiled is None:
-        return _interpret(graph, stages, t, p, rung.newton), _provenance("vm", "", "", rung)
+        _interpret(graph, t, p, table, rung.newton)
+        return table, _provenance("vm", "", "", rung)
     compiler, library = compiled
     dtype = DTYPES[rung.precision]
     guess = np.array(graph.newton.guess if graph.newton else (), dtype)
-    table = _table(graph, stages, t.size)
     if rung.precision == "single":
         t, p = _paired(t, rows(2, t.size, dtype)), _paired(p, np.empty((2, p.size), dtype))
     library.follow(t, p, guess, table.iterated, table.status)
@@ -128,9 +138,10 @@ def _provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenan
     return Provenance(backend, rung.precision, compiler, flags, rung.options, versions)
 
 
-def _interpret(graph: SceneGraph, stages: Stages, t: Array, p: Array, newton: int | None) -> Table:
+def _interpret(graph: SceneGraph, t: Array, p: Array, table: Table, newton: int | None) -> None:
     """What the emitted C does, by CasADi's virtual machine."""
-    table = _table(graph, stages, t.size)
+    stages = table.stages
+    table.status[:] = OK
     guess = np.array(graph.newton.guess) if graph.newton else np.zeros(0)
     rule = newton_rule("double", newton)
     for start in range(0, t.size, _VM_BLOCK):
@@ -144,7 +155,6 @@ def _interpret(graph: SceneGraph, stages: Stages, t: Array, p: Array, newton: in
         table.out[:, block] = stages.instant(counted, rate, acceleration, z, p).full()
     unclean = ~np.isfinite(table.out).all(axis=0) & (table.status == OK)
     table.status[unclean] = NOT_FINITE
-    return table
 
 
 def _iterate(

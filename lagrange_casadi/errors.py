@@ -69,3 +69,9 @@ class SizeError(LagrangeCasadiError):
     """What is asked for does not fit into memory."""
 
     exit_status = 1
+
+
+class AccuracyError(LagrangeCasadiError):
+    """No way to evaluate reaches a wanted accuracy."""
+
+    exit_status = 1

@@ -6,9 +6,12 @@ A division takes as long as ten products, and a machine has few dividers; a prod
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import Any
 
 import casadi as ca
+
+from .interpret import Step, followable, steps
 
 
 def share_reciprocals(function: Any, parameters: str) -> Any:
@@ -16,23 +19,20 @@ def share_reciprocals(function: Any, parameters: str) -> Any:
 
     A function that calls others stays as it is.
     """
-    steps = [
-        (function.instruction_id(k), function.instruction_input(k), function.instruction_output(k))
-        for k in range(function.n_instructions())
-    ]
-    if any(operation == ca.OP_CALL for operation, _, _ in steps):
+    if not followable(function):
         return function
-    divisors = _divisors(steps, function.index_in(parameters))
+    divisors = _divisors(steps(function), function.index_in(parameters))
     uses = Counter(divisor for divisor, _ in divisors.values())
     inputs = function.sx_in()
     work: dict[int, Any] = {}
     inverses: dict[int, Any] = {}
     out = ca.SX(function.sparsity_out(0))
-    for k, (operation, arguments, results) in enumerate(steps):
+    for k, step in enumerate(steps(function)):
+        operation, arguments, results = step.operation, step.arguments, step.results
         if operation == ca.OP_OUTPUT:
             out.nz[results[1]] = work[arguments[0]]
         elif operation == ca.OP_CONST:
-            work[results[0]] = ca.SX(function.instruction_constant(k))
+            work[results[0]] = ca.SX(step.constant)
         elif operation == ca.OP_INPUT:
             work[results[0]] = inputs[arguments[0]].nz[arguments[1]]
         elif k in divisors and (divisors[k][1] or uses[divisors[k][0]] > 1):
@@ -48,12 +48,13 @@ def share_reciprocals(function: Any, parameters: str) -> Any:
     return ca.Function(function.name(), inputs, [out], names, [function.name_out(0)], {"cse": True})
 
 
-def _divisors(steps: list[tuple[int, list[int], list[int]]], parameters: int) -> dict[int, tuple[int, bool]]:
+def _divisors(instructions: Sequence[Step], parameters: int) -> dict[int, tuple[int, bool]]:
     """By step that divides: the step that made its divisor, and whether that depends on parameters alone."""
     made: dict[int, int] = {}
     fixed: dict[int, bool] = {}
     found = {}
-    for k, (operation, arguments, results) in enumerate(steps):
+    for k, step in enumerate(instructions):
+        operation, arguments, results = step.operation, step.arguments, step.results
         if operation == ca.OP_OUTPUT:
             continue
         if operation == ca.OP_INPUT:

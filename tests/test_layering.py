@@ -55,6 +55,8 @@ ORDER = (
     "store",
     "drawing",
     "figures",
+    "trade",
+    "trade_plot",
     "case",
     "cli",
 )

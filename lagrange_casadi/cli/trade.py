@@ -1,0 +1,85 @@
+"""``lagrange-casadi trade``: what each digit costs, on this machine."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+from tqdm import tqdm
+
+from ..case import load_case
+from ..errors import DeclarationError
+from ..publish import check_writable, replacing
+from ..rung import Rung
+from ..scene import Grid
+from ..trade import RUNGS, Trade
+from ..trade import trade as measure
+from ..trade_plot import draw_trade
+from .options import GRID, grid, parameters, setting
+
+
+@click.command()
+@click.argument("case", type=click.Path(path_type=Path))
+@click.option(
+    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
+)
+@click.option("--t", type=grid, metavar=GRID, help="Instants [s]; default: the case's.")
+@click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
+@click.option("--accuracy", type=float, metavar="ERROR", help="Recommend the fastest rung within this error, relative to the peak.")
+@click.option("--out", type=click.Path(path_type=Path), help="The numbers, as JSON; default: <case>_trade.json here.")
+@click.option("--figure", type=click.Path(path_type=Path), help="The picture; default: <case>_trade.png here.")
+def trade(
+    case: Path,
+    settings: Sequence[tuple[str, float]],
+    t: Grid | None,
+    want: Sequence[str],
+    accuracy: float | None,
+    out: Path | None,
+    figure: Path | None,
+) -> None:
+    """Measure time and error of every rung on CASE, side by side: backends, precisions, Newton steps, tables, flags."""
+    if accuracy is not None and not accuracy > 0.0:
+        raise DeclarationError(f"accuracy: expected a number above 0, got {accuracy!r}")
+    loaded = load_case(case)
+    out, figure = out or Path(f"{loaded.name}_trade.json"), figure or Path(f"{loaded.name}_trade.png")
+    for target in (out, figure):
+        check_writable(target)
+    with tqdm(total=len(RUNGS), desc="rungs", leave=False, disable=None) as bar:
+
+        def progress(rung: Rung) -> None:
+            bar.set_postfix_str(rung.options)
+            bar.update()
+
+        found = measure(loaded.scene, parameters=parameters(settings), t=t, wanted=want or None, progress=progress)
+    with replacing(out) as draft:
+        draft.write_text(json.dumps(found.as_dict(), indent=1) + "\n")
+    with replacing(figure) as draft:
+        draw_trade(found, draft)
+    _print(found)
+    click.echo(f"wrote {out} and {figure}")
+    if accuracy is not None:
+        best = found.fastest(accuracy)
+        click.echo(
+            f"fastest within {accuracy:g}: {best.rung.options} ({1e9 * best.seconds:.3g} ns an instant, error {best.largest:.1e})"
+        )
+
+
+def _print(found: Trade) -> None:
+    width = max(len(one.rung.options) for one in found.measurements)
+    default = next((one.seconds for one in found.measurements if one.rung == Rung("lanes")), found.measurements[0].seconds)
+    click.echo(
+        f"{found.case}: every output at {found.instants} instants, one thread; errors at {found.compared} instants, relative to "
+        "each quantity's peak; * nothing is faster and more accurate"
+    )
+    click.echo(f"  {'rung':<{width}} {'ns/instant':>11} {'x lanes':>8} {'largest':>9} {'median':>9}   worst quantity")
+    for one in found.measurements:
+        mark = "*" if one in found.front else " "
+        note = f"; {one.note}" if one.note else ""
+        click.echo(
+            f"{mark} {one.rung.options:<{width}} {1e9 * one.seconds:>11.4g} {one.seconds / default:>8.2f} {one.largest:>9.1e} "
+            f"{one.median:>9.1e}   {one.worst}{note}"
+        )
+    for options, reason in found.refused.items():
+        click.echo(f"  {options}: {reason}")
