@@ -117,19 +117,27 @@ def _provenance(backend: str, compiler: str, flags: str) -> Provenance:
 def _interpret(graph: SceneGraph, t: Array, p: Array) -> Table:
     """What the emitted C does, by CasADi's virtual machine."""
     table = _table(graph, t)
-    guess = np.array(graph.newton.guess) if graph.newton else np.zeros(0)
+    z, table.status[:] = follow(graph, t, p)
     for start in range(0, t.size, _VM_BLOCK):
         block = slice(start, min(start + _VM_BLOCK, t.size))
-        d, rate, acceleration = (np.atleast_2d(x.full()) for x in graph.motion(t[None, block], p))
-        z = np.zeros((guess.size, d.shape[1]))
-        if graph.newton:
-            for i in range(d.shape[1]):
-                z[:, i], table.status[start + i] = _iterate(graph.newton.step, guess, t[start + i], d[:, i], p)
-                guess = guess if table.status[start + i] == NOT_CONVERGED else z[:, i]
-        table.out[:, block] = graph.instant(t[None, block], d, rate, acceleration, z, p).full()
+        table.out[:, block] = graph.instant(t[None, block], *graph.motion(t[None, block], p), z[:, block], p).full()
     unclean = ~np.isfinite(table.out).all(axis=0) & (table.status == OK)
     table.status[unclean] = NOT_FINITE
     return table
+
+
+def follow(graph: SceneGraph, t: Array, p: Array, guess: Array | None = None) -> tuple[Array, npt.NDArray[np.int32]]:
+    """Iterated coordinates (z, t), each instant from the one before, the first from ``guess`` or the graph's own; and statuses."""
+    if graph.newton is None:
+        return np.zeros((0, t.size)), np.full(t.size, OK, dtype=np.int32)
+    last = np.array(graph.newton.guess) if guess is None else guess
+    z, status = rows(last.size, t.size), np.full(t.size, OK, dtype=np.int32)
+    for start in range(0, t.size, _VM_BLOCK):
+        driven = np.atleast_2d(graph.motion(t[None, start : start + _VM_BLOCK], p)[0].full())
+        for i, d in enumerate(driven.T, start):
+            z[:, i], status[i] = _iterate(graph.newton.step, last, t[i], d, p)
+            last = last if status[i] == NOT_CONVERGED else z[:, i]
+    return z, status
 
 
 def _iterate(step: ca.Function, z: Array, t: float, d: Array, p: Array) -> tuple[Array, int]:

@@ -6,6 +6,7 @@ A division takes as long as ten products, and a machine has few dividers; a prod
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from typing import Any
 
 import casadi as ca
@@ -16,17 +17,60 @@ def share_reciprocals(function: Any, parameters: str) -> Any:
 
     A function that calls others stays as it is.
     """
-    steps = [
-        (function.instruction_id(k), function.instruction_input(k), function.instruction_output(k))
-        for k in range(function.n_instructions())
-    ]
+    steps = _steps(function)
     if any(operation == ca.OP_CALL for operation, _, _ in steps):
         return function
     divisors = _divisors(steps, function.index_in(parameters))
     uses = Counter(divisor for divisor, _ in divisors.values())
+    inverses: dict[int, Any] = {}
+
+    def made(k: int, operation: int, operands: list[Any]) -> Any:
+        if k in divisors and (divisors[k][1] or uses[divisors[k][0]] > 1):
+            x = operands[-1]
+            # It is given its own sign, for else CasADi writes (1/x) y as y/x again.
+            inverse = inverses.setdefault(divisors[k][0], ca.copysign(1 / x, x))
+            return operands[0] * inverse if operation == ca.OP_DIV else inverse
+        return _applied(operation, operands)
+
+    return _replayed(function, steps, made)
+
+
+def differentiable(function: Any) -> Any:
+    """A function of :func:`share_reciprocals` with plain divisions again.
+
+    CasADi 3.7 differentiates copysign(a, b) as if a were positive.
+    """
+    steps = _steps(function)
+    if any(operation == ca.OP_CALL for operation, _, _ in steps):
+        return function
+
+    def made(_k: int, operation: int, operands: list[Any]) -> Any:
+        if operation == ca.OP_COPYSIGN and operands[0].op() == ca.OP_INV and ca.is_equal(operands[0].dep(0), operands[1]):
+            return operands[0]
+        return _applied(operation, operands)
+
+    return _replayed(function, steps, made)
+
+
+_Step = tuple[int, list[int], list[int]]
+
+
+def _steps(function: Any) -> list[_Step]:
+    """Operation, arguments and results of each instruction."""
+    return [
+        (function.instruction_id(k), function.instruction_input(k), function.instruction_output(k))
+        for k in range(function.n_instructions())
+    ]
+
+
+def _applied(operation: int, operands: list[Any]) -> Any:
+    return ca.SX.unary(operation, *operands) if len(operands) == 1 else ca.SX.binary(operation, *operands)
+
+
+def _replayed(function: Any, steps: list[_Step], made: Callable[[int, int, list[Any]], Any]) -> Any:
+    """The function of one output again, with what ``made`` makes of the number of a step, its operation and its operands."""
     inputs = function.sx_in()
     work: dict[int, Any] = {}
-    inverses: dict[int, Any] = {}
     out = ca.SX(function.sparsity_out(0))
     for k, (operation, arguments, results) in enumerate(steps):
         if operation == ca.OP_OUTPUT:
@@ -35,20 +79,13 @@ def share_reciprocals(function: Any, parameters: str) -> Any:
             work[results[0]] = ca.SX(function.instruction_constant(k))
         elif operation == ca.OP_INPUT:
             work[results[0]] = inputs[arguments[0]].nz[arguments[1]]
-        elif k in divisors and (divisors[k][1] or uses[divisors[k][0]] > 1):
-            x = work[arguments[-1]]
-            # It is given its own sign, for else CasADi writes (1/x) y as y/x again.
-            inverse = inverses.setdefault(divisors[k][0], ca.copysign(1 / x, x))
-            work[results[0]] = work[arguments[0]] * inverse if operation == ca.OP_DIV else inverse
-        elif len(arguments) == 1:
-            work[results[0]] = ca.SX.unary(operation, work[arguments[0]])
         else:
-            work[results[0]] = ca.SX.binary(operation, work[arguments[0]], work[arguments[1]])
+            work[results[0]] = made(k, operation, [work[a] for a in arguments])
     names = [function.name_in(i) for i in range(function.n_in())]
     return ca.Function(function.name(), inputs, [out], names, [function.name_out(0)], {"cse": True})
 
 
-def _divisors(steps: list[tuple[int, list[int], list[int]]], parameters: int) -> dict[int, tuple[int, bool]]:
+def _divisors(steps: list[_Step], parameters: int) -> dict[int, tuple[int, bool]]:
     """By step that divides: the step that made its divisor, and whether that depends on parameters alone."""
     made: dict[int, int] = {}
     fixed: dict[int, bool] = {}

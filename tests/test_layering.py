@@ -45,6 +45,7 @@ ORDER = (
     "certificate",
     "backends",
     "evaluate",
+    "peaks",
     "publish",
     "store",
     "drawing",
