@@ -141,20 +141,33 @@ def _provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenan
 def _interpret(graph: SceneGraph, t: Array, p: Array, table: Table, newton: int | None) -> None:
     """What the emitted C does, by CasADi's virtual machine."""
     stages = table.stages
-    table.status[:] = OK
-    guess = np.array(graph.newton.guess) if graph.newton else np.zeros(0)
-    rule = newton_rule("double", newton)
+    table.iterated[:], table.status[:] = follow(graph, t, p, stages=stages, newton=newton)
     for start in range(0, t.size, _VM_BLOCK):
         block = slice(start, min(start + _VM_BLOCK, t.size))
-        counted, rate, acceleration = (np.atleast_2d(x.full()) for x in stages.drive(t[None, block], p))
-        z = table.iterated[:, block]
-        if stages.loops is not None:
-            for i in range(counted.shape[1]):
-                z[:, i], table.status[start + i] = _iterate(graph, stages.loops, guess, counted[:, i], p, rule)
-                guess = guess if table.status[start + i] == NOT_CONVERGED else z[:, i]
-        table.out[:, block] = stages.instant(counted, rate, acceleration, z, p).full()
+        counted, rate, acceleration = stages.drive(t[None, block], p)
+        table.out[:, block] = stages.instant(counted, rate, acceleration, table.iterated[:, block], p).full()
     unclean = ~np.isfinite(table.out).all(axis=0) & (table.status == OK)
     table.status[unclean] = NOT_FINITE
+
+
+def follow(
+    graph: SceneGraph, t: Array, p: Array, guess: Array | None = None, *, stages: Stages | None = None, newton: int | None = None
+) -> tuple[Array, npt.NDArray[np.int32]]:
+    """Iterated coordinates (z, t), each instant from the one before, the first from ``guess`` or the graph's own; and statuses.
+
+    By CasADi's virtual machine; ``newton`` as in :class:`.Rung`.
+    """
+    stages = stages or plain(graph)
+    if graph.newton is None or stages.loops is None:
+        return np.zeros((0, t.size)), np.full(t.size, OK, dtype=np.int32)
+    last, rule = np.array(graph.newton.guess) if guess is None else guess, newton_rule("double", newton)
+    z, status = rows(last.size, t.size), np.full(t.size, OK, dtype=np.int32)
+    for start in range(0, t.size, _VM_BLOCK):
+        counted = np.atleast_2d(stages.drive(t[None, start : start + _VM_BLOCK], p)[0].full())
+        for i, now in enumerate(counted.T, start):
+            z[:, i], status[i] = _iterate(graph, stages.loops, last, now, p, rule)
+            last = last if status[i] == NOT_CONVERGED else z[:, i]
+    return z, status
 
 
 def _iterate(

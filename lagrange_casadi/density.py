@@ -80,6 +80,11 @@ class NumericDensity:
                     found[k] += shifted * (high[n] - low[n]) / (n + 1)
         return found[0], found[1], found[2]
 
+    def at(self, u: Array) -> Array:
+        """The density at ratios ``u`` of any shape; at a break, that towards the tip."""
+        cell = np.clip(np.searchsorted(self.breaks, u, side="right") - 1, 0, len(self.cells) - 1)
+        return np.asarray(sum(np.where(cell == i, np.polynomial.polynomial.polyval(u, c), 0.0) for i, c in enumerate(self.cells)))
+
     def lowest(self) -> tuple[float, float]:
         """The ratio at which the density is lowest, and the density there."""
         candidates: list[tuple[float, float]] = []

@@ -297,7 +297,8 @@ class _Solver:
         gaps = self.place(column(block.gap for block in self.residuals))
         correction = -LinearSystem.of(ca.jacobian(gaps, iterated)).solve(gaps)
         relative = ca.mmax(ca.fabs(correction / column(self.scales)))
-        bounded = correction * ca.fmin(1.0, _LARGEST_STEP / relative)
+        # Not fmin(1, limit / relative): where the loops are closed, its derivative would be 0 times infinity.
+        bounded = correction * (_LARGEST_STEP / ca.fmax(relative, _LARGEST_STEP))
         inputs = [iterated, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
         step = ca.Function("loops", inputs, [bounded, relative], ["z", "t", "d", "p"], ["correction", "size"], {"cse": True})
         names, joints = tuple(block.name for block in self.residuals), ", ".join(block.joints for block in self.residuals)

@@ -23,12 +23,14 @@ from .parts import Expression
 class Motion:
     """A law of motion as a function from the symbol t [s] to the coordinate [rad or m].
 
-    ``spline`` tells that the graph needs ``casadi.MX``; ``span`` is the time the law covers.
+    ``spline`` tells that the graph needs ``casadi.MX``; ``span`` is the time the law covers, and ``knots`` are the times between
+    which the second derivative of a spline is linear.
     """
 
     graph: Callable[[Any], Any]
     spline: bool = False
     span: tuple[float, float] = (-math.inf, math.inf)
+    knots: tuple[float, ...] = ()
 
 
 def polynomial(*coefficients: Expression) -> Motion:
@@ -64,7 +66,7 @@ def samples(times: Sequence[float], values: Sequence[float]) -> Motion:
     """
     t, v = rows("motion samples", times, values, 4)
     spline = ca.interpolant("spline", "bspline", [t], v)
-    return Motion(lambda time: spline(time), spline=True, span=(t[0], t[-1]))
+    return Motion(lambda time: spline(time), spline=True, span=(t[0], t[-1]), knots=tuple(t))
 
 
 def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
@@ -83,6 +85,26 @@ def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
         for i, (law, row) in enumerate(zip(laws.values(), smooth, strict=True))
     ]
     return ca.Function("motion", [time, p], _stack(rows, ca.MX), *names)
+
+
+def jerk_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
+    """The CasADi function ``jerk(t, p) -> d_jerk``, the third derivatives of several laws; at a spline's knot, that of one side.
+
+    Raises :class:`DeclarationError` for a spline that does not tell its knots.
+    """
+    t, p = ca.MX.sym("t"), ca.MX.sym("p", parameters.numel())
+    rows = []
+    for joint, law in laws.items():
+        motion = motion_function({joint: law}, parameters)
+        bend = motion(t, p)[2]
+        if law.spline:
+            if not law.knots:
+                raise DeclarationError(f"the motion of joint '{joint}' does not tell its knots, which its third derivative needs")
+            # Not by the spline's own derivative: at a knot CasADi's splines of degree 0 write beside their memory.
+            values = motion(ca.DM(law.knots).T, ca.DM.zeros(p.numel()))[2].full().ravel()
+            bend = ca.interpolant("bend", "linear", [law.knots], values)(t)
+        rows.append(ca.densify(ca.jacobian(bend, t)))
+    return ca.Function("jerk", [t, p], [ca.vertcat(ca.MX(0, 1), *rows)], ["t", "p"], ["d_jerk"])
 
 
 def _scalar(joint: str, law: Motion, t: Any, parameters: Any) -> Any:

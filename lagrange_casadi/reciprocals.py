@@ -6,7 +6,7 @@ A division takes as long as ten products, and a machine has few dividers; a prod
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import casadi as ca
@@ -23,9 +23,43 @@ def share_reciprocals(function: Any, parameters: str) -> Any:
         return function
     divisors = _divisors(steps(function), function.index_in(parameters))
     uses = Counter(divisor for divisor, _ in divisors.values())
+    inverses: dict[int, Any] = {}
+
+    def made(k: int, operation: int, operands: list[Any]) -> Any:
+        if k in divisors and (divisors[k][1] or uses[divisors[k][0]] > 1):
+            x = operands[-1]
+            # It is given its own sign, for else CasADi writes (1/x) y as y/x again.
+            inverse = inverses.setdefault(divisors[k][0], ca.copysign(1 / x, x))
+            return operands[0] * inverse if operation == ca.OP_DIV else inverse
+        return _applied(operation, operands)
+
+    return _replayed(function, made)
+
+
+def differentiable(function: Any) -> Any:
+    """A function of :func:`share_reciprocals` with plain divisions again.
+
+    CasADi 3.7 differentiates copysign(a, b) as if a were positive.
+    """
+    if not followable(function):
+        return function
+
+    def made(_k: int, operation: int, operands: list[Any]) -> Any:
+        if operation == ca.OP_COPYSIGN and operands[0].op() == ca.OP_INV and ca.is_equal(operands[0].dep(0), operands[1]):
+            return operands[0]
+        return _applied(operation, operands)
+
+    return _replayed(function, made)
+
+
+def _applied(operation: int, operands: list[Any]) -> Any:
+    return ca.SX.unary(operation, *operands) if len(operands) == 1 else ca.SX.binary(operation, *operands)
+
+
+def _replayed(function: Any, made: Callable[[int, int, list[Any]], Any]) -> Any:
+    """The function of one output again, with what ``made`` makes of the number of a step, its operation and its operands."""
     inputs = function.sx_in()
     work: dict[int, Any] = {}
-    inverses: dict[int, Any] = {}
     out = ca.SX(function.sparsity_out(0))
     for k, step in enumerate(steps(function)):
         operation, arguments, results = step.operation, step.arguments, step.results
@@ -35,15 +69,8 @@ def share_reciprocals(function: Any, parameters: str) -> Any:
             work[results[0]] = ca.SX(step.constant)
         elif operation == ca.OP_INPUT:
             work[results[0]] = inputs[arguments[0]].nz[arguments[1]]
-        elif k in divisors and (divisors[k][1] or uses[divisors[k][0]] > 1):
-            x = work[arguments[-1]]
-            # It is given its own sign, for else CasADi writes (1/x) y as y/x again.
-            inverse = inverses.setdefault(divisors[k][0], ca.copysign(1 / x, x))
-            work[results[0]] = work[arguments[0]] * inverse if operation == ca.OP_DIV else inverse
-        elif len(arguments) == 1:
-            work[results[0]] = ca.SX.unary(operation, work[arguments[0]])
         else:
-            work[results[0]] = ca.SX.binary(operation, work[arguments[0]], work[arguments[1]])
+            work[results[0]] = made(k, operation, [work[a] for a in arguments])
     names = [function.name_in(i) for i in range(function.n_in())]
     return ca.Function(function.name(), inputs, [out], names, [function.name_out(0)], {"cse": True})
 

@@ -96,6 +96,27 @@ class SectionLaw:
             values = values + self._beyond(force, load, u, _seen(u, station, side))
         return values
 
+    def along(self, force: str, xi: Any, side: Side = "tip") -> Array:
+        """The derivative of a force by the ratio, at ratios of shape (t, ...)."""
+        u = np.asarray(xi, dtype=float)
+        if force == "bending":
+            return -self.length * self.at("shear", u, side)
+        _, first, second = (_column(column, u) for column in self._terms(force, self.basis(u))[0])
+        return -self.density.at(u) * (first + self.length * u * second)
+
+    def rate(self, force: str, rates: SectionLaw, xi: Any, side: Side = "tip") -> Array:
+        """The time derivative of a force at ratios of shape (t, ...) that stand still, or, at a station, move with it.
+
+        ``rates`` has the time derivatives of coefficients, loads and stations in their places.
+        """
+        u = np.asarray(xi, dtype=float)
+        pairs = list(zip(self.loads, rates.loads, strict=True))
+        # A station that moves takes its force's arm with it.
+        loads = (replace(r, station=load.station, m=r.m + load.f * self.length * r.station) for load, r in pairs)
+        still = replace(rates, loads=tuple(loads)).at(force, u, side)
+        going = sum(np.where(u == _column(load.station, u), _column(r.station, u), 0.0) for load, r in pairs)
+        return still + going * self.along(force, u, side) if pairs else still
+
     def extreme(self, force: str) -> tuple[Array, Array]:
         """The ratio at which a force is largest in size, and the force there, at every instant, both of shape (t,)."""
         n = self.coefficients["n0"].size

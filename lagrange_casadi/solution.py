@@ -204,18 +204,21 @@ class Solution:
         grid: Array = getattr(self._sections[link], force)
         return grid
 
-    def peak(self, name: str) -> Peak:
-        """The value of a quantity that is largest in size, over the instants; along a link exactly, whatever the grid of xi."""
+    def extremes(self, name: str) -> tuple[Array, Array | None]:
+        """A quantity at every instant, (t,); of a section force the value largest in size along the link, and its ratio xi/l."""
+        if name in self.series:
+            return self.series[name], None
         if name not in self.names():
             raise UnknownNameError("quantity", name, self.names())
-        if name in self.series:
-            values = self.series[name]
-            i = int(np.argmax(np.abs(values)))
-            return Peak(name, float(values[i]), self.unit(name), float(self.t[i]))
         _, link, force = name.split(":")
         places, values = self._sections[link].law.extreme(force)
+        return values, places
+
+    def peak(self, name: str) -> Peak:
+        """The value of a quantity that is largest in size, over the instants; along a link exactly, whatever the grid of xi."""
+        values, places = self.extremes(name)
         i = int(np.argmax(np.abs(values)))
-        return Peak(name, float(values[i]), self.unit(name), float(self.t[i]), float(places[i]))
+        return Peak(name, float(values[i]), self.unit(name), float(self.t[i]), None if places is None else float(places[i]))
 
     def to_xarray(self) -> xarray.Dataset:
         """All quantities as an ``xarray.Dataset`` over t and xi, with units. Raises where xarray is not installed."""

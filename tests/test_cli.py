@@ -36,6 +36,22 @@ def test_run_writes_the_file_and_the_figures(here, capsys):
     assert "section:rod:bending              0.941724 N m  at t = 0.0692 s, xi/l = 0.4527" in out
 
 
+def test_run_refines_peaks(here, capsys):
+    """The report changes, the file does not."""
+    arguments = ["run", str(CASE), "--t", "0:0.08:41", "--no-figures", "--want", "effort", "--want", "section:rod"]
+    assert main([*arguments, "--out", "one.h5"]) == 0
+    assert "ratios xi/l, backend" in (plain := capsys.readouterr().out)
+    assert main([*arguments, "--out", "two.h5", "--refine-peaks"]) == 0
+    refined = capsys.readouterr().out
+    assert "; peaks:" in plain
+    assert "; peaks, refined between the instants:" in refined
+    assert Path("one.h5").read_bytes() == Path("two.h5").read_bytes()
+    solution = evaluate(load_case(CASE).scene, t=(0, 0.08, 100_001), wanted=["effort"])
+    value = f"effort:O                    {solution.peak('effort:O').value:>13.6g} N m"
+    assert value in refined
+    assert value not in plain
+
+
 def test_run_takes_options(here):
     arguments = ["--set", "l=0.25", "--set", "m3=0.2", "--t", "0:0.04:5", "--xi", "0:1:3", "--want", "section:rod"]
     assert main(["run", str(CASE), *arguments, "--backend", "vm", "--out", "x.h5", "--no-figures"]) == 0

@@ -51,6 +51,7 @@ ORDER = (
     "backends",
     "accuracy",
     "evaluate",
+    "peaks",
     "publish",
     "store",
     "drawing",

@@ -50,6 +50,21 @@ def test_samples_of_a_cubic_are_exact():
     assert at(law, 0.8) == pytest.approx([0.8**3 - 1.6, 3 * 0.64 - 2, 4.8], rel=1e-10)
 
 
+def test_third_derivatives():
+    """Of a polynomial with a parameter, an expression, and a spline, whose second derivative is a polygon; also at its knots."""
+    p, times = ca.SX.sym("c"), np.array([0.0, 0.3, 0.5, 1.1, 1.4, 2.0])
+    spline = motion.samples(times, np.sin(3 * times))
+    laws = {"P": motion.polynomial(1, 2, 3, p), "E": motion.expression(lambda t: ca.sin(2 * t)), "S": spline}
+    jerk = motion.jerk_function(laws, p)
+    for t in (0.1, 0.3, 0.7, 1.1, 1.9):
+        nodes = times[np.searchsorted(times, t, side="right") - 1 :][:2]
+        bends = [at(spline, node)[2] for node in nodes]
+        expected = [6 * 0.4, -8 * math.cos(2 * t), (bends[1] - bends[0]) / (nodes[1] - nodes[0])]
+        assert jerk(t, 0.4).full().ravel() == pytest.approx(expected, rel=1e-12)
+    with pytest.raises(DeclarationError, match="the motion of joint 'J' does not tell its knots"):
+        motion.jerk_function({"J": motion.Motion(lambda t: ca.sin(t), spline=True)}, ca.SX(0, 1))
+
+
 def test_laws_of_both_kinds_run_together():
     """A spline beside a polynomial with a parameter, compiled and by the virtual machine."""
     m = Mechanism("arm")

@@ -5,7 +5,7 @@ import numpy as np
 from builders import slider_crank
 
 from lagrange_casadi import derive
-from lagrange_casadi.reciprocals import share_reciprocals
+from lagrange_casadi.reciprocals import differentiable, share_reciprocals
 
 
 def divisions(function):
@@ -48,3 +48,25 @@ def test_a_function_that_calls_others_stays_as_it_is():
     inner = ca.Function("inner", [x], [ca.sin(x) * x], {"never_inline": True})
     outer = ca.Function("outer", [x, p], [inner(x) + 1 / p + x / p], ["x", "p"], ["out"])
     assert share_reciprocals(outer, "p")(0.3, 2.0) == outer(0.3, 2.0)
+
+
+def test_plain_divisions_come_back_and_are_differentiated_rightly():
+    """With divisors below zero, where copysign would not be, and with a copysign of its own, which stays."""
+    x, p = ca.SX.sym("x", 3), ca.SX.sym("p", 2)
+    out = ca.vertcat(x[1] / x[0], x[2] / x[0], x[0] / p[0], ca.copysign(1 / p[1], x[1]))
+    plain = ca.Function("f", [x, p], [out], ["x", "p"], ["out"])
+    shared = share_reciprocals(plain, "p")
+    again = differentiable(shared)
+    signs = [sum(f.instruction_id(k) == ca.OP_COPYSIGN for k in range(f.n_instructions())) for f in (plain, shared, again)]
+    assert signs == [1, 4, 1]
+    values = [-0.3, 0.7, -1.1], [-2.0, 3.0]
+    np.testing.assert_allclose(again(*values).full(), plain(*values).full(), rtol=4e-16)
+    slopes = [ca.Function("slopes", [x, p], [ca.jacobian(f(x, p), x)])(*values).full() for f in (again, plain)]
+    np.testing.assert_allclose(*slopes, rtol=1e-15)
+
+
+def test_a_function_that_calls_others_is_differentiable_as_it_is():
+    x, p = ca.SX.sym("x"), ca.SX.sym("p")
+    inner = ca.Function("inner", [x], [ca.sin(x) * x], {"never_inline": True})
+    outer = ca.Function("outer", [x, p], [inner(x) + 1 / p], ["x", "p"], ["out"])
+    assert differentiable(outer) is outer

@@ -49,6 +49,17 @@ def test_peak_of_a_series(solution):
     assert peak.xi is None
 
 
+def test_extremes_are_the_largest_along_the_link(solution):
+    values, places = solution.extremes("section:rod:bending")
+    grid = solution.section("rod").bending
+    assert places.shape == values.shape == solution.t.shape
+    assert np.all(np.abs(values) >= np.abs(grid).max(axis=1) * (1 - 1e-14))
+    at = solution.section("rod").law.at("bending", places[:, None])[:, 0]
+    np.testing.assert_allclose(values, at, rtol=1e-14)
+    values, places = solution.extremes("effort:O")
+    assert (values is solution.effort("O"), places) == (True, None)
+
+
 def test_angles_are_continuous(slider_crank):
     turns = evaluate(slider_crank.scene, t=(0, 0.8, 2001), wanted=["motion"])
     crank = turns.pose("crank").angle

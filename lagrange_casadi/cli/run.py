@@ -13,10 +13,11 @@ from ..certificate import summary
 from ..compensated import Precision
 from ..evaluate import evaluate
 from ..figures import dump_specs
+from ..peaks import forces, refine
 from ..publish import check_writable, filling
 from ..rung import Backend
 from ..scene import Grid
-from ..solution import Solution
+from ..solution import Peak, Solution
 from ..store import save
 from .drawing import draw_with_progress
 from .options import GRID, grid, parameters, rung, setting
@@ -35,6 +36,7 @@ from .options import GRID, grid, parameters, rung, setting
 @click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>.h5 here.")
 @click.option("--figures", type=click.Path(path_type=Path), help="The figures' folder; default: <case>_figures here.")
 @click.option("--no-figures", is_flag=True, help="Draw nothing.")
+@click.option("--refine-peaks", is_flag=True, help="Seek the reported peaks between the instants too.")
 @click.option("--no-certificate", is_flag=True, help="Do not check the solution.")
 def run(
     case: Path,
@@ -51,6 +53,7 @@ def run(
     out: Path | None,
     figures: Path | None,
     no_figures: bool,
+    refine_peaks: bool,
     no_certificate: bool,
 ) -> None:
     """Evaluate CASE, a folder with a case.py or a Python file, and write an HDF5 file and figures."""
@@ -82,20 +85,22 @@ def run(
         if draft:
             draw_with_progress(solution, loaded.figures, draft)
         save(solution, out, dump_specs(loaded.figures))
-    _report(solution)
+    _report(solution, refine(loaded.scene, solution, forces(solution)) if refine_peaks else None)
     if solution.certificate:
         click.echo(summary(solution.certificate))
     click.echo(f"wrote {out}" + (f" and the figures in {folder}/" if folder else ""))
 
 
-def _report(solution: Solution) -> None:
+def _report(solution: Solution, refined: Sequence[Peak] | None) -> None:
     backend = solution.provenance.backend
-    click.echo(f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {backend}; peaks:")
+    peaks = {peak.name: peak for peak in refined or ()}
+    what = "peaks" if refined is None else "peaks, refined between the instants"
+    click.echo(f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {backend}; {what}:")
     for name in solution.names():
         if name.startswith(("effort:", "reaction:", "section:")):
             if not solution.determined(name):
                 click.echo(f"  {name:<28}{'open':>13} {'':<4} equilibrium does not determine it: the mechanism is over-constrained")
                 continue
-            peak = solution.peak(name)
+            peak = peaks.get(name) or solution.peak(name)
             where = f"t = {peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {peak.xi:.4f}")
             click.echo(f"  {name:<28}{peak.value:>13.6g} {peak.unit:<4} at {where}")

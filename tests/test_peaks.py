@@ -1,0 +1,261 @@
+"""Peaks between instants: against closed forms, against far finer instants, and where a quantity has a kink, a jump or a pole."""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+from builders import four_bar, settle
+from conftest import CASES
+from test_redundancy import parallelogram
+
+from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, motion, save
+from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
+from lagrange_casadi.peaks import forces, rates, refine, shortfall
+
+MASS, LENGTH, G = 1.2, 0.5, 9.81
+NAMES = sorted(path.name for path in CASES.iterdir() if (path / "case.py").exists())
+
+
+def pendulum(law, gravity=G, load=None, **keywords):
+    m = Mechanism("pendulum")
+    m.set_gravity(0, -gravity)
+    arm = m.link("arm", length=LENGTH, mass=MASS)
+    pin = m.revolute("pin", m.ground, arm)
+    if load:
+        m.force("push", arm.tip, x=load(m.coordinate(pin)))
+    return Scene(m, {"pin": law}, **keywords)
+
+
+def vm(scene, **keywords):
+    return evaluate(scene, backend="vm", certificate=False, **keywords)
+
+
+def refined(scene, solution, names=None):
+    return {peak.name: peak for peak in refine(scene, solution, names)}
+
+
+def columns(graph, t, p):
+    """Columns and their rates at an instant, with iterated loops closed there."""
+    z = settle(graph, t, p, graph.scene.t[0])
+    return [x.full().ravel() for x in rates(graph)(ca.vertcat(t, z), p)]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_rates_are_those_of_differences(name):
+    scene = load_case(CASES / name).scene
+    graph, p = derive(scene), list(scene.mechanism.values().values())
+    start, span = scene.t[0], scene.t[1] - scene.t[0]
+    e = 1e-4 * span
+    for t in start + np.array([0.1234, 0.5678, 0.8765]) * span:
+        out, rate = columns(graph, t, p)
+        near = [columns(graph, t + k * e, p)[0] for k in (-2, -1, 1, 2)]
+        difference = (near[0] - 8 * near[1] + 8 * near[2] - near[3]) / (12 * e)
+        allowed = 1e-9 * (np.abs(rate) + np.abs(out) / span) + 1e-14 * np.abs(out).max() / e
+        assert not [graph.columns[k] for k in np.flatnonzero(~(np.abs(difference - rate) <= allowed))]
+        moving = ~np.array([name.startswith("_") for name in graph.columns])
+        assert np.mean(np.abs(rate[moving]) > 100 * allowed[moving]) > 0.4
+
+
+def test_rates_are_those_of_a_closed_form():
+    """A pendulum: I theta'' + m g l/2 cos theta, and what holds its centre on its circle."""
+    scene = pendulum(motion.expression(lambda t: 0.4 * ca.sin(3 * t) + t))
+    graph, h, inertia = derive(scene), LENGTH / 2, MASS * LENGTH**2 / 3
+    for t in (0.0, 0.37, 1.9):
+        th, w = 0.4 * math.sin(3 * t) + t, 1.2 * math.cos(3 * t) + 1
+        a, j = -3.6 * math.sin(3 * t), -10.8 * math.cos(3 * t)
+        c, s = math.cos(th), math.sin(th)
+        exact = {
+            "motion:pin": w,
+            "motion:pin_rate": a,
+            "motion:pin_acceleration": j,
+            "effort:pin": inertia * j - MASS * G * h * s * w,
+            "reaction:pin:fx": -MASS * h * (j * s + a * c * w + 2 * w * a * c - w**3 * s),
+            "reaction:pin:fy": MASS * h * (j * c - a * s * w - 2 * w * a * s - w**3 * c),
+        }
+        found = dict(zip(graph.columns, columns(graph, t, [])[1], strict=True))
+        assert {name: found[name] for name in exact} == pytest.approx(exact, rel=1e-12, abs=1e-12)
+
+
+def test_peaks_of_a_turning_pendulum_are_exact():
+    """At constant speed the effort is m g l/2 cos theta: its peak at half a turn lies between the instants."""
+    speed = 3.0
+    scene = pendulum(motion.polynomial(0.1, speed), t=(0, 2.0, 14))
+    solution = evaluate(scene)
+    step, peaks = solution.t[1], refined(scene, solution)
+    assert set(peaks) == set(solution.names())
+    assert peaks["effort:pin"].value == pytest.approx(-MASS * G * LENGTH / 2, rel=1e-15)
+    assert peaks["effort:pin"].t == pytest.approx((math.pi - 0.1) / speed, abs=1e-12 * step)
+    assert peaks["section:arm:bending"].value == pytest.approx(MASS * G * LENGTH / 2, rel=1e-15)
+    assert (peaks["section:arm:bending"].xi, peaks["section:arm:bending"].unit) == (0.0, "N m")
+    axial = peaks["section:arm:axial"]
+    assert axial.value == pytest.approx(MASS * G + MASS * LENGTH / 2 * speed**2, rel=1e-15)
+    assert axial.t == pytest.approx((1.5 * math.pi - 0.1) / speed, abs=1e-12 * step)
+    assert axial.value > solution.peak("section:arm:axial").value * (1 + 1e-6)
+    assert peaks["motion:pin"] == solution.peak("motion:pin")
+
+
+def lobes(t):
+    """Two lobes of almost one height."""
+    return ca.exp(-(((t - 1.0) / 0.2) ** 2)) + (1 + 1e-5) * ca.exp(-(((t - 2.05) / 0.2) ** 2))
+
+
+def test_the_higher_of_two_peaks_is_found_where_the_instants_tell_otherwise():
+    scene = pendulum(motion.expression(lobes), t=(0, 3.0, 31))
+    solution = evaluate(scene, wanted=["motion"])
+    assert solution.peak("motion:pin").t == pytest.approx(1.0)
+    (peak,) = refine(scene, solution, ["motion:pin"])
+    assert peak.t == pytest.approx(2.05, abs=1e-9)
+    assert peak.value == pytest.approx(1 + 1e-5, rel=1e-11)
+
+
+def test_a_peak_at_the_knot_of_a_spline():
+    """Without gravity the effort is I theta'', which a cubic spline makes a polygon: its peak is the knot's, a kink."""
+    times = np.linspace(0, 2, 9)
+    law = motion.samples(times, np.sin(2.3 * times))
+    scene = pendulum(law, gravity=0.0, t=(0, 2, 24))
+    bends = np.array([float(derive(scene).motion(t, [])[2]) for t in times])
+    # Away from the ends, where the polygon has no kink.
+    inner = pendulum(law, gravity=0.0, t=(0.3, 1.9, 24))
+    solution = evaluate(inner)
+    peaks = refined(inner, solution)
+    k = 1 + int(np.argmax(np.abs(bends[1:-1])))
+    assert abs(solution.peak("effort:pin").value) < MASS * LENGTH**2 / 3 * abs(bends[k]) * (1 - 1e-3)
+    assert peaks["effort:pin"].value == pytest.approx(MASS * LENGTH**2 / 3 * bends[k], rel=1e-12)
+    assert peaks["effort:pin"].t == pytest.approx(times[k], abs=1e-12 * solution.t[-1])
+
+
+def test_a_jump_is_approached_from_its_higher_side():
+    """A load that grows with the angle and is gone from a radian on; its supremum is there, and is never reached."""
+    scene = pendulum(motion.polynomial(0.0, 2.0), load=lambda angle: 7 * angle * (angle < 1), t=(0, 1, 12))
+    solution = evaluate(scene)
+    (peak,) = refine(scene, solution, ["load:push:fx"])
+    assert solution.peak("load:push:fx").value < 6.5
+    assert 7 * (1 - 1e-12) < peak.value < 7
+    assert 0.5 * (1 - 1e-12) < peak.t < 0.5
+
+
+def test_a_pole_is_infinite():
+    """Across the blade the drive of the sleigh that the row replaces can do nothing."""
+    scene = load_case(CASES / "sleigh").scene
+    solution = vm(scene)
+    assert abs(solution.peak("effort:X").value) < 1e4
+    (peak,) = refine(scene, solution, ["effort:X"])
+    assert math.isinf(peak.value)
+    assert peak.t == pytest.approx(math.pi / 2 / 0.8, abs=1e-12)
+    assert all(0 <= row.sampled_worst < 1 for row in shortfall(scene, [50]))
+
+
+def test_angles_that_a_loop_sets_keep_their_turns():
+    """A rocker about the direction in which arctangents jump by a turn."""
+    scene = four_bar(frame=(-0.05, 0.3), rocker=1.5 + math.pi / 2)
+    coarse, fine = (vm(scene, t=(0.3, 1.6, n), wanted=["motion"]) for n in (30, 300_001))
+    name = next(n for n in derive(scene, ["motion"]).wrapped if n == "pose:c:angle")
+    assert coarse.array(name).min() < -math.pi < coarse.array(name).max() < 0
+    (peak,) = refine(scene, coarse, [name])
+    assert peak.value == pytest.approx(fine.peak(name).value, rel=1e-9)
+    assert coarse.peak(name).value - peak.value > 1e-6
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_peaks_are_those_of_far_finer_instants(name):
+    scene = load_case(CASES / name).scene
+    solution = vm(scene)
+    names = forces(solution)
+    peaks = refined(scene, solution, names)
+    start, stop, count = scene.t
+    step = (stop - start) / (count - 1)
+    dense = vm(scene, t=(start, stop, 8 * count))
+    improved = []
+    for name in names:
+        peak, sampled = peaks[name], solution.peak(name)
+        assert abs(peak.value) >= abs(sampled.value)
+        assert start <= peak.t <= stop
+        improved.append(abs(peak.value) > abs(sampled.value))
+        if math.isinf(peak.value):
+            continue
+        assert abs(peak.value) >= abs(dense.peak(name).value) * (1 - 1e-13) - 1e-12, name
+        near, reach = peak.t, step
+        for _ in range(4):
+            low, high = max(start, near - reach), min(stop, near + reach)
+            fine = vm(scene, t=(low, high, 201)).peak(name)
+            near, reach = fine.t, reach / 50
+        assert abs(peak.value) >= abs(fine.value) * (1 - 1e-13) - 1e-12, name
+        assert peak.value == pytest.approx(fine.value, rel=1e-10, abs=1e-12), name
+    assert np.mean(improved) > 0.4
+
+
+def test_what_is_not_determined_stays_so():
+    scene = parallelogram(pendulum=True)
+    solution = evaluate(scene)
+    peaks = refined(scene, solution)
+    assert math.isnan(peaks["reaction:A:fx"].value)
+    assert math.isnan(peaks["section:bar:bending"].value)
+    assert "reaction:A:fx" not in forces(solution)
+    assert np.isfinite([peaks[name].value for name in forces(solution)]).all()
+    assert shortfall(scene, [31])[0].refined_worst < 1e-12
+
+
+def test_one_instant_has_its_own_peak():
+    scene = pendulum(motion.polynomial(0.1, 3.0))
+    solution = evaluate(scene, t=(0.2, 0.2, 1))
+    assert refine(scene, solution) == [solution.peak(name) for name in solution.names()]
+
+
+def test_a_solution_brings_its_parameters_and_outputs(tmp_path, slider_crank):
+    """Also from a file, and at some of the instants."""
+    solution = evaluate(slider_crank.scene, parameters={"l": 0.25}, t=(0, 0.08, 101), wanted=["section:rod", "effort"])
+    save(solution, tmp_path / "x.h5")
+    peaks = refine(slider_crank.scene, load(tmp_path / "x.h5"))
+    assert peaks == refine(slider_crank.scene, solution)
+    fine = evaluate(slider_crank.scene, parameters={"l": 0.25}, t=(0, 0.08, 100_001), wanted=["section:rod", "effort"])
+    for peak in peaks:
+        assert peak.value == pytest.approx(fine.peak(peak.name).value, rel=1e-8)
+    half = solution.during(slice(0, 50))
+    assert refine(slider_crank.scene, half, ["effort:O"])[0].t < half.t[-1]
+
+
+def test_iterated_loops_are_followed_from_instant_to_instant():
+    scene = load_case(CASES / "rrr3").scene
+    coarse, fine = vm(scene, t=(0, 1, 21)), vm(scene, t=(0, 1, 2001))
+    for one, other in zip(refine(scene, coarse, forces(coarse)), refine(scene, fine, forces(fine)), strict=True):
+        assert one.value == pytest.approx(other.value, rel=1e-12), one.name
+
+
+def test_the_shortfall_of_a_cosine():
+    """The effort is a cosine: what its instants miss is known exactly."""
+    speed, start = 3.0, 0.1
+    scene = pendulum(motion.polynomial(start, speed), t=(0, 2.0, 11), wanted=["effort"])
+    counts = [12, 24, 57]
+    rows = shortfall(scene, counts)
+    for count, row in zip(counts, rows, strict=True):
+        missed = 1 - np.abs(np.cos(start + speed * np.linspace(0, 2.0, count))).max()
+        assert row.count == count
+        assert row.sampled_worst == row.sampled_median == pytest.approx(missed, rel=1e-10)
+        assert abs(row.refined_worst) < 1e-14
+
+
+def test_the_shortfall_of_instants_falls_with_the_square_of_the_step(slider_crank):
+    counts = [25, 50, 100, 200, 400]
+    rows = shortfall(slider_crank.scene, counts, parameters={"l": 0.21})
+    order = -np.polyfit(np.log(counts), np.log([row.sampled_worst for row in rows]), 1)[0]
+    assert 1.7 < order < 2.3
+    for row in rows:
+        assert 0 <= row.sampled_median <= row.sampled_worst
+        assert 0 <= row.refined_median <= row.refined_worst < 1e-13
+
+
+def test_misuse_is_named(slider_crank):
+    scene = slider_crank.scene
+    solution = vm(scene, t=(0, 0.08, 5), wanted=["effort"])
+    with pytest.raises(UnknownNameError, match="unknown quantity 'section:rod:bending'; valid: effort:O"):
+        refine(scene, solution, ["section:rod:bending"])
+    other = Scene(scene.mechanism, {"O": motion.polynomial(0, 1.0)}, posture=scene.posture)
+    with pytest.raises(DeclarationError, match="the solution of 'slider_crank' is not one of this scene of 'slider_crank'"):
+        refine(other, solution)
+    with pytest.raises(DeclarationError, match="at least one number of instants"):
+        shortfall(scene, [])
+    with pytest.raises(DeclarationError, match="no quantity is there that is determined and not zero"):
+        shortfall(scene, [9], ["reaction:guide:fx"])
+    with pytest.raises(AssemblyError):
+        shortfall(scene, [9], parameters={"r": 0.3})
