@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from .backends import Backend, Table, run
 from .certificate import Held, certify
@@ -17,7 +16,7 @@ from .derive import derive
 from .description import describe
 from .errors import AssemblyError, DeclarationError
 from .grids import require
-from .kinematics import where
+from .kinematics import passes_dead_centre, where
 from .scene import Grid, Scene, checked, checked_ratios
 from .scene_graph import SceneGraph
 from .solution import Solution, in_order
@@ -25,7 +24,6 @@ from .solution import Solution, in_order
 MISFIT = 1e-8
 """How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
 
-_NEAR = 0.3
 _BESIDE = 8
 
 
@@ -124,7 +122,7 @@ def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
     bad = table.status != OK
     for k, name in enumerate(graph.columns):
         if name.startswith("_closure:"):
-            bad |= ~(table.out[k] > 0.0) | _passes(table.out[k])
+            bad |= ~(table.out[k] > 0.0) | passes_dead_centre(table.out[k])
         elif name.startswith("_misfit:"):
             bad |= ~(table.out[k] <= MISFIT)
         elif name.startswith("_row:"):
@@ -137,19 +135,6 @@ def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
     at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
     raise AssemblyError(_why(graph, table, i, f"at t = {t[i]:.6g} s{at}"))
-
-
-def _passes(closure: Array) -> npt.NDArray[np.bool_]:
-    """After which instants a loop passes a dead centre: the sine of its transmission angle meets zero, straight on from both sides.
-
-    The closed forms keep to their branch there, with a kink; the mechanism itself may not.
-    """
-    found = np.zeros(closure.size, dtype=bool)
-    if closure.size >= 4:
-        sine = np.sqrt(np.maximum(closure, 0.0))
-        left, right = 2 * sine[1:-2] - sine[:-3], 2 * sine[2:-1] - sine[3:]
-        found[1:-2] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[1:-2], sine[2:-1]) < _NEAR)
-    return found
 
 
 def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
@@ -166,7 +151,7 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
             return f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
         if kind == "_closure" and not value > 0.0:
             return f"the loop closed by {closed} is at a dead centre {at}: its forces are not determined there"
-        if kind == "_closure" and _passes(table.out[graph.columns.index(name)])[i]:
+        if kind == "_closure" and passes_dead_centre(table.out[graph.columns.index(name)])[i]:
             return (
                 f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}, and how it goes on is open; "
                 "if it only comes near one, take more instants"
