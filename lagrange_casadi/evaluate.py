@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from .accuracy import estimate, explained
 from .backends import Table, run
@@ -19,7 +18,7 @@ from .derive import derive
 from .description import describe
 from .errors import AssemblyError, DeclarationError
 from .grids import require
-from .kinematics import where
+from .kinematics import passes_dead_centre, where
 from .rung import Backend, Rung
 from .scene import Grid, Scene, checked, checked_ratios
 from .scene_graph import SceneGraph
@@ -31,7 +30,6 @@ MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 _DEAD = 64.0
 """Roundings below which a closure says nothing but that it is zero."""
 
-_NEAR = 0.3
 _BESIDE = 8
 
 
@@ -140,7 +138,7 @@ def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
     bad, dead, misfit = table.status != OK, _DEAD * ROUNDING[precision], MISFIT[precision]
     for k, name in enumerate(graph.columns):
         if name.startswith("_closure:"):
-            bad |= ~(table.out[k] > dead) | _passes(table.out[k])
+            bad |= ~(table.out[k] > dead) | passes_dead_centre(table.out[k])
         elif name.startswith("_misfit:"):
             bad |= ~(table.out[k] <= misfit)
         elif name.startswith("_row:"):
@@ -153,19 +151,6 @@ def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
     at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
     raise AssemblyError(_why(graph, table, i, f"at t = {t[i]:.6g} s{at}"))
-
-
-def _passes(closure: Array) -> npt.NDArray[np.bool_]:
-    """After which instants a loop passes a dead centre: the sine of its transmission angle meets zero, straight on from both sides.
-
-    The closed forms keep to their branch there, with a kink; the mechanism itself may not.
-    """
-    found = np.zeros(closure.size, dtype=bool)
-    if closure.size >= 4:
-        sine = np.sqrt(np.maximum(closure, 0.0))
-        left, right = 2 * sine[1:-2] - sine[:-3], 2 * sine[2:-1] - sine[3:]
-        found[1:-2] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[1:-2], sine[2:-1]) < _NEAR)
-    return found
 
 
 def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
@@ -184,7 +169,7 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
             return f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
         if kind == "_closure" and not value > dead:
             return f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces are not determined there"
-        if kind == "_closure" and _passes(table.out[graph.columns.index(name)])[i]:
+        if kind == "_closure" and passes_dead_centre(table.out[graph.columns.index(name)])[i]:
             return (
                 f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}, and how it goes on is open; "
                 "if it only comes near one, take more instants"

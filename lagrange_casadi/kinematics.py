@@ -15,8 +15,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
+import numpy as np
+import numpy.typing as npt
 
 from .blocks import Block, plan
+from .density import Array
 from .errors import AssemblyError, DeclarationError
 from .linear import LinearSystem
 from .loops import ClosedForm
@@ -26,6 +29,9 @@ from .planar import misalignment
 
 _LARGEST_STEP = 0.3
 """Of an angle [rad], or of a slide over the length of all links: a full step from afar may land on another branch."""
+
+_NEAR = 0.3
+"""Sines of the transmission angle below which a loop may pass a dead centre."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -309,6 +315,19 @@ def where(coordinates: Iterable[tuple[str, str, float]]) -> str:
     """Coordinates by joint, kind and value, to end a message with; nothing where there are none."""
     listed = ", ".join(describe_coordinate(*coordinate) for coordinate in coordinates)
     return f", where {listed}" if listed else ""
+
+
+def passes_dead_centre(closure: Array) -> npt.NDArray[np.bool_]:
+    """After which instants a loop passes a dead centre: the sine of its transmission angle meets zero, straight on from both sides.
+
+    The closed forms keep to their branch there, with a kink; the mechanism itself may not.
+    """
+    found = np.zeros(closure.size, dtype=bool)
+    if closure.size >= 4:
+        sine = np.sqrt(np.maximum(closure, 0.0))
+        left, right = 2 * sine[1:-2] - sine[:-3], 2 * sine[2:-1] - sine[3:]
+        found[1:-2] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[1:-2], sine[2:-1]) < _NEAR)
+    return found
 
 
 def describe_coordinate(joint: str, kind: str, value: float) -> str:

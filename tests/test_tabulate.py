@@ -1,0 +1,511 @@
+"""Cycle tables: against the graphs that they are of, at any angle and motion, and what has none."""
+
+import math
+import re
+import shutil
+import subprocess
+from dataclasses import replace
+from importlib import resources
+
+import casadi as ca
+import numpy as np
+import pytest
+from builders import crank_and_rod, four_bar, slider_crank
+from conftest import CASES
+from test_mobility import truss_platform
+from test_redundancy import parallelogram
+
+from lagrange_casadi import Mechanism, Scene, codegen, cycle_table, derive, load_case, motion, tabulate
+from lagrange_casadi.codegen.compiler import FLAGS
+from lagrange_casadi.cycle import Cycle
+from lagrange_casadi.cycle_table import CycleTable
+from lagrange_casadi.errors import DeclarationError
+
+RATES = (60.0, 900.0)
+
+
+def case(name):
+    return load_case(CASES / name).scene
+
+
+def made(scene, table=1e-9, wanted=None, rates=RATES):
+    return tabulate.tabulate(derive(scene, wanted), values(scene), table, rates)
+
+
+def values(scene):
+    return np.array(list(scene.mechanism.values().values()))
+
+
+def some_motion(n=500, turns=3.0, seed=1):
+    """Angles, rates and accelerations of either sign, up to the largest."""
+    random = np.random.default_rng(seed)
+    signs = random.uniform(-1.0, 1.0, (3, n))
+    signs[:, :4] = [[0.1, 0.2, -0.1, -0.2], [1, 1, -1, -1], [1, -1, 1, -1]]
+    return signs * np.array([[math.tau * turns], [RATES[0]], [RATES[1]]])
+
+
+def directly(scene, angle, rate, acceleration, wanted=None):
+    """Every column by CasADi's virtual machine; iterated loops are followed from angle to angle."""
+    graph, p = derive(scene, wanted), values(scene)
+    places = np.zeros((len(graph.newton.guess) if graph.newton else 0, angle.size))
+    for side in (1, -1) if graph.newton else ():
+        z, at = np.array(graph.newton.guess), float(graph.motion(scene.t[0], p)[0])
+        away = side * (angle - at)
+        for i in (i for i in np.argsort(away) if away[i] >= 0.0):
+            for moment in np.linspace(at, angle[i], 20):
+                for _ in range(6):
+                    z = z + graph.newton.step(z, 0.0, moment, p)[0].full().ravel()
+            places[:, i], at = z, angle[i]
+    return graph.instant(0.0, angle[None], rate[None], acceleration[None], places, p).full()
+
+
+def whole_turns_apart(graph):
+    """The rows that are known up to whole turns."""
+    return [name.startswith("_angle:") or name in graph.wrapped for name in graph.columns]
+
+
+def worst_gap(scene, table, angle, rate, acceleration, wanted=None):
+    """The largest difference between a table and its graph, over each column's peak; of angles less whole turns."""
+    found = np.full((len(table.columns), angle.size), np.nan, table.dtype)
+    table.evaluate(*(row.astype(table.dtype) for row in (angle, rate, acceleration)), found)
+    gap = found - directly(scene, angle, rate, acceleration, wanted)
+    loose = whole_turns_apart(derive(scene, wanted))
+    gap[loose] -= math.tau * np.rint(gap[loose] / math.tau)
+    return np.max(np.abs(gap).max(axis=1) / np.where(table.peaks > 0, table.peaks, 1.0))
+
+
+def drag_link():
+    """A short frame: coupler and rocker turn with the crank."""
+    return four_bar(lengths=(0.3, 0.25, 0.35), frame=(0.1, 0.0), rocker=1.0)
+
+
+def triad():
+    """A crank and a plate on three rods: no dyad, so it is iterated."""
+    m = Mechanism("triad")
+    crank, plate = m.link("crank", length=0.05, mass=0.2), m.link("plate", length=0.2, mass=0.8)
+    m.revolute("O", m.ground.at(-0.35, 0.0), crank)
+    posture = {"plate": 0.0}
+    for i, (foot, place) in enumerate((((-0.3, 0.0), (0.0, 0.0)), ((0.2, -0.4), (0.2, 0.0)), ((0.05, -0.4), (0.05, 0.1)))):
+        rod = m.link(f"rod{i}", length=math.dist(foot, place), mass=0.3)
+        m.revolute(f"foot{i}", crank.tip if i == 0 else m.ground.at(*foot), rod)
+        m.revolute(f"corner{i}", rod.tip, plate.base if i == 0 else plate.tip if i == 1 else plate.at(*place))
+        posture[f"rod{i}"] = math.atan2(place[1] - foot[1], place[0] - foot[0])
+    return Scene(m, {"O": motion.polynomial(0.0, 3.0)}, posture=posture, t=(0.0, 1.0, 21))
+
+
+def arm(load=None, law=None, **keywords):
+    """A link on a pin, with a torque by its angle, its rate and the time."""
+    m = Mechanism("arm")
+    link = m.link("link", length=0.5, mass=1.2)
+    pin = m.revolute("pin", m.ground, link)
+    if load is not None:
+        m.torque("load", link, load(m.coordinate(pin), m.rate(pin), m.time))
+    return Scene(m, {"pin": law or motion.polynomial(0.1, 2.0)}, **keywords)
+
+
+def geared(ratio):
+    m = Mechanism("geared")
+    wheel, link = m.link("wheel", length=0.05, mass=0.2), m.link("link", length=0.1, mass=0.3)
+    first, second = m.revolute("first", m.ground.at(-0.2, 0), wheel), m.revolute("second", m.ground, link)
+    m.gear("mesh", first, second, ratio=ratio)
+    return Scene(m, {"first": motion.polynomial(0.2, 3.0)})
+
+
+SMOOTH = {
+    "slider_crank": (lambda: case("slider_crank"), 256),
+    "four_bar": (lambda: case("four_bar"), 256),
+    "six_bar": (lambda: case("six_bar"), 256),
+    "andrews_squeezer": (lambda: case("andrews_squeezer"), 256),
+    "drag_link": (drag_link, 512),
+    "triad": (triad, 256),
+    "redundant": (parallelogram, 1024),
+    "arm": (arm, 64),
+}
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+def test_a_table_gives_what_the_graph_gives(name):
+    """At any angle, of some turns either way, and rates of either sign; for 1e-9, of each column's peak."""
+    build, most = SMOOTH[name]
+    scene = build()
+    table = made(scene)
+    assert table.turns == 1
+    assert table.nodes <= most
+    assert 2e-16 < table.error <= 1e-9
+    n = 40 if derive(scene).newton else 500
+    assert worst_gap(scene, table, *some_motion(n)) < 1.1e-9
+
+
+def test_the_error_is_the_one_there_is():
+    """Of errors at thousands of places the largest is what the table says, which looks halfway between nodes."""
+    scene = case("slider_crank")
+    table = made(scene, 64)
+    angle = np.linspace(0.0, math.tau, 64 * 33)
+    gaps = [worst_gap(scene, table, angle, np.full_like(angle, r), np.full_like(angle, a)) for r in (60, -60) for a in (900, -900)]
+    assert table.error == pytest.approx(max(gaps), rel=0.02)
+
+
+def test_errors_fall_with_the_sixth_power_of_the_distance():
+    scene = case("slider_crank")
+    coarse, fine = made(scene, 64), made(scene, 256)
+    assert 11.5 < math.log2(coarse.error / fine.error) < 12.8
+
+
+def test_kinks_of_a_load_cost_the_order():
+    """The engine's gas follows a table, linear between its values: errors fall with the distance only."""
+    scene = case("engine")
+    with pytest.raises(
+        DeclarationError, match=r"table: an accuracy of 1e-09 is not reached; the best is \S+e-0[45], with 16384 nodes, and '"
+    ):
+        made(scene, wanted=["effort"])
+    coarse, fine = made(scene, 1024, ["effort"]), made(scene, 4096, ["effort"])
+    assert 2.5 < coarse.error / fine.error < 6.0
+    # Four strokes are two turns. Where the declared load ends, before the start, the table goes on.
+    assert fine.turns == 2
+    assert worst_gap(scene, fine, math.pi / 2 + 4 + np.abs(some_motion())[0], *some_motion()[1:], ["effort"]) < 2 * fine.error
+    everything = made(scene, 64)
+    gains = {name: gain for name, gain in zip(everything.columns, everything.drift, strict=True) if gain}
+    assert gains == {"motion:main": 1.0, "pose:crank:angle": 1.0, "motion:big_end": -1.0}
+
+
+def test_another_law_of_motion_is_served():
+    """A table of a scene that turns steadily gives a scene that swings."""
+    swinging = motion.harmonic(0.4, 2.0, 3.0, 0.3)
+    other = Scene(case("four_bar").mechanism, {"O": swinging}, posture={"rocker": 1.5}, t=(0.0, 0.7, 301))
+    table = made(case("four_bar"))
+    t = np.linspace(*other.t)
+    angle, rate, acceleration = (row.full().ravel() for row in derive(other).motion(t[None], values(other)))
+    assert rate.min() < 0.0 < rate.max()
+    assert worst_gap(other, table, angle, rate, acceleration) < 1.1e-9
+
+
+@pytest.mark.parametrize("turns", [-100_000, -1, 1, 1000, 100_000])
+def test_after_many_turns_all_is_as_before(turns):
+    """The angle as it is decides: nothing is lost of it but its own last digits."""
+    scene = case("slider_crank")
+    table = made(scene, 1e-12)
+    angle, rate, acceleration = some_motion(turns=1.0)
+    assert worst_gap(scene, table, turns * math.tau + angle, rate, acceleration) < 2e-12
+
+
+def test_terms_are_those_that_there_are():
+    table = made(case("slider_crank"), 16, ["effort"])
+    expected = {("effort:O", factor) for factor in ("1", "rate^2", "acceleration")}
+    assert set(table.terms) == expected | {("_closure:guide", "1")}
+    assert table.columns == ("_closure:guide", "effort:O")
+    assert table.nbytes == 8 * 4 * (16 + 5)
+    assert not table.drift.any()
+
+
+def test_damping_goes_with_the_rate():
+    def damper(m, parts):
+        m.spring("damper", m.ground.at(0.2, 0.5), parts["b"].at(0.1), stiffness=300.0, length=0.3, damping=40.0)
+
+    scene = crank_and_rod({"mass": 0.4}, loads=damper)
+    table = made(scene)
+    assert ("effort:O", "rate") in table.terms
+    assert worst_gap(scene, table, *some_motion()) < 1.1e-9
+
+
+def test_a_load_may_call_a_function_that_is_not_inlined():
+    x = ca.SX.sym("x")
+    called = ca.Function("called", [x], [ca.sin(x) * 3], {"never_inline": True})
+    scene = arm(lambda q, w, t: called(q) * w)
+    assert worst_gap(scene, made(scene), *some_motion()) < 1.1e-9
+
+
+def test_angles_drift_by_what_they_gain():
+    crank = made(drag_link(), 64)
+    gains = dict(zip(crank.columns, crank.drift, strict=True))
+    assert [gains[f"pose:{name}:angle"] for name in "abc"] == [1.0, 1.0, 1.0]
+    assert [gains[f"motion:{name}"] for name in "OABC"] == [1.0, 0.0, 0.0, 1.0]
+    wheels = made(geared(-1 / 3), 64)
+    assert wheels.turns == 3
+    assert wheels.period == 3 * math.tau
+    assert wheels.drift[wheels.columns.index("motion:second")] == -1 / 3
+    assert worst_gap(geared(-1 / 3), wheels, *some_motion()) < 1e-4
+
+
+def test_nodes_are_where_the_motion_goes():
+    """A load that was declared for the angles that the motion passes is another one elsewhere."""
+
+    def load(q, w, t):
+        turned = ca.fmod(q, math.tau)
+        return (turned * (math.tau + turned)) ** 3
+
+    scene = arm(load, motion.polynomial(0.0, -3.0), wanted=["load:load"])
+    table = made(scene, 1024)
+    angle, rate, acceleration = some_motion()
+    assert worst_gap(scene, table, -np.abs(angle), rate, acceleration) < 1e-6
+
+
+def test_what_rounding_alone_makes_is_no_term():
+    """An arm in the plane of no gravity: its torque goes with the acceleration alone."""
+    scene = arm()
+    scene.mechanism.gravity = (0.0, 0.0)
+    table = made(scene, 1e-12, ["effort"], rates=(50.0, 0.0))
+    assert table.nodes == 16
+    assert table.terms == (("effort:pin", "acceleration"),)
+
+
+def unreachable():
+    return Scene(four_bar().mechanism, {"C": motion.polynomial(1.5, 1.0)}, posture={"a": 1.0}, t=(0, 0.1, 3))
+
+
+def flat_parallelogram():
+    return four_bar(lengths=(0.2, 0.4, 0.2), frame=(0.4, 0.0), rocker=0.9)
+
+
+def driven_slide():
+    m = slider_crank().mechanism
+    return Scene(m, {"guide": motion.polynomial(0.25, 0.1)}, posture={"crank": 0.7, "rod": -0.4})
+
+
+def fixed():
+    m = Mechanism("shelf")
+    m.weld("wall", m.ground, m.link("board", length=1.0, mass=1.0))
+    return Scene(m, {})
+
+
+def two_drives():
+    m = Mechanism("arm")
+    first, second = m.link("first", length=0.5, mass=1.2), m.link("second", length=0.5, mass=1.2)
+    m.revolute("near", m.ground, first)
+    m.revolute("far", first.tip, second)
+    return Scene(m, {"near": motion.polynomial(0, 1), "far": motion.polynomial(0, 1)})
+
+
+REFUSED = {
+    "no drive": (fixed, r"expected one driven joint, whose angle decides all, got none"),
+    "two": (two_drives, r"expected one driven joint, whose angle decides all, got 'near', 'far'"),
+    "slides": (driven_slide, r"the driven joint 'guide' slides; expected one that turns"),
+    "time": (
+        lambda: arm(lambda q, w, t: ca.sin(t)),
+        r"that the angle of joint 'pin' decides, but time itself enters 'load:load:mz', 'effort:pin'$",
+    ),
+    "sign": (
+        lambda: arm(lambda q, w, t: -3 * ca.sign(w)),
+        r"quadratic in the rate of joint 'pin', .* enters 'load:load:mz', 'effo",
+    ),
+    "size": (
+        lambda: arm(lambda q, w, t: -1e-3 * w * ca.fabs(w)),
+        r"quadratic in the rate of joint 'pin', but a load by a rate's sign",
+    ),
+    "cube": (lambda: arm(lambda q, w, t: 1e-6 * w**3), r"sign, size or other power enters 'load:load:mz', 'effort:pin'$"),
+    "at rest": (lambda: arm(lambda q, w, t: w**2 / ca.fabs(w)), r"'load:load:mz' is not finite at rest, where pin = 0\.\d+ rad"),
+    "quick_return": (lambda: case("quick_return"), r"quadratic in the rate of joint 'O', .* enters 'load:cut:fx', .* and 16 more"),
+    "rocker": (
+        unreachable,
+        r"the loop closed by joint 'B' cannot be closed, where C = 2\.\d+ rad \(1\d\d\.\d+ deg\); expected a drive that can turn",
+    ),
+    "iterated": (
+        truss_platform,
+        r"the loops? closed by .*, where O = -?[\d.]+ rad .*; expected a drive that can turn all the way round",
+    ),
+    "dead centre": (
+        flat_parallelogram,
+        r"the loop closed by joint 'B' is at a dead centre, or about a degree from one, near O = 3\.\d+ rad",
+    ),
+    "gear": (lambda: geared(0.7), r"repeat after at most 4 turns of joint 'first', but 'effort:first', .* and \d more go on"),
+    "grows": (
+        lambda: arm(lambda q, w, t: 2 * q**2),
+        r"repeat after at most 4 turns of joint 'pin', but 'load:load:mz', 'effort:pin'",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_has_no_table_is_refused_with_the_reason(name):
+    build, message = REFUSED[name]
+    with pytest.raises(DeclarationError, match=f"^table: .*{message}"):
+        made(build(), 64)
+
+
+def test_an_accuracy_beyond_rounding_is_refused_with_the_best():
+    with pytest.raises(
+        DeclarationError,
+        match=r"^table: an accuracy of 1e-17 is not reached; the best is \S+e-1[56], with (512|1024|2048) nodes, and '\S+' is",
+    ):
+        made(case("slider_crank"), 1e-17)
+
+
+def test_tables_are_bounded_in_memory(monkeypatch):
+    monkeypatch.setattr(tabulate, "LARGEST", 8 * 4 * (128 + 5))
+    with pytest.raises(DeclarationError, match=r"an accuracy of 1e-09 is not reached; the best is \S+e-09, with 128 nodes"):
+        made(case("slider_crank"), wanted=["effort"])
+    with pytest.raises(DeclarationError, match=r"table: 129 nodes take more than 0 MB; expected fewer"):
+        made(case("slider_crank"), 129, ["effort"])
+    assert made(case("slider_crank"), 128, ["effort"]).nodes == 128
+
+
+@pytest.mark.parametrize("table", [7, 16385, -3, True, 1.0, 0.0, 16.0, math.nan, "16", None])
+def test_what_is_neither_nodes_nor_an_accuracy_is_refused(table):
+    with pytest.raises(
+        DeclarationError, match=r"table: expected a whole number of nodes from 8 to 16384, or an accuracy between 0 and 1"
+    ):
+        made(case("slider_crank"), table)
+
+
+@pytest.mark.parametrize("rates", [(1.0,), (-1.0, 2.0), (math.inf, 0.0), ("a", 1.0), 3.0])
+def test_rates_are_two_numbers(rates):
+    with pytest.raises(DeclarationError, match=r"table: expected the largest rate and acceleration, two numbers of at least 0"):
+        made(case("slider_crank"), 64, rates=rates)
+
+
+def test_each_place_is_evaluated_once(monkeypatch):
+    """The nodes of twice as many are the former ones and the places halfway."""
+    asked = []
+    values_at = Cycle.values
+    monkeypatch.setattr(Cycle, "values", lambda self, nodes, **k: asked.append((nodes, *k)) or values_at(self, nodes, **k))
+    table = made(case("slider_crank"), 1e-6)
+    assert asked == [(16,), (16, "halfway"), (32, "halfway"), (64, "halfway")]
+    monkeypatch.undo()
+    again = made(case("slider_crank"), 64)
+    np.testing.assert_allclose(table.coefficients, again.coefficients, rtol=0, atol=1e-13 * np.abs(again.coefficients).max())
+
+
+def read(table, motion, out, compiled, monkeypatch):
+    with monkeypatch.context() as patch:
+        if not compiled:
+            patch.setattr(cycle_table, "find_compiler", lambda: None)
+        cycle_table._compiled.cache_clear()
+        table.evaluate(*motion, out)
+    cycle_table._compiled.cache_clear()
+    return out
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("name", ["slider_crank", "andrews_squeezer"])
+def test_compiled_and_not_give_the_same_bits(name, dtype, monkeypatch):
+    """In blocks between two nodes and in others, whole blocks and not, with rows apart; more columns than a tile holds."""
+    table = made(case(name), 64)
+    table = table.single() if dtype is np.float32 else table
+    random = some_motion(1003, turns=20.0)
+    for angles in (random[0], np.linspace(-40.0, 40.0, 1003), np.linspace(0.1, 0.2, 1003)):
+        rows = [row.astype(dtype) for row in (angles, *random[1:])]
+        for n in (0, 1, 15, 16, 17, 1003):
+            cut = [row[:n] for row in rows]
+            wide = [np.full((len(table.columns), n + 8), np.nan, dtype) for _ in range(2)]
+            compiled, plain = (read(table, cut, w[:, :n], c, monkeypatch) for w, c in zip(wide, (True, False), strict=True))
+            assert np.isfinite(compiled).all()
+            assert compiled.tobytes() == plain.tobytes()
+            assert np.isnan(wide[0][:, n:]).all()
+
+
+def test_instants_one_by_one_take_code_of_their_own(monkeypatch):
+    """As a controller has it: nothing is done for instants that are not there, and the bits are the same."""
+    table, rows = made(case("six_bar"), 64), some_motion(40)
+    both = [np.full((len(table.columns), 40), np.nan) for _ in range(2)]
+    table.evaluate(*rows, both[0])
+    monkeypatch.setattr(cycle_table, "_OPTIONS", ("-DBLOCK=1", "-DPACK=1"))
+    read(table, rows, both[1], True, monkeypatch)
+    assert both[0].tobytes() == both[1].tobytes()
+
+
+def test_where_a_block_is_cut_changes_no_bit():
+    table, rows = made(case("six_bar"), 64), some_motion(301)
+    whole, parts = (np.full((len(table.columns), 301), np.nan) for _ in range(2))
+    table.evaluate(*rows, whole)
+    for start in range(0, 301, 7):
+        table.evaluate(*(row[start : start + 7] for row in rows), parts[:, start : start + 7])
+    assert whole.tobytes() == parts.tobytes()
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_what_is_no_number_gives_none_and_reads_nothing_else(compiled, monkeypatch):
+    table = made(case("slider_crank"), 64, ["effort"])
+    rows = np.array([[math.nan, math.inf, -math.inf, 1e300, 0.3, 0.3, 0.3], [1.0] * 4 + [math.nan, 1, 1], [1.0] * 6 + [math.inf]])
+    out = read(table, rows, np.zeros((2, 7)), compiled, monkeypatch)
+    assert np.isnan(out[:, :3]).all()
+    assert np.isnan(out[1, 4])
+    assert np.isfinite(out[:, 5]).all()
+    assert np.isinf(out[1, 6])
+
+
+def test_rows_of_another_layout_are_filled_too():
+    table, rows = made(case("slider_crank"), 64), some_motion(50)
+    plain = np.full((len(table.columns), 50), np.nan)
+    table.evaluate(*rows, plain)
+    for other in (np.full((50, len(table.columns)), np.nan).T, np.full((len(table.columns), 100), np.nan)[:, ::2]):
+        table.evaluate(*np.repeat(rows, 2, axis=1)[:, ::2], other)
+        assert np.array_equal(other, plain)
+
+
+def test_single_precision_is_near_and_says_how_near():
+    scene = case("slider_crank")
+    table = made(scene)
+    single = table.single()
+    assert single.nbytes == table.nbytes // 2
+    assert 1e-8 < single.error < 1e-6
+    # At an angle that is exact in single precision, only the table itself rounds.
+    motion = [row.astype(np.float32).astype(float) for row in some_motion(turns=1.0)]
+    assert worst_gap(scene, single, *motion) < 1.5 * single.error
+    assert worst_gap(scene, single, motion[0] + np.float32(32 * math.tau), *motion[1:]) < 1e-4
+
+
+@pytest.mark.skipif(shutil.which("objdump") is None, reason="no objdump to look with")
+def test_single_precision_takes_no_double(tmp_path):
+    compiler = codegen.find_compiler("c")
+    source = tmp_path / "interpolate.c"
+    source.write_text(resources.files("lagrange_casadi.codegen").joinpath("interpolate.c").read_text())
+    found = {}
+    for real in ("float", "double"):
+        target = tmp_path / f"{real}.o"
+        command = [
+            *compiler.command,
+            *(flag for flag in FLAGS["c"] if flag != "-shared"),
+            f"-DREAL={real}",
+            "-c",
+            source,
+            "-o",
+            target,
+        ]
+        subprocess.run(command, check=True)
+        text = subprocess.run(["objdump", "-d", "-r", target], check=True, capture_output=True, text=True).stdout
+        found[real] = re.findall(r"cvtss2sd|cvtsd2ss|mulsd|mulpd|\bfcvt\s+[ds]|\bfmul\s+(?:d|v\d+\.2d)|malloc|<sin", text)
+    assert not found["float"]
+    assert found["double"]
+
+
+@pytest.mark.parametrize("real", ["float", "double"])
+def test_the_reader_is_pedantically_clean(real, tmp_path):
+    source = tmp_path / "interpolate.c"
+    source.write_text(resources.files("lagrange_casadi.codegen").joinpath("interpolate.c").read_text())
+    flags = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wdouble-promotion", "-Wconversion", "-Werror", f"-DREAL={real}"]
+    command = [*codegen.find_compiler("c").command, *flags, "-c", source, "-o", tmp_path / "out.o"]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stderr
+
+
+def test_arrays_that_do_not_fit_are_refused():
+    table = made(case("slider_crank"), 64, ["effort"])
+    row = np.zeros(5)
+    with pytest.raises(DeclarationError, match=r"out: expected an array of float64 of shape \(2, 5\), got float64 of \(3, 5\)"):
+        table.evaluate(row, row, row, np.zeros((3, 5)))
+    with pytest.raises(DeclarationError, match=r"out: expected an array of float64 of shape \(2, 5\), got float32 of \(2, 5\)"):
+        table.evaluate(row, row, row, np.zeros((2, 5), np.float32))
+    with pytest.raises(DeclarationError, match=r"expected three rows of one length, got \(5,\), \(4,\) and \(5,\)"):
+        table.evaluate(row, row[:4], row, np.zeros((2, 5)))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"turns": 0}, "turns: expected at least 1, got 0"),
+        ({"kept": np.ones((4, 3), dtype=bool)}, r"kept: expected the shape \(4, 2\), got \(4, 3\)"),
+        ({"coefficients": np.zeros((12, 4))}, r"coefficients: expected at least 13 rows of 4, got \(12, 4\)"),
+        ({"coefficients": np.zeros((69, 5))}, r"coefficients: expected at least 13 rows of 4, got \(69, 5\)"),
+        (
+            {"coefficients": np.zeros((69, 4), dtype=int)},
+            r"coefficients: expected contiguous rows of float64 or float32, got int64",
+        ),
+        ({"coefficients": np.zeros((4, 69)).T}, r"coefficients: expected contiguous rows"),
+        ({"drift": np.zeros(3)}, r"drift: expected one of each column, 2, got \(3,\)"),
+        ({"peaks": np.zeros(1)}, r"peaks: expected one of each column, 2, got \(1,\)"),
+    ],
+)
+def test_a_table_of_parts_that_do_not_fit_is_refused(change, message):
+    table = made(case("slider_crank"), 64, ["effort"])
+    assert isinstance(table, CycleTable)
+    with pytest.raises(DeclarationError, match=message):
+        replace(table, **change)
