@@ -96,10 +96,10 @@ def evaluate(
     _refuse(graph, found, times, list(values.values()))
     out = np.asarray(found.out, float)
     series = {name: out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
-    loose = {name: out[k] for k, name in enumerate(graph.columns) if name.startswith("_angle:")}
-    turns = {name: np.unwrap(angle) - angle for name, angle in loose.items()}
-    for name, parts in graph.wrapped.items():
-        for part, sign in parts.items():
+    parts = {part: out[graph.columns.index(part)] for signs in graph.wrapped.values() for part in signs}
+    turns = {name: math.tau * (row - row[0]) if name.startswith("_turns:") else np.unwrap(row) - row for name, row in parts.items()}
+    for name, signs in graph.wrapped.items():
+        for part, sign in signs.items():
             series[name] += sign * turns[part]
         series[name] -= math.tau * math.ceil(series[name][0] / math.tau - 0.5)
     series |= {name: np.full(times.size, np.nan) for name in graph.undetermined}
