@@ -13,7 +13,7 @@ from .accuracy import estimate, explained
 from .backends import Table, run
 from .certificate import Held, certify
 from .codegen.emit import NOT_CONVERGED, OK, SLOW
-from .compensated import ROUNDING, Precision
+from .compensated import DTYPES, ROUNDING, Precision
 from .density import Array
 from .derive import derive
 from .description import describe
@@ -32,6 +32,7 @@ _DEAD = 64.0
 """Roundings below which a closure says nothing but that it is zero."""
 
 _NEAR = 0.3
+_ROUNDS, _INSIDE = 7, 17
 _BESIDE = 8
 
 
@@ -93,7 +94,7 @@ def evaluate(
     times, places = np.linspace(start, stop, count), np.linspace(*ratios)
     p = np.array(list(values.values()))
     found, provenance = run(graph, times, p, rung, threads)
-    _refuse(graph, found, times, list(values.values()))
+    _refuse(graph, found, times, p, rung)
     out = np.asarray(found.out, float)
     series = {name: out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
     parts = {part: out[graph.columns.index(part)] for signs in graph.wrapped.values() for part in signs}
@@ -134,41 +135,76 @@ def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:
     return {"condition": np.max(worst, axis=0)} if worst else {}
 
 
-def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
+def _refuse(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> None:
     """Raise for the first instant that has no result, naming the joint and the driven coordinates."""
     precision = table.stages.precision
     bad, dead, misfit = table.status != OK, _DEAD * ROUNDING[precision], MISFIT[precision]
+    passed: dict[str, npt.NDArray[np.bool_]] = {}
     for k, name in enumerate(graph.columns):
         if name.startswith("_closure:"):
-            bad |= ~(table.out[k] > dead) | _passes(table.out[k])
+            bad |= ~(table.out[k] > dead)
+            passed[name] = _passed(table.out[k], ends=graph.newton is None)
         elif name.startswith("_misfit:"):
             bad |= ~(table.out[k] <= misfit)
         elif name.startswith("_row:"):
             size = table.out[graph.columns.index(name.replace("_row:", "_rowsize:"))]
             bad |= ~(np.abs(table.out[k]) <= misfit * size)
+    for name, found in passed.items():
+        if graph.newton is None and found.any():
+            after = np.flatnonzero(found)
+            found[after] = _dead_between(graph, name, t[after], t[after + 1], p, rung)
+        bad |= found
     if not bad.any():
         return
     i = int(np.argmax(bad))
     joints = graph.scene.mechanism.joints
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
     at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
-    raise AssemblyError(_why(graph, table, i, f"at t = {t[i]:.6g} s{at}"))
+    at = f"at t = {t[i]:.6g} s{at}"
+    raise AssemblyError(_beyond(graph, p, precision, at) or _why(graph, table, i, at, [name for name in passed if passed[name][i]]))
 
 
-def _passes(closure: Array) -> npt.NDArray[np.bool_]:
-    """After which instants a loop passes a dead centre: the sine of its transmission angle meets zero, straight on from both sides.
+def _passed(closure: Array, *, ends: bool) -> npt.NDArray[np.bool_]:
+    """After which instants a loop may pass a dead centre: straight on from either side its transmission angle's sine meets zero.
 
-    The closed forms keep to their branch there, with a kink; the mechanism itself may not.
+    The closed forms keep to their branch there, with a kink; the mechanism itself may not. With ``ends`` the first interval and the
+    last are looked at too, each from its one side.
     """
     found = np.zeros(closure.size, dtype=bool)
-    if closure.size >= 4:
-        sine = np.sqrt(np.maximum(closure, 0.0))
-        left, right = 2 * sine[1:-2] - sine[:-3], 2 * sine[2:-1] - sine[3:]
-        found[1:-2] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[1:-2], sine[2:-1]) < _NEAR)
+    sine = np.sqrt(np.where((closure > 0.0) & (closure < np.inf), closure, 0.0))
+    left, right = np.full((2, max(closure.size - 1, 0)), -1.0 if ends else 1.0)
+    left[1:], right[:-1] = 2 * sine[1:-1] - sine[:-2], 2 * sine[1:-1] - sine[2:]
+    found[:-1] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[:-1], sine[1:]) < _NEAR)
     return found
 
 
-def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
+def _dead_between(graph: SceneGraph, name: str, start: Array, stop: Array, p: Array, rung: Rung) -> npt.NDArray[np.bool_]:
+    """Whether a closure is zero between instants, looked for where it is lowest, ever closer."""
+    lowest = np.full(start.size, np.inf)
+    for _ in range(_ROUNDS):
+        inside = np.linspace(start, stop, _INSIDE)
+        table, _ = run(graph, inside.ravel(), p, Rung(rung.backend, rung.precision, flags=rung.flags))
+        closure = table.out[graph.columns.index(name)].reshape(inside.shape)
+        place = np.argmin(closure, axis=0)[None]
+        lowest = np.fmin(lowest, np.take_along_axis(closure, place, 0)[0])
+        start, stop = (np.take_along_axis(inside, np.clip(place + k, 0, _INSIDE - 1), 0)[0] for k in (-1, 1))
+    return ~(lowest > _DEAD * ROUNDING[rung.precision])
+
+
+def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str | None:
+    """What to say where a link's length cannot be squared in a precision."""
+    mechanism, numbers = graph.scene.mechanism, np.finfo(DTYPES[precision])
+    values = dict(zip(mechanism.parameters, p.tolist(), strict=True))
+    low, high = math.sqrt(numbers.tiny), math.sqrt(numbers.max)
+    for name, link in mechanism.links.items():
+        length = mechanism.number(link.length, values)
+        if not low <= length <= high:
+            what = f"link '{name}' is {length:.3g} m long, and {precision} precision squares lengths from {low:.1g} to {high:.1g} m"
+            return f"the mechanism has no result {at}: {what}"
+    return None
+
+
+def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]) -> str:
     if table.status[i] == NOT_CONVERGED:
         assert graph.newton is not None
         return f"the loops closed by {graph.newton.joints} did not converge {at}"
@@ -179,15 +215,15 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
         kind, _, joint = name.partition(":")
         closed = f"{'joint' if joint in graph.scene.mechanism.joints else 'constraint'} '{joint}'"
         if kind == "_closure" and value < -dead:
-            if graph.iterates(joint):
+            if graph.newton is not None and f"'{joint}'" in graph.newton.joints:
                 return f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
             return f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
         if kind == "_closure" and not value > dead:
             return f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces are not determined there"
-        if kind == "_closure" and _passes(table.out[graph.columns.index(name)])[i]:
+        if name in passed:
+            near = "; if it only comes near one, take more instants" if graph.newton is not None else ""
             return (
-                f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}, and how it goes on is open; "
-                "if it only comes near one, take more instants"
+                f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}, and how it goes on is open{near}"
             )
         if kind == "_misfit" and not value <= misfit:
             return (

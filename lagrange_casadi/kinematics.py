@@ -32,8 +32,8 @@ _LARGEST_STEP = 0.3
 class NewtonLoop:
     """What is left to iterate: ``step(z, t, d, p) -> (correction, relative size)`` and the guess for the first instant.
 
-    ``names`` are those of its blocks; ``joints`` says what closes them, for messages. ``turning`` tells which unknowns are angles
-    that matter up to whole turns only.
+    ``names`` are those of its blocks that have no closed form, and are judged by a volume; ``joints`` says what closes all of its
+    blocks, for messages. ``turning`` tells which unknowns are angles that matter up to whole turns only.
     """
 
     step: Any
@@ -143,6 +143,7 @@ class _Solver:
             closure = self.place(form.closure)
             sign = self._branch(block, form, variables, closure)
             if self.iterate:
+                self.closures[block.name] = closure
                 self._iterate(block, _numbers(block.unknown, self._at_start(variables, form.branch, sign)))
                 return
             sizes = itertools.accumulate(c.variables.numel() for c in block.unknown)
@@ -178,6 +179,7 @@ class _Solver:
         """How far a solution is from the posture, by all that the posture says of what the block places."""
         solved = column(c.variables for c in block.unknown)
         later = column(c.variables for c in self.multibody.coordinates if c not in self.known and c not in block.unknown)
+        size = self._at_start(self._size())[0] or 1.0
         total = 0.0
         for name, rough in self.posture.items():
             if name in self.multibody.frames:
@@ -188,7 +190,7 @@ class _Solver:
                 measured = ca.SX(joint_coordinate(joint, self.multibody.frames, self.multibody.coordinates))
             if ca.depends_on(measured, solved) and not ca.depends_on(measured, later):
                 gap = self._at_start(self.place(ca.substitute(measured, solved, ca.SX(ca.DM(values)))))[0] - rough
-                total += abs(math.remainder(gap, 2.0 * math.pi)) if name in self.multibody.frames else abs(gap)
+                total += abs(math.remainder(gap, 2.0 * math.pi)) if name in self.multibody.frames else abs(gap) / size
         return total
 
     def _told(self, block: Block) -> dict[Coordinate, float]:
@@ -254,7 +256,10 @@ class _Solver:
             systems.append(system)
             if block in self.residuals:
                 side = math.copysign(1.0, self._at_start(system.volume)[0])
-                self.closures[block.name] = ca.fabs(system.volume) if system.free else side * system.volume
+                volume = ca.fabs(system.volume) if system.free else side * system.volume
+                # Of a dyad the closed form knows how near its dead centre is, and the volume on which branch it is.
+                dyad = self.closures.get(block.name)
+                self.closures[block.name] = volume if dyad is None else dyad * ca.copysign(1.0, volume)
             if system.free:
                 misfits[block.name] = self._misfit(block)
         symbols, values = self._substitution(rates, accelerations)
@@ -300,7 +305,8 @@ class _Solver:
         bounded = correction * ca.fmin(1.0, _LARGEST_STEP / relative)
         inputs = [iterated, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
         step = ca.Function("loops", inputs, [bounded, relative], ["z", "t", "d", "p"], ["correction", "size"], {"cse": True})
-        names, joints = tuple(block.name for block in self.residuals), ", ".join(block.joints for block in self.residuals)
+        names = tuple(block.name for block in self.residuals if block.form is None)
+        joints = ", ".join(block.joints for block in self.residuals)
         return NewtonLoop(step, tuple(self.guess), tuple(self.turning), names, joints)
 
 
