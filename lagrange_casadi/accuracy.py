@@ -2,7 +2,7 @@
 
 The graphs are followed once more at some of the instants (:mod:`.interpret`), every operation with a random error as large as its
 rounding, several times over (Monte Carlo arithmetic: D. S. Parker, *Monte Carlo Arithmetic*, UCLA CSD-970002, 1997). What that does
-to an output is its condition, times the rounding. Iterated coordinates take the correction with them that they still want, so
+to an output is its condition, times the rounding. Iterated coordinates take the corrections with them that they still want, so
 loops that were left half closed show, times what they do to each output.
 """
 
@@ -30,6 +30,7 @@ INSTANTS = 48
 _FORCES = ("effort:", "reaction:", "multiplier:", "section:")
 _UNEXPLAINED = 100.0
 _ALONG = np.linspace(0.0, 1.0, 5)
+_STEPS, _CLOSED = 20, 1e-6
 _FUNCTION = 2.0
 """Roundings that a function such as a sine may be off: libraries differ."""
 
@@ -57,7 +58,9 @@ def estimate(graph: SceneGraph, table: Table, solution: Solution, p: Array) -> d
             errors[f"section:{link}:{force}"] = _worst(
                 off - exact.section(link).law.at(force, np.tile(_ALONG, (chosen.size, 1)))[None]
             )
-    return errors
+    # What underflows is in no trial.
+    least = float(np.finfo(DTYPES[table.stages.precision]).tiny)
+    return {name: max(error, least) for name, error in errors.items()}
 
 
 def explained(solution: Solution, residuals: Mapping[str, Array], errors: Mapping[str, float]) -> dict[str, float]:
@@ -105,11 +108,14 @@ def disturbed(stages: Stages, t: Array, p: Array, z: Array) -> tuple[Array, Arra
         if not stages.compensated and followable(stages.drive):
             driven = interpret(stages.drive, [[t], values], rough)
         else:
-            driven = [[noise.rounded(value) for value in row] for row in driven]
+            trials = [_driven(stages, noise.paired(t), noise.paired(p)) for _ in range(TRIALS)]
+            driven = [[noise.rounded(np.array(values)) for values in zip(*rows, strict=True)] for rows in zip(*trials, strict=True)]
         at = list(z)
-        if stages.loops is not None:
-            correction, _ = interpret(stages.loops, [at, driven[0], values], rough)
+        for _ in range(_STEPS if stages.loops else 0):
+            correction, (size,) = interpret(stages.loops, [at, driven[0], values], rough)
             at = [noise.rounded(a + b) for a, b in zip(at, correction, strict=True)]
+            if np.max(size) < _CLOSED:
+                break
         (after,) = interpret(stages.instant, [*driven, at, values], rough)
     return _stack(after, (TRIALS, t.size)), _stack(before, (t.size,))
 
@@ -136,6 +142,10 @@ class _Noise:
     def rounded(self, value: Any, roundings: float = 1.0) -> Any:
         """A value with an error of up to so many roundings."""
         return value + value * (self.generator.random(self.shape) * (2.0 * roundings * self.unit) - roundings * self.unit)
+
+    def paired(self, values: Array) -> Array:
+        """Values with errors as large as those of a pair of numbers."""
+        return values + values * (self.generator.random(values.shape) * 2.0 - 1.0) * self.unit**2
 
     def arithmetic(self, kind: Any) -> Arithmetic:
         """NumPy's operations with such errors, on constants of a kind."""

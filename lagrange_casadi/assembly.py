@@ -39,7 +39,8 @@ def assemble(mechanism: Mechanism, tree: Tree, driven: Collection[str], reaction
     held = [part for c in closures if c.joint is None for part in _hold(resting, c.name, mechanism.constraints[c.name].phi, c)]
     held += [part for graph in rows for part in _hold(resting, graph.row.name, graph.row.expression, graph)]
     velocities = Velocities()
-    kinetic = sum((_kinetic(body, felt, velocities) for body in mechanism.moving), ca.SX(0))
+    spun = {b.far.body for b in tree.branches if not b.joint.slides and (b.joint.name in driven or b.near.body is mechanism.ground)}
+    kinetic = sum((_kinetic(body, felt, velocities, body in spun) for body in mechanism.moving), ca.SX(0))
     _work(felt, (*applied, *held), closures, velocities)
     return Multibody(
         mechanism=mechanism,
@@ -146,8 +147,12 @@ class _Builder:
         return turned, base.rate + branch.sign * coordinate.rate, base.angular + branch.sign * coordinate.acceleration
 
 
-def _kinetic(body: Link | PointMass, felt: _Builder, velocities: Velocities) -> Any:
-    """Kinetic energy of a body (paper eq. 16), in its rate of turning and velocities of its points: no direction is in it."""
+def _kinetic(body: Link | PointMass, felt: _Builder, velocities: Velocities, spun: bool) -> Any:
+    """Kinetic energy of a body (paper eq. 16), in its rate of turning and velocities of its points: no direction is in it.
+
+    Where a body is ``spun``, its velocities are split into that of its joint and that about it: else the square of its rate, which
+    bears on no effort, would leave there its rounding.
+    """
     frame, matter = felt.frames[body.name], body.mass
     points: list[tuple[Any, Pair]]
     if isinstance(body, Link) and isinstance(matter, Density):
@@ -157,7 +162,14 @@ def _kinetic(body: Link | PointMass, felt: _Builder, velocities: Velocities) -> 
         points, inertia = [(matter.mass, matter.centre)], matter.inertia
     else:
         points, inertia = [(matter, (0.0, 0.0))], 0.0
-    energy = sum((mass * ca.sumsqr(velocities.point(frame.motion_of(*place))) / 2 for mass, place in points), ca.SX(0))
+    if not (spun and body.oriented):
+        energy = sum((mass * ca.sumsqr(velocities.point(frame.motion_of(*place))) / 2 for mass, place in points), ca.SX(0))
+        return energy + inertia * velocities.turn(frame.rate, frame.angular) ** 2 / 2
+    held, about = velocities.point((frame.speed, frame.acceleration)), frame.about_anchor()
+    energy = sum((mass for mass, _ in points), ca.SX(0)) * ca.sumsqr(held) / 2
+    for mass, (x, y) in points:
+        energy += mass * ca.dot(held, velocities.point(about.motion_of(x, y)))
+        inertia += mass * ((x - frame.anchor[0]) ** 2 + (y - frame.anchor[1]) ** 2)
     return energy + inertia * velocities.turn(frame.rate, frame.angular) ** 2 / 2
 
 

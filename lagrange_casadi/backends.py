@@ -81,9 +81,10 @@ def run(
 
 
 def _paired(values: Array, out: Array) -> Array:
-    """Doubles as the nearest singles, and what these leave of them."""
-    out[0] = values
-    out[1] = values - out[0]
+    """Doubles as the nearest singles, and what these leave of them; infinite beyond them."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        out[0] = values
+        out[1] = values - out[0]
     return out
 
 

@@ -94,6 +94,12 @@ class Pairs:
         low = float(kind(value - high)) if np.isfinite(high) else 0.0
         return Pair(ca.SX(high), ca.SX(low) if low else None, value)
 
+    @property
+    def turn(self) -> Pair:
+        """2 pi, of which the double is but the nearest one."""
+        high, low, *_ = self._turn()
+        return Pair(ca.SX(high), ca.SX(low), _TURN[0])
+
     def add(self, x: Pair, y: Pair) -> Pair:
         """x + y, to the last digits also where they nearly cancel."""
         total, error = _sum(x.high, y.high)

@@ -40,7 +40,7 @@ class Density:
         found: list[Any] = [0.0, 0.0, 0.0]
         for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
             for j, coefficient in enumerate(cell):
-                mass, first, second = ((b**n - a**n) / n for n in range(j + 1, j + 4))
+                mass, first, second = (part / n for n, part in zip(range(j + 1, j + 4), _differences(b, a, j + 3)[j:], strict=True))
                 for k, part in enumerate((mass - first, first, second - first)):
                     found[k] = found[k] + coefficient * part
         scale = length if self.per_length else 1.0
@@ -73,11 +73,10 @@ class NumericDensity:
         """T0, T1 and T2 at ratios ``u`` of any shape."""
         found = [np.zeros_like(u) for _ in range(3)]
         for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
-            low, high = (_powers(np.maximum(end - u, 0.0), len(cell) + 2) for end in (a, b))
+            parts = _differences(np.maximum(b - u, 0.0), np.maximum(a - u, 0.0), len(cell) + 2)
             for j, shifted in enumerate(_shift(cell, u)):
                 for k in range(3):
-                    n = j + k
-                    found[k] += shifted * (high[n] - low[n]) / (n + 1)
+                    found[k] += shifted * parts[j + k] / (j + k + 1)
         return found[0], found[1], found[2]
 
     def at(self, u: Array) -> Array:
@@ -125,11 +124,12 @@ def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
     return Density(tuple(u), tuple(cells), per_length=True)
 
 
-def _powers(x: Array, count: int) -> list[Array]:
-    """x, x^2, ... by products: a power of an array costs ten of them."""
-    found = [x]
-    for _ in range(count - 1):
-        found.append(found[-1] * x)
+def _differences(high: Any, low: Any, count: int) -> list[Any]:
+    """high^n - low^n for n = 1, 2, ..., by products of their difference, so that close ones do not cancel; of numbers or arrays."""
+    width, power, total, found = high - low, low, 1.0, []
+    for _ in range(count):
+        found.append(width * total)
+        total, power = total * high + power, power * low
     return found
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -16,7 +17,7 @@ from .kinematics import NewtonLoop, Start
 from .mechanism import Mechanism
 from .mobility import internal_forces, needed_reactions
 from .motion import motion_function
-from .multibody import Multibody
+from .multibody import Multibody, column
 from .reciprocals import share_reciprocals
 from .scene import Scene, Wanted
 from .scene_graph import SceneGraph
@@ -69,10 +70,15 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     wrapped: dict[str, dict[str, int]] = {}
     if want.motion:
         motions = _motion_columns(body, solved, driven)
-        loose = {f"_angle:{c.joint}": c.value for c in body.coordinates if c.joint in solved.loose}
-        wrapped = {name: _turns(value, loose) for name, value in motions.items() if _is_angle(mechanism, name)}
-        wrapped = {name: turns for name, turns in wrapped.items() if turns}
-        columns |= {name: value for name, value in loose.items() if any(name in turns for turns in wrapped.values())} | motions
+        angles = [c for c in body.coordinates if c.kind == "angle"]
+        loose = {f"pose:{c.body}:angle": c.value for c in angles if c.joint in solved.loose}
+        counted = {f"_turns:{c.joint}": c.value for c in angles if c.joint not in solved.loose}
+        wrapped = {name: _turns(value, loose | counted) for name, value in motions.items() if _is_angle(mechanism, name)}
+        wrapped = {name: turns for name, turns in wrapped.items() if not loose.keys().isdisjoint(turns)}
+        whole = {name: ca.floor(value * (1 / math.tau)) for name, value in counted.items()}
+        within = column(value - math.tau * whole[name] for name, value in counted.items())
+        motions |= {name: ca.substitute(ca.SX(motions[name]), column(counted.values()), within) for name in wrapped}
+        columns |= {name: value for name, value in whole.items() if any(name in turns for turns in wrapped.values())} | motions
     for part in reversed(body.applied):
         if part.source in want.loads:
             columns |= {f"load:{part.source}:{member}": getattr(part, member) for member in ("fx", "fy", "mz")}
@@ -147,9 +153,9 @@ def _is_angle(mechanism: Mechanism, column: str) -> bool:
     return part in mechanism.joints and mechanism.joints[part].coordinate == "angle"
 
 
-def _turns(angle: Any, loose: dict[str, Any]) -> dict[str, int]:
-    """How often each angle that is known up to whole turns goes into another angle: once, or less once."""
-    if not loose:
+def _turns(angle: Any, parts: dict[str, Any]) -> dict[str, int]:
+    """How often each coordinate's angle goes into another angle: once, or less once."""
+    if not parts:
         return {}
-    slopes = ca.evalf(ca.densify(ca.jacobian(ca.SX(angle), ca.vertcat(*loose.values())))).full().ravel()
-    return {name: int(slope) for name, slope in zip(loose, slopes, strict=True) if slope}
+    slopes = ca.evalf(ca.densify(ca.jacobian(ca.SX(angle), ca.vertcat(*parts.values())))).full().ravel()
+    return {name: int(slope) for name, slope in zip(parts, slopes, strict=True) if slope}

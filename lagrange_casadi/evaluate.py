@@ -11,24 +11,17 @@ import numpy as np
 from .accuracy import estimate, explained
 from .backends import Table, run
 from .certificate import Held, certify
-from .codegen.emit import NOT_CONVERGED, OK, SLOW
-from .compensated import ROUNDING, Precision
+from .compensated import Precision
 from .density import Array
 from .derive import derive
 from .description import describe
-from .errors import AssemblyError, DeclarationError
+from .errors import DeclarationError
 from .grids import require
-from .kinematics import passes_dead_centre, where
+from .refusal import refuse
 from .rung import Backend, Rung
 from .scene import Grid, Scene, checked, checked_ratios
 from .scene_graph import SceneGraph
 from .solution import Solution, in_order
-
-MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
-"""How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
-
-_DEAD = 64.0
-"""Roundings below which a closure says nothing but that it is zero."""
 
 _BESIDE = 8
 
@@ -91,13 +84,13 @@ def evaluate(
     times, places = np.linspace(start, stop, count), np.linspace(*ratios)
     p = np.array(list(values.values()))
     found, provenance = run(graph, times, p, rung, threads)
-    _refuse(graph, found, times, list(values.values()))
+    refuse(graph, found, times, p, rung)
     out = np.asarray(found.out, float)
     series = {name: out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
-    loose = {name: out[k] for k, name in enumerate(graph.columns) if name.startswith("_angle:")}
-    turns = {name: np.unwrap(angle) - angle for name, angle in loose.items()}
-    for name, parts in graph.wrapped.items():
-        for part, sign in parts.items():
+    parts = {part: out[graph.columns.index(part)] for signs in graph.wrapped.values() for part in signs}
+    turns = {name: math.tau * (row - row[0]) if name.startswith("_turns:") else np.unwrap(row) - row for name, row in parts.items()}
+    for name, signs in graph.wrapped.items():
+        for part, sign in signs.items():
             series[name] += sign * turns[part]
         series[name] -= math.tau * math.ceil(series[name][0] / math.tau - 0.5)
     series |= {name: np.full(times.size, np.nan) for name in graph.undetermined}
@@ -130,58 +123,3 @@ def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:
         if name.startswith("_closure:"):
             worst.append(2.0 / values if graph.iterates(name.partition(":")[2]) else 1.0 / np.sqrt(values))
     return {"condition": np.max(worst, axis=0)} if worst else {}
-
-
-def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
-    """Raise for the first instant that has no result, naming the joint and the driven coordinates."""
-    precision = table.stages.precision
-    bad, dead, misfit = table.status != OK, _DEAD * ROUNDING[precision], MISFIT[precision]
-    for k, name in enumerate(graph.columns):
-        if name.startswith("_closure:"):
-            bad |= ~(table.out[k] > dead) | passes_dead_centre(table.out[k])
-        elif name.startswith("_misfit:"):
-            bad |= ~(table.out[k] <= misfit)
-        elif name.startswith("_row:"):
-            size = table.out[graph.columns.index(name.replace("_row:", "_rowsize:"))]
-            bad |= ~(np.abs(table.out[k]) <= misfit * size)
-    if not bad.any():
-        return
-    i = int(np.argmax(bad))
-    joints = graph.scene.mechanism.joints
-    driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
-    at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
-    raise AssemblyError(_why(graph, table, i, f"at t = {t[i]:.6g} s{at}"))
-
-
-def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
-    if table.status[i] == NOT_CONVERGED:
-        assert graph.newton is not None
-        return f"the loops closed by {graph.newton.joints} did not converge {at}"
-    precision = table.stages.precision
-    values = dict(zip(graph.columns, table.out[:, i], strict=True))
-    dead, misfit = _DEAD * ROUNDING[precision], MISFIT[precision]
-    for name, value in values.items():
-        kind, _, joint = name.partition(":")
-        closed = f"{'joint' if joint in graph.scene.mechanism.joints else 'constraint'} '{joint}'"
-        if kind == "_closure" and value < -dead:
-            if graph.iterates(joint):
-                return f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
-            return f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
-        if kind == "_closure" and not value > dead:
-            return f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces are not determined there"
-        if kind == "_closure" and passes_dead_centre(table.out[graph.columns.index(name)])[i]:
-            return (
-                f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}, and how it goes on is open; "
-                "if it only comes near one, take more instants"
-            )
-        if kind == "_misfit" and not value <= misfit:
-            return (
-                f"the loops closed by {closed} are over-constrained and do not fit {at}: a gap of {value:.3g} of the links' length"
-            )
-        if kind == "_row" and not abs(value) <= misfit * values[f"_rowsize:{joint}"]:
-            return f"the motion violates the non-holonomic row '{joint}' by {value:.6g} {at}"
-    if table.status[i] == SLOW:
-        assert graph.newton is not None
-        return f"the loops closed by {graph.newton.joints} converge slowly {at}: they are near a dead centre"
-    name = next(name for name, value in values.items() if not math.isfinite(value))
-    return f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"

@@ -38,8 +38,8 @@ _NEAR = 0.3
 class NewtonLoop:
     """What is left to iterate: ``step(z, t, d, p) -> (correction, relative size)`` and the guess for the first instant.
 
-    ``names`` are those of its blocks; ``joints`` says what closes them, for messages. ``turning`` tells which unknowns are angles
-    that matter up to whole turns only.
+    ``names`` are those of its blocks that have no closed form, and are judged by a volume; ``joints`` says what closes all of its
+    blocks, for messages. ``turning`` tells which unknowns are angles that matter up to whole turns only.
     """
 
     step: Any
@@ -149,6 +149,7 @@ class _Solver:
             closure = self.place(form.closure)
             sign = self._branch(block, form, variables, closure)
             if self.iterate:
+                self.closures[block.name] = closure
                 self._iterate(block, _numbers(block.unknown, self._at_start(variables, form.branch, sign)))
                 return
             sizes = itertools.accumulate(c.variables.numel() for c in block.unknown)
@@ -184,6 +185,7 @@ class _Solver:
         """How far a solution is from the posture, by all that the posture says of what the block places."""
         solved = column(c.variables for c in block.unknown)
         later = column(c.variables for c in self.multibody.coordinates if c not in self.known and c not in block.unknown)
+        size = self._at_start(self._size())[0] or 1.0
         total = 0.0
         for name, rough in self.posture.items():
             if name in self.multibody.frames:
@@ -194,7 +196,7 @@ class _Solver:
                 measured = ca.SX(joint_coordinate(joint, self.multibody.frames, self.multibody.coordinates))
             if ca.depends_on(measured, solved) and not ca.depends_on(measured, later):
                 gap = self._at_start(self.place(ca.substitute(measured, solved, ca.SX(ca.DM(values)))))[0] - rough
-                total += abs(math.remainder(gap, 2.0 * math.pi)) if name in self.multibody.frames else abs(gap)
+                total += abs(math.remainder(gap, 2.0 * math.pi)) if name in self.multibody.frames else abs(gap) / size
         return total
 
     def _told(self, block: Block) -> dict[Coordinate, float]:
@@ -260,7 +262,10 @@ class _Solver:
             systems.append(system)
             if block in self.residuals:
                 side = math.copysign(1.0, self._at_start(system.volume)[0])
-                self.closures[block.name] = ca.fabs(system.volume) if system.free else side * system.volume
+                volume = ca.fabs(system.volume) if system.free else side * system.volume
+                # Of a dyad the closed form knows how near its dead centre is, and the volume on which branch it is.
+                dyad = self.closures.get(block.name)
+                self.closures[block.name] = volume if dyad is None else dyad * ca.copysign(1.0, volume)
             if system.free:
                 misfits[block.name] = self._misfit(block)
         symbols, values = self._substitution(rates, accelerations)
@@ -307,7 +312,8 @@ class _Solver:
         bounded = correction * (_LARGEST_STEP / ca.fmax(relative, _LARGEST_STEP))
         inputs = [iterated, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
         step = ca.Function("loops", inputs, [bounded, relative], ["z", "t", "d", "p"], ["correction", "size"], {"cse": True})
-        names, joints = tuple(block.name for block in self.residuals), ", ".join(block.joints for block in self.residuals)
+        names = tuple(block.name for block in self.residuals if block.form is None)
+        joints = ", ".join(block.joints for block in self.residuals)
         return NewtonLoop(step, tuple(self.guess), tuple(self.turning), names, joints)
 
 
@@ -317,16 +323,17 @@ def where(coordinates: Iterable[tuple[str, str, float]]) -> str:
     return f", where {listed}" if listed else ""
 
 
-def passes_dead_centre(closure: Array) -> npt.NDArray[np.bool_]:
-    """After which instants a loop passes a dead centre: the sine of its transmission angle meets zero, straight on from both sides.
+def passes_dead_centre(closure: Array, *, ends: bool = False) -> npt.NDArray[np.bool_]:
+    """After which instants a loop may pass a dead centre: straight on from either side its transmission angle's sine meets zero.
 
-    The closed forms keep to their branch there, with a kink; the mechanism itself may not.
+    The closed forms keep to their branch there, with a kink; the mechanism itself may not. With ``ends`` the first interval and the
+    last are looked at too, each from its one side.
     """
     found = np.zeros(closure.size, dtype=bool)
-    if closure.size >= 4:
-        sine = np.sqrt(np.maximum(closure, 0.0))
-        left, right = 2 * sine[1:-2] - sine[:-3], 2 * sine[2:-1] - sine[3:]
-        found[1:-2] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[1:-2], sine[2:-1]) < _NEAR)
+    sine = np.sqrt(np.where((closure > 0.0) & (closure < np.inf), closure, 0.0))
+    left, right = np.full((2, max(closure.size - 1, 0)), -1.0 if ends else 1.0)
+    left[1:], right[:-1] = 2 * sine[1:-1] - sine[:-2], 2 * sine[1:-1] - sine[2:]
+    found[:-1] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[:-1], sine[1:]) < _NEAR)
     return found
 
 

@@ -22,6 +22,7 @@ from typing import Any
 
 import casadi as ca
 
+from .density import Density
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
 from .mechanism import Mechanism
@@ -112,8 +113,24 @@ def _section_law(multibody: Multibody, name: str, borne: Any, drives: Any) -> di
             found = zip(STATION, (*acting, x / link.length), strict=True)
             stations |= {f"{source}:{member}": value for member, value in found}
     n0, f0, m0 = tip
-    law = (n0, -slopes[0, 0], -slopes[0, 1], f0, -slopes[1, 0], -slopes[1, 1], m0)
+    f1, f2 = -slopes[1, 0], -slopes[1, 1]
+    if _between_pins(multibody, link, drives):
+        # The moment about the base is zero: of a light link between heavy bodies the tip's reaction would leave rounding only.
+        assert isinstance(link.mass, Density)
+        _, first, inertia = link.mass.ends(link.length)
+        f0 = -(f1 * first + f2 * (first * link.length + inertia / link.length))
+    law = (n0, -slopes[0, 0], -slopes[0, 1], f0, f1, f2, m0)
     return dict(zip((f"law:{k}" for k in LAW), law, strict=True)) | stations
+
+
+def _between_pins(multibody: Multibody, link: Link, drives: Any) -> bool:
+    """Whether pins without effort at a link's base and at its tip are all that acts on it."""
+    if any(part.point.body is link for part in (*multibody.applied, *multibody.held)):
+        return False
+    joints = [joint for joint in multibody.mechanism.joints.values() if link in joint.bodies]
+    ends = [point.end for joint in joints for point in (joint.parent, joint.child) if point.body is link]
+    pins = all(joint.kind == "revolute" and joint.name not in drives for joint in joints)
+    return pins and set(ends) == {"base", "tip"}
 
 
 def _material(multibody: Multibody, name: str) -> Any:

@@ -95,6 +95,10 @@ class Frame:
         speed = (self.speed[0] + rates[0], self.speed[1] + rates[1])
         return replace(self, speed=speed, rate=self.rate + rates[2] if rates.numel() == 3 else self.rate)
 
+    def about_anchor(self) -> Frame:
+        """The body as it turns about its anchor, which rests."""
+        return replace(self, at=(0.0, 0.0), speed=(0.0, 0.0), acceleration=(0.0, 0.0))
+
     def along_axis(self) -> Frame:
         """The body at its origin, seen in axes at rest that lie along its own at the instant."""
         speed, acceleration = (self.rotation.resolve(*v) for v in self.motion_of(0.0, 0.0))

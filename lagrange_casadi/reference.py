@@ -7,6 +7,7 @@ checked by it: it takes the same ones.
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -32,7 +33,8 @@ def reference(
     """
     mp = _mpmath()
     with mp.workdps(digits):
-        known = arithmetic()
+        # A turn is meant, not the double that is nearest to it.
+        known = Arithmetic(lambda value: 2 * mp.pi if value == math.tau else mp.mpf(value), _operations(mp))
         values = [mp.mpf(value) for value in p]
         rows = []
         for i, moment in enumerate(t):

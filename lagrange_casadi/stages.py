@@ -9,6 +9,7 @@ its whole turns, the rest rounded once. What comes after does not know the diffe
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -108,7 +109,7 @@ class _Counting:
         return Arithmetic(self.constant, {code: functools.partial(self.apply, code) for code in codes})
 
     def constant(self, value: float) -> _Value:
-        return _Value(ca.SX(value), self.pairs.constant(value), fixed=True)
+        return _Value(ca.SX(value), self.pairs.turn if value == math.tau else self.pairs.constant(value), fixed=True)
 
     def apply(self, code: int, *values: _Value) -> _Value:
         fixed = all(value.fixed for value in values)

@@ -293,13 +293,14 @@ def _place(frames, point):
     """The place of a body's point, and the body's direction."""
     name, x, y = point
     bx, by, phi, c, s = frames[name]
-    return bx + x * c - y * s, by + x * s + y * c, phi
+    # The jets first: mpmath would try to read one as a number.
+    return bx + c * x - s * y, by + s * x + c * y, phi
 
 
 def _along(frames, joint):
     """The axis that a joint's parent carries, in ground axes."""
     (x, y), (_, _, _, c, s) = joint.axis, frames[joint.parent[0]]
-    return x * c - y * s, x * s + y * c
+    return c * x - s * y, s * x + c * y
 
 
 def _local(frames, name, at):

@@ -11,16 +11,16 @@ from builders import columns_at, oracle_of, postures
 from lagrange_casadi import derive
 
 
-def precise(scene, t, drives=None, parameters=None, digits=50, beside=None):
+def precise(scene, t, drives=None, parameters=None, digits=50, beside=None, least=None):
     """What a scene has at an instant, by full name: numbers, and under ``section:LINK:FORCE`` functions of the ratio xi/l.
 
     There are efforts, reactions, poses, multipliers and section forces, less what the mechanism leaves undetermined. The numbers of
     the declaration are doubles and taken as exact. ``drives`` are (coordinate, rate, acceleration) of the driven joints, numbers of
     any kind, by default the doubles of the scene's graph. ``beside(arithmetic, values)`` gives the oracle its loads, extras and
-    unaided drives, by default those of the case of the mechanism's name. Angles count a drive's turns: a graph's may differ by
-    whole ones.
+    unaided drives, by default those of the case of the mechanism's name. ``least``: see :class:`.Digits`. Angles count a drive's
+    turns: a graph's may differ by whole ones.
     """
-    m, arithmetic = scene.mechanism, Digits(digits)
+    m, arithmetic = scene.mechanism, Digits(digits, least)
     values = m.values(parameters)
     graph = derive(scene, ["all"])
     found, motion = columns_at(graph, t, values)
@@ -42,6 +42,7 @@ def _named(m, solved):
         )
     named |= {f"multiplier:{name}": multiplier for name, multiplier in solved.multipliers.items()}
     for link, forces in solved.sections.items():
+        forces = functools.lru_cache(maxsize=None)(forces)
         named |= {f"section:{link}:{force}": _member(forces, k) for k, force in enumerate(("axial", "shear", "bending"))}
     return named
 

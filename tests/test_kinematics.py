@@ -242,3 +242,16 @@ def test_a_gear_on_what_a_loop_turns_goes_on_where_that_is_wrapped():
     turned, driven = solution.motion("D").value, solution.motion("E").value
     assert np.ptp(turned) > 4 * math.pi
     np.testing.assert_allclose(np.diff(driven), -2.0 * np.diff(turned), atol=1e-12)
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-6, 1.0, 1e6])
+def test_a_rough_place_tells_the_branch_at_any_size(size):
+    m = Mechanism("small")
+    crank, rod, slider = m.link("crank", length=0.1 * size, mass=1), m.link("rod", length=0.2 * size, mass=1), m.point_mass("s", 1)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, slider)
+    m.prismatic("guide", m.ground, slider, axis=(1, 0))
+    for side in (1, -1):
+        solution = evaluate(Scene(m, {"O": polynomial(1.0, 1.0)}, posture={"guide": 0.2 * size * side}))
+        assert np.sign(solution.motion("guide").value[0]) == side

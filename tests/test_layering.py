@@ -53,6 +53,7 @@ ORDER = (
     "certificate",
     "backends",
     "accuracy",
+    "refusal",
     "evaluate",
     "peaks",
     "publish",
@@ -114,6 +115,7 @@ def test_the_engine_knows_no_mechanism():
             "tabulate",
             "backends",
             "accuracy",
+            "refusal",
             "evaluate",
         ):
             for number, line in enumerate(path.read_text().splitlines(), 1):

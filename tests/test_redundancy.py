@@ -39,6 +39,12 @@ def test_reactions_that_are_not_unique_are_named():
     np.testing.assert_allclose(solution.effort("O"), torque, atol=1e-12)
 
 
+def test_single_precision_closes_what_is_too_many():
+    """Near no dead centre its last corrections are rounding, and not the slow convergence that they look like."""
+    exact, single = (evaluate(parallelogram(), precision=precision) for precision in ("double", "single"))
+    np.testing.assert_allclose(single.effort("O"), exact.effort("O"), atol=1e-5 * np.max(np.abs(exact.effort("O"))))
+
+
 def test_a_unique_reaction_stays_where_others_are_not():
     """A pendulum hung on the parallelogram's bar has a reaction of its own."""
     solution = evaluate(parallelogram(pendulum=True))

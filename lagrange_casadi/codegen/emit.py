@@ -25,7 +25,9 @@ NEWTON_STEPS = 50
 NEWTON_DONE, NEWTON_DONE_SINGLE = 1e-9, 1e-4
 """A correction after which the next one would be rounding."""
 
-NEWTON_RATE = 1e-2
+NEWTON_RATE, NEWTON_RATE_SINGLE = 1e-2, 0.2
+"""A correction over the one before, from which on it does not look quadratic: near a dead centre it is a half."""
+
 NEWTON_ROUNDING, NEWTON_ROUNDING_SINGLE = 1e-13, 1e-5
 NEWTON_LOST = 0.1
 """A last correction, of a fixed number, after which nothing is known."""
@@ -238,10 +240,12 @@ def _lead(drive: ca.Function) -> ca.Function:
 
 def newton_rule(precision: Precision, steps: int | None) -> dict[str, float]:
     """When iterated loops are done, and lost: the numbers that the emitted C and the virtual machine share."""
-    done, rounding = (NEWTON_DONE, NEWTON_ROUNDING) if precision == "double" else (NEWTON_DONE_SINGLE, NEWTON_ROUNDING_SINGLE)
+    done, rate, rounding = NEWTON_DONE, NEWTON_RATE, NEWTON_ROUNDING
+    if precision == "single":
+        done, rate, rounding = NEWTON_DONE_SINGLE, NEWTON_RATE_SINGLE, NEWTON_ROUNDING_SINGLE
     if steps is not None:
-        return {"steps": steps, "done": 0.0, "lost": NEWTON_LOST, "rate": NEWTON_RATE, "rounding": rounding}
-    return {"steps": NEWTON_STEPS, "done": done, "lost": done, "rate": NEWTON_RATE, "rounding": rounding}
+        return {"steps": steps, "done": 0.0, "lost": NEWTON_LOST, "rate": rate, "rounding": rounding}
+    return {"steps": NEWTON_STEPS, "done": done, "lost": done, "rate": rate, "rounding": rounding}
 
 
 def _told(newton: int | None) -> str:

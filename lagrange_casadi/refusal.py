@@ -1,0 +1,115 @@
+"""What is no result, and why: the first instant at which a loop does not close, or is where its forces are not determined."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from .backends import Table, run
+from .codegen.emit import NOT_CONVERGED, OK, SLOW
+from .compensated import DTYPES, ROUNDING, Precision
+from .density import Array
+from .errors import AssemblyError
+from .kinematics import passes_dead_centre, where
+from .rung import Rung
+from .scene_graph import SceneGraph
+
+MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
+"""How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
+
+_DEAD = 64.0
+"""Roundings below which a closure says nothing but that it is zero."""
+
+_ROUNDS, _INSIDE = 7, 17
+
+
+def refuse(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> None:
+    """Raise for the first instant that has no result, naming the joint and the driven coordinates."""
+    precision = table.stages.precision
+    bad, dead, misfit = table.status != OK, _DEAD * ROUNDING[precision], MISFIT[precision]
+    passed: dict[str, npt.NDArray[np.bool_]] = {}
+    for k, name in enumerate(graph.columns):
+        if name.startswith("_closure:"):
+            bad |= ~(table.out[k] > dead)
+            passed[name] = passes_dead_centre(table.out[k], ends=graph.newton is None)
+        elif name.startswith("_misfit:"):
+            bad |= ~(table.out[k] <= misfit)
+        elif name.startswith("_row:"):
+            size = table.out[graph.columns.index(name.replace("_row:", "_rowsize:"))]
+            bad |= ~(np.abs(table.out[k]) <= misfit * size)
+    for name, found in passed.items():
+        if graph.newton is None and found.any():
+            after = np.flatnonzero(found)
+            found[after] = _dead_between(graph, name, t[after], t[after + 1], p, rung)
+        bad |= found
+    if not bad.any():
+        return
+    i = int(np.argmax(bad))
+    joints = graph.scene.mechanism.joints
+    driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
+    at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
+    at = f"at t = {t[i]:.6g} s{at}"
+    raise AssemblyError(_beyond(graph, p, precision, at) or _why(graph, table, i, at, [name for name in passed if passed[name][i]]))
+
+
+def _dead_between(graph: SceneGraph, name: str, start: Array, stop: Array, p: Array, rung: Rung) -> npt.NDArray[np.bool_]:
+    """Whether a closure is zero between instants, looked for where it is lowest, ever closer."""
+    lowest = np.full(start.size, np.inf)
+    for _ in range(_ROUNDS):
+        inside = np.linspace(start, stop, _INSIDE)
+        table, _ = run(graph, inside.ravel(), p, Rung(rung.backend, rung.precision, flags=rung.flags))
+        closure = table.out[graph.columns.index(name)].reshape(inside.shape)
+        place = np.argmin(closure, axis=0)[None]
+        lowest = np.fmin(lowest, np.take_along_axis(closure, place, 0)[0])
+        start, stop = (np.take_along_axis(inside, np.clip(place + k, 0, _INSIDE - 1), 0)[0] for k in (-1, 1))
+    return ~(lowest > _DEAD * ROUNDING[rung.precision])
+
+
+def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str | None:
+    """What to say where a link's length cannot be squared in a precision."""
+    mechanism, numbers = graph.scene.mechanism, np.finfo(DTYPES[precision])
+    values = dict(zip(mechanism.parameters, p.tolist(), strict=True))
+    low, high = math.sqrt(numbers.tiny), math.sqrt(numbers.max)
+    for name, link in mechanism.links.items():
+        length = mechanism.number(link.length, values)
+        if not low <= length <= high:
+            what = f"link '{name}' is {length:.3g} m long, and {precision} precision squares lengths from {low:.1g} to {high:.1g} m"
+            return f"the mechanism has no result {at}: {what}"
+    return None
+
+
+def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]) -> str:
+    if table.status[i] == NOT_CONVERGED:
+        assert graph.newton is not None
+        return f"the loops closed by {graph.newton.joints} did not converge {at}"
+    precision = table.stages.precision
+    values = dict(zip(graph.columns, table.out[:, i], strict=True))
+    dead, misfit = _DEAD * ROUNDING[precision], MISFIT[precision]
+    for name, value in values.items():
+        kind, _, joint = name.partition(":")
+        closed = f"{'joint' if joint in graph.scene.mechanism.joints else 'constraint'} '{joint}'"
+        if kind == "_closure" and value < -dead:
+            if graph.newton is not None and f"'{joint}'" in graph.newton.joints:
+                return f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
+            return f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
+        if kind == "_closure" and not value > dead:
+            return f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces are not determined there"
+        if name in passed:
+            near = "; if it only comes near one, take more instants" if graph.newton is not None else ""
+            return (
+                f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}, and how it goes on is open{near}"
+            )
+        if kind == "_misfit" and not value <= misfit:
+            return (
+                f"the loops closed by {closed} are over-constrained and do not fit {at}: a gap of {value:.3g} of the links' length"
+            )
+        if kind == "_row" and not abs(value) <= misfit * values[f"_rowsize:{joint}"]:
+            return f"the motion violates the non-holonomic row '{joint}' by {value:.6g} {at}"
+    if table.status[i] == SLOW:
+        assert graph.newton is not None
+        return f"the loops closed by {graph.newton.joints} converge slowly {at}: they are near a dead centre"
+    name = next(name for name, value in values.items() if not math.isfinite(value))
+    return f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"
