@@ -141,7 +141,8 @@ class Drive:
     @property
     def loose(self) -> list[int]:
         """The rows of the angles that are known up to whole turns only."""
-        return [k for k, name in enumerate(self.graph.columns) if name.startswith("_angle:")]
+        parts = {part for signs in self.graph.wrapped.values() for part in signs if not part.startswith("_turns:")}
+        return [k for k, name in enumerate(self.graph.columns) if name in parts]
 
     def terms_at(self, angles: Array, places: Array) -> Array:
         """The terms at angles, as they come, (factors, columns, n).
@@ -173,11 +174,17 @@ class Drive:
         raise DeclarationError(f"table: the loops closed by {self.graph.newton.joints} did not converge{self._not_round(bad)}")
 
     def unwind(self, columns: Array, turns: Array) -> None:
-        """Add to the angles known up to whole turns (columns, n), and to their sums, the turns (m, n) that they lack."""
+        """Add to the angles known up to whole turns (columns, n), and to their sums, the turns (m, n) that they lack.
+
+        Whole turns that columns count are then in the angles, and the columns are zero.
+        """
         own = {self.graph.columns[k]: turn for k, turn in zip(self.loose, turns, strict=True)}
+        whole = [k for k, name in enumerate(self.graph.columns) if name.startswith("_turns:")]
+        own |= {self.graph.columns[k]: math.tau * columns[k] for k in whole}
         for k, name in enumerate(self.graph.columns):
-            for part, sign in ({name: 1} if name in own else self.graph.wrapped.get(name, {})).items():
+            for part, sign in self.graph.wrapped.get(name, {}).items():
                 columns[k] += sign * own[part]
+        columns[whole] = 0.0
 
     def follow(self, turns: int) -> tuple[Course, Array]:
         """Some turns from the start on, and the terms there, angles made continuous.
@@ -290,8 +297,8 @@ def _sizes(graph: SceneGraph, peaks: Array) -> Array:
 def _kind(graph: SceneGraph, column: str) -> str:
     """What columns are compared by: their unit, or, where that says nothing, their name."""
     group, part, *_ = column.split(":")
-    if group in ("_angle", "_held"):
-        return ANGLE if group == "_angle" else _UNITS[column.rpartition(":")[2]]
+    if group in ("_turns", "_held"):
+        return ANGLE if group == "_turns" else _UNITS[column.rpartition(":")[2]]
     if group.startswith("_"):
         return column
     joint = graph.scene.mechanism.joints.get(part.removesuffix("_rate").removesuffix("_acceleration"))

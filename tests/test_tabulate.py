@@ -61,7 +61,7 @@ def directly(scene, angle, rate, acceleration, wanted=None):
 
 def whole_turns_apart(graph):
     """The rows that are known up to whole turns."""
-    return [name.startswith("_angle:") or name in graph.wrapped for name in graph.columns]
+    return [name in graph.wrapped for name in graph.columns]
 
 
 def worst_gap(scene, table, angle, rate, acceleration, wanted=None):
@@ -71,6 +71,8 @@ def worst_gap(scene, table, angle, rate, acceleration, wanted=None):
     gap = found - directly(scene, angle, rate, acceleration, wanted)
     loose = whole_turns_apart(derive(scene, wanted))
     gap[loose] -= math.tau * np.rint(gap[loose] / math.tau)
+    # A table has whole turns in the angles themselves.
+    gap[[name.startswith("_turns:") for name in table.columns]] = 0.0
     return np.max(np.abs(gap).max(axis=1) / np.where(table.peaks > 0, table.peaks, 1.0))
 
 
