@@ -13,13 +13,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from .backends import Table
+from .certificate import blur
 from .compensated import DTYPES, ROUNDING
 from .density import Array
-from .interpret import Arithmetic, followable, interpret
+from .interpret import Arithmetic, followable, interpret, numpy_arithmetic
 from .scene_graph import SceneGraph
 from .section_law import FORCES
 from .solution import Solution
@@ -30,8 +30,6 @@ INSTANTS = 48
 _FORCES = ("effort:", "reaction:", "multiplier:", "section:")
 _UNEXPLAINED = 100.0
 _ALONG = np.linspace(0.0, 1.0, 5)
-_FUNCTION = 2.0
-"""Roundings that a function such as a sine may be off: libraries differ."""
 
 
 def estimate(graph: SceneGraph, table: Table, solution: Solution, p: Array) -> dict[str, float]:
@@ -68,7 +66,7 @@ def explained(solution: Solution, residuals: Mapping[str, Array], errors: Mappin
     worst = max((float(np.max(values)) for values in residuals.values()), default=0.0)
     largest = {name: float(np.max(np.abs(values), initial=0.0)) for name, values in solution.series.items()}
     relative = [errors[n] / largest[n] for n in errors if n.startswith(_FORCES) and largest.get(n, 0.0) > errors[n]]
-    if not errors or worst <= _UNEXPLAINED * max(relative, default=0.0):
+    if not errors or worst <= _UNEXPLAINED * max([*relative, blur(solution)]):
         return dict(errors)
     forces = [name for name in solution.names() if name.startswith(_FORCES) and solution.determined(name)]
     return dict(errors) | {name: max(errors[name], worst * abs(solution.peak(name).value)) for name in forces}
@@ -97,7 +95,7 @@ def disturbed(stages: Stages, t: Array, p: Array, z: Array) -> tuple[Array, Arra
     if not all(followable(function) for function in (stages.instant, *([stages.loops] if stages.loops else []))):
         return None
     noise = _Noise(ROUNDING[stages.precision], np.random.default_rng(0), (TRIALS, t.size))
-    exact, rough = _arithmetic(float, lambda value, _: value), noise.arithmetic(DTYPES[stages.precision].type)
+    exact, rough = numpy_arithmetic(), noise.arithmetic(DTYPES[stages.precision].type)
     driven = _driven(stages, t, p)
     values = [float(DTYPES[stages.precision].type(value)) for value in p]
     with np.errstate(all="ignore"):
@@ -139,65 +137,4 @@ class _Noise:
 
     def arithmetic(self, kind: Any) -> Arithmetic:
         """NumPy's operations with such errors, on constants of a kind."""
-        return _arithmetic(lambda value: float(kind(value)), self.rounded)
-
-
-def _arithmetic(constant: Any, rounded: Any) -> Arithmetic:
-    """NumPy's operations on arrays, ``rounded(value, roundings)`` applied where an operation rounds."""
-
-    def of(function: Any, roundings: float) -> Any:
-        return lambda *values: rounded(function(*values), roundings)
-
-    known: dict[int, Any] = dict(_EXACT)
-    known |= {code: of(function, 1.0) for code, function in _ROUNDED.items()}
-    known |= {code: of(function, _FUNCTION) for code, function in _FUNCTIONS.items()}
-    return Arithmetic(constant, known)
-
-
-_EXACT = {
-    ca.OP_NEG: np.negative,
-    ca.OP_TWICE: lambda x: x + x,
-    ca.OP_ASSIGN: lambda x: x,
-    ca.OP_FABS: np.abs,
-    ca.OP_SIGN: np.sign,
-    ca.OP_FLOOR: np.floor,
-    ca.OP_CEIL: np.ceil,
-    ca.OP_FMIN: np.fmin,
-    ca.OP_FMAX: np.fmax,
-    ca.OP_FMOD: np.fmod,
-    ca.OP_COPYSIGN: np.copysign,
-    ca.OP_LT: lambda x, y: 1.0 * (x < y),
-    ca.OP_LE: lambda x, y: 1.0 * (x <= y),
-    ca.OP_EQ: lambda x, y: 1.0 * (x == y),
-    ca.OP_NE: lambda x, y: 1.0 * (x != y),
-    ca.OP_NOT: lambda x: 1.0 * (x == 0),
-    ca.OP_AND: lambda x, y: 1.0 * ((x != 0) & (y != 0)),
-    ca.OP_OR: lambda x, y: 1.0 * ((x != 0) | (y != 0)),
-    ca.OP_IF_ELSE_ZERO: lambda x, y: np.where(x, y, 0.0),
-    ca.OP_REMAINDER: lambda x, y: x - y * np.rint(x / y),
-}
-_ROUNDED = {
-    ca.OP_ADD: np.add,
-    ca.OP_SUB: np.subtract,
-    ca.OP_MUL: np.multiply,
-    ca.OP_DIV: np.divide,
-    ca.OP_SQ: np.square,
-    ca.OP_SQRT: np.sqrt,
-    ca.OP_INV: lambda x: 1.0 / x,
-}
-_FUNCTIONS = {
-    ca.OP_POW: np.power,
-    ca.OP_CONSTPOW: np.power,
-    ca.OP_ATAN2: np.arctan2,
-    ca.OP_HYPOT: np.hypot,
-    ca.OP_ASIN: np.arcsin,
-    ca.OP_ACOS: np.arccos,
-    ca.OP_ATAN: np.arctan,
-    ca.OP_ASINH: np.arcsinh,
-    ca.OP_ACOSH: np.arccosh,
-    ca.OP_ATANH: np.arctanh,
-    ca.OP_ERF: np.vectorize(math.erf),
-} | {
-    getattr(ca, f"OP_{name.upper()}"): getattr(np, name)
-    for name in ["sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "log1p", "expm1"]
-}
+        return replace(numpy_arithmetic(self.rounded), constant=lambda value: float(kind(value)))

@@ -63,7 +63,7 @@ def run(
     """
     rung = rung or Rung()
     many = rung.precision == "single" or counts(graph, t, p)
-    stages = compensated(graph, rung.precision)[0] if many else plain(graph)
+    stages = compensated(graph, rung.precision) if many else plain(graph)
     compiled = _compiled(graph, stages, rung)
     table = into or _table(graph, stages, t.size)
     if compiled is None:
