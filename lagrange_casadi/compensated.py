@@ -102,7 +102,8 @@ class Pairs:
     def constant(self, value: float) -> Pair:
         """A double, in as many parts as it takes."""
         kind = DTYPES[self.precision].type
-        high = float(kind(value))
+        with np.errstate(over="ignore"):
+            high = float(kind(value))
         low = float(kind(value - high)) if np.isfinite(high) else 0.0
         return Pair(ca.SX(high), ca.SX(low) if low else None, value)
 

@@ -136,11 +136,10 @@ def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:
 
 def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
     """Raise for the first instant that has no result, naming the joint and the driven coordinates."""
-    precision = table.stages.precision
-    bad, dead, misfit = table.status != OK, _DEAD * ROUNDING[precision], MISFIT[precision]
+    bad, misfit = table.status != OK, MISFIT[table.stages.precision]
     for k, name in enumerate(graph.columns):
         if name.startswith("_closure:"):
-            bad |= ~(table.out[k] > dead) | _passes(table.out[k])
+            bad |= ~(table.out[k] > _dead(graph, table, name)) | _passes(table.out[k])
         elif name.startswith("_misfit:"):
             bad |= ~(table.out[k] <= misfit)
         elif name.startswith("_row:"):
@@ -153,6 +152,12 @@ def _refuse(graph: SceneGraph, table: Table, t: Array, p: list[float]) -> None:
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
     at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
     raise AssemblyError(_why(graph, table, i, f"at t = {t[i]:.6g} s{at}"))
+
+
+def _dead(graph: SceneGraph, table: Table, closure: str) -> float:
+    """Below what a closure says nothing: of a closed form it is the square of a sine, of an iterated loop as the sine itself."""
+    square = _DEAD * ROUNDING[table.stages.precision]
+    return math.sqrt(square) if graph.iterates(closure.partition(":")[2]) else square
 
 
 def _passes(closure: Array) -> npt.NDArray[np.bool_]:
@@ -172,11 +177,10 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str) -> str:
     if table.status[i] == NOT_CONVERGED:
         assert graph.newton is not None
         return f"the loops closed by {graph.newton.joints} did not converge {at}"
-    precision = table.stages.precision
-    values = dict(zip(graph.columns, table.out[:, i], strict=True))
-    dead, misfit = _DEAD * ROUNDING[precision], MISFIT[precision]
+    values, misfit = dict(zip(graph.columns, table.out[:, i], strict=True)), MISFIT[table.stages.precision]
     for name, value in values.items():
         kind, _, joint = name.partition(":")
+        dead = _dead(graph, table, name)
         closed = f"{'joint' if joint in graph.scene.mechanism.joints else 'constraint'} '{joint}'"
         if kind == "_closure" and value < -dead:
             if graph.iterates(joint):

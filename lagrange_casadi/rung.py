@@ -66,8 +66,8 @@ class Rung:
 
     @property
     def options(self) -> str:
-        """The rung as options of the command line: only what differs from the default."""
-        words = [f"--{name} {value}" for name, value in vars(self).items() if value != getattr(type(self), name)]
+        """The rung as options of the command line, as a shell takes them: only what differs from the default."""
+        words = [f"--{name} {shlex.quote(str(value))}" for name, value in vars(self).items() if value != getattr(type(self), name)]
         return " ".join(words) or "(default)"
 
 
