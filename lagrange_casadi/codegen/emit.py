@@ -26,8 +26,8 @@ NEWTON_DONE, NEWTON_DONE_SINGLE = 1e-9, 1e-4
 """A correction after which the next one would be rounding."""
 
 NEWTON_RATE, NEWTON_RATE_SINGLE = 1e-2, 0.25
-"""Of one correction to the one before: from where on they shrink too slowly to go with the square. At a dead centre it is 1/2; where
-corrections end early, as in single, their square is not far below them."""
+"""Of one correction to the one before: from where on they shrink too slowly to go with the square. At a dead centre it is 1/2;
+where corrections end early, as in single, their square is not far below them."""
 
 NEWTON_ROUNDING, NEWTON_ROUNDING_SINGLE = 1e-13, 1e-5
 NEWTON_LOST = 0.1
