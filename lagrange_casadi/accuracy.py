@@ -2,8 +2,9 @@
 
 The graphs are followed once more at some of the instants (:mod:`.interpret`), every operation with a random error as large as its
 rounding, several times over (Monte Carlo arithmetic: D. S. Parker, *Monte Carlo Arithmetic*, UCLA CSD-970002, 1997). What that does
-to an output is its condition, times the rounding. Iterated coordinates take the correction with them that they still want, so
-loops that were left half closed show, times what they do to each output.
+to an output is its condition, times the rounding. The result itself is one trial more, so that what a compiler or a narrower type
+has made of it shows. Iterated coordinates take the correction with them that they still want, so loops that were left half closed
+show, times what they do to each output.
 """
 
 from __future__ import annotations
@@ -21,9 +22,9 @@ from .compensated import DTYPES, ROUNDING
 from .density import Array
 from .interpret import Arithmetic, followable, interpret, numpy_arithmetic
 from .scene_graph import SceneGraph
-from .section_law import FORCES
+from .section_law import FORCES, SectionLaw
 from .solution import Solution
-from .stages import Stages
+from .stages import Stages, compensated
 
 TRIALS = 8
 INSTANTS = 48
@@ -39,22 +40,20 @@ def estimate(graph: SceneGraph, table: Table, solution: Solution, p: Array) -> d
     call functions that cannot be followed.
     """
     chosen = _chosen(graph, table)
-    found = disturbed(table.stages, solution.t[chosen], p, table.iterated[:, chosen])
+    found = disturbed(graph, table.stages, solution.t[chosen], p, table.iterated[:, chosen])
     if found is None:
         return {}
-    after, before = ({n: x[k] for k, n in enumerate(graph.columns) if not n.startswith("_")} for x in found)
-    errors = {name: _worst(after[name] - before[name][None], name in graph.wrapped) for name in after}
+    rough = np.concatenate([found[0], np.asarray(table.out[:, chosen], float)[:, None]], axis=1)
+    after, before = ({n: x[k] for k, n in enumerate(graph.columns) if not n.startswith("_")} for x in (rough, found[1]))
+    errors = {name: _worst(after[name] - before[name], name in graph.wrapped) for name in after}
     undetermined = {name: np.full(chosen.size, np.nan) for name in graph.undetermined}
     exact = replace(solution, series=before | undetermined, t=solution.t[chosen])
-    rough = replace(solution, series={name: x.ravel() for name, x in (after | undetermined).items()})
+    rows = replace(solution, series={name: x.ravel() for name, x in (after | undetermined).items()})
     for link in solution.links_with_sections:
-        if not solution.determined(f"section:{link}:axial"):
-            continue
-        for force in FORCES:
-            off = rough.section(link).law.at(force, np.tile(_ALONG, (TRIALS * chosen.size, 1))).reshape(TRIALS, chosen.size, -1)
-            errors[f"section:{link}:{force}"] = _worst(
-                off - exact.section(link).law.at(force, np.tile(_ALONG, (chosen.size, 1)))[None]
-            )
+        if solution.determined(f"section:{link}:axial"):
+            for force in FORCES:
+                off, true = (_along(of.section(link).law, force).reshape(-1, chosen.size, _ALONG.size) for of in (rows, exact))
+                errors[f"section:{link}:{force}"] = _worst(off - true)
     return errors
 
 
@@ -81,29 +80,33 @@ def _chosen(graph: SceneGraph, table: Table) -> Array:
     return np.unique([*spread, *peaks])
 
 
+def _along(law: SectionLaw, force: str) -> Array:
+    return law.at(force, np.tile(_ALONG, (law.coefficients["n0"].size, 1)))
+
+
 def _worst(gaps: Array, angle: bool = False) -> float:
+    """The largest size; a trial that came to nothing, as a root of less than zero does, says nothing."""
     if angle:
         gaps = gaps - math.tau * np.rint(gaps / math.tau)
-    return float(np.max(np.abs(gaps), initial=0.0))
+    return float(np.fmax.reduce(np.abs(gaps), axis=None, initial=0.0))
 
 
-def disturbed(stages: Stages, t: Array, p: Array, z: Array) -> tuple[Array, Array] | None:
-    """The columns at instants ``t`` with errors put in, (columns, trials, n), and without them, (columns, n).
+def disturbed(graph: SceneGraph, stages: Stages, t: Array, p: Array, z: Array) -> tuple[Array, Array] | None:
+    """The columns at instants ``t`` with errors put in, (columns, trials, n), and in doubles without them, (columns, n).
 
     ``z`` (k, n) are the iterated coordinates there. None where the graphs call functions that cannot be followed.
     """
     if not all(followable(function) for function in (stages.instant, *([stages.loops] if stages.loops else []))):
         return None
     noise = _Noise(ROUNDING[stages.precision], np.random.default_rng(0), (TRIALS, t.size))
-    exact, rough = numpy_arithmetic(), noise.arithmetic(DTYPES[stages.precision].type)
-    driven = _driven(stages, t, p)
+    rough, known = noise.arithmetic(DTYPES[stages.precision].type), compensated(graph, "double") if stages.compensated else stages
     values = [float(DTYPES[stages.precision].type(value)) for value in p]
     with np.errstate(all="ignore"):
-        (before,) = interpret(stages.instant, [*driven, list(z), list(p)], exact)
+        (before,) = interpret(known.instant, [*_driven(known, t, p), list(z), list(p)], numpy_arithmetic())
         if not stages.compensated and followable(stages.drive):
             driven = interpret(stages.drive, [[t], values], rough)
         else:
-            driven = [[noise.rounded(value) for value in row] for row in driven]
+            driven = [[noise.rounded(value) for value in row] for row in _driven(stages, t, p)]
         at = list(z)
         if stages.loops is not None:
             correction, _ = interpret(stages.loops, [at, driven[0], values], rough)

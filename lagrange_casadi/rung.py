@@ -28,7 +28,7 @@ class Rung:
         ``double``, or ``single``: every operation, in code without a double; phases are kept all the same.
     newton
         None solves loops in closed form where there is one, and iterates the others until they are closed. A number takes so many
-        steps of Newton's method for every loop, from the instant before, and no more.
+        steps of Newton's method for every loop, from the instant before, and no more; at the first instant it is closed.
     table
         A whole number of nodes, or a wanted accuracy below 1: outputs are read from a table over the turn of the one drive.
     flags

@@ -4,21 +4,27 @@ What differs after forty digits differs in kind. Every number of a case is a par
 left in its graphs are taken for what they mean.
 """
 
+import sys
 from dataclasses import replace
 
+import casadi as ca
 import mpmath
 import numpy as np
 import pytest
 from parametric import declared, meant
 from precise import precise
 from test_cases import CASES, NAMES
+from test_mobility import truss_platform
+from truth import section
 
-from lagrange_casadi import derive
+from lagrange_casadi import Mechanism, Scene, derive, load_case
 from lagrange_casadi.backends import run
+from lagrange_casadi.errors import AssemblyError, DeclarationError, LagrangeCasadiError
 from lagrange_casadi.interpret import interpret
-from lagrange_casadi.parts import RigidMass
+from lagrange_casadi.motion import polynomial
 from lagrange_casadi.reference import arithmetic, reference
 from lagrange_casadi.rung import Rung
+from lagrange_casadi.section_law import FORCES
 
 MP = mpmath.mp
 EXACT = replace(arithmetic(), constant=meant(MP.mpf))
@@ -51,7 +57,8 @@ def assert_equal(expected, found, mechanism):
     for name, value in expected.items():
         if name.startswith("section"):
             _, link, force = name.split(":")
-            gaps = [section(found, link, mechanism, ratio)[force] - value(MP.mpf(ratio)) for ratio in RATIOS]
+            k, values = FORCES.index(force), mechanism.values()
+            gaps = [section(found, mechanism, values, link, ratio)[k] - value(MP.mpf(ratio)) for ratio in RATIOS]
         elif name in found:
             gaps = [found[name] - MP.mpf(value)]
         else:
@@ -64,31 +71,6 @@ def assert_equal(expected, found, mechanism):
         compared.add(name.partition(":")[0])
     assert {"effort", "reaction", "pose"} <= compared
     assert {n for n in found if n.startswith(("effort", "reaction", "pose", "multiplier"))} <= set(expected)
-
-
-def section(found, link, mechanism, ratio):
-    """A link's section forces from its law and stations, with the moments of its density as they are defined."""
-    body, values = mechanism.links[link], mechanism.values()
-    assert not isinstance(body.mass, RigidMass)
-    assert len(body.mass.cells) == 1
-    l, u = MP.mpf(mechanism.number(body.length, values)), MP.mpf(ratio)
-    cell = [MP.mpf(mechanism.number(c, values)) * (l if body.mass.per_length else 1) for c in body.mass.cells[0]]
-    mu = [l**k * sum(c * (1 - u ** (j + k + 1)) / (j + k + 1) for j, c in enumerate(cell)) for k in range(3)]
-    law = {k: found[f"section:{link}:law:{k}"] for k in ("n0", "n1", "n2", "f0", "f1", "f2", "m0")}
-    xi = u * l
-    forces = {
-        "axial": law["n0"] + law["n1"] * mu[0] + law["n2"] * mu[1],
-        "shear": law["f0"] + law["f1"] * mu[0] + law["f2"] * mu[1],
-        "bending": law["m0"] + law["f0"] * (l - xi) + law["f1"] * (mu[1] - xi * mu[0]) + law["f2"] * (mu[2] - xi * mu[1]),
-    }
-    for name in found:
-        if name.startswith(f"section:{link}:") and name.endswith(":station"):
-            n, f, m, station = (found[name.removesuffix("station") + member] for member in ("n", "f", "m", "station"))
-            if u < station:
-                forces["axial"] += n
-                forces["shear"] += f
-                forces["bending"] += m + f * (station - u) * l
-    return forces
 
 
 @pytest.mark.parametrize(
@@ -108,3 +90,32 @@ def test_what_constants_mean(x, value):
     with MP.workdps(50):
         exact = value(MP.mpf(np.pi))
         assert meant(MP.mpf)(float(x)) == exact or abs(meant(MP.mpf)(float(x)) / exact - 1) < MP.mpf(10) ** -48
+
+
+def test_a_reference_has_the_digits_that_are_asked_for():
+    scene = load_case(CASES / "rrr3").scene
+    graph = derive(scene, ["effort"])
+    z = np.array(graph.newton.guess)[:, None]
+    rows = {digits: reference(graph, [scene.t[0]], [], z=z, digits=digits)[0] for digits in (25, 60)}
+    for few, many in zip(rows[25], rows[60], strict=True):
+        with MP.workdps(60):
+            assert MP.mpf(10) ** -50 < abs(few / many - 1) < MP.mpf(10) ** -19
+
+
+def test_what_a_reference_refuses(monkeypatch):
+    scene = truss_platform()
+    graph = derive(scene)
+    far = np.full((len(graph.newton.guess), 1), 1.0)
+    monkeypatch.setattr("lagrange_casadi.reference._STEPS", 3)
+    with pytest.raises(AssemblyError, match=r"the loops closed by joint .* do not close to all digits at t = 0\.5 s"):
+        reference(graph, [0.5], [0.05], z=far)
+    x = ca.SX.sym("x")
+    called = ca.Function("called", [x], [ca.sin(x)], {"never_inline": True})
+    m = Mechanism("arm")
+    arm = m.link("arm", length=1, mass=1)
+    m.torque("t", arm, called(m.coordinate(m.revolute("J", m.ground, arm))))
+    with pytest.raises(DeclarationError, match="function 'instant' cannot be followed: it calls another one"):
+        reference(derive(Scene(m, {"J": polynomial(0.3, 1)}, t=(0, 1, 2))), [0.5], [])
+    monkeypatch.setitem(sys.modules, "mpmath", None)
+    with pytest.raises(LagrangeCasadiError, match=r"a reference of many digits needs mpmath; install it with: pip install"):
+        reference(graph, [0.5], [0.05], z=far)
