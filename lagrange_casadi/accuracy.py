@@ -2,8 +2,9 @@
 
 The graphs are followed once more at some of the instants (:mod:`.interpret`), every operation with a random error as large as its
 rounding, several times over (Monte Carlo arithmetic: D. S. Parker, *Monte Carlo Arithmetic*, UCLA CSD-970002, 1997). What that does
-to an output is its condition, times the rounding. Iterated coordinates take the corrections with them that they still want, so
-loops that were left half closed show, times what they do to each output.
+to an output is its condition, times the rounding. The result itself is one trial more, so that what a compiler or a narrower type
+has made of it shows. Iterated coordinates take the corrections with them that they still want, so loops that were left half closed
+show, times what they do to each output.
 """
 
 from __future__ import annotations
@@ -13,17 +14,17 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from .backends import Table
+from .certificate import blur
 from .compensated import DTYPES, ROUNDING
 from .density import Array
-from .interpret import Arithmetic, followable, interpret
+from .interpret import Arithmetic, followable, interpret, numpy_arithmetic
 from .scene_graph import SceneGraph
-from .section_law import FORCES
+from .section_law import FORCES, SectionLaw
 from .solution import Solution
-from .stages import Stages
+from .stages import Stages, compensated
 
 TRIALS = 8
 INSTANTS = 48
@@ -31,8 +32,6 @@ _FORCES = ("effort:", "reaction:", "multiplier:", "section:")
 _UNEXPLAINED = 100.0
 _ALONG = np.linspace(0.0, 1.0, 5)
 _STEPS, _CLOSED = 20, 1e-6
-_FUNCTION = 2.0
-"""Roundings that a function such as a sine may be off: libraries differ."""
 
 
 def estimate(graph: SceneGraph, table: Table, solution: Solution, p: Array) -> dict[str, float]:
@@ -42,22 +41,20 @@ def estimate(graph: SceneGraph, table: Table, solution: Solution, p: Array) -> d
     call functions that cannot be followed.
     """
     chosen = _chosen(graph, table)
-    found = disturbed(table.stages, solution.t[chosen], p, table.iterated[:, chosen])
+    found = disturbed(graph, table.stages, solution.t[chosen], p, table.iterated[:, chosen])
     if found is None:
         return {}
-    after, before = ({n: x[k] for k, n in enumerate(graph.columns) if not n.startswith("_")} for x in found)
-    errors = {name: _worst(after[name] - before[name][None], name in graph.wrapped) for name in after}
+    rough = np.concatenate([found[0], np.asarray(table.out[:, chosen], float)[:, None]], axis=1)
+    after, before = ({n: x[k] for k, n in enumerate(graph.columns) if not n.startswith("_")} for x in (rough, found[1]))
+    errors = {name: _worst(after[name] - before[name], name in graph.wrapped) for name in after}
     undetermined = {name: np.full(chosen.size, np.nan) for name in graph.undetermined}
     exact = replace(solution, series=before | undetermined, t=solution.t[chosen])
-    rough = replace(solution, series={name: x.ravel() for name, x in (after | undetermined).items()})
+    rows = replace(solution, series={name: x.ravel() for name, x in (after | undetermined).items()})
     for link in solution.links_with_sections:
-        if not solution.determined(f"section:{link}:axial"):
-            continue
-        for force in FORCES:
-            off = rough.section(link).law.at(force, np.tile(_ALONG, (TRIALS * chosen.size, 1))).reshape(TRIALS, chosen.size, -1)
-            errors[f"section:{link}:{force}"] = _worst(
-                off - exact.section(link).law.at(force, np.tile(_ALONG, (chosen.size, 1)))[None]
-            )
+        if solution.determined(f"section:{link}:axial"):
+            for force in FORCES:
+                off, true = (_along(of.section(link).law, force).reshape(-1, chosen.size, _ALONG.size) for of in (rows, exact))
+                errors[f"section:{link}:{force}"] = _worst(off - true)
     # What underflows is in no trial.
     least = float(np.finfo(DTYPES[table.stages.precision]).tiny)
     return {name: max(error, least) for name, error in errors.items()}
@@ -71,7 +68,7 @@ def explained(solution: Solution, residuals: Mapping[str, Array], errors: Mappin
     worst = max((float(np.max(values)) for values in residuals.values()), default=0.0)
     largest = {name: float(np.max(np.abs(values), initial=0.0)) for name, values in solution.series.items()}
     relative = [errors[n] / largest[n] for n in errors if n.startswith(_FORCES) and largest.get(n, 0.0) > errors[n]]
-    if not errors or worst <= _UNEXPLAINED * max(relative, default=0.0):
+    if not errors or worst <= _UNEXPLAINED * max([*relative, blur(solution)]):
         return dict(errors)
     forces = [name for name in solution.names() if name.startswith(_FORCES) and solution.determined(name)]
     return dict(errors) | {name: max(errors[name], worst * abs(solution.peak(name).value)) for name in forces}
@@ -86,25 +83,29 @@ def _chosen(graph: SceneGraph, table: Table) -> Array:
     return np.unique([*spread, *peaks])
 
 
+def _along(law: SectionLaw, force: str) -> Array:
+    return law.at(force, np.tile(_ALONG, (law.coefficients["n0"].size, 1)))
+
+
 def _worst(gaps: Array, angle: bool = False) -> float:
+    """The largest size; a trial that came to nothing, as a root of less than zero does, says nothing."""
     if angle:
         gaps = gaps - math.tau * np.rint(gaps / math.tau)
-    return float(np.max(np.abs(gaps), initial=0.0))
+    return float(np.fmax.reduce(np.abs(gaps), axis=None, initial=0.0))
 
 
-def disturbed(stages: Stages, t: Array, p: Array, z: Array) -> tuple[Array, Array] | None:
-    """The columns at instants ``t`` with errors put in, (columns, trials, n), and without them, (columns, n).
+def disturbed(graph: SceneGraph, stages: Stages, t: Array, p: Array, z: Array) -> tuple[Array, Array] | None:
+    """The columns at instants ``t`` with errors put in, (columns, trials, n), and in doubles without them, (columns, n).
 
     ``z`` (k, n) are the iterated coordinates there. None where the graphs call functions that cannot be followed.
     """
     if not all(followable(function) for function in (stages.instant, *([stages.loops] if stages.loops else []))):
         return None
     noise = _Noise(ROUNDING[stages.precision], np.random.default_rng(0), (TRIALS, t.size))
-    exact, rough = _arithmetic(float, lambda value, _: value), noise.arithmetic(DTYPES[stages.precision].type)
-    driven = _driven(stages, t, p)
+    rough, known = noise.arithmetic(DTYPES[stages.precision].type), compensated(graph, "double") if stages.compensated else stages
     values = [float(DTYPES[stages.precision].type(value)) for value in p]
     with np.errstate(all="ignore"):
-        (before,) = interpret(stages.instant, [*driven, list(z), list(p)], exact)
+        (before,) = interpret(known.instant, [*_driven(known, t, p), list(z), list(p)], numpy_arithmetic())
         if not stages.compensated and followable(stages.drive):
             driven = interpret(stages.drive, [[t], values], rough)
         else:
@@ -149,65 +150,4 @@ class _Noise:
 
     def arithmetic(self, kind: Any) -> Arithmetic:
         """NumPy's operations with such errors, on constants of a kind."""
-        return _arithmetic(lambda value: float(kind(value)), self.rounded)
-
-
-def _arithmetic(constant: Any, rounded: Any) -> Arithmetic:
-    """NumPy's operations on arrays, ``rounded(value, roundings)`` applied where an operation rounds."""
-
-    def of(function: Any, roundings: float) -> Any:
-        return lambda *values: rounded(function(*values), roundings)
-
-    known: dict[int, Any] = dict(_EXACT)
-    known |= {code: of(function, 1.0) for code, function in _ROUNDED.items()}
-    known |= {code: of(function, _FUNCTION) for code, function in _FUNCTIONS.items()}
-    return Arithmetic(constant, known)
-
-
-_EXACT = {
-    ca.OP_NEG: np.negative,
-    ca.OP_TWICE: lambda x: x + x,
-    ca.OP_ASSIGN: lambda x: x,
-    ca.OP_FABS: np.abs,
-    ca.OP_SIGN: np.sign,
-    ca.OP_FLOOR: np.floor,
-    ca.OP_CEIL: np.ceil,
-    ca.OP_FMIN: np.fmin,
-    ca.OP_FMAX: np.fmax,
-    ca.OP_FMOD: np.fmod,
-    ca.OP_COPYSIGN: np.copysign,
-    ca.OP_LT: lambda x, y: 1.0 * (x < y),
-    ca.OP_LE: lambda x, y: 1.0 * (x <= y),
-    ca.OP_EQ: lambda x, y: 1.0 * (x == y),
-    ca.OP_NE: lambda x, y: 1.0 * (x != y),
-    ca.OP_NOT: lambda x: 1.0 * (x == 0),
-    ca.OP_AND: lambda x, y: 1.0 * ((x != 0) & (y != 0)),
-    ca.OP_OR: lambda x, y: 1.0 * ((x != 0) | (y != 0)),
-    ca.OP_IF_ELSE_ZERO: lambda x, y: np.where(x, y, 0.0),
-    ca.OP_REMAINDER: lambda x, y: x - y * np.rint(x / y),
-}
-_ROUNDED = {
-    ca.OP_ADD: np.add,
-    ca.OP_SUB: np.subtract,
-    ca.OP_MUL: np.multiply,
-    ca.OP_DIV: np.divide,
-    ca.OP_SQ: np.square,
-    ca.OP_SQRT: np.sqrt,
-    ca.OP_INV: lambda x: 1.0 / x,
-}
-_FUNCTIONS = {
-    ca.OP_POW: np.power,
-    ca.OP_CONSTPOW: np.power,
-    ca.OP_ATAN2: np.arctan2,
-    ca.OP_HYPOT: np.hypot,
-    ca.OP_ASIN: np.arcsin,
-    ca.OP_ACOS: np.arccos,
-    ca.OP_ATAN: np.arctan,
-    ca.OP_ASINH: np.arcsinh,
-    ca.OP_ACOSH: np.arccosh,
-    ca.OP_ATANH: np.arctanh,
-    ca.OP_ERF: np.vectorize(math.erf),
-} | {
-    getattr(ca, f"OP_{name.upper()}"): getattr(np, name)
-    for name in ["sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "log1p", "expm1"]
-}
+        return replace(numpy_arithmetic(self.rounded), constant=lambda value: float(kind(value)))

@@ -6,6 +6,7 @@ import functools
 import math
 import shlex
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -63,21 +64,34 @@ def run(
     """
     rung = rung or Rung()
     many = rung.precision == "single" or counts(graph, t, p)
-    stages = compensated(graph, rung.precision)[0] if many else plain(graph)
+    stages = compensated(graph, rung.precision) if many else plain(graph)
     compiled = _compiled(graph, stages, rung)
     table = into or _table(graph, stages, t.size)
+    begin = _begin(graph, rung.newton is not None, t[0], tuple(p))
     if compiled is None:
-        _interpret(graph, t, p, table, rung.newton)
+        _interpret(graph, t, p, table, begin, rung.newton)
         return table, _provenance("vm", "", "", rung)
     compiler, library = compiled
     dtype = DTYPES[rung.precision]
-    guess = np.array(graph.newton.guess if graph.newton else (), dtype)
+    guess = np.array(begin, dtype)
     if rung.precision == "single":
         t, p = _paired(t, rows(2, t.size, dtype)), _paired(p, np.empty((2, p.size), dtype))
     library.follow(t, p, guess, table.iterated, table.status)
     library.evaluate(t, p, table.iterated, table.out, table.status, threads or codegen.cores())
     used = "lanes" if compiler.language == "c++" else "c"
     return table, _provenance(used, compiler.version, " ".join(library.flags), rung)
+
+
+@functools.lru_cache(maxsize=256)
+def _begin(graph: SceneGraph, counted: bool, t: float, p: tuple[float, ...]) -> tuple[float, ...]:
+    """The iterated coordinates that the first instant begins from: closed there where steps are ``counted``."""
+    stages, values = plain(graph), np.array(p)
+    if graph.newton is None or stages.loops is None:
+        return ()
+    if not counted:
+        return graph.newton.guess
+    moment = stages.drive(t, values)[0].full().ravel()
+    return tuple(_iterate(graph, stages.loops, np.array(graph.newton.guess), moment, values, newton_rule("double", None))[0])
 
 
 def _paired(values: Array, out: Array) -> Array:
@@ -139,10 +153,11 @@ def _provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenan
     return Provenance(backend, rung.precision, compiler, flags, rung.options, versions)
 
 
-def _interpret(graph: SceneGraph, t: Array, p: Array, table: Table, newton: int | None) -> None:
+def _interpret(graph: SceneGraph, t: Array, p: Array, table: Table, begin: Sequence[float], newton: int | None) -> None:
     """What the emitted C does, by CasADi's virtual machine."""
     stages = table.stages
-    table.iterated[:], table.status[:] = follow(graph, t, p, stages=stages, newton=newton)
+    guess = np.array(begin)
+    table.iterated[:], table.status[:] = follow(graph, t, p, guess, stages=stages, newton=newton)
     for start in range(0, t.size, _VM_BLOCK):
         block = slice(start, min(start + _VM_BLOCK, t.size))
         counted, rate, acceleration = stages.drive(t[None, block], p)

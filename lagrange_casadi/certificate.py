@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .compensated import ROUNDING
 from .density import Array
 from .description import Description, density_of
-from .solution import Provenance, Solution
+from .solution import Solution
 
 Complex = npt.NDArray[np.complexfloating[Any, Any]]
 
@@ -26,6 +27,7 @@ _BLOCK = 1 << 14
 _Matter = tuple[float, complex, float]
 _Action = tuple[str, Complex, Any, Any, bool]
 
+_TURNED = 100.0
 TOLERANCE, LOOSE = 1e-9, 1e-3
 """A residual above it means that the solution is wrong, not that it is rounded; in doubles, and where less was asked for."""
 
@@ -126,10 +128,22 @@ def _residuals(solution: Solution, held: Sequence[Held] | None) -> dict[str, tup
     return found
 
 
-def tolerance(provenance: Provenance) -> float:
+def tolerance(solution: Solution) -> float:
     """What residuals are held to."""
-    exact = provenance.precision == "double" and not any(word in provenance.rung for word in ("--newton", "--table"))
-    return TOLERANCE if exact else LOOSE
+    exact = solution.provenance.precision == "double" and not any(
+        word in solution.provenance.rung for word in ("--newton", "--table")
+    )
+    return max(TOLERANCE if exact else LOOSE, _TURNED * blur(solution))
+
+
+def blur(solution: Solution) -> float:
+    """What the reported angles leave open of a phase: one rounding of the largest of them [rad]."""
+    joints = solution.description["joints"]
+    angles = [f"motion:{name}" for name, joint in joints.items() if joint["coordinate"] == "angle"]
+    angles += [f"pose:{name}:angle" for name in solution.description["bodies"]]
+    reported = (solution.series[name] for name in angles if name in solution.series)
+    rounding = ROUNDING["single" if solution.provenance.precision == "single" else "double"]
+    return rounding * max((float(np.max(np.abs(values))) for values in reported), default=0.0)
 
 
 def summary(residuals: Mapping[str, Array]) -> str:

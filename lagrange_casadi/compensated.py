@@ -8,9 +8,10 @@ must not reassociate: ``-ffast-math`` takes the low parts away.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal
 
 import casadi as ca
@@ -58,39 +59,51 @@ class Pair:
 class Pairs:
     """The arithmetic of pairs in a precision; to be used where CasADi does not simplify (:func:`unsimplified`).
 
-    ``reductions`` collects the angles that were reduced.
+    Sums, differences, products, quotients, roots and whole parts keep all digits; a sine, cosine or tangent is that of a pair's
+    phase, rounded once. Everything else is done on the nearest single number.
     """
 
     precision: Precision
-    reductions: list[Pair] = field(default_factory=list, compare=False)
 
     @property
     def arithmetic(self) -> Arithmetic:
         """What :func:`.interpret` asks for."""
+        return Arithmetic(self.constant, self.operations)
+
+    @cached_property
+    def operations(self) -> Mapping[int, Any]:
+        """Operations by CasADi's ``OP_`` code."""
         rules = {
             ca.OP_ADD: self.add,
-            ca.OP_SUB: lambda x, y: self.add(x, self.negate(y)),
+            ca.OP_SUB: self.subtract,
             ca.OP_NEG: self.negate,
             ca.OP_MUL: self.multiply,
             ca.OP_SQ: lambda x: self.multiply(x, x),
             ca.OP_TWICE: lambda x: self.add(x, x),
             ca.OP_DIV: self.divide,
             ca.OP_INV: lambda x: self.divide(self.constant(1.0), x),
+            ca.OP_SQRT: self.root,
             ca.OP_SIN: self.sine,
             ca.OP_COS: self.cosine,
+            ca.OP_TAN: lambda x: self.divide(self.sine(x), self.cosine(x)),
             ca.OP_FABS: _size,
+            ca.OP_COPYSIGN: lambda x, y: _signed(_size(x), y.value),
             ca.OP_FLOOR: _floor,
             ca.OP_CEIL: lambda x: self.negate(_floor(self.negate(x))),
             ca.OP_FMOD: self.remainder,
-            ca.OP_IF_ELSE_ZERO: _choose,
+            ca.OP_REMAINDER: self.nearest_remainder,
+            ca.OP_FMIN: lambda x, y: self._either(self._below(x, y), x, y),
+            ca.OP_FMAX: lambda x, y: self._either(self._below(x, y), y, x),
+            ca.OP_IF_ELSE_ZERO: lambda where, x: _choose(where.value, x),
+            ca.OP_ASSIGN: lambda x: x,
         }
-        rounded = {code: _rounded(code) for code in _UNARY + _BINARY}
-        return Arithmetic(self.constant, rounded | rules)
+        return {code: _rounded(code) for code in _UNARY + _BINARY} | rules
 
     def constant(self, value: float) -> Pair:
         """A double, in as many parts as it takes."""
         kind = DTYPES[self.precision].type
-        high = float(kind(value))
+        with np.errstate(over="ignore"):
+            high = float(kind(value))
         low = float(kind(value - high)) if np.isfinite(high) else 0.0
         return Pair(ca.SX(high), ca.SX(low) if low else None, value)
 
@@ -111,8 +124,12 @@ class Pairs:
         first = _normal(total, error + lows)
         return _normal(first.high, first.low + rest)
 
+    def subtract(self, x: Pair, y: Pair) -> Pair:
+        """x - y."""
+        return self.add(x, self.negate(y))
+
     def negate(self, x: Pair) -> Pair:
-        """Less x."""
+        """-x."""
         return Pair(-x.high, None if x.low is None else -x.low, None if x.number is None else -x.number)
 
     def multiply(self, x: Pair, y: Pair) -> Pair:
@@ -129,12 +146,17 @@ class Pairs:
     def divide(self, x: Pair, y: Pair) -> Pair:
         """x / y by what a first quotient leaves."""
         first = x.high / y.high
-        left = self.add(x, self.negate(self.multiply(Pair(first), y)))
+        left = self.subtract(x, self.multiply(Pair(first), y))
         return _normal(first, left.value / y.high)
+
+    def root(self, x: Pair) -> Pair:
+        """The square root, by what a first root leaves; of zero, zero."""
+        first = ca.sqrt(x.high)
+        left = self.subtract(x, self.multiply(Pair(first), Pair(first)))
+        return _normal(first, left.value / (2.0 * first + (first == 0.0)))
 
     def reduced(self, x: Pair) -> Pair:
         """x less whole turns, between -pi and pi."""
-        self.reductions.append(x)
         turns = ca.floor(x.high * (1.0 / _TURN[0]) + 0.5)
         for part in self._turn():
             product, error = self._product(turns, ca.SX(part))
@@ -151,15 +173,23 @@ class Pairs:
 
     def remainder(self, x: Pair, y: Pair) -> Pair:
         """C's fmod: x less y as often as it goes into x, towards zero."""
-        self.reductions.append(x)
-        quotient = self.divide(x, y)
-        whole = _floor(_size(quotient))
-        signed = Pair(ca.copysign(whole.high, quotient.high), None if whole.low is None else ca.copysign(whole.low, quotient.high))
-        return self.add(x, self.negate(self.multiply(signed, y)))
+        size, period = _size(x), _size(y)
+        left = self.subtract(size, self.multiply(_floor(self.divide(size, period)), period))
+        return _signed(left, x.high)
+
+    def nearest_remainder(self, x: Pair, y: Pair) -> Pair:
+        """C's remainder: x less the multiple of y that is nearest."""
+        return self.subtract(x, self.multiply(_floor(self.add(self.divide(x, y), self.constant(0.5))), y))
+
+    def _below(self, x: Pair, y: Pair) -> Any:
+        return self.subtract(x, y).value < 0.0
+
+    def _either(self, where: Any, x: Pair, y: Pair) -> Pair:
+        return self.add(_choose(where, x), _choose(ca.logic_not(where), y))
 
     def _turning(self, x: Pair, function: Any, slope: Any) -> Pair:
         angle = self.reduced(x)
-        return Pair(function(angle.high), None if angle.low is None else slope(angle.high) * angle.low)
+        return Pair(function(angle.high)) if angle.low is None else Pair(*_sum(function(angle.high), slope(angle.high) * angle.low))
 
     def _turn(self) -> tuple[float, ...]:
         if self.precision == "double":
@@ -201,20 +231,28 @@ def _normal(high: Any, low: Any) -> Pair:
     return Pair(total, low - (total - high))
 
 
+def _signed(x: Pair, like: Any) -> Pair:
+    sign = ca.copysign(ca.SX(1.0), like)
+    return Pair(x.high * sign, None if x.low is None else x.low * sign)
+
+
 def _size(x: Pair) -> Pair:
-    return replace(x, high=ca.fabs(x.high), low=None if x.low is None else x.low * ca.copysign(1.0, x.high), number=None)
+    return _signed(x, x.high)
 
 
 def _floor(x: Pair) -> Pair:
     high = ca.floor(x.high)
     if x.low is None:
         return Pair(high)
-    return _normal(high, ca.SX.binary(ca.OP_IF_ELSE_ZERO, high == x.high, ca.floor(x.low)))
+    return _normal(high, _zero_unless(high == x.high, ca.floor(x.low)))
 
 
-def _choose(where: Pair, x: Pair) -> Pair:
-    high, low = (None if part is None else ca.SX.binary(ca.OP_IF_ELSE_ZERO, where.high, part) for part in (x.high, x.low))
-    return Pair(high, low)
+def _choose(where: Any, x: Pair) -> Pair:
+    return Pair(_zero_unless(where, x.high), None if x.low is None else _zero_unless(where, x.low))
+
+
+def _zero_unless(where: Any, x: Any) -> Any:
+    return ca.SX.binary(ca.OP_IF_ELSE_ZERO, where, x)
 
 
 def _rounded(code: int) -> Any:
@@ -225,10 +263,10 @@ def _rounded(code: int) -> Any:
 
 
 _UNARY = (
-    *(ca.OP_SQRT, ca.OP_EXP, ca.OP_LOG, ca.OP_TAN, ca.OP_ASIN, ca.OP_ACOS, ca.OP_ATAN, ca.OP_SINH, ca.OP_COSH, ca.OP_TANH),
-    *(ca.OP_ASINH, ca.OP_ACOSH, ca.OP_ATANH, ca.OP_LOG1P, ca.OP_EXPM1, ca.OP_ERF, ca.OP_SIGN, ca.OP_NOT, ca.OP_ASSIGN),
+    *(ca.OP_EXP, ca.OP_LOG, ca.OP_ASIN, ca.OP_ACOS, ca.OP_ATAN, ca.OP_SINH, ca.OP_COSH, ca.OP_TANH, ca.OP_ASINH, ca.OP_ACOSH),
+    *(ca.OP_ATANH, ca.OP_LOG1P, ca.OP_EXPM1, ca.OP_ERF, ca.OP_SIGN, ca.OP_NOT),
 )
 _BINARY = (
-    *(ca.OP_POW, ca.OP_CONSTPOW, ca.OP_ATAN2, ca.OP_HYPOT, ca.OP_FMIN, ca.OP_FMAX, ca.OP_COPYSIGN, ca.OP_REMAINDER),
+    *(ca.OP_POW, ca.OP_CONSTPOW, ca.OP_ATAN2, ca.OP_HYPOT),
     *(ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR),
 )

@@ -7,11 +7,13 @@ digits, arrays with an error put on every operation, or expressions that become 
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
 from .errors import DeclarationError
 
@@ -51,9 +53,10 @@ def steps(function: Any) -> tuple[Step, ...]:
     return tuple(found)
 
 
+@functools.lru_cache(maxsize=64)
 def followable(function: Any) -> bool:
-    """Whether a function is written in scalars and calls no other."""
-    return bool(function.is_a("SXFunction")) and all(step.operation != ca.OP_CALL for step in steps(function))
+    """Whether a function is written in scalars, calls no other, and does nothing that is unknown here."""
+    return bool(function.is_a("SXFunction")) and all(step.operation in _KNOWN for step in steps(function))
 
 
 def interpret(function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithmetic) -> list[list[Any]]:
@@ -81,3 +84,87 @@ def interpret(function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithm
 
 def _name(operation: int) -> str:
     return next((name for name in dir(ca) if name.startswith("OP_") and getattr(ca, name) == operation), str(operation))
+
+
+def numpy_arithmetic(rounded: Callable[[Any, float], Any] | None = None) -> Arithmetic:
+    """NumPy's arithmetic on doubles and arrays of them.
+
+    ``rounded(value, roundings)`` has the last word on what an operation rounds, by how many roundings it may be off.
+    """
+
+    def of(function: Callable[..., Any], roundings: float) -> Callable[..., Any]:
+        return function if rounded is None else lambda *values: rounded(function(*values), roundings)
+
+    known = {code: of(function, 1.0) for code, function in _ROUNDED.items()}
+    known |= {code: of(function, _FUNCTION) for code, function in _FUNCTIONS.items()}
+    return Arithmetic(np.float64, known | _EXACT | {code: _truth(function) for code, function in _TRUTHS.items()})
+
+
+def _truth(function: Callable[..., Any]) -> Callable[..., Any]:
+    """As in C, a comparison is one or zero."""
+    return lambda *values: np.asarray(function(*values)).astype(np.result_type(*values))
+
+
+def _remainder(x: Any, y: Any) -> Any:
+    """C's remainder, which is exact: every difference is of numbers within a factor of two."""
+    left, y = np.abs(np.fmod(x, 2 * y)), np.abs(y)
+    above = 2 * left > y
+    left = left - y * above
+    left = left - y * (above & (2 * left >= y))
+    return np.where(np.signbit(x), -left, left)
+
+
+_FUNCTION = 2.0
+"""Roundings that a function such as a sine may be off: libraries differ."""
+
+_EXACT: dict[int, Callable[..., Any]] = {
+    ca.OP_NEG: np.negative,
+    ca.OP_TWICE: lambda x: x + x,
+    ca.OP_ASSIGN: lambda x: x,
+    ca.OP_FABS: np.abs,
+    ca.OP_SIGN: np.sign,
+    ca.OP_FLOOR: np.floor,
+    ca.OP_CEIL: np.ceil,
+    ca.OP_FMIN: np.fmin,
+    ca.OP_FMAX: np.fmax,
+    ca.OP_FMOD: np.fmod,
+    ca.OP_COPYSIGN: np.copysign,
+    ca.OP_IF_ELSE_ZERO: lambda x, y: np.where(x, y, np.zeros_like(y)),
+    ca.OP_REMAINDER: _remainder,
+}
+_TRUTHS: dict[int, Callable[..., Any]] = {
+    ca.OP_LT: np.less,
+    ca.OP_LE: np.less_equal,
+    ca.OP_EQ: np.equal,
+    ca.OP_NE: np.not_equal,
+    ca.OP_NOT: np.logical_not,
+    ca.OP_AND: np.logical_and,
+    ca.OP_OR: np.logical_or,
+}
+_ROUNDED: dict[int, Callable[..., Any]] = {
+    ca.OP_ADD: np.add,
+    ca.OP_SUB: np.subtract,
+    ca.OP_MUL: np.multiply,
+    ca.OP_DIV: np.divide,
+    ca.OP_SQ: np.square,
+    ca.OP_SQRT: np.sqrt,
+    ca.OP_INV: np.reciprocal,
+}
+_FUNCTIONS: dict[int, Callable[..., Any]] = {
+    ca.OP_POW: np.power,
+    ca.OP_CONSTPOW: np.power,
+    ca.OP_ATAN2: np.arctan2,
+    ca.OP_HYPOT: np.hypot,
+    ca.OP_ASIN: np.arcsin,
+    ca.OP_ACOS: np.arccos,
+    ca.OP_ATAN: np.arctan,
+    ca.OP_ASINH: np.arcsinh,
+    ca.OP_ACOSH: np.arccosh,
+    ca.OP_ATANH: np.arctanh,
+    ca.OP_ERF: np.vectorize(math.erf),
+}
+_FUNCTIONS |= {
+    getattr(ca, f"OP_{name.upper()}"): getattr(np, name)
+    for name in ["sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "log1p", "expm1"]
+}
+_KNOWN = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, *_EXACT, *_TRUTHS, *_ROUNDED, *_FUNCTIONS}

@@ -107,6 +107,26 @@ def jerk_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
     return ca.Function("jerk", [t, p], [ca.vertcat(ca.MX(0, 1), *rows)], ["t", "p"], ["d_jerk"])
 
 
+@dataclass(frozen=True, eq=False)
+class Laws:
+    """The motion of several drives in two functions as :func:`motion_function` makes them.
+
+    ``smooth`` is of the laws that are written in scalars, ``sampled`` of those by samples, or None; ``order`` says of each drive
+    where it is, the sampled ones counted after the smooth ones.
+    """
+
+    smooth: Any
+    sampled: Any | None
+    order: tuple[int, ...]
+
+    @classmethod
+    def of(cls, laws: Mapping[str, Motion], parameters: Any) -> Laws:
+        """The functions of laws by the joint's name."""
+        smooth, sampled = ({name: law for name, law in laws.items() if law.spline is spline} for spline in (False, True))
+        order = tuple([*smooth, *sampled].index(name) for name in laws)
+        return cls(motion_function(smooth, parameters), motion_function(sampled, parameters) if sampled else None, order)
+
+
 def _scalar(joint: str, law: Motion, t: Any, parameters: Any) -> Any:
     try:
         value = law.graph(t)

@@ -7,7 +7,6 @@ are still those of the body's direction where drives alone set it, since angles 
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -161,11 +160,12 @@ def joint_coordinate(joint: Joint, frames: dict[str, Frame], coordinates: tuple[
             return coordinate.value
     parent, child = (frames[body.name] for body in joint.bodies)
     if joint.coordinate == "angle":
-        angle, turn = ca.SX(child.rotation.angle - parent.rotation.angle), 2 * math.pi
+        turn = child.rotation.against(parent.rotation)
         if counted:
-            return angle
-        # Not ca.remainder: one instruction, but C's takes longer than these five.
-        return angle - turn * ca.ceil(angle * (1 / turn) - 0.5)
+            return ca.SX(turn.angle)
+        # Against minus zero the angle would be -pi.
+        sine = ca.SX(turn.s)
+        return ca.atan2(ca.SX.binary(ca.OP_IF_ELSE_ZERO, sine != 0.0, sine), turn.c)
     return ca.SX(slide(joint, parent, child)[0])
 
 

@@ -101,10 +101,12 @@ def _mpmath() -> Any:
 
 
 def _driven(graph: SceneGraph, time: Any, values: list[Any]) -> list[list[Any]]:
-    if graph.motion.is_a("SXFunction"):
-        return interpret(graph.motion, [[time], values], arithmetic())
-    found = graph.motion(float(time), [float(value) for value in values])
-    return [[type(time)(float(x)) for x in row.full().ravel()] for row in found]
+    laws = graph.laws
+    found = interpret(laws.smooth, [[time], values], arithmetic())
+    if laws.sampled is not None:
+        read = laws.sampled(float(time), [float(value) for value in values])
+        found = [row + [type(time)(float(x)) for x in more.full().ravel()] for row, more in zip(found, read, strict=True)]
+    return [[row[k] for k in laws.order] for row in found]
 
 
 def _closed(graph: SceneGraph, z: list[Any], time: Any, driven: list[Any], values: list[Any], small: Any) -> list[Any]:

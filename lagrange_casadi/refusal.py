@@ -29,11 +29,11 @@ _ROUNDS, _INSIDE = 7, 17
 def refuse(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> None:
     """Raise for the first instant that has no result, naming the joint and the driven coordinates."""
     precision = table.stages.precision
-    bad, dead, misfit = table.status != OK, _DEAD * ROUNDING[precision], MISFIT[precision]
+    bad, misfit = table.status != OK, MISFIT[precision]
     passed: dict[str, npt.NDArray[np.bool_]] = {}
     for k, name in enumerate(graph.columns):
         if name.startswith("_closure:"):
-            bad |= ~(table.out[k] > dead)
+            bad |= ~(table.out[k] > _dead(graph, precision, name))
             passed[name] = passes_dead_centre(table.out[k], ends=graph.newton is None)
         elif name.startswith("_misfit:"):
             bad |= ~(table.out[k] <= misfit)
@@ -53,6 +53,12 @@ def refuse(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> N
     at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
     at = f"at t = {t[i]:.6g} s{at}"
     raise AssemblyError(_beyond(graph, p, precision, at) or _why(graph, table, i, at, [name for name in passed if passed[name][i]]))
+
+
+def _dead(graph: SceneGraph, precision: Precision, closure: str) -> float:
+    """Below what a closure says nothing: of a closed form it is the square of a sine, of an iterated loop as the sine itself."""
+    square = _DEAD * ROUNDING[precision]
+    return math.sqrt(square) if graph.iterates(closure.partition(":")[2]) else square
 
 
 def _dead_between(graph: SceneGraph, name: str, start: Array, stop: Array, p: Array, rung: Rung) -> npt.NDArray[np.bool_]:
@@ -87,9 +93,10 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]
         return f"the loops closed by {graph.newton.joints} did not converge {at}"
     precision = table.stages.precision
     values = dict(zip(graph.columns, table.out[:, i], strict=True))
-    dead, misfit = _DEAD * ROUNDING[precision], MISFIT[precision]
+    misfit = MISFIT[precision]
     for name, value in values.items():
         kind, _, joint = name.partition(":")
+        dead = _dead(graph, precision, name)
         closed = f"{'joint' if joint in graph.scene.mechanism.joints else 'constraint'} '{joint}'"
         if kind == "_closure" and value < -dead:
             if graph.newton is not None and f"'{joint}'" in graph.newton.joints:

@@ -28,7 +28,7 @@ class Rung:
         ``double``, or ``single``: every operation, in code without a double; phases are kept all the same.
     newton
         None solves loops in closed form where there is one, and iterates the others until they are closed. A number takes so many
-        steps of Newton's method for every loop, from the instant before, and no more.
+        steps of Newton's method for every loop, from the instant before, and no more; at the first instant it is closed.
     table
         A whole number of nodes, or a wanted accuracy below 1: outputs are read from a table over the turn of the one drive.
     flags
@@ -66,8 +66,8 @@ class Rung:
 
     @property
     def options(self) -> str:
-        """The rung as options of the command line: only what differs from the default."""
-        words = [f"--{name} {value}" for name, value in vars(self).items() if value != getattr(type(self), name)]
+        """The rung as options of the command line, as a shell takes them: only what differs from the default."""
+        words = [f"--{name} {shlex.quote(str(value))}" for name, value in vars(self).items() if value != getattr(type(self), name)]
         return " ".join(words) or "(default)"
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import casadi as ca
 
 from .kinematics import NewtonLoop
+from .motion import Laws
 from .scene import Scene, Wanted
 
 
@@ -36,6 +38,13 @@ class SceneGraph:
     wrapped: Mapping[str, Mapping[str, int]]
     undetermined: tuple[str, ...]
     held: tuple[str, ...]
+
+    @cached_property
+    def laws(self) -> Laws:
+        """The motion once more, what samples give apart from what can be followed in any arithmetic."""
+        if self.motion.is_a("SXFunction"):
+            return Laws(self.motion, None, tuple(range(len(self.driven))))
+        return Laws.of({name: self.scene.motion[name] for name in self.driven}, self.scene.mechanism.symbols)
 
     def iterates(self, closure: str) -> bool:
         """Whether the loops that stand under the name of a closure are iterated."""

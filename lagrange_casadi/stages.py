@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,13 +19,14 @@ import numpy as np
 
 from .compensated import Pair, Pairs, Precision, unsimplified
 from .density import Array
-from .interpret import Arithmetic, followable, interpret
+from .interpret import Arithmetic, followable, interpret, numpy_arithmetic
+from .motion import Laws
 from .scene_graph import SceneGraph
 
 FEW_TURNS = 128.0
 """Up to so many radians an angle in one double has lost no more than 1.4e-14 rad of its phase in each rounding."""
 
-_SAMPLES = 17
+_SAMPLES = 65
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,28 +62,56 @@ def plain(graph: SceneGraph) -> Stages:
 
 
 @functools.lru_cache(maxsize=32)
-def compensated(graph: SceneGraph, precision: Precision) -> tuple[Stages, Any]:
-    """The stages of a graph in pairs; and the angles that they reduce, as a function of t and p in doubles.
-
-    Raises :class:`DeclarationError` for a graph that calls functions of its own.
-    """
+def compensated(graph: SceneGraph, precision: Precision) -> Stages:
+    """The stages of a graph in pairs. Raises :class:`DeclarationError` for a graph that cannot be followed."""
+    laws = graph.laws  # made where CasADi simplifies
     with unsimplified():
-        return _compensated(graph, precision)
+        return _compensated(graph, laws, precision)
 
 
 def counts(graph: SceneGraph, t: Array, p: Array) -> bool:
     """Whether some angle counts so many turns over the instants that one double loses its phase."""
-    if not all(followable(function) for function in (graph.instant, graph.motion, *([graph.newton.step] if graph.newton else []))):
+    functions = (graph.instant, graph.laws.smooth, *([graph.newton.step] if graph.newton else []))
+    if not all(followable(function) for function in functions):
         return False
     sampled = t[np.linspace(0, t.size - 1, min(t.size, _SAMPLES)).astype(int)]
     return _largest(graph, tuple(sampled), tuple(p)) > FEW_TURNS
 
 
 @functools.lru_cache(maxsize=256)
-def _largest(graph: SceneGraph, t: tuple[float, ...], p: tuple[float, ...]) -> float:
-    """The largest angle under a sine or cosine [rad]."""
-    angles = compensated(graph, "double")[1]
-    return float(np.max(np.abs(angles(np.array([t]), np.array(p)).full()), initial=0.0))
+def _largest(graph: SceneGraph, instants: tuple[float, ...], p: tuple[float, ...]) -> float:
+    """The largest counted angle under a sine or cosine [rad].
+
+    What is counted is a row over the instants, what parameters set a number, and anything else nothing.
+    """
+    angles = [0.0]
+    known = numpy_arithmetic().operations
+
+    def measured(code: int, *values: Any) -> Any:
+        if np.ndim(values[0]) and code in _PHASES | _REMAINDERS:
+            angles.append(float(np.max(np.abs(values[0]))))
+        return known[code](*values)
+
+    def counted(code: int, *values: Any) -> Any:
+        if any(value is None for value in values):
+            return None
+        found = measured(code, *values)
+        return found if code in _FOLLOWED or not np.ndim(found) else None
+
+    following, of_counted = (
+        Arithmetic(np.float64, {code: functools.partial(rule, code) for code in known}) for rule in (measured, counted)
+    )
+    laws, t = graph.laws, np.array(instants)
+    unknown, rates = [None] * graph.instant.size1_in("z"), [None] * len(laws.order)
+    with np.errstate(all="ignore"):
+        driven = list(interpret(laws.smooth, [[t], p], following)[0])
+        if laws.sampled is not None:
+            driven += list(laws.sampled(t[None], p)[0].full())
+        driven = [driven[k] for k in laws.order]
+        if graph.newton is not None:
+            interpret(graph.newton.step, [unknown, [t], driven, p], of_counted)
+        interpret(graph.instant, [[t], driven, rates, rates, unknown, p], of_counted)
+    return max(angles)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,91 +131,98 @@ class _Counting:
 
     def __init__(self, pairs: Pairs) -> None:
         self.pairs = pairs
-        self.symbols: dict[tuple[Any, ...], tuple[Any, Any]] = {}
+        self.symbols: dict[tuple[Any, ...], tuple[Any, Pair, Pair]] = {}
 
     @property
     def arithmetic(self) -> Arithmetic:
-        codes = [code for name, code in vars(ca).items() if name.startswith("OP_") and code not in _NO_OPERATIONS]
-        return Arithmetic(self.constant, {code: functools.partial(self.apply, code) for code in codes})
+        known = numpy_arithmetic().operations
+        return Arithmetic(self.constant, {code: functools.partial(self.apply, code) for code in known})
 
     def constant(self, value: float) -> _Value:
         return _Value(ca.SX(value), self.pairs.turn if value == math.tau else self.pairs.constant(value), fixed=True)
 
     def apply(self, code: int, *values: _Value) -> _Value:
-        fixed = all(value.fixed for value in values)
-        followed = all(value.pair is not None for value in values)
-        pair = None
-        if followed and code in (_FOLLOWED | (_FIXED if fixed else set())):
-            pair = self.pairs.arithmetic.operations[code](*(value.pair for value in values))
-            if not fixed:
-                return _Value(pair=pair)
-        if followed and not fixed and code in _TURNING:
-            return _Value(ca.SX.unary(code, self._small(values[0])))
-        if followed and not fixed and code == ca.OP_FMOD:
-            return _Value(self.settled(_Value(pair=self.pairs.arithmetic.operations[code](*(value.pair for value in values)))))
-        operands = [self.settled(value) for value in values]
-        plain = ca.SX.unary(code, *operands) if len(operands) == 1 else ca.SX.binary(code, *operands)
-        return _Value(plain, pair, fixed)
+        pairs = [value.pair for value in values if value.pair is not None]
+        if len(pairs) < len(values):
+            return _Value(self._plain(code, values))
+        if all(value.fixed for value in values):
+            return _Value(self._plain(code, values), self.pairs.operations[code](*pairs), fixed=True)
+        if code in _FOLLOWED:
+            return _Value(pair=self.pairs.operations[code](*pairs))
+        if code in _REMAINDERS:
+            return _Value(self.settled(_Value(pair=self.pairs.operations[code](*pairs))))
+        if code in _PHASES:
+            return _Value(ca.SX.unary(code, self._symbol("angle", pairs[0], self.pairs.reduced)))
+        return _Value(self._plain(code, values))
 
     def settled(self, value: _Value) -> Any:
         """A value as one number."""
         if value.plain is not None:
             return value.plain
         assert value.pair is not None
-        return self._symbol(value.pair, "counted", value.pair)
+        return self._symbol("counted", value.pair, lambda pair: pair)
 
-    def _small(self, value: _Value) -> Any:
-        assert value.pair is not None
-        return self._symbol(self.pairs.reduced(value.pair), "angle", value.pair)
+    def handed(self) -> tuple[Any, Any]:
+        """The symbols that were made, and what the drive hands on for them."""
+        return _column([symbol for symbol, *_ in self.symbols.values()]), _column(
+            [pair.value for _, pair, _ in self.symbols.values()]
+        )
 
-    def _symbol(self, pair: Pair, kind: str, key: Pair) -> Any:
-        name = (kind, *(None if part is None else part.element_hash() for part in (key.high, key.low)))
-        return self.symbols.setdefault(name, (ca.SX.sym(f"{kind}{len(self.symbols)}"), pair))[0]
+    def _plain(self, code: int, values: Sequence[_Value]) -> Any:
+        operands = [self.settled(value) for value in values]
+        return ca.SX.unary(code, *operands) if len(operands) == 1 else ca.SX.binary(code, *operands)
+
+    def _symbol(self, kind: str, pair: Pair, made: Callable[[Pair], Pair]) -> Any:
+        """The symbol of what is made of a pair, which is known by its nodes: they are kept, lest others take their place."""
+        key = (kind, *(None if part is None else part.element_hash() for part in (pair.high, pair.low)))
+        if key not in self.symbols:
+            self.symbols[key] = ca.SX.sym(f"{kind}{len(self.symbols)}"), made(pair), pair
+        return self.symbols[key][0]
 
 
-_NO_OPERATIONS = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CALL}
-_TURNING = {ca.OP_SIN, ca.OP_COS}
-_FOLLOWED = {ca.OP_ADD, ca.OP_SUB, ca.OP_NEG, ca.OP_MUL, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV, ca.OP_FLOOR, ca.OP_CEIL}
-_FIXED = {ca.OP_INV, ca.OP_SIN, ca.OP_COS, ca.OP_FABS, ca.OP_SQRT}
+_PHASES = {ca.OP_SIN, ca.OP_COS, ca.OP_TAN}
+_REMAINDERS = {ca.OP_FMOD, ca.OP_REMAINDER}
+_FOLLOWED = {
+    *(ca.OP_ADD, ca.OP_SUB, ca.OP_NEG, ca.OP_MUL, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV),
+    *(ca.OP_INV, ca.OP_SQRT, ca.OP_FABS, ca.OP_FLOOR, ca.OP_CEIL),
+}
 
 
-def _compensated(graph: SceneGraph, precision: Precision) -> tuple[Stages, Any]:
+def _compensated(graph: SceneGraph, laws: Laws, precision: Precision) -> Stages:
     pairs = Pairs(precision)
-    _, d, rate, acceleration, z, p = graph.instant.sx_in()
+    _, _, rate, acceleration, z, p = graph.instant.sx_in()
     single = precision == "single"
     time, parameters = ca.SX.sym("t", 2 if single else 1), ca.SX.sym("p", p.numel(), 2 if single else 1)
     t_pair, *p_pairs = (Pair(row[0], row[1] if single else None) for row in (time.T, *ca.vertsplit(parameters)))
+    smooth = interpret(laws.smooth, [[t_pair], p_pairs], pairs.arithmetic)
+    sampled = ca.SX.sym("sampled", len(laws.order) - len(smooth[0]))
     counting = _Counting(pairs)
     t_value = _Value(pair=t_pair)
-    p_values = [_Value(symbol, pair, fixed=True) for symbol, pair in zip(ca.vertsplit(p), p_pairs, strict=True)]
-    smooth = graph.motion.is_a("SXFunction")
-    if smooth:
-        driven = interpret(graph.motion, [[t_pair], p_pairs], pairs.arithmetic)
-    else:
-        driven = [[Pair(x) for x in ca.vertsplit(symbols)] if symbols.numel() else [] for symbols in (d, rate, acceleration)]
-    d_values = [_Value(pair=pair) for pair in driven[0]]
-    z_values, rates, accelerations = ([_Value(x) for x in ca.vertsplit(s)] if s.numel() else [] for s in (z, rate, acceleration))
+    driven = [*smooth[0], *(Pair(x) for x in _split(sampled))]
+    d_values = [_Value(pair=driven[k]) for k in laws.order]
+    p_values = [_Value(symbol, pair, fixed=True) for symbol, pair in zip(_split(p), p_pairs, strict=True)]
+    z_values, rates, accelerations = ([_Value(x) for x in _split(symbols)] for symbols in (z, rate, acceleration))
     found = [interpret(graph.newton.step, [z_values, [t_value], d_values, p_values], counting.arithmetic)] if graph.newton else []
     found.append(interpret(graph.instant, [[t_value], d_values, rates, accelerations, z_values, p_values], counting.arithmetic))
     results = [[_column([counting.settled(value) for value in output]) for output in outputs] for outputs in found]
-    counted = _column([symbol for symbol, _ in counting.symbols.values()])
-    handed = _column([pair.value for _, pair in counting.symbols.values()])
+    counted, handed = counting.handed()
     names = ["counted", "d_rate", "d_acceleration", "z", "p"]
     instant = ca.Function("instant", [counted, rate, acceleration, z, p], results[-1], names, ["out"], {"cse": True})
     loops = ca.Function("loops", [z, counted, p], results[0], {"cse": True}) if graph.newton else None
-    given = [_column([pair.value for pair in row]) for row in driven]
+    given = [handed, *(_column([pair.value for pair in row]) for row in smooth[1:])]
     inputs = [time, ca.vec(parameters)]
-    turned = _column([pair.value for pair in pairs.reductions])
-    if smooth:
-        angles = ca.Function("angles", inputs, [turned], {"cse": True})
-        drive = ca.Function("drive", inputs, [handed, *given[1:]], {"cse": True})
-    else:
-        angles = ca.Function("angles", [*inputs, d], [turned], {"cse": True})
-        following = ca.Function("following", [*inputs, d], [handed], {"cse": True})
-        t, values = ca.MX.sym("t", time.numel()), ca.MX.sym("p", parameters.numel())
-        motion = graph.motion.call([t[0], values[: p.numel()]])
-        drive = ca.Function("drive", [t, values], [following(t, values, motion[0]), *motion[1:]])
-    return Stages(drive, loops, instant, precision, compensated=True), angles
+    if laws.sampled is None:
+        return Stages(ca.Function("drive", inputs, given, {"cse": True}), loops, instant, precision, compensated=True)
+    following = ca.Function("following", [*inputs, sampled], given, {"cse": True})
+    t, values = ca.MX.sym("t", time.numel()), ca.MX.sym("p", parameters.numel())
+    read, *changes = laws.sampled.call([t[0], values[: p.numel()]])
+    handed, *others = following.call([t, values, read])
+    ordered = [ca.vertcat(a, b)[list(laws.order)] for a, b in zip(others, changes, strict=True)]
+    return Stages(ca.Function("drive", [t, values], [handed, *ordered]), loops, instant, precision, compensated=True)
+
+
+def _split(symbols: Any) -> list[Any]:
+    return ca.vertsplit(symbols) if symbols.numel() else []
 
 
 def _column(parts: list[Any]) -> Any:

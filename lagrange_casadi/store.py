@@ -178,7 +178,7 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     file.attrs["conventions"] = CONVENTIONS
     file.attrs["mechanism"] = json.dumps(solution.description)
     file.attrs["parameters"] = json.dumps({k: v["value"] for k, v in solution.description["parameters"].items()})
-    file.attrs["certificate_tolerance"] = tolerance(solution.provenance)
+    file.attrs["certificate_tolerance"] = tolerance(solution)
     file.attrs["outputs"] = json.dumps(list(solution.series))
     file.attrs["undetermined"] = json.dumps(solution.undetermined)
     file.attrs["versions"] = json.dumps(dict(provenance.versions))

@@ -17,8 +17,10 @@ from test_mobility import truss_platform
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
 from lagrange_casadi.backends import run
 from lagrange_casadi.codegen import compiler
+from lagrange_casadi.compensated import DTYPES, PRECISIONS
 from lagrange_casadi.errors import CompilerError
 from lagrange_casadi.rung import Rung
+from lagrange_casadi.stages import compensated, plain
 
 
 def spline_arm():
@@ -62,13 +64,16 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
     assert result.returncode == 0, result.stderr
 
 
-def columns(graph, t, language, threads=1, extra=()):
+def columns(graph, t, language, threads=1, extra=(), precision="double"):
     """Every column by the compiled code, into arrays that held NaN."""
-    p = np.array(list(graph.scene.mechanism.values().values()))
-    library = codegen.load(codegen.emit(graph), codegen.find_compiler(language), extra)
-    guess = np.array(graph.newton.guess if graph.newton else ())
-    z, status = np.full((guess.size, t.size), np.nan), np.full(t.size, -1, dtype=np.int32)
-    out = np.full((len(graph.columns), t.size), np.nan)
+    p, dtype = np.array(list(graph.scene.mechanism.values().values())), DTYPES[precision]
+    stages = plain(graph) if precision == "double" else compensated(graph, precision)
+    library = codegen.load(codegen.emit(graph, stages), codegen.find_compiler(language), extra)
+    guess = np.array(graph.newton.guess if graph.newton else (), dtype)
+    z, status = np.full((guess.size, t.size), np.nan, dtype), np.full(t.size, -1, dtype=np.int32)
+    out = np.full((len(graph.columns), t.size), np.nan, dtype)
+    if precision == "single":
+        t, p = (np.array([dtype.type(x), x - dtype.type(x)], dtype) for x in (t, p))
     library.follow(t, p, guess, z, status)
     library.evaluate(t, p, z, out, status, threads)
     assert np.all(status == 0)
@@ -87,12 +92,14 @@ def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
     assert np.max(np.abs(out - machine.out) / scale) <= (0.0 if name in ("slider_crank", "four_bar") else 1e-13)
 
 
+@pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize("language", ["c", "c++"])
 @pytest.mark.parametrize("name", SCENES)
-def test_the_level_of_optimization_changes_no_bit(name, language):
+def test_the_level_of_optimization_changes_no_bit(name, language, precision):
     scene = SCENES[name]()
     graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 37)
-    assert columns(graph, t, language, extra=("-O1",)).tobytes() == columns(graph, t, language).tobytes()
+    one, other = (columns(graph, t, language, extra=extra, precision=precision) for extra in (("-O1",), ()))
+    assert one.tobytes() == other.tobytes()
 
 
 @pytest.mark.parametrize("backend", ["vm", "c", "lanes"])
@@ -215,6 +222,8 @@ def test_without_a_compiler_the_virtual_machine_serves_and_says_so():
     for backend, needs in (("c", "C"), ("lanes", r"C\+\+")):
         with pytest.raises(CompilerError, match=f"backend '{backend}' needs a {needs} compiler"):
             evaluate(slider_crank(), backend=backend)
+    with pytest.raises(CompilerError, match=r"precision 'single' needs a compiler: none of c\+\+, .*, ziglang is there"):
+        evaluate(slider_crank(), precision="single")
 
 
 def test_a_failing_cxx_compiler_is_said_and_c_serves(tmp_path, fresh_cache, monkeypatch):

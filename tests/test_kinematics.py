@@ -89,6 +89,21 @@ def test_a_dead_centre_is_named():
         evaluate(scene)
 
 
+@pytest.mark.parametrize(("precision", "steps"), [("double", 26), ("single", 12)])
+def test_a_dead_centre_that_is_iterated_is_named(precision, steps):
+    """A ram draws a crank and its rod straight: Newton's method comes as near as rounding lets it, in either precision."""
+    m = Mechanism("straightened")
+    crank, rod = m.link("crank", length=0.1, mass=0.3), m.link("rod", length=0.35, mass=0.5)
+    ram = m.point_mass("ram", 0.6)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, ram)
+    m.prismatic("P", m.ground, ram, axis=(1, 0))
+    scene = Scene(m, {"P": polynomial(0.4, 0.05)}, posture={"crank": 1.0}, t=(0, 1, 41))
+    with pytest.raises(AssemblyError, match=r"joint 'B' is at a dead centre at t = 1 s, where P = 0\.45 m, within"):
+        evaluate(scene, precision=precision, newton=steps)
+
+
 @pytest.mark.parametrize(("drives", "says"), [((), "1 degree.* and 0 drive"), (("O", "A"), "1 degree.* and 2 drive")])
 def test_drives_must_match_the_freedom(drives, says):
     base = four_bar()

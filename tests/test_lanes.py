@@ -10,50 +10,58 @@ from builders import slider_crank
 from test_codegen import SCENES, columns
 
 from lagrange_casadi import codegen, derive, evaluate
+from lagrange_casadi.backends import run
 from lagrange_casadi.codegen import library
+from lagrange_casadi.compensated import PRECISIONS, ROUNDING
+from lagrange_casadi.rung import Rung
 
 HEADER = resources.files("lagrange_casadi.codegen").joinpath("lanes.h")
-ULP = np.finfo(float).eps
 
 
+both = pytest.mark.parametrize("precision", PRECISIONS)
+
+
+@both
 @pytest.mark.parametrize("name", SCENES)
-def test_packs_agree_with_scalar_c(name):
-    scene = SCENES[name]()
+def test_packs_agree_with_scalar_c(name, precision):
+    scene, ulp = SCENES[name](), 2 * ROUNDING[precision]
     graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 157)
-    packs, scalar = (columns(graph, t, language) for language in ("c++", "c"))
+    packs, scalar = (columns(graph, t, language, precision=precision) for language in ("c++", "c"))
     kinds = [(column.split(":")[0], column.split(":")[-1] if column.count(":") > 1 else "") for column in graph.columns]
     for kind in set(kinds):
         rows = [i for i, other in enumerate(kinds) if other == kind]
-        assert np.max(np.abs(packs[rows] - scalar[rows])) <= 64 * ULP * np.max(np.abs(scalar[rows]))
+        assert np.max(np.abs(packs[rows] - scalar[rows])) <= 64 * ulp * np.max(np.abs(scalar[rows]))
 
 
+@both
 @pytest.mark.parametrize("name", SCENES)
-def test_a_tail_of_any_length_has_the_same_bits(name):
+def test_a_tail_of_any_length_has_the_same_bits(name, precision):
     scene = SCENES[name]()
     graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 80)
-    whole = columns(graph, t, "c++")
+    whole = columns(graph, t, "c++", precision=precision)
     for n in (*range(1, 19), 63, 64, 65, 72, 79):
-        assert np.array_equal(columns(graph, t[:n], "c++"), whole[:, :n])
+        assert np.array_equal(columns(graph, t[:n], "c++", precision=precision), whole[:, :n])
 
 
+@both
 @pytest.mark.parametrize("language", ["c", "c++"])
 @pytest.mark.parametrize("name", ["effort_alone", "iterated"])
-def test_the_bytes_do_not_depend_on_the_threads(name, language, monkeypatch):
+def test_the_bytes_do_not_depend_on_the_threads(name, language, precision, monkeypatch):
     scene = SCENES[name]()
     graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 40_001)
-    one = columns(graph, t, language)
+    one = columns(graph, t, language, precision=precision)
     monkeypatch.setattr(library, "_WORTH_A_THREAD", 0)
     for threads in (2, 3, 5):
-        assert columns(graph, t, language, threads).tobytes() == one.tobytes()
+        assert columns(graph, t, language, threads, precision=precision).tobytes() == one.tobytes()
 
 
-def test_a_tail_that_cannot_be_closed_is_found_in_its_pack():
+@both
+def test_a_tail_that_cannot_be_closed_is_found_in_its_pack(precision):
     """Instants beyond the reach of the links have a status; their neighbours in the pack have their numbers."""
     graph, t = derive(slider_crank()), np.linspace(0, 0.08, 21)
-    code = codegen.load(codegen.emit(graph), codegen.find_compiler("c++"))
     p = np.array([0.1, 0.1 * np.sin(1.2), 0.1, 0.1, 0.1])
-    out, status = np.full((len(graph.columns), t.size), np.nan), np.zeros(t.size, dtype=np.int32)
-    code.evaluate(t, p, np.empty((0, t.size)), out, status)
+    table, _ = run(graph, t, p, Rung("lanes", precision))
+    out, status = table.out, table.status
     reach = np.abs(np.sin(out[graph.columns.index("motion:O")])) < np.sin(1.2)
     assert 0 < reach.sum() < t.size
     assert np.array_equal(status == 0, reach)

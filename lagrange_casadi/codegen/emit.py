@@ -25,8 +25,9 @@ NEWTON_STEPS = 50
 NEWTON_DONE, NEWTON_DONE_SINGLE = 1e-9, 1e-4
 """A correction after which the next one would be rounding."""
 
-NEWTON_RATE, NEWTON_RATE_SINGLE = 1e-2, 0.2
-"""A correction over the one before, from which on it does not look quadratic: near a dead centre it is a half."""
+NEWTON_RATE, NEWTON_RATE_SINGLE = 1e-2, 0.25
+"""Of one correction to the one before: from where on they shrink too slowly to go with the square. At a dead centre it is 1/2;
+where corrections end early, as in single, their square is not far below them."""
 
 NEWTON_ROUNDING, NEWTON_ROUNDING_SINGLE = 1e-13, 1e-5
 NEWTON_LOST = 0.1
@@ -240,12 +241,15 @@ def _lead(drive: ca.Function) -> ca.Function:
 
 def newton_rule(precision: Precision, steps: int | None) -> dict[str, float]:
     """When iterated loops are done, and lost: the numbers that the emitted C and the virtual machine share."""
-    done, rate, rounding = NEWTON_DONE, NEWTON_RATE, NEWTON_ROUNDING
-    if precision == "single":
-        done, rate, rounding = NEWTON_DONE_SINGLE, NEWTON_RATE_SINGLE, NEWTON_ROUNDING_SINGLE
+    single = precision == "single"
+    done = NEWTON_DONE_SINGLE if single else NEWTON_DONE
+    rule = {
+        "rate": NEWTON_RATE_SINGLE if single else NEWTON_RATE,
+        "rounding": NEWTON_ROUNDING_SINGLE if single else NEWTON_ROUNDING,
+    }
     if steps is not None:
-        return {"steps": steps, "done": 0.0, "lost": NEWTON_LOST, "rate": rate, "rounding": rounding}
-    return {"steps": NEWTON_STEPS, "done": done, "lost": done, "rate": rate, "rounding": rounding}
+        return rule | {"steps": steps, "done": 0.0, "lost": NEWTON_LOST}
+    return rule | {"steps": NEWTON_STEPS, "done": done, "lost": done}
 
 
 def _told(newton: int | None) -> str:
@@ -313,9 +317,12 @@ def _in_single(text: str) -> str:
 
 def _nearest(literal: str) -> str:
     """A literal's nearest single, by as many digits as tell it; no subnormal becomes a warning of the compiler's."""
-    value = np.float32(literal)
+    with np.errstate(over="ignore"):
+        value = np.float32(literal)
     if not np.isfinite(value):
-        raise SizeError(f"the number {literal} is too large for single precision, which ends at {np.finfo(np.float32).max:.3g}")
+        raise SizeError(
+            f"the number {float(literal):g} is too large for single precision, which ends at {np.finfo(np.float32).max:.3g}"
+        )
     return literal if value == float(literal) else f"{float(value):.8e}"
 
 

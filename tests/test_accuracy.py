@@ -1,0 +1,317 @@
+"""Estimates of errors against the errors themselves, which fifty digits tell."""
+
+import functools
+import math
+import sys
+from dataclasses import replace
+
+import casadi as ca
+import numpy as np
+import pytest
+from builders import slider_crank
+from test_cases import CASES, NAMES
+from test_mobility import chain, six_bar, truss_platform
+from test_stages import kind, sampled
+from truth import true_errors, truth
+
+from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, save
+from lagrange_casadi.accuracy import explained
+from lagrange_casadi.backends import run
+from lagrange_casadi.certificate import LOOSE, TOLERANCE, tolerance
+from lagrange_casadi.compensated import ROUNDING
+from lagrange_casadi.errors import AssemblyError
+from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi.parts import Link
+
+FACTOR = 10.0
+MOST = 0.8
+RUNGS = {
+    "lanes": {"flags": "-O1"},
+    "c": {"backend": "c", "flags": "-O1"},
+    "single": {"backend": "c", "precision": "single", "flags": "-O1"},
+    "newton 1": {"backend": "c", "newton": 1, "flags": "-O1"},
+    "newton 2": {"backend": "c", "newton": 2, "flags": "-O1"},
+}
+
+
+COUNT = 101
+"""Instants of a grid: half of them estimates do not look at."""
+
+
+def ratios(solution, exact):
+    """Estimate over true error by quantity, where there is an error; what has none is estimated to have none to speak of."""
+    true = true_errors(solution, exact)
+    assert set(true) == set(solution.errors)
+    unit = ROUNDING["single" if solution.provenance.precision == "single" else "double"]
+    size = {}
+    for name in solution.series:
+        size[kind(name)] = max(size.get(kind(name), 0.0), float(np.max(np.abs(solution.series[name]))))
+    found = {}
+    for name, error in true.items():
+        scale = max(size.get(kind(name), 0.0), 0.0 if name in solution.series else abs(solution.peak(name).value))
+        if error > unit**2 * scale:
+            found[name] = solution.errors[name] / error
+        else:
+            assert solution.errors[name] <= 100 * unit * scale, name
+    return found
+
+
+def assert_near(found):
+    """Most estimates within a factor of ten, none below a tenth."""
+    worst = min(found, key=lambda name: found[name])
+    assert found[worst] > 1 / FACTOR, worst
+    assert np.mean([value < FACTOR for value in found.values()]) >= MOST
+
+
+def exactly(scene, parameters=None):
+    """What a scene has at the instants of its grid."""
+    return truth(scene, np.linspace(*scene.t), parameters)
+
+
+@functools.cache
+def case(name):
+    """A case on a grid of its own, and what it has there."""
+    scene = load_case(CASES / name).scene
+    scene = replace(scene, t=(*scene.t[:2], COUNT))
+    return scene, exactly(scene)
+
+
+@pytest.mark.parametrize("rung", RUNGS)
+@pytest.mark.parametrize("name", NAMES)
+def test_cases(name, rung):
+    scene, exact = case(name)
+    assert_near(ratios(evaluate(scene, **RUNGS[rung]), exact))
+
+
+def four_bar():
+    """A four-bar whose numbers are parameters."""
+    m = Mechanism("random_four_bar")
+    numbers = zip("abc", (0.1, 0.35, 0.25), (0.3, 0.5, 0.4), strict=True)
+    a, b, c = (m.link(n, length=m.parameter(f"l{n}", l), mass=m.parameter(f"m{n}", w)) for n, l, w in numbers)
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, c.tip)
+    m.revolute("C", m.ground.at(m.parameter("x", 0.3), m.parameter("y", 0.05)), c)
+    return m, {"c": 1.5}
+
+
+def offset_crank():
+    """An offset slider-crank whose numbers are parameters."""
+    m = Mechanism("random_crank")
+    numbers = zip("ab", (0.1, 0.35), (0.3, 0.5), strict=True)
+    a, b = (m.link(n, length=m.parameter(f"l{n}", l), mass=m.parameter(f"m{n}", w)) for n, l, w in numbers)
+    s = m.point_mass("s", m.parameter("ms", 0.6))
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, s)
+    m.prismatic("P", m.ground.at(0, m.parameter("y", 0.02)), s, axis=(1, 0))
+    return m, {"b": 0.0}
+
+
+LAWS = (polynomial(0.4, 9.0, -1.5), harmonic(0.5, 1.7, 1.3))
+
+
+@functools.cache
+def declared(build, law):
+    m, posture = build()
+    return Scene(m, {"O": LAWS[law]}, posture=posture, t=(0.0, 1.3, COUNT))
+
+
+def drawn(build, rng):
+    """Lengths of a crank that turns all the way round, masses over four decades."""
+    a = rng.uniform(0.02, 0.6)
+    masses = {name: 10 ** rng.uniform(-3, 1) for name in ("ma", "mb", "mc" if build is four_bar else "ms")}
+    if build is offset_crank:
+        y = a * rng.choice([0.0, 1e-4, 0.2])
+        return masses | {"la": a, "lb": (a + y) * (1 + 10 ** rng.uniform(-3, 1)), "y": y}
+    b, c = a * rng.uniform(1.3, 6.0, 2)
+    frame, angle = rng.uniform(abs(b - c) + 1.001 * a, b + c - 1.001 * a), rng.uniform(-1.0, 1.0)
+    return masses | {"la": a, "lb": b, "lc": c, "x": frame * math.cos(angle), "y": frame * math.sin(angle)}
+
+
+@pytest.mark.parametrize("law", range(len(LAWS)))
+@pytest.mark.parametrize("build", [four_bar, offset_crank])
+@pytest.mark.parametrize("seed", range(2))
+def test_random_loops(build, law, seed):
+    """On every rung, as far as it goes: steps that are too few are refused where they are no solution at all."""
+    scene, rng = declared(build, law), np.random.default_rng([seed, law])
+    parameters = drawn(build, rng)
+    exact = exactly(scene, parameters)
+    for rung, words in RUNGS.items():
+        try:
+            solution = evaluate(scene, parameters=parameters, **words)
+        except AssemblyError:
+            assert "newton" in rung
+        else:
+            assert_near(ratios(solution, exact))
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        lambda: chain(("revolute", True), ("prismatic", False), ("revolute", False)),
+        lambda: chain(*(("revolute", k % 2 == 0) for k in range(6))),
+        six_bar,
+        truss_platform,
+        lambda: sampled(1.0),
+    ],
+    ids=["chain", "chain of six", "six_bar", "iterated", "sampled"],
+)
+def test_other_mechanisms(scene):
+    scene = scene()
+    scene = Scene(scene.mechanism, scene.motion, posture=scene.posture, t=(0.0, 0.9, COUNT))
+    exact = exactly(scene)
+    for rung in ("lanes", "c", "single"):
+        assert_near(ratios(evaluate(scene, **RUNGS[rung]), exact))
+
+
+@pytest.mark.parametrize(
+    ("later", "words"),
+    [
+        (1e3, RUNGS["c"]),
+        (1e6, RUNGS["lanes"]),
+        (1e3, RUNGS["single"]),
+        (1e6, RUNGS["single"]),
+        (1e3, {"backend": "c", "flags": "-ffast-math"}),
+        (1e3, {"backend": "c", "precision": "single", "flags": "-ffast-math"}),
+    ],
+)
+def test_after_many_turns(later, words):
+    """What pairs of singles cannot hold shows, and what a compiler does to pairs when it is allowed to reassociate."""
+    scene = slider_crank(["all"])
+    scene = Scene(scene.mechanism, scene.motion, posture=scene.posture, t=(later, later + 0.08, COUNT))
+    assert_near(ratios(evaluate(scene, **words), exactly(scene)))
+
+
+def test_a_residual_that_rounding_does_not_explain_is_an_error(solution):
+    """One reaction a thousandth too large: every force may be as far off as the balance is."""
+    wrong = replace(solution, series=dict(solution.series) | {"reaction:A:fx": 1.001 * solution.series["reaction:A:fx"]})
+    balance = {"balance": np.array([1e-16, 3e-4]), "closure": np.array([1e-16, 1e-15])}
+    raised = explained(wrong, balance, solution.errors)
+    for name in solution.names():
+        if name.startswith(("effort", "reaction", "section")):
+            assert raised[name] == pytest.approx(3e-4 * abs(wrong.peak(name).value), rel=1e-12)
+        else:
+            assert raised[name] == solution.errors[name]
+    assert explained(wrong, {"balance": np.array([1e-15])}, solution.errors) == solution.errors
+    assert explained(wrong, balance, {}) == {}
+
+
+def test_wrong_formulas_raise_the_estimates(monkeypatch):
+    """One column of the graph a thousandth too large: no rounding tells, the balance of the bodies does."""
+    scene = slider_crank(["all"])
+    graph, before = derive(scene), evaluate(scene)
+    inputs = graph.instant.sx_in()
+    out = graph.instant(*inputs)
+    out[graph.columns.index("reaction:A:fx")] *= 1.001
+    names = [graph.instant.name_in(k) for k in range(graph.instant.n_in())]
+    wrong = replace(graph, instant=ca.Function("instant", inputs, [out], names, ["out"]))
+    monkeypatch.setattr(sys.modules["lagrange_casadi.evaluate"], "derive", lambda *arguments, **keywords: wrong)
+    after = evaluate(scene)
+    assert np.max(after.certificate["balance"]) > 1e-4
+    for name in ("effort:O", "reaction:B:fy", "section:rod:bending"):
+        assert before.errors[name] < 1e-13 * abs(before.peak(name).value)
+        assert after.errors[name] > 1e-4 * abs(after.peak(name).value)
+    assert after.errors["motion:A"] == before.errors["motion:A"]
+
+
+def test_what_the_code_did_wrong_is_an_error_of_what_it_did_wrong(monkeypatch):
+    """One column spoilt after it was computed: its estimate is what it is off."""
+
+    def spoilt(*arguments, **keywords):
+        table, provenance = run(*arguments, **keywords)
+        table.out[arguments[0].columns.index("reaction:A:fx")] *= 1.001
+        return table, provenance
+
+    monkeypatch.setattr(sys.modules["lagrange_casadi.evaluate"], "run", spoilt)
+    solution = evaluate(slider_crank(["all"]))
+    assert solution.errors["reaction:A:fx"] == pytest.approx(0.001 / 1.001 * abs(solution.peak("reaction:A:fx").value), rel=1e-9)
+
+
+def test_without_a_certificate_there_are_no_estimates():
+    solution = evaluate(slider_crank(["all"]), certificate=False)
+    assert solution.errors == {}
+    assert solution.certificate == {}
+
+
+def arm(load):
+    m = Mechanism("arm")
+    link = m.link("arm", length=1, mass=1)
+    joint = m.revolute("J", m.ground, link)
+    m.torque("t", link, load(m.coordinate(joint)))
+    return Scene(m, {"J": polynomial(0.3, 1)}, t=(0, 2, 41))
+
+
+def test_graphs_that_call_functions_have_no_estimates():
+    x = ca.SX.sym("x")
+    called = ca.Function("called", [x], [ca.sin(x)], {"never_inline": True})
+    assert evaluate(arm(called), backend="vm").errors == {}
+    assert set(evaluate(arm(ca.sin), backend="vm").errors) >= {"effort:J", "load:t:mz"}
+
+
+def test_a_trial_that_comes_to_nothing_says_nothing():
+    """The arccosine of one: where a trial goes beyond, it is no number, and the others tell."""
+    scene = arm(lambda angle: ca.acos(ca.sin(angle)))
+    scene = Scene(scene.mechanism, {"J": polynomial(math.pi / 2)}, t=(0, 1, 11))
+    solution = evaluate(scene, backend="vm")
+    assert np.all(solution.series["load:t:mz"] == 0.0)
+    assert 1e-9 < solution.errors["load:t:mz"] < 1e-7
+
+
+def test_half_a_turn_is_as_good_as_less_half_a_turn():
+    """A rod that swings about the direction of -x: where a trial falls on the other side, nothing is off by a turn."""
+    m, _ = offset_crank()
+    scene = Scene(m, {"O": harmonic(0.0, 1.0, 1.0)}, posture={"b": math.pi}, t=(0.0, 1.0, 41))
+    solution = evaluate(scene, parameters={"y": 0.0})
+    assert np.min(np.abs(np.abs(solution.pose("b").angle) - math.pi)) < 1e-15
+    assert solution.errors["pose:b:angle"] < 1e-13
+
+
+def test_the_instant_nearest_to_a_dead_centre_is_looked_at():
+    """One of twenty thousand: between those that are evenly spread, errors are less than a hundredth of those there."""
+    scene = slider_crank(["all"], t=(0.0, 0.08, 20_001))
+    solution = evaluate(scene, parameters={"l": 0.1 * (1 + 1e-7)})
+    worst = int(np.argmax(solution.certificate["condition"]))
+    spread = np.linspace(0, 20_000, 48).astype(int)
+    assert np.min(np.abs(spread - worst)) > 10
+    parameters = scene.mechanism.values({"l": 0.1 * (1 + 1e-7)})
+    true = true_errors(solution.during(slice(worst, worst + 1)), truth(scene, solution.t[worst : worst + 1], parameters))
+    for name in ("effort:O", "reaction:guide:fy", "motion:A_acceleration"):
+        assert 0.1 < solution.errors[name] / true[name] < 1e3, name
+
+
+@pytest.mark.parametrize("backend", ["vm", "c", "lanes"])
+def test_one_step_an_instant_begins_with_a_closed_loop(backend):
+    """Whatever the parameters: the guess of the graph is that of their defaults."""
+    parameters = {"r": 0.07, "l": 0.35}
+    one, closed = (
+        evaluate(slider_crank(), backend=backend, newton=n, parameters=parameters, t=(0.013, 0.08, 401)) for n in (1, None)
+    )
+    for name in ("motion:guide", "effort:O"):
+        gap = np.abs(one.series[name] - closed.series[name])
+        assert gap[0] < 1e-9 * np.max(np.abs(closed.series[name]))
+        assert 0.1 * np.max(gap) < one.errors[name] < 2.0 * np.max(gap)
+        assert 1e-9 < np.max(gap) / np.max(np.abs(closed.series[name])) < 1e-2
+
+
+def test_estimates_go_through_the_file(tmp_path, solution):
+    save(solution, tmp_path / "x.h5")
+    assert load(tmp_path / "x.h5").errors == solution.errors
+    assert set(solution.errors) >= {"effort:O", "section:rod:shear", "section:rod:law:n0", "pose:rod:angle"}
+
+
+def test_what_residuals_are_held_to():
+    scene = slider_crank()
+    assert tolerance(evaluate(scene)) == TOLERANCE
+    assert tolerance(evaluate(scene, precision="single")) == LOOSE
+    assert tolerance(evaluate(scene, newton=1)) == LOOSE
+    far = evaluate(scene, t=(1e6, 1e6 + 0.08, 11))
+    assert np.max(far.certificate["balance"]) < tolerance(far) < 1e4 * np.max(far.certificate["balance"])
+
+
+def test_sections_of_every_density_are_looked_at():
+    solution = evaluate(load_case(CASES / "arm").scene, t=(0, 2, 31))
+    links = [body.name for body in load_case(CASES / "arm").scene.mechanism.moving if isinstance(body, Link)]
+    for link in links:
+        for force in ("axial", "shear", "bending"):
+            assert 0 < solution.errors[f"section:{link}:{force}"] < 1e-12 * abs(solution.peak(f"section:{link}:{force}").value)

@@ -1,0 +1,121 @@
+"""The formulas themselves: the graphs' instructions in 50 digits against Newton-Euler in 50 digits, where no rounding can hide.
+
+What differs after forty digits differs in kind. Every number of a case is a parameter (:mod:`parametric`), and what constants are
+left in its graphs are taken for what they mean.
+"""
+
+import sys
+from dataclasses import replace
+
+import casadi as ca
+import mpmath
+import numpy as np
+import pytest
+from parametric import declared, meant
+from precise import precise
+from test_cases import CASES, NAMES
+from test_mobility import truss_platform
+from truth import section
+
+from lagrange_casadi import Mechanism, Scene, derive, load_case
+from lagrange_casadi.backends import run
+from lagrange_casadi.errors import AssemblyError, DeclarationError, LagrangeCasadiError
+from lagrange_casadi.interpret import interpret
+from lagrange_casadi.motion import polynomial
+from lagrange_casadi.reference import arithmetic, reference
+from lagrange_casadi.rung import Rung
+from lagrange_casadi.section_law import FORCES
+
+MP = mpmath.mp
+EXACT = replace(arithmetic(), constant=meant(MP.mpf))
+RATIOS = (0.0, 0.1234567, 0.5012345, 0.9034567, 1.0)
+# Of the engine, where the gas's pressure lies between table entries that are doubles.
+PARTS = {"engine": (340 / 720, 371.5 / 720, 397 / 720)}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_formulas_to_forty_digits(name, monkeypatch):
+    monkeypatch.setattr("lagrange_casadi.reference.arithmetic", lambda: EXACT)
+    scene = declared(CASES / name)
+    graph, p = derive(scene, ["all"]), list(scene.mechanism.values().values())
+    t = scene.t[0] + np.array(PARTS.get(name, (0.0, 0.4, 0.77))) * (scene.t[1] - scene.t[0])
+    grid = np.unique([*np.linspace(scene.t[0], t[-1], 100), *t])
+    table, _ = run(graph, grid, np.array(p), Rung("vm"))
+    rows = reference(graph, t, p, z=table.iterated[:, np.searchsorted(grid, t)])
+    with MP.workdps(60):
+        for moment, row in zip(t, rows, strict=True):
+            driven = interpret(graph.motion, [[MP.mpf(moment)], [MP.mpf(x) for x in p]], EXACT)
+            drives = {joint: tuple(order[k] for order in driven) for k, joint in enumerate(graph.driven)}
+            expected, found = precise(scene, float(moment), drives), dict(zip(graph.columns, row, strict=True))
+            assert_equal(expected, found, scene.mechanism)
+
+
+def assert_equal(expected, found, mechanism):
+    """To forty digits: forces of the largest force, places of a metre, angles up to whole turns."""
+    forces = max(abs(value) for name, value in expected.items() if name.startswith("reaction"))
+    compared = set()
+    for name, value in expected.items():
+        if name.startswith("section"):
+            _, link, force = name.split(":")
+            k, values = FORCES.index(force), mechanism.values()
+            gaps = [section(found, mechanism, values, link, ratio)[k] - value(MP.mpf(ratio)) for ratio in RATIOS]
+        elif name in found:
+            gaps = [found[name] - MP.mpf(value)]
+        else:
+            assert value == 0, name  # a moment that the joint does not bear
+            continue
+        if name.endswith(":angle"):
+            gaps = [gap - 2 * MP.pi * MP.nint(gap / (2 * MP.pi)) for gap in gaps]
+        size = 1 if name.startswith("pose") else forces
+        assert max(map(abs, gaps)) < MP.mpf(10) ** -40 * size, name
+        compared.add(name.partition(":")[0])
+    assert {"effort", "reaction", "pose"} <= compared
+    assert {n for n in found if n.startswith(("effort", "reaction", "pose", "multiplier"))} <= set(expected)
+
+
+@pytest.mark.parametrize(
+    ("x", "value"),
+    [
+        (1 / 3, lambda pi: MP.mpf(1) / 3),
+        (-1 / 12, lambda pi: MP.mpf(-1) / 12),
+        (0.1, lambda pi: MP.mpf(1) / 10),
+        (0.12345678, lambda pi: MP.mpf(0.12345678)),
+        (2 * np.pi, lambda pi: 2 * pi),
+        (180 / np.pi, lambda pi: 180 / pi),
+        (0.0, lambda pi: 0),
+        (np.inf, lambda pi: MP.inf),
+    ],
+)
+def test_what_constants_mean(x, value):
+    with MP.workdps(50):
+        exact = value(MP.mpf(np.pi))
+        assert meant(MP.mpf)(float(x)) == exact or abs(meant(MP.mpf)(float(x)) / exact - 1) < MP.mpf(10) ** -48
+
+
+def test_a_reference_has_the_digits_that_are_asked_for():
+    scene = load_case(CASES / "rrr3").scene
+    graph = derive(scene, ["effort"])
+    z = np.array(graph.newton.guess)[:, None]
+    rows = {digits: reference(graph, [scene.t[0]], [], z=z, digits=digits)[0] for digits in (25, 60)}
+    for few, many in zip(rows[25], rows[60], strict=True):
+        with MP.workdps(60):
+            assert MP.mpf(10) ** -50 < abs(few / many - 1) < MP.mpf(10) ** -19
+
+
+def test_what_a_reference_refuses(monkeypatch):
+    scene = truss_platform()
+    graph = derive(scene)
+    far = np.full((len(graph.newton.guess), 1), 1.0)
+    monkeypatch.setattr("lagrange_casadi.reference._STEPS", 3)
+    with pytest.raises(AssemblyError, match=r"the loops closed by joint .* do not close to all digits at t = 0\.5 s"):
+        reference(graph, [0.5], [0.05], z=far)
+    x = ca.SX.sym("x")
+    called = ca.Function("called", [x], [ca.sin(x)], {"never_inline": True})
+    m = Mechanism("arm")
+    arm = m.link("arm", length=1, mass=1)
+    m.torque("t", arm, called(m.coordinate(m.revolute("J", m.ground, arm))))
+    with pytest.raises(DeclarationError, match="function 'instant' cannot be followed: it calls another one"):
+        reference(derive(Scene(m, {"J": polynomial(0.3, 1)}, t=(0, 1, 2))), [0.5], [])
+    monkeypatch.setitem(sys.modules, "mpmath", None)
+    with pytest.raises(LagrangeCasadiError, match=r"a reference of many digits needs mpmath; install it with: pip install"):
+        reference(graph, [0.5], [0.05], z=far)

@@ -1,0 +1,137 @@
+"""Single means single: in the C, in what compilers make of it, and in the numbers."""
+
+import platform
+import re
+import shutil
+import subprocess
+
+import casadi as ca
+import numpy as np
+import pytest
+from test_codegen import PEDANTIC, SCENES
+from test_interpret import EACH, X, Y
+from test_lanes import HEADER
+
+from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate
+from lagrange_casadi.codegen.compiler import FLAGS
+from lagrange_casadi.codegen.emit import LANES_PLACE
+from lagrange_casadi.errors import SizeError
+from lagrange_casadi.motion import polynomial
+from lagrange_casadi.stages import compensated, plain
+
+
+def every_function():
+    """An arm under a torque that takes every function there is."""
+    m = Mechanism("functions")
+    arm = m.link("arm", length=1, mass=1)
+    joint = m.revolute("J", m.ground, arm)
+    x, y = m.coordinate(joint) * m.rate(joint) / 2, m.rate(joint)
+    each = EACH | {"acosh": ca.acosh(1 + X)}
+    m.torque("t", arm, ca.substitute(sum(each.values()), ca.vertcat(X, Y), ca.vertcat(x, y)))
+    return Scene(m, {"J": polynomial(0.3, 0.4)}, t=(0, 1, 9))
+
+
+WHOLE = SCENES | {"functions": every_function}
+STRICT = [*PEDANTIC, "-Wdouble-promotion", "-Wfloat-conversion"]
+
+
+def built(name, precision, language, folder):
+    """The object code of a scene, by the package's own flags, pedantically clean."""
+    graph = derive(WHOLE[name]())
+    source = codegen.emit(graph, plain(graph) if precision == "double" else compensated(graph, precision))
+    path = folder / ("scene.c" if language == "c" else "scene.cpp")
+    path.write_text(source if language == "c" else source.replace(LANES_PLACE, HEADER.read_text(), 1))
+    flags = [flag for flag in FLAGS[language] if flag != "-shared"]
+    # A pack is passed as the machine's vectors are, and CasADi knows no C++.
+    flags += STRICT if language == "c" else [*STRICT[3:], "-Wno-psabi"]
+    command = [*codegen.find_compiler(language).command, *flags, "-c", path, "-o", folder / "scene.o"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return folder / "scene.o"
+
+
+@pytest.mark.parametrize("newton", [None, 2])
+@pytest.mark.parametrize("name", WHOLE)
+def test_emitted_c_is_pedantically_clean(name, newton, tmp_path):
+    """No double is meant, and none comes in by a promotion; not even CasADi's own text needs an exception."""
+    graph = derive(WHOLE[name](), iterate=newton is not None)
+    source = tmp_path / "scene.c"
+    source.write_text(codegen.emit(graph, compensated(graph, "single"), newton))
+    command = [*codegen.find_compiler().command, *STRICT, "-c", source, "-o", tmp_path / "scene.o"]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stderr
+
+
+# Arithmetic, comparisons and conversions of doubles, in SSE, AVX and x87; to move or to mask eight bytes is none.
+ON_DOUBLES = re.compile(
+    r"v?(add|sub|mul|div|sqrt|max|min|cmp\w*|u?comi|round|rndscale|rcp\w*|rsqrt\w*|scalef|reduce|get\w+|h(add|sub)|addsub|dp)[sp]d"
+    r"|vfn?m\w+[sp]d|v?cvt\w*[sp]d\w*|f(ld|st|add|sub|mul|div|prem|sqrt|ild|com|ucom|i?st)\w*"
+)
+
+
+def on_doubles(path):
+    """The instructions on doubles in object code."""
+    listed = subprocess.run(["objdump", "-d", "--no-show-raw-insn", path], capture_output=True, text=True, check=True)
+    found = re.findall(r"^\s*[0-9a-f]+:\s+(?:\{\w+\}\s+)?(\w+)", listed.stdout, re.MULTILINE)
+    assert len(found) > 50
+    return {instruction for instruction in found if ON_DOUBLES.fullmatch(instruction)}
+
+
+def functions_of_doubles(path):
+    """The functions of doubles that object code asks a library for."""
+    listed = subprocess.run(["nm", "-u", path], capture_output=True, text=True, check=True)
+    names = [line.split()[-1].rpartition("_")[2] for line in listed.stdout.splitlines()]
+    return {name for name in names if name in {*EACH, "pow", "sincos"} - {"not", "and", "or"}}
+
+
+tools = pytest.mark.skipif(
+    not (shutil.which("objdump") and shutil.which("nm") and platform.machine() in ("x86_64", "AMD64", "i686")),
+    reason="reads the instructions of x86 by objdump and nm",
+)
+
+
+@tools
+@pytest.mark.parametrize("language", ["c", "c++"])
+@pytest.mark.parametrize("name", WHOLE)
+def test_no_instruction_is_on_doubles(name, language, tmp_path):
+    path = built(name, "single", language, tmp_path)
+    assert on_doubles(path) == set()
+    assert functions_of_doubles(path) == set()
+
+
+@tools
+@pytest.mark.parametrize("language", ["c", "c++"])
+def test_instructions_on_doubles_are_told(language, tmp_path):
+    """The same look at code for doubles finds them."""
+    path = built("functions", "double", language, tmp_path)
+    assert {name.removeprefix("v")[:3] for name in on_doubles(path)} >= {"add", "mul", "sub"}
+    assert functions_of_doubles(path) >= {"atan2", "exp", "erf", "hypot", "pow"}
+
+
+@pytest.mark.parametrize("backend", ["c", "lanes"])
+def test_every_function_in_single(backend):
+    """Within some roundings of the doubles, of the largest term of the sum."""
+    scene = every_function()
+    single, double = (evaluate(scene, backend=backend, precision=p, wanted=["load:t"]) for p in ("single", "double"))
+    assert np.isfinite(double.series["load:t:mz"]).all()
+    np.testing.assert_allclose(single.series["load:t:mz"], double.series["load:t:mz"], rtol=1e-5)
+
+
+def loaded(constant):
+    m = Mechanism("loaded")
+    arm = m.link("arm", length=1, mass=1)
+    joint = m.revolute("J", m.ground, arm)
+    m.torque("t", arm, 1.0 + constant * m.rate(joint))
+    return Scene(m, {"J": polynomial(0.3, 0.4)}, t=(0, 1, 9))
+
+
+def test_a_number_too_large_for_single_is_refused():
+    with pytest.raises(SizeError, match=r"the number 1e\+39 is too large for single precision, which ends at 3\.4e\+38"):
+        evaluate(loaded(1e39), precision="single")
+    assert evaluate(loaded(1e39)).array("load:t:mz")[0] == 4e38
+
+
+@pytest.mark.parametrize("constant", [1e-40, 1e-60, 3.4e38])
+def test_numbers_at_the_ends_of_single(constant):
+    solution = evaluate(loaded(constant), precision="single", wanted=["load:t"])
+    np.testing.assert_allclose(solution.array("load:t:mz"), 1.0 + constant * 0.4, rtol=1e-6)
