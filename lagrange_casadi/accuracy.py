@@ -19,6 +19,7 @@ import numpy as np
 from .backends import Table
 from .certificate import blur
 from .compensated import DTYPES, ROUNDING
+from .cycle_table import CycleTable
 from .density import Array
 from .interpret import Arithmetic, followable, interpret, numpy_arithmetic
 from .scene_graph import SceneGraph
@@ -30,6 +31,7 @@ TRIALS = 8
 INSTANTS = 48
 _FORCES = ("effort:", "reaction:", "multiplier:", "section:")
 _UNEXPLAINED = 100.0
+_SUMS = 64.0
 _ALONG = np.linspace(0.0, 1.0, 5)
 _STEPS, _CLOSED = 20, 1e-6
 
@@ -40,6 +42,8 @@ def estimate(graph: SceneGraph, table: Table, solution: Solution, p: Array) -> d
     ``table`` are the columns that the solution was made of. Section forces are looked at from base to tip. Empty where the graphs
     call functions that cannot be followed.
     """
+    if table.cycle is not None:
+        return _of_cycle(graph, table.cycle, solution)
     chosen = _chosen(graph, table)
     found = disturbed(graph, table.stages, solution.t[chosen], p, table.iterated[:, chosen])
     if found is None:
@@ -72,6 +76,25 @@ def explained(solution: Solution, residuals: Mapping[str, Array], errors: Mappin
         return dict(errors)
     forces = [name for name in solution.names() if name.startswith(_FORCES) and solution.determined(name)]
     return dict(errors) | {name: max(errors[name], worst * abs(solution.peak(name).value)) for name in forces}
+
+
+def _of_cycle(graph: SceneGraph, cycle: CycleTable, solution: Solution) -> dict[str, float]:
+    """What the splines of a table were found to miss, and the rounding of their sums; of a section force, all parts' together."""
+    # A table of singles was itself looked at for what it rounds.
+    rounding = _SUMS * ROUNDING["double"] if cycle.dtype.itemsize == 8 else ROUNDING["single"]
+    names = [name for name in graph.columns if not name.startswith("_")]
+    missed = dict(zip(cycle.columns, cycle.errors * cycle.peaks, strict=True))
+    peaks = dict(zip(cycle.columns, cycle.peaks, strict=True))
+    largest: dict[str, float] = {}
+    for name in names:
+        largest[solution.unit(name)] = max(largest.get(solution.unit(name), 0.0), float(peaks[name]))
+    errors = {name: float(missed[name]) + rounding * largest[solution.unit(name)] for name in names}
+    bounds = replace(solution, series={name: np.array([error]) for name, error in errors.items()})
+    for link in bounds.links_with_sections:
+        law = bounds.section(link).law
+        for force in FORCES:
+            errors[f"section:{link}:{force}"] = law.bound(force, _ALONG)
+    return errors
 
 
 def _chosen(graph: SceneGraph, table: Table) -> Array:

@@ -18,6 +18,7 @@ import numpy.typing as npt
 from . import codegen, grids
 from .codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
 from .compensated import DTYPES
+from .cycle_table import CycleTable
 from .density import Array
 from .errors import CompilerError
 from .rung import Backend, Rung
@@ -39,13 +40,15 @@ _VM_BLOCK = 4096
 class Table:
     """The columns of a scene graph over instants: ``out`` (columns, t) and the status of each instant (t).
 
-    ``iterated`` (k, t) are the coordinates of iterated loops; ``stages`` say what was evaluated.
+    ``iterated`` (k, t) are the coordinates of iterated loops; ``stages`` say what was evaluated, ``cycle`` what the rest was read
+    from, if it was.
     """
 
     out: Array
     status: npt.NDArray[np.int32]
     iterated: Array
     stages: Stages
+    cycle: CycleTable | None = None
 
 
 def run(
@@ -66,7 +69,7 @@ def run(
     many = rung.precision == "single" or counts(graph, t, p)
     stages = compensated(graph, rung.precision) if many else plain(graph)
     compiled = _compiled(graph, stages, rung)
-    table = into or _table(graph, stages, t.size)
+    table = into or empty_table(graph, stages, t.size)
     begin = _begin(graph, rung.newton is not None, t[0], tuple(p))
     if compiled is None:
         _interpret(graph, t, p, table, begin, rung.newton)
@@ -129,7 +132,8 @@ def _library(graph: SceneGraph, stages: Stages, newton: int | None, flags: str, 
     return codegen.load(codegen.emit(graph, stages, newton), compiler, tuple(shlex.split(flags)))
 
 
-def _table(graph: SceneGraph, stages: Stages, size: int) -> Table:
+def empty_table(graph: SceneGraph, stages: Stages, size: int) -> Table:
+    """A table to be filled."""
     dtype = DTYPES[stages.precision]
     out, iterated = (rows(count, size, dtype) for count in (len(graph.columns), graph.instant.size1_in("z")))
     return Table(out, np.full(size, OK, dtype=np.int32), iterated, stages)

@@ -112,15 +112,7 @@ class Drive:
     @classmethod
     def of(cls, graph: SceneGraph, p: Array) -> Drive:
         """Raises :class:`DeclarationError` where there is not one drive that turns, or where columns depend on time itself."""
-        joints = graph.scene.mechanism.joints
-        if len(graph.driven) != 1:
-            named = ", ".join(f"'{name}'" for name in graph.driven) or "none"
-            raise DeclarationError(f"table: expected one driven joint, whose angle decides all, got {named}")
-        joint = graph.driven[0]
-        if joints[joint].coordinate != "angle":
-            raise DeclarationError(
-                f"table: the driven joint '{joint}' slides; expected one that turns, for only its angle comes again"
-            )
+        joint = the_drive(graph)
         t, d, rate, acceleration, z, parameters = graph.instant.sx_in()
         out = graph.instant(t, d, rate, acceleration, z, parameters)
         timed = [graph.columns[k] for k in ca.jacobian_sparsity(out, t).row()]
@@ -230,6 +222,17 @@ class Drive:
 
     def _not_round(self, angle: float) -> str:
         return f"{where([(self.joint, 'angle', angle)])}; expected a drive that can turn all the way round"
+
+
+def the_drive(graph: SceneGraph) -> str:
+    """The one driven joint of a scene. Raises :class:`DeclarationError` where there is not one, or where it slides."""
+    if len(graph.driven) != 1:
+        named = ", ".join(f"'{name}'" for name in graph.driven) or "none"
+        raise DeclarationError(f"table: expected one driven joint, whose angle decides all, got {named}")
+    (joint,) = graph.driven
+    if graph.scene.mechanism.joints[joint].coordinate != "angle":
+        raise DeclarationError(f"table: the driven joint '{joint}' slides; expected one that turns, for only its angle comes again")
+    return joint
 
 
 def cycle_of(graph: SceneGraph, p: Array, rates: tuple[float, float]) -> Cycle:

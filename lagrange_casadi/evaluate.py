@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from .accuracy import estimate, explained
-from .backends import Table, run
+from .backends import Table
 from .certificate import Held, certify
 from .compensated import Precision
 from .density import Array
@@ -17,6 +17,7 @@ from .derive import derive
 from .description import describe
 from .errors import DeclarationError
 from .grids import require
+from .reading import columns
 from .refusal import refuse
 from .rung import Backend, Rung
 from .scene import Grid, Scene, checked, checked_ratios
@@ -83,7 +84,7 @@ def evaluate(
     require("the grid of ratios", (ratios[2],))
     times, places = np.linspace(start, stop, count), np.linspace(*ratios)
     p = np.array(list(values.values()))
-    found, provenance = run(graph, times, p, rung, threads)
+    found, provenance = columns(graph, times, p, rung, threads)
     refuse(graph, found, times, p, rung)
     out = np.asarray(found.out, float)
     series = {name: out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}

@@ -54,6 +54,7 @@ def steps(function: Any) -> tuple[Step, ...]:
 
 
 @functools.lru_cache(maxsize=64)
+@functools.lru_cache(maxsize=64)
 def followable(function: Any) -> bool:
     """Whether a function is written in scalars, calls no other, and does nothing that is unknown here."""
     return bool(function.is_a("SXFunction")) and all(step.operation in _KNOWN for step in steps(function))

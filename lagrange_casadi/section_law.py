@@ -117,6 +117,15 @@ class SectionLaw:
         going = sum(np.where(u == _column(load.station, u), _column(r.station, u), 0.0) for load, r in pairs)
         return still + going * self.along(force, u, side) if pairs else still
 
+    def bound(self, force: str, xi: Array) -> float:
+        """The largest size that a force may have at ratios ``xi`` where coefficients and loads have any sign."""
+        columns, rows = self._terms(force, self.basis(xi))
+        size = sum(np.abs(column)[:, None] * np.abs(row) for column, row in zip(columns, rows, strict=True))
+        for load in self.loads:
+            _, constant, slope = self._acting(force, load)
+            size = size + (np.abs(constant) + np.abs(slope))[:, None]
+        return float(np.max(size, initial=0.0))
+
     def extreme(self, force: str) -> tuple[Array, Array]:
         """The ratio at which a force is largest in size, and the force there, at every instant, both of shape (t,)."""
         n = self.coefficients["n0"].size

@@ -80,7 +80,7 @@ def counts(graph: SceneGraph, t: Array, p: Array) -> bool:
 
 @functools.lru_cache(maxsize=256)
 def _largest(graph: SceneGraph, instants: tuple[float, ...], p: tuple[float, ...]) -> float:
-    """The largest counted angle under a sine or cosine [rad].
+    """The largest counted angle under a sine or cosine [rad], or of which whole turns are taken.
 
     What is counted is a row over the instants, what parameters set a number, and anything else nothing.
     """
@@ -88,8 +88,8 @@ def _largest(graph: SceneGraph, instants: tuple[float, ...], p: tuple[float, ...
     known = numpy_arithmetic().operations
 
     def measured(code: int, *values: Any) -> Any:
-        if np.ndim(values[0]) and code in _PHASES | _REMAINDERS:
-            angles.append(float(np.max(np.abs(values[0]))))
+        if np.ndim(values[0]) and code in _PHASES | _REMAINDERS | {ca.OP_FLOOR}:
+            angles.append(float(np.max(np.abs(values[0]))) * (math.tau if code == ca.OP_FLOOR else 1.0))
         return known[code](*values)
 
     def counted(code: int, *values: Any) -> Any:

@@ -21,12 +21,13 @@ from .density import Array
 from .derive import derive
 from .errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
 from .quantities import quantity_of
+from .reading import columns
 from .reference import reference
 from .rung import Rung
 from .scene import Grid, Scene, checked
 from .scene_graph import SceneGraph
 
-INSTANTS = 5_000
+INSTANTS = 10_000
 """Instants that are timed, over the scene's own span of time; of the virtual machine a tenth."""
 
 COMPARED = 101
@@ -136,14 +137,15 @@ def trade(
             continue
         graph = graphs[rung.newton is not None]
         try:
-            table, _ = run(graph, times, values, rung, 1)
+            table, _ = columns(graph, times, values, rung, 1)
             if table.status.any():
                 raise AssemblyError("some instants have no result")
             works[rung] = _work(graph, times, values, rung)
         except (AssemblyError, CompilerError, DeclarationError) as error:
             refused[rung.options] = str(error)
             continue
-        found[rung] = (*truth.errors(graph, table), "")
+        nodes = "" if table.cycle is None else f"{table.cycle.nodes} nodes, {table.cycle.nbytes / 1000:.3g} kB"
+        found[rung] = (*truth.errors(graph, table), nodes)
     seconds = _in_turns(works)
     measured = [Measurement(rung, seconds[rung], *found[rung]) for rung in works]
     ordered = tuple(sorted(measured, key=lambda one: one.seconds))
@@ -189,8 +191,8 @@ def _work(graph: SceneGraph, t: Array, p: Array, rung: Rung) -> tuple[Callable[[
     """What is timed, made ready, and its instants."""
     count = INSTANTS // 10 if rung.backend == "vm" else INSTANTS
     dense = np.linspace(t[0], t[-1], count)
-    table, _ = run(graph, dense, p, rung, 1)
-    return lambda: run(graph, dense, p, rung, 1, into=table), count
+    table, _ = columns(graph, dense, p, rung, 1)
+    return lambda: columns(graph, dense, p, rung, 1, into=table), count
 
 
 def _in_turns(works: Mapping[Rung, tuple[Callable[[], Any], int]]) -> dict[Rung, float]:

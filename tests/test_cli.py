@@ -195,7 +195,7 @@ def test_a_failing_compiler_is_one_line(here, capfd, monkeypatch, tmp_path_facto
 def test_without_a_compiler_one_line_says_so(here, capfd, monkeypatch):
     for variable in ("CC", "CXX"):
         monkeypatch.delenv(variable, raising=False)
-    monkeypatch.setattr("lagrange_casadi.codegen.compiler.shutil.which", lambda _: None)
+    monkeypatch.setenv("PATH", "")
     monkeypatch.setattr("lagrange_casadi.codegen.compiler.importlib.util.find_spec", lambda _: None)
     assert main(["run", str(CASE), "--t", "0:0.08:11", "--no-figures"]) == 0
     assert capfd.readouterr().err.startswith("note: no C or C++ compiler found")

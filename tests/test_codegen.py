@@ -210,7 +210,7 @@ def test_cc_may_hold_words(monkeypatch):
 def _no_compiler(monkeypatch):
     for variable in ("CC", "CXX"):
         monkeypatch.delenv(variable, raising=False)
-    monkeypatch.setattr(compiler.shutil, "which", lambda _: None)
+    monkeypatch.setenv("PATH", "")
     monkeypatch.setattr(compiler.importlib.util, "find_spec", lambda _: None)
 
 

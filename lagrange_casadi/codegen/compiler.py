@@ -71,8 +71,13 @@ def find_compiler(language: Language = "c") -> Compiler | None:
 
     Raises :class:`CompilerError` where the variable is set and does not run.
     """
+    return _find_compiler(language, os.environ.get(_NAMES[language][0], "").strip(), os.environ.get("PATH", ""))
+
+
+@functools.lru_cache(maxsize=16)
+def _find_compiler(language: Language, chosen: str, _path: str) -> Compiler | None:
+    """The same for what the environment says, which a process may change."""
     variable, names = _NAMES[language]
-    chosen = os.environ.get(variable, "").strip()
     if chosen:
         try:
             command = tuple(shlex.split(chosen))

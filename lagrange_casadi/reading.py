@@ -1,0 +1,91 @@
+"""A scene read from a table: its drive is evaluated, as on any rung, and everything else is read at the drive's angle."""
+
+from __future__ import annotations
+
+import functools
+import math
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import casadi as ca
+import numpy as np
+
+from .backends import Table, empty_table, run
+from .codegen import cores
+from .codegen.emit import NOT_FINITE, OK
+from .cycle import TURNS, the_drive
+from .cycle_table import CycleTable
+from .density import Array
+from .rung import Rung
+from .scene_graph import SceneGraph
+from .solution import Provenance
+from .tabulate import tabulate
+
+_SHARE = 1 << 14
+_DIGITS = 3
+
+
+def columns(
+    graph: SceneGraph, t: Array, p: Array, rung: Rung, threads: int | None = None, *, into: Table | None = None
+) -> tuple[Table, Provenance]:
+    """The columns of a graph at instants ``t`` and parameters ``p``: evaluated, or read from a table, as the rung says.
+
+    ``into`` is what an earlier call with the same rung and as many instants gave, to be filled anew. Raises
+    :class:`DeclarationError`, with the reason, where the scene cannot be tabulated, and what :func:`.run` raises.
+    """
+    if rung.table is None:
+        return run(graph, t, p, rung, threads, into=into)
+    the_drive(graph)
+    drive, provenance = run(_drive(graph), t, p, replace(rung, table=None), threads)
+    angle, rate, acceleration, *within = drive.out
+    cycle = cycle_table(graph, tuple(p), rung.table, (_above(rate), _above(acceleration)))
+    cycle = _single(cycle) if rung.precision == "single" else cycle
+    phase = within[cycle.turns - 1]
+    table = into or replace(empty_table(graph, drive.stages, t.size), cycle=cycle)
+    table.iterated[:] = np.nan
+    table.status[:] = drive.status
+
+    def fill(start: int) -> None:
+        cut = slice(start, start + size)
+        cycle.evaluate(phase[cut], rate[cut], acceleration[cut], table.out[:, cut])
+
+    shares = max(1, min(threads or cores(), t.size // _SHARE))
+    size = -(-t.size // shares)
+    if shares == 1:
+        fill(0)
+    else:
+        with ThreadPoolExecutor(shares) as pool:
+            list(pool.map(fill, range(0, t.size, size)))
+    for k in np.flatnonzero(cycle.drift):
+        table.out[k] += cycle.drift[k] * (angle - phase)
+    table.status[~np.isfinite(table.out.sum(axis=0)) & (table.status == OK)] = NOT_FINITE
+    return table, replace(provenance, rung=rung.options)
+
+
+@functools.lru_cache(maxsize=32)
+def cycle_table(graph: SceneGraph, p: tuple[float, ...], table: float, rates: tuple[float, float]) -> CycleTable:
+    """The table of a scene for parameters ``p``, kept while the process lasts; see :func:`.tabulate`."""
+    return tabulate(graph, np.array(p), table, rates)
+
+
+_single = functools.lru_cache(maxsize=32)(CycleTable.single)
+
+
+@functools.lru_cache(maxsize=32)
+def _drive(graph: SceneGraph) -> SceneGraph:
+    """The drive alone: its angle, rate and acceleration, and the angle within one turn, two, and so on."""
+    t, d, rate, acceleration, _, p = graph.instant.sx_in()
+    within = [d - math.tau * (turns * ca.floor(d * (1 / (turns * math.tau)))) for turns in range(1, TURNS + 1)]
+    out = ca.densify(ca.vertcat(d, rate, acceleration, *within))
+    names = [graph.instant.name_in(i) for i in range(graph.instant.n_in())]
+    instant = ca.Function("instant", [t, d, rate, acceleration, ca.SX(0, 1), p], [out], names, ["out"], {"cse": True})
+    columns = ("angle", "rate", "acceleration", *(f"within:{turns}" for turns in range(1, TURNS + 1)))
+    return replace(graph, instant=instant, newton=None, columns=columns, wrapped={}, held=(), undetermined=())
+
+
+def _above(values: Array) -> float:
+    """A little more than the largest size: a table serves motions that are nearly as fast as well."""
+    largest = float(np.max(np.abs(values), initial=0.0))
+    if not largest or not math.isfinite(largest):
+        return largest
+    return float(f"{largest * (1 + 0.5 * 10**-_DIGITS * 10):.{_DIGITS - 1}e}")
