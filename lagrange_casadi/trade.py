@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from .codegen import find_compiler
 from .density import Array
 from .derive import derive
 from .errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
+from .peaks import Shortfall, shortfall
 from .quantities import quantity_of
 from .reading import columns
 from .reference import reference
@@ -31,6 +32,9 @@ INSTANTS = 10_000
 """Instants that are timed, over the scene's own span of time; of the virtual machine a tenth."""
 
 COMPARED = 101
+COUNTS = (25, 50, 100, 200, 400, 800)
+"""Instants of a cycle, for what they miss of the peaks."""
+
 ROUNDS = 7
 _NIL = 1e-9
 _LEAST = 2e-3
@@ -64,13 +68,17 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Trade:
-    """The rungs of one scene, fastest first, and those that it has not, with the reason."""
+    """The rungs of one scene, fastest first, and those that it has not, with the reason.
+
+    ``peaks`` says how far peaks fall short, by how many instants a cycle is sampled at; empty where that cannot be said.
+    """
 
     case: str
     instants: int
     compared: int
     measurements: tuple[Measurement, ...]
     refused: Mapping[str, str]
+    peaks: tuple[Shortfall, ...] = ()
 
     @property
     def front(self) -> tuple[Measurement, ...]:
@@ -99,14 +107,9 @@ class Trade:
 
     def as_dict(self) -> dict[str, Any]:
         """All of it as plain numbers and words, for JSON."""
-        listed = [asdict(one) | {"options": one.rung.options, "front": one in self.front} for one in self.measurements]
-        return {
-            "case": self.case,
-            "instants": self.instants,
-            "compared": self.compared,
-            "rungs": listed,
-            "refused": dict(self.refused),
-        }
+        rungs = [asdict(one) | {"options": one.rung.options, "front": one in self.front} for one in self.measurements]
+        found = {"case": self.case, "instants": self.instants, "compared": self.compared, "rungs": rungs}
+        return found | {"refused": dict(self.refused), "peaks": [asdict(row) for row in self.peaks]}
 
 
 def trade(
@@ -149,7 +152,12 @@ def trade(
     seconds = _in_turns(works)
     measured = [Measurement(rung, seconds[rung], *found[rung]) for rung in works]
     ordered = tuple(sorted(measured, key=lambda one: one.seconds))
-    return Trade(scene.mechanism.name, INSTANTS, compared.size, ordered, refused)
+    sampled = replace(scene, t=scene.t if t is None else t, wanted=scene.wanted if wanted is None else wanted)
+    try:
+        peaks = tuple(shortfall(sampled, COUNTS, parameters=parameters))
+    except (AssemblyError, DeclarationError):
+        peaks = ()
+    return Trade(scene.mechanism.name, INSTANTS, compared.size, ordered, refused, peaks)
 
 
 class _Truth:

@@ -1,0 +1,115 @@
+"""The trade: every rung measured, errors that are true, a front that nothing beats, and recommendations that hold."""
+
+import json
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+import pytest
+from builders import slider_crank
+
+from lagrange_casadi import Mechanism, Scene, evaluate, load_case, motion
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import AccuracyError, DeclarationError
+from lagrange_casadi.rung import Rung
+from lagrange_casadi.trade import COMPARED, RUNGS, Measurement, Trade, trade
+
+CASES = Path(__file__).parent.parent / "cases"
+SOME = (Rung("c"), Rung("vm"), Rung("c", "single"), Rung("lanes", newton=1), Rung("lanes", newton=2), Rung("c", table=1e-6))
+
+
+@pytest.fixture(scope="module")
+def measured():
+    return trade(slider_crank(), rungs=SOME)
+
+
+def test_every_rung_is_measured(measured):
+    assert {one.rung for one in measured.measurements} == set(SOME)
+    assert not measured.refused
+    assert all(0.0 < one.median <= one.largest < 1e-4 and 1e-10 < one.seconds < 1e-3 for one in measured.measurements)
+    assert list(measured.measurements) == sorted(measured.measurements, key=lambda one: one.seconds)
+
+
+def test_errors_are_what_each_rung_may_have(measured):
+    error = {one.rung: one.largest for one in measured.measurements}
+    assert error[Rung("c")] == error[Rung("vm")] < 1e-14
+    assert 1e-8 < error[Rung("c", "single")] < 2e-6
+    assert 1e-14 < error[Rung("lanes", newton=2)] < 1e-6 * error[Rung("lanes", newton=1)] ** 0.5
+    assert 1e-9 < error[Rung("c", table=1e-6)] <= 1e-6
+
+
+def test_an_error_is_the_difference_that_there_is(measured):
+    """By solutions of another backend, where the rung errs by far more than rounding."""
+    scene = slider_crank()
+    exact, rough = evaluate(scene, backend="vm"), evaluate(scene, backend="lanes", newton=1)
+    found = next(one for one in measured.measurements if one.rung == Rung("lanes", newton=1))
+    kept = np.unique(np.linspace(0, exact.t.size - 1, COMPARED).astype(int))
+    gap = np.max(np.abs(exact.series[found.worst] - rough.series[found.worst])[kept]) / np.max(np.abs(exact.series[found.worst]))
+    assert found.largest == pytest.approx(gap, rel=1e-6)
+
+
+def entry(seconds, largest, backend="c"):
+    return Measurement(Rung(backend, flags=f"-D{seconds}"), seconds, largest, largest, "effort:O")
+
+
+def test_the_front_and_the_fastest():
+    found = Trade("x", 1, 1, (entry(1, 1e-3), entry(2, 1e-2), entry(3, 1e-6), entry(4, 1e-6), entry(5, 1e-15)), {})
+    assert [one.seconds for one in found.front] == [1, 3, 5]
+    assert found.fastest(1e-3).seconds == 1
+    assert found.fastest(9e-4).seconds == 3
+    with pytest.raises(
+        AccuracyError, match=r"no rung of 'x' keeps 1e-16 .*; the best, --backend c --flags -D5, keeps 1e-15 \(effort:O"
+    ):
+        found.fastest(1e-16)
+    for wrong in (0.0, -1.0, float("nan")):
+        with pytest.raises(DeclarationError, match="accuracy: expected a number above 0"):
+            found.fastest(wrong)
+
+
+def test_what_a_scene_has_not_is_refused_with_the_reason():
+    found = trade(
+        load_case(CASES / "arm").scene, t=(0, 2, 11), wanted=["effort"], rungs=(Rung("c"), Rung("c", table=64), Rung("c", newton=1))
+    )
+    assert [one.rung for one in found.measurements] == [Rung("c")]
+    assert list(found.refused) == ["--backend c --table 64"]
+    assert "one driven joint" in found.refused["--backend c --table 64"]
+
+
+def test_graphs_that_call_functions_have_no_reference():
+    x = ca.SX.sym("x")
+    called = ca.Function("called", [x], [ca.sin(x) * x], {"never_inline": True})
+    m = Mechanism("arm")
+    arm = m.link("arm", length=1, mass=1)
+    joint = m.revolute("J", m.ground, arm)
+    m.torque("t", arm, called(m.coordinate(joint)))
+    with pytest.raises(DeclarationError, match="cannot be followed: it calls another one"):
+        trade(Scene(m, {"J": motion.polynomial(0.3, 1)}, t=(0, 1, 9)), rungs=(Rung("c"),))
+
+
+def test_the_command(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("lagrange_casadi.trade.RUNGS", RUNGS)
+    monkeypatch.setattr("lagrange_casadi.trade.ROUNDS", 1)
+    arguments = ["trade", str(CASES / "slider_crank"), "--want", "effort", "--t", "0:0.08:201"]
+    assert main([*arguments, "--accuracy", "1e-9"]) == 0
+    out, err = capfd.readouterr()
+    assert "fastest within 1e-09: --backend" in out
+    assert "x lanes" in out
+    assert not err
+    stored = json.loads((tmp_path / "slider_crank_trade.json").read_text())
+    assert {one["options"] for one in stored["rungs"]} == {rung.options for rung in RUNGS}
+    assert any(one["front"] for one in stored["rungs"])
+    assert len(stored["peaks"]) > 3
+    assert (tmp_path / "slider_crank_trade.png").stat().st_size > 10_000
+    assert main([*arguments, "--accuracy", "1e-30"]) == 1
+    out, err = capfd.readouterr()
+    assert err.startswith("error: no rung of 'slider_crank' keeps 1e-30 of the peak; the best, ")
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize("accuracy", ["0", "-1", "nan"])
+def test_a_wrong_accuracy_is_said_before_anything_is_measured(accuracy, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    assert main(["trade", str(CASES / "slider_crank"), "--accuracy", accuracy]) == 2
+    assert capfd.readouterr().err.startswith("error: accuracy: expected a number above 0")
+    assert not list(tmp_path.iterdir())
