@@ -26,7 +26,7 @@ def measured():
 def test_every_rung_is_measured(measured):
     assert {one.rung for one in measured.measurements} == set(SOME)
     assert not measured.refused
-    assert all(0.0 < one.median <= one.largest < 1e-4 and 1e-10 < one.seconds < 1e-3 for one in measured.measurements)
+    assert all(0.0 < one.median <= one.largest < 1e-2 and 1e-10 < one.seconds < 1e-3 for one in measured.measurements)
     assert list(measured.measurements) == sorted(measured.measurements, key=lambda one: one.seconds)
 
 

@@ -84,9 +84,7 @@ def _print(found: Trade) -> None:
     for options, reason in found.refused.items():
         click.echo(f"  {options}: {reason}")
     if found.peaks:
-        click.echo(
-            "how far peaks of forces fall short, by instants of the cycle; refined: between them, as by run --refine-peaks"
-        )
+        click.echo("how far peaks of forces fall short, by instants of the cycle; refined: between them, as by run --refine-peaks")
         click.echo(f"  {'instants':>8} {'worst':>9} {'median':>9} {'refined worst':>14} {'refined median':>15}")
     for row in found.peaks:
         sampled, refined = (
