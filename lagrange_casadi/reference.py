@@ -9,6 +9,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import casadi as ca
@@ -34,7 +35,8 @@ def reference(
     mp = _mpmath()
     with mp.workdps(digits):
         # A turn is meant, not the double that is nearest to it.
-        known = Arithmetic(lambda value: 2 * mp.pi if value == math.tau else mp.mpf(value), _operations(mp))
+        plain = arithmetic()
+        known = replace(plain, constant=lambda value: 2 * mp.pi if value == math.tau else plain.constant(value))
         values = [mp.mpf(value) for value in p]
         rows = []
         for i, moment in enumerate(t):

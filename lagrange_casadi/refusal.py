@@ -71,7 +71,7 @@ def _dead_between(graph: SceneGraph, name: str, start: Array, stop: Array, p: Ar
         place = np.argmin(closure, axis=0)[None]
         lowest = np.fmin(lowest, np.take_along_axis(closure, place, 0)[0])
         start, stop = (np.take_along_axis(inside, np.clip(place + k, 0, _INSIDE - 1), 0)[0] for k in (-1, 1))
-    return ~(lowest > _DEAD * ROUNDING[rung.precision])
+    return ~(lowest > _dead(graph, rung.precision, name))
 
 
 def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str | None:

@@ -18,7 +18,7 @@ from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case,
 from lagrange_casadi.accuracy import explained
 from lagrange_casadi.backends import run
 from lagrange_casadi.certificate import LOOSE, TOLERANCE, tolerance
-from lagrange_casadi.compensated import ROUNDING
+from lagrange_casadi.compensated import DTYPES, ROUNDING
 from lagrange_casadi.errors import AssemblyError
 from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.parts import Link
@@ -42,7 +42,8 @@ def ratios(solution, exact):
     """Estimate over true error by quantity, where there is an error; what has none is estimated to have none to speak of."""
     true = true_errors(solution, exact)
     assert set(true) == set(solution.errors)
-    unit = ROUNDING["single" if solution.provenance.precision == "single" else "double"]
+    precision = "single" if solution.provenance.precision == "single" else "double"
+    unit, least = ROUNDING[precision], float(np.finfo(DTYPES[precision]).tiny)
     size = {}
     for name in solution.series:
         size[kind(name)] = max(size.get(kind(name), 0.0), float(np.max(np.abs(solution.series[name]))))
@@ -52,7 +53,7 @@ def ratios(solution, exact):
         if error > unit**2 * scale:
             found[name] = solution.errors[name] / error
         else:
-            assert solution.errors[name] <= 100 * unit * scale, name
+            assert solution.errors[name] <= 100 * unit * scale + least, name
     return found
 
 

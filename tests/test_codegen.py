@@ -102,6 +102,13 @@ def test_the_level_of_optimization_changes_no_bit(name, language, precision):
     assert one.tobytes() == other.tobytes()
 
 
+@pytest.mark.parametrize("backend", ["c", "lanes"])
+def test_no_flag_changes_the_arithmetic_of_the_process(backend):
+    """What -ffast-math allows in a library is not done to everyone who loads it."""
+    evaluate(slider_crank(["effort"]), backend=backend, flags="-ffast-math")
+    assert np.float64(1e-310) * np.float64(0.5) == 5e-311
+
+
 @pytest.mark.parametrize("backend", ["vm", "c", "lanes"])
 def test_a_load_may_call_a_function_that_is_not_inlined(backend):
     x = ca.SX.sym("x")

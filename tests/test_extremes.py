@@ -141,7 +141,7 @@ def test_a_lost_phase_is_in_the_estimate(scene):
 def test_half_iterated_loops_are_in_the_estimate(name):
     """Steps of Newton that are too few so near to a dead centre: one more of them would not tell."""
     (extreme,) = (e for e in EXTREMES if name in e.name)
-    exact, rough = extreme.solution(), extreme.solution(newton=8)
+    exact, rough = extreme.solution(), extreme.solution(newton=1)
     gaps = {name: np.max(np.abs(row - exact.series[name])) for name, row in rough.series.items()}
     assert gaps["effort:O"] > 1e-3 * np.max(np.abs(exact.series["effort:O"]))
     assert not {name: gap for name, gap in gaps.items() if not rough.errors[name] >= gap / 10}

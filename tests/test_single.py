@@ -41,7 +41,7 @@ def built(name, precision, language, folder):
     source = codegen.emit(graph, plain(graph) if precision == "double" else compensated(graph, precision))
     path = folder / ("scene.c" if language == "c" else "scene.cpp")
     path.write_text(source if language == "c" else source.replace(LANES_PLACE, HEADER.read_text(), 1))
-    flags = [flag for flag in FLAGS[language] if flag != "-shared"]
+    flags = [flag for flag in FLAGS[language] if flag not in ("-shared", "-nostartfiles")]
     # A pack is passed as the machine's vectors are, and CasADi knows no C++.
     flags += STRICT if language == "c" else [*STRICT[3:], "-Wno-psabi"]
     command = [*codegen.find_compiler(language).command, *flags, "-c", path, "-o", folder / "scene.o"]

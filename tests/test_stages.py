@@ -292,6 +292,15 @@ def test_iterated_angles_are_kept_within_a_turn():
             assert np.max(gaps[-100:]) < allowed * np.max(np.abs(two.out[closed.columns.index(name)]))
 
 
+@pytest.mark.parametrize(("rungs", "later", "allowed"), [(DOUBLE, 1e6, 1e-13), (SINGLE, 1e4, 1e-5)], ids=["double", "single"])
+def test_iterated_loops_after_a_million_turns(rungs, later, allowed):
+    m = drag_link().mechanism
+    scene = Scene(m, {"O": polynomial(0.2, 2 * math.pi)}, posture={"c": 1.6}, t=(later, later + 1.0, 41))
+    graph, t = derive(scene, ["reaction:B", "effort"], iterate=True), np.linspace(*scene.t)
+    for rung in rungs:
+        assert gap(graph, t, rung) < allowed
+
+
 def test_iterated_angles_that_a_gear_counts_are_not():
     scene = wheel_on_drag_link()
     graph = derive(scene, ["motion"], iterate=True)

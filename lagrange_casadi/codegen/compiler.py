@@ -29,12 +29,13 @@ from ..errors import CompilerError
 
 Language = Literal["c", "c++"]
 
-_COMMON = ("-fno-math-errno", "-ffp-contract=off", "-fvisibility=hidden", "-fPIC", "-shared")
+_COMMON = ("-fno-math-errno", "-ffp-contract=off", "-fvisibility=hidden", "-fPIC", "-shared", "-nostartfiles")
 FLAGS: dict[Language, tuple[str, ...]] = {
     "c": ("-std=c99", "-O3", *_COMMON),
     "c++": ("-std=c++11", "-O3", "-march=native", *_COMMON),
 }
-"""No contraction: a product and a sum round as written. Nobody reads errno; without it a root is an instruction, no call."""
+"""No contraction: a product and a sum round as written. Nobody reads errno; without it a root is an instruction, no call.
+No start files: those that gcc links in where -ffast-math is asked for make the whole process flush to zero what is subnormal."""
 
 LARGE = 20_000
 """Statements from which on a file is compiled with -O1: see ``docs/speed.md`` for what that saves and costs."""
