@@ -13,6 +13,7 @@ from ..derive import derive
 from ..description import Description, describe
 from ..scene import Scene, outputs
 from ..solution import Solution
+from .report import peak_line
 
 
 @click.command()
@@ -49,12 +50,11 @@ def _describe_file(solution: Solution) -> None:
     click.echo(f"t [s]: {solution.t[0]:g} to {solution.t[-1]:g}, {solution.t.size} points")
     click.echo(f"xi/l: {solution.xi[0]:g} to {solution.xi[-1]:g}, {solution.xi.size} points")
     click.echo(f"backend: {provenance.backend}, {provenance.precision} {provenance.compiler} {provenance.flags}".rstrip())
+    click.echo(f"rung: {provenance.rung}")
     click.echo(f"versions: {', '.join(f'{name} {version}' for name, version in provenance.versions.items())}")
     click.echo("peaks:")
     for name in solution.names():
-        peak = solution.peak(name)
-        place = "" if peak.xi is None else f", xi/l = {peak.xi:.4f}"
-        click.echo(f"  {name:<28}{peak.value:>13.6g} {peak.unit:<7} at t = {peak.t:.5g} s{place}")
+        click.echo(peak_line(solution, solution.peak(name)))
 
 
 def _describe_mechanism(description: Description) -> None:

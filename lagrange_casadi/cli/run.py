@@ -21,6 +21,7 @@ from ..solution import Peak, Solution
 from ..store import save
 from .drawing import draw_with_progress
 from .options import GRID, grid, parameters, rung, setting
+from .report import peak_line
 
 
 @click.command()
@@ -101,6 +102,4 @@ def _report(solution: Solution, refined: Sequence[Peak] | None) -> None:
             if not solution.determined(name):
                 click.echo(f"  {name:<28}{'open':>13} {'':<4} equilibrium does not determine it: the mechanism is over-constrained")
                 continue
-            peak = peaks.get(name) or solution.peak(name)
-            where = f"t = {peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {peak.xi:.4f}")
-            click.echo(f"  {name:<28}{peak.value:>13.6g} {peak.unit:<4} at {where}")
+            click.echo(peak_line(solution, peaks.get(name) or solution.peak(name)))
