@@ -59,7 +59,7 @@ def test_steps_of_newton(extreme):
 
 def test_the_documentation_lists_every_extreme():
     """``python tests/extremes.py`` prints its table."""
-    page = (Path(__file__).parent.parent / "docs" / "accuracy.md").read_text()
+    page = (Path(__file__).parent.parent / "docs" / "accuracy.md").read_text().partition("## Extremes")[2]
     assert [line.split(" | ")[0][2:] for line in page.splitlines() if line.startswith("| ")][2:] == [e.name for e in EXTREMES]
 
 

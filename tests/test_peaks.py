@@ -183,7 +183,7 @@ def test_peaks_are_those_of_far_finer_instants(name):
         assert abs(peak.value) >= abs(fine.value) * (1 - 1e-13) - 1e-12, name
         assert peak.value == pytest.approx(fine.value, rel=1e-10, abs=1e-12), name
     # Of the sleigh, which is led at one speed, most forces stand still.
-    assert np.mean(improved) > (0.3 if name == "sleigh" else 0.4)
+    assert np.mean(improved) > (0.3 if scene.mechanism.name == "sleigh" else 0.4)
 
 
 def test_what_is_not_determined_stays_so():
