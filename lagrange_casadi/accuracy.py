@@ -80,20 +80,21 @@ def explained(solution: Solution, residuals: Mapping[str, Array], errors: Mappin
 
 def _of_cycle(graph: SceneGraph, cycle: CycleTable, solution: Solution) -> dict[str, float]:
     """What the splines of a table were found to miss, and the rounding of their sums; of a section force, all parts' together."""
-    # A table of singles was itself looked at for what it rounds.
-    rounding = _SUMS * ROUNDING["double"] if cycle.dtype.itemsize == 8 else ROUNDING["single"]
+    # A table of singles was itself looked at for what it rounds, over its period; angles go on counting.
+    rounding = _SUMS * ROUNDING["double"] if cycle.dtype.itemsize == 8 else 2 * ROUNDING["single"]
     names = [name for name in graph.columns if not name.startswith("_")]
     missed = dict(zip(cycle.columns, cycle.errors * cycle.peaks, strict=True))
     peaks = dict(zip(cycle.columns, cycle.peaks, strict=True))
     largest: dict[str, float] = {}
     for name in names:
-        largest[solution.unit(name)] = max(largest.get(solution.unit(name), 0.0), float(peaks[name]))
+        reached = max(float(peaks[name]), float(np.max(np.abs(solution.series[name]), initial=0.0)))
+        largest[solution.unit(name)] = max(largest.get(solution.unit(name), 0.0), reached)
     errors = {name: float(missed[name]) + rounding * largest[solution.unit(name)] for name in names}
     bounds = replace(solution, series={name: np.array([error]) for name, error in errors.items()})
     for link in bounds.links_with_sections:
-        law = bounds.section(link).law
-        for force in FORCES:
-            errors[f"section:{link}:{force}"] = law.bound(force, _ALONG)
+        if solution.determined(f"section:{link}:axial"):
+            law = bounds.section(link).law
+            errors |= {f"section:{link}:{force}": law.bound(force, _ALONG) for force in FORCES}
     return errors
 
 

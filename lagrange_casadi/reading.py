@@ -22,7 +22,7 @@ from .solution import Provenance
 from .tabulate import tabulate
 
 _SHARE = 1 << 14
-_DIGITS = 3
+_MARGIN = 1.01
 
 
 def columns(
@@ -88,4 +88,4 @@ def _above(values: Array) -> float:
     largest = float(np.max(np.abs(values), initial=0.0))
     if not largest or not math.isfinite(largest):
         return largest
-    return float(f"{largest * (1 + 0.5 * 10**-_DIGITS * 10):.{_DIGITS - 1}e}")
+    return float(f"{_MARGIN * largest:.2e}")
