@@ -6,6 +6,9 @@ from pathlib import Path
 
 from .trade import Trade
 
+PICTURES = (".png", ".pdf", ".svg")
+"""Kinds of pictures, by the name's ending."""
+
 _OFFSETS = ((0, 6), (0, -14), (0, 17), (0, -25))
 _LEAST = 1e-17
 

@@ -107,6 +107,17 @@ def test_the_command(tmp_path, monkeypatch, capfd):
     assert err.count("\n") == 1
 
 
+@pytest.mark.parametrize("words", [["--figure", "x.txt"], ["--out", "x.png"], ["--out", "nowhere/x.json"]])
+def test_a_wrong_name_is_said_before_anything_is_measured(words, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    assert main(["trade", str(CASES / "slider_crank"), *words]) == 2
+    err = capfd.readouterr().err
+    assert err.startswith("error: ")
+    assert words[1] in err
+    assert err.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("accuracy", ["0", "-1", "nan"])
 def test_a_wrong_accuracy_is_said_before_anything_is_measured(accuracy, tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)

@@ -16,7 +16,7 @@ from ..rung import Rung
 from ..scene import Grid
 from ..trade import RUNGS, Trade
 from ..trade import trade as measure
-from ..trade_plot import draw_trade
+from ..trade_plot import PICTURES, draw_trade
 from .options import GRID, grid, parameters, setting
 
 
@@ -44,7 +44,9 @@ def trade(
         raise DeclarationError(f"accuracy: expected a number above 0, got {accuracy!r}")
     loaded = load_case(case)
     out, figure = out or Path(f"{loaded.name}_trade.json"), figure or Path(f"{loaded.name}_trade.png")
-    for target in (out, figure):
+    for option, target, endings in (("--out", out, (".json",)), ("--figure", figure, PICTURES)):
+        if target.suffix not in endings:
+            raise click.UsageError(f"{option} {target}: expected a name that ends in {' or '.join(endings)}")
         check_writable(target)
     with tqdm(total=len(RUNGS), desc="rungs", leave=False, disable=None) as bar:
 
