@@ -6,6 +6,7 @@ from .curves import table
 from .derive import derive
 from .errors import LagrangeCasadiError
 from .evaluate import evaluate
+from .export import export
 from .lagrange import LagrangeSystem
 from .mechanism import Mechanism
 from .scene import Scene
@@ -26,6 +27,7 @@ __all__ = [
     "density",
     "derive",
     "evaluate",
+    "export",
     "figures",
     "load",
     "load_case",

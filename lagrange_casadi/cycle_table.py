@@ -107,7 +107,7 @@ class CycleTable:
     @property
     def terms(self) -> tuple[tuple[str, str], ...]:
         """The column and the factor of each term."""
-        return tuple((self.columns[k], FACTORS[factor]) for factor, k in self._layout.terms)
+        return tuple((self.columns[k], FACTORS[factor]) for factor, k in self.layout.terms)
 
     @property
     def error(self) -> float:
@@ -157,17 +157,17 @@ class CycleTable:
                 cut = slice(start, start + _BLOCK)
                 self._read(angle[cut], rate[cut], acceleration[cut], out[:, cut])
             return
-        layout = self._layout
+        layout = self.layout
         entry(
             *(angle.size, out.strides[0] // out.itemsize, angle.ctypes.data, rate.ctypes.data, acceleration.ctypes.data),
-            *(self.nodes, self._cell.ctypes.data, self.coefficients.shape[1], self.coefficients.ctypes.data),
-            *(len(self.columns), layout.order.ctypes.data, self._slopes.ctypes.data),
+            *(self.nodes, self.cell.ctypes.data, self.coefficients.shape[1], self.coefficients.ctypes.data),
+            *(len(self.columns), layout.order.ctypes.data, self.slopes.ctypes.data),
             *(len(layout.runs), layout.runs.ctypes.data, out.ctypes.data),
         )
 
     def _read(self, angle: Reals, rate: Reals, acceleration: Reals, out: Reals) -> None:
         """What the compiled code does."""
-        inverse, first, rest, turn = self._cell
+        inverse, first, rest, turn = self.cell
         nodes = self.dtype.type(self.nodes)
         with np.errstate(invalid="ignore", over="ignore"):
             whole = np.floor(angle * inverse)
@@ -182,26 +182,29 @@ class CycleTable:
                 values += w[k][:, None] * self.coefficients[node + k]
             factors = (np.ones_like(rate), rate, rate * rate, acceleration)
             out[:] = 0
-            for value, (factor, k) in zip(values.T, self._layout.terms, strict=True):
+            for value, (factor, k) in zip(values.T, self.layout.terms, strict=True):
                 out[k] += factors[factor] * value
-            for place, k in enumerate(self._layout.order):
-                if self._slopes[place]:
-                    out[k] += self._slopes[place] * angle
+            for place, k in enumerate(self.layout.order):
+                if self.slopes[place]:
+                    out[k] += self.slopes[place] * angle
 
     @functools.cached_property
-    def _layout(self) -> Layout:
+    def layout(self) -> Layout:
+        """How the terms lie in a row."""
         return arranged(self.kept)
 
     @functools.cached_property
-    def _cell(self) -> Reals:
+    def cell(self) -> Reals:
+        """The inverse of the distance of nodes, the distance in two parts, and 1/nodes, as compiled code takes them."""
         width = _TURN * self.turns / self.nodes
         digits = _FIRST_DIGITS[self.dtype.name] - math.frexp(width)[1]
         first = math.ldexp(round(math.ldexp(width, digits)), -digits)
         return np.array([1 / width, first, width - Fraction(first), Fraction(1, self.nodes)]).astype(self.dtype)
 
     @functools.cached_property
-    def _slopes(self) -> Reals:
-        return self.drift[self._layout.order].astype(self.dtype)
+    def slopes(self) -> Reals:
+        """The drift of the columns in the layout's order."""
+        return self.drift[self.layout.order].astype(self.dtype)
 
 
 @dataclass(frozen=True, eq=False)

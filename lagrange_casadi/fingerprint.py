@@ -21,6 +21,14 @@ def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
 
     None where the declaration holds something whose content cannot be told.
     """
+    declared = declaration(scene, wanted)
+    if declared is None:
+        return None
+    return hashlib.sha256("\0".join([_code(), ca.CasadiMeta.version(), declared]).encode()).hexdigest()[:32]
+
+
+def declaration(scene: Scene, wanted: Wanted) -> str | None:
+    """All that is declared and wanted, as text; None where it holds something whose content cannot be told."""
     mechanism = scene.mechanism
     expressions: list[Any] = []
     words: list[str] = []
@@ -45,8 +53,7 @@ def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
     declared = ca.Function("declared", ca.symvar(written), [written])
     if any(f.class_name() in _UNTOLD for f in declared.find_functions()):
         return None
-    identity = "\0".join([_code(), ca.CasadiMeta.version(), *words, declared.serialize(), laws.serialize()])
-    return hashlib.sha256(identity.encode()).hexdigest()[:32]
+    return "\0".join([*words, declared.serialize(), laws.serialize()])
 
 
 _UNTOLD = ("CallbackInternal", "External", "GenericExternal")

@@ -36,10 +36,9 @@ def columns(
     if rung.table is None:
         return run(graph, t, p, rung, threads, into=into)
     the_drive(graph)
-    drive, provenance = run(_drive(graph), t, p, replace(rung, table=None), threads)
+    drive, provenance = run(drive_of(graph), t, p, replace(rung, table=None), threads)
     angle, rate, acceleration, *within = drive.out
-    cycle = cycle_table(graph, tuple(p), rung.table, (_above(rate), _above(acceleration)))
-    cycle = _single(cycle) if rung.precision == "single" else cycle
+    cycle = _serving(graph, p, rung, rate, acceleration)
     phase = within[cycle.turns - 1]
     table = into or replace(empty_table(graph, drive.stages, t.size), cycle=cycle)
     table.iterated[:] = np.nan
@@ -62,6 +61,19 @@ def columns(
     return table, replace(provenance, rung=rung.options)
 
 
+def table_of(graph: SceneGraph, t: Array, p: Array, rung: Rung) -> CycleTable:
+    """The table that :func:`columns` reads. Raises :class:`DeclarationError` where the scene cannot be tabulated."""
+    the_drive(graph)
+    _, rate, acceleration, *_ = run(drive_of(graph), t, p, Rung("vm"))[0].out
+    return _serving(graph, p, rung, rate, acceleration)
+
+
+def _serving(graph: SceneGraph, p: Array, rung: Rung, rate: Array, acceleration: Array) -> CycleTable:
+    assert rung.table is not None
+    cycle = cycle_table(graph, tuple(p), rung.table, (_above(rate), _above(acceleration)))
+    return _single(cycle) if rung.precision == "single" else cycle
+
+
 @functools.lru_cache(maxsize=32)
 def cycle_table(graph: SceneGraph, p: tuple[float, ...], table: float, rates: tuple[float, float]) -> CycleTable:
     """The table of a scene for parameters ``p``, kept while the process lasts; see :func:`.tabulate`."""
@@ -72,8 +84,8 @@ _single = functools.lru_cache(maxsize=32)(CycleTable.single)
 
 
 @functools.lru_cache(maxsize=32)
-def _drive(graph: SceneGraph) -> SceneGraph:
-    """The drive alone: its angle, rate and acceleration, and the angle within one turn, two, and so on."""
+def drive_of(graph: SceneGraph) -> SceneGraph:
+    """The graph of the one drive alone: its angle, rate and acceleration, and the angle within one turn, two, and so on."""
     t, d, rate, acceleration, _, p = graph.instant.sx_in()
     within = [d - math.tau * (turns * ca.floor(d * (1 / (turns * math.tau)))) for turns in range(1, TURNS + 1)]
     out = ca.densify(ca.vertcat(d, rate, acceleration, *within))

@@ -33,7 +33,7 @@ def refuse(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> N
     passed: dict[str, npt.NDArray[np.bool_]] = {}
     for k, name in enumerate(graph.columns):
         if name.startswith("_closure:"):
-            bad |= ~(table.out[k] > _dead(graph, precision, name))
+            bad |= ~(table.out[k] > dead_centre(graph, precision, name))
             passed[name] = passes_dead_centre(table.out[k], ends=graph.newton is None)
         elif name.startswith("_misfit:"):
             bad |= ~(table.out[k] <= misfit)
@@ -55,7 +55,7 @@ def refuse(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> N
     raise AssemblyError(_beyond(graph, p, precision, at) or _why(graph, table, i, at, [name for name in passed if passed[name][i]]))
 
 
-def _dead(graph: SceneGraph, precision: Precision, closure: str) -> float:
+def dead_centre(graph: SceneGraph, precision: Precision, closure: str) -> float:
     """Below what a closure says nothing: of a closed form it is the square of a sine, of an iterated loop as the sine itself."""
     square = _DEAD * ROUNDING[precision]
     return math.sqrt(square) if graph.iterates(closure.partition(":")[2]) else square
@@ -71,7 +71,7 @@ def _dead_between(graph: SceneGraph, name: str, start: Array, stop: Array, p: Ar
         place = np.argmin(closure, axis=0)[None]
         lowest = np.fmin(lowest, np.take_along_axis(closure, place, 0)[0])
         start, stop = (np.take_along_axis(inside, np.clip(place + k, 0, _INSIDE - 1), 0)[0] for k in (-1, 1))
-    return ~(lowest > _dead(graph, rung.precision, name))
+    return ~(lowest > dead_centre(graph, rung.precision, name))
 
 
 def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str | None:
@@ -96,7 +96,7 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]
     misfit = MISFIT[precision]
     for name, value in values.items():
         kind, _, joint = name.partition(":")
-        dead = _dead(graph, precision, name)
+        dead = dead_centre(graph, precision, name)
         closed = f"{'joint' if joint in graph.scene.mechanism.joints else 'constraint'} '{joint}'"
         if kind == "_closure" and value < -dead:
             if graph.newton is not None and f"'{joint}'" in graph.newton.joints:

@@ -69,6 +69,57 @@ def compensated(graph: SceneGraph, precision: Precision) -> Stages:
         return _compensated(graph, laws, precision)
 
 
+@dataclass(frozen=True, eq=False)
+class Controlled:
+    """The functions of an instant whose drives are given, not prescribed: for code that a controller calls.
+
+    ``law(t, p) -> (d, d_rate, d_acceleration)`` are the motions that are written in scalars, as :class:`.Laws` order them;
+    ``count(moment, p) -> counted`` stands for the drive of :class:`Stages`, of which ``loops`` and ``instant`` are. A moment is the
+    time and the driven coordinates; in single precision all of them once more follow, what rounding them to single left. So do t
+    and d; parameters do not.
+    """
+
+    law: Any
+    count: Any
+    loops: Any | None
+    instant: Any
+    precision: Precision
+
+
+@functools.lru_cache(maxsize=32)
+def controlled(graph: SceneGraph, precision: Precision) -> Controlled:
+    """The stages of a graph by its driven coordinates; in doubles the caller counts turns, in singles pairs do.
+
+    Raises :class:`DeclarationError` for a graph that cannot be followed in pairs.
+    """
+    names = ["moment", "p"]
+    if precision == "double":
+        stages, p = plain(graph), graph.instant.sx_in("p")
+        moment = ca.SX.sym("moment", stages.instant.size1_in(0))
+        return Controlled(graph.laws.smooth, ca.Function("count", [moment, p], [moment], names, ["counted"]), *_rest(stages))
+    laws = graph.laws
+    with unsimplified():
+        pairs, rows = Pairs(precision), 1 + len(graph.driven)
+        moment, p = ca.SX.sym("moment", rows, 2), graph.instant.sx_in("p")
+        t, *driven = (Pair(row[0], row[1]) for row in ca.vertsplit(moment))
+        handed, loops, instant = _counted(graph, pairs, t, driven, [Pair(x) for x in _split(p)])
+        count = ca.Function("count", [ca.vec(moment), p], [handed], names, ["counted"], {"cse": True})
+        return Controlled(_paired_law(laws.smooth, pairs, p), count, loops, instant, precision)
+
+
+def _rest(stages: Stages) -> tuple[Any | None, Any, Precision]:
+    return stages.loops, stages.instant, stages.precision
+
+
+def _paired_law(smooth: Any, pairs: Pairs, p: Any) -> Any:
+    """The motion of drives by a time in pairs, each coordinate as a pair."""
+    time = ca.SX.sym("t", 2)
+    values, *changes = interpret(smooth, [[Pair(time[0], time[1])], [Pair(x) for x in _split(p)]], pairs.arithmetic)
+    found = [[x.high for x in values], [ca.SX(0) if x.low is None else x.low for x in values]]
+    found += [[pair.value for pair in row] for row in changes]
+    return ca.Function("law", [time, p], [_column([*found[0], *found[1]]), *(_column(row) for row in found[2:])], {"cse": True})
+
+
 def counts(graph: SceneGraph, t: Array, p: Array) -> bool:
     """Whether some angle counts so many turns over the instants that one double loses its phase."""
     functions = (graph.instant, graph.laws.smooth, *([graph.newton.step] if graph.newton else []))
@@ -189,36 +240,40 @@ _FOLLOWED = {
 
 
 def _compensated(graph: SceneGraph, laws: Laws, precision: Precision) -> Stages:
-    pairs = Pairs(precision)
-    _, _, rate, acceleration, z, p = graph.instant.sx_in()
-    single = precision == "single"
-    time, parameters = ca.SX.sym("t", 2 if single else 1), ca.SX.sym("p", p.numel(), 2 if single else 1)
+    pairs, single = Pairs(precision), precision == "single"
+    time, parameters = ca.SX.sym("t", 2 if single else 1), ca.SX.sym("p", graph.instant.size1_in("p"), 2 if single else 1)
     t_pair, *p_pairs = (Pair(row[0], row[1] if single else None) for row in (time.T, *ca.vertsplit(parameters)))
     smooth = interpret(laws.smooth, [[t_pair], p_pairs], pairs.arithmetic)
     sampled = ca.SX.sym("sampled", len(laws.order) - len(smooth[0]))
-    counting = _Counting(pairs)
-    t_value = _Value(pair=t_pair)
     driven = [*smooth[0], *(Pair(x) for x in _split(sampled))]
-    d_values = [_Value(pair=driven[k]) for k in laws.order]
-    p_values = [_Value(symbol, pair, fixed=True) for symbol, pair in zip(_split(p), p_pairs, strict=True)]
-    z_values, rates, accelerations = ([_Value(x) for x in _split(symbols)] for symbols in (z, rate, acceleration))
-    found = [interpret(graph.newton.step, [z_values, [t_value], d_values, p_values], counting.arithmetic)] if graph.newton else []
-    found.append(interpret(graph.instant, [[t_value], d_values, rates, accelerations, z_values, p_values], counting.arithmetic))
-    results = [[_column([counting.settled(value) for value in output]) for output in outputs] for outputs in found]
-    counted, handed = counting.handed()
-    names = ["counted", "d_rate", "d_acceleration", "z", "p"]
-    instant = ca.Function("instant", [counted, rate, acceleration, z, p], results[-1], names, ["out"], {"cse": True})
-    loops = ca.Function("loops", [z, counted, p], results[0], {"cse": True}) if graph.newton else None
+    handed, loops, instant = _counted(graph, pairs, t_pair, [driven[k] for k in laws.order], p_pairs)
     given = [handed, *(_column([pair.value for pair in row]) for row in smooth[1:])]
     inputs = [time, ca.vec(parameters)]
     if laws.sampled is None:
         return Stages(ca.Function("drive", inputs, given, {"cse": True}), loops, instant, precision, compensated=True)
     following = ca.Function("following", [*inputs, sampled], given, {"cse": True})
     t, values = ca.MX.sym("t", time.numel()), ca.MX.sym("p", parameters.numel())
-    read, *changes = laws.sampled.call([t[0], values[: p.numel()]])
+    read, *changes = laws.sampled.call([t[0], values[: parameters.size1()]])
     handed, *others = following.call([t, values, read])
     ordered = [ca.vertcat(a, b)[list(laws.order)] for a, b in zip(others, changes, strict=True)]
     return Stages(ca.Function("drive", [t, values], [handed, *ordered]), loops, instant, precision, compensated=True)
+
+
+def _counted(graph: SceneGraph, pairs: Pairs, t: Pair, driven: Sequence[Pair], p: Sequence[Pair]) -> tuple[Any, Any | None, Any]:
+    """What the drive hands on of time and driven coordinates, and the loops and the instant that take it."""
+    counting = _Counting(pairs)
+    _, _, rate, acceleration, z, symbols = graph.instant.sx_in()
+    t_value, d_values = _Value(pair=t), [_Value(pair=pair) for pair in driven]
+    p_values = [_Value(symbol, pair, fixed=True) for symbol, pair in zip(_split(symbols), p, strict=True)]
+    z_values, rates, accelerations = ([_Value(x) for x in _split(column)] for column in (z, rate, acceleration))
+    found = [interpret(graph.newton.step, [z_values, [t_value], d_values, p_values], counting.arithmetic)] if graph.newton else []
+    found.append(interpret(graph.instant, [[t_value], d_values, rates, accelerations, z_values, p_values], counting.arithmetic))
+    results = [[_column([counting.settled(value) for value in output]) for output in outputs] for outputs in found]
+    counted, handed = counting.handed()
+    names = ["counted", "d_rate", "d_acceleration", "z", "p"]
+    instant = ca.Function("instant", [counted, rate, acceleration, z, symbols], results[-1], names, ["out"], {"cse": True})
+    loops = ca.Function("loops", [z, counted, symbols], results[0], {"cse": True}) if graph.newton else None
+    return handed, loops, instant
 
 
 def _split(symbols: Any) -> list[Any]:

@@ -58,6 +58,7 @@ ORDER = (
     "evaluate",
     "peaks",
     "publish",
+    "export",
     "store",
     "drawing",
     "figures",

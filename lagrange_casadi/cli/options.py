@@ -55,21 +55,16 @@ def table(text: str) -> float:
 
 def rung(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options of a :class:`.Rung`."""
+    command = click.option("--flags", default="", metavar="FLAGS", help="Further flags of the compiler, as one word.")(command)
+    command = arithmetic(command)
+    about = "Packs in C++, C, or CasADi's VM."
+    return click.option("--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help=about)(command)
+
+
+def arithmetic(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Those options of a :class:`.Rung` that are no compiler's affair."""
     steps = "Close every loop by so many Newton steps from the instant before."
-    for option in reversed(
-        (
-            click.option(
-                "--backend",
-                type=click.Choice(BACKENDS),
-                default="auto",
-                show_default=True,
-                help="Packs in C++, C, or CasADi's VM.",
-            ),
-            click.option("--precision", type=click.Choice(PRECISIONS), default="double", show_default=True),
-            click.option("--newton", type=int, metavar="STEPS", help=steps),
-            click.option("--table", type=table, metavar="NODES|ACCURACY", help="Read outputs from a table over a turn."),
-            click.option("--flags", default="", metavar="FLAGS", help="Further flags of the compiler, as one word."),
-        )
-    ):
-        command = option(command)
-    return command
+    reading = "Read outputs from a table over a turn."
+    command = click.option("--table", type=table, metavar="NODES|ACCURACY", help=reading)(command)
+    command = click.option("--newton", type=int, metavar="STEPS", help=steps)(command)
+    return click.option("--precision", type=click.Choice(PRECISIONS), default="double", show_default=True)(command)

@@ -212,7 +212,7 @@ def emit(graph: SceneGraph, stages: Stages | None = None, newton: int | None = N
     """
     stages = plain(graph) if stages is None else stages
     smooth = bool(stages.drive.is_a("SXFunction"))
-    constants, instant = _hoisted(stages.instant)
+    constants, instant = hoisted(stages.instant)
     narrow = [] if smooth and stages.loops is None else [_lead(stages.drive), *([stages.loops] if stages.loops else [])]
     wide = [*([stages.drive] if smooth else []), constants, instant]
     sizes = _sizes(graph, stages) | _work("", *wide, *narrow)
@@ -230,7 +230,7 @@ def emit(graph: SceneGraph, stages: Stages | None = None, newton: int | None = N
     inputs = sizes["nc"] + 2 * sizes["nd"] + sizes["nz"] + sizes["nt"] * (1 + sizes["np"]) + constants.size1_out(0)
     text += _WIDE + _dump("scene", wide)
     text += _EVALUATE.format(**sizes, drive=drive if sizes["nc"] + sizes["nd"] else "", single=pairs, inputs=inputs)
-    return _in_single(text) if stages.precision == "single" else text
+    return _START_SINGLE + in_single(text) if stages.precision == "single" else text
 
 
 def _lead(drive: ca.Function) -> ca.Function:
@@ -283,7 +283,7 @@ def _sizes(graph: SceneGraph, stages: Stages) -> dict[str, Any]:
     }
 
 
-def _hoisted(instant: ca.Function) -> tuple[ca.Function, ca.Function]:
+def hoisted(instant: ca.Function) -> tuple[ca.Function, ca.Function]:
     """What of an instant depends on parameters alone, ``constants_of(p) -> c``, and the instant with c for p."""
     inputs = instant.sx_in()
     rest, symbols, constants = ca.extract_parametric(instant(*inputs), inputs[-1], {"extract_trivial": True})
@@ -309,10 +309,10 @@ def _work(prefix: str, *functions: ca.Function) -> dict[str, int]:
     return {f"{prefix}{name}": max(1, size) for name, size in sizes.items()}
 
 
-def _in_single(text: str) -> str:
+def in_single(text: str) -> str:
     """The same C with literals and functions of single precision, so that nothing is done in doubles."""
     text = _LITERAL.sub(lambda found: f"{_nearest(found.group())}f", text)
-    return _START_SINGLE + _FUNCTION.sub(r"\1f(", text)
+    return _FUNCTION.sub(r"\1f(", text)
 
 
 def _nearest(literal: str) -> str:

@@ -11,7 +11,9 @@ import re
 LENGTH = 250
 """Statements of a part. Shorter ones compile no faster; longer ones do not run faster (``docs/speed.md``)."""
 
-_FUNCTION = re.compile(r"static int (casadi_f\d+)\((.*?)\) \{\n((?:  casadi_real a\d+[^\n]*;\n)+)(.*?)  return 0;\n\}\n", re.DOTALL)
+_FUNCTION = re.compile(
+    r"static int (casadi_f\d+)\(([^)]*)\) \{\n((?:  casadi_real a\d+[^\n]*;\n)+)(.*?)  return 0;\n\}\n", re.DOTALL
+)
 _VARIABLE = re.compile(r"\ba(\d+)\b")
 
 

@@ -1,0 +1,55 @@
+"""``lagrange-casadi export``: a case as C that stands alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from ..case import load_case
+from ..compensated import Precision
+from ..export import export as write
+from .options import arithmetic, parameters, setting
+
+
+@click.command()
+@click.argument("case", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), required=True, metavar="DIR", help="The folder to write.")
+@click.option(
+    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another default; repeatable."
+)
+@click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
+@arithmetic
+@click.option("--largest", type=click.IntRange(0), metavar="BYTES", help="Of a table; default: 16 MB, in single precision 64 kB.")
+@click.option("--force", is_flag=True, help="Also into a folder that holds other files; these are not touched.")
+def export(
+    case: Path,
+    out: Path,
+    settings: Sequence[tuple[str, float]],
+    want: Sequence[str],
+    precision: Precision,
+    newton: int | None,
+    table: float | None,
+    largest: int | None,
+    force: bool,
+) -> None:
+    """Write CASE as C for other programs: a library, a self-test and an example, in a folder that stands alone."""
+    loaded = load_case(case)
+    made = write(
+        loaded.scene,
+        out,
+        name=loaded.name,
+        parameters=parameters(settings),
+        wanted=want or None,
+        precision=precision,
+        newton=newton,
+        table=table,
+        largest=largest,
+        force=force,
+    )
+    for name, called in made.mapped.items():
+        click.echo(f"{name} is called {called} in C")
+    p = made.prefix
+    click.echo(f"wrote {out}: {p}.h, {p}.c and what goes with them; {len(made.inputs)} inputs, {len(made.outputs)} outputs")
+    click.echo(f"try it: cd {out} && cmake -B build && cmake --build build && ctest --test-dir build")

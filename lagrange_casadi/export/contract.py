@@ -1,0 +1,219 @@
+"""What an exported program takes and gives: its names, units, signs and ranges, which every consumer is written from."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from ..compensated import Precision
+from ..quantities import quantity_of
+from ..scene_graph import SceneGraph
+from ..solution import Solution
+from .naming import members, prefix
+
+LAW = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
+STATION = ("station", "n", "f", "m")
+_DIGITS = 3
+_FAINT = 1e-9
+"""Of a kind's largest value: what is smaller is written as zero, for its digits are rounding."""
+
+
+@dataclass(frozen=True)
+class Member:
+    """A member of a struct: its name in C, the full name of what it holds, and what a reader must know of it."""
+
+    name: str
+    source: str
+    unit: str
+    meaning: str
+    sign: str = ""
+    range: str = ""
+
+    @property
+    def comment(self) -> str:
+        """One line: meaning, unit, sign and range."""
+        return "; ".join(part for part in (f"{self.meaning} [{self.unit}]", self.sign, self.range) if part)
+
+    @property
+    def path(self) -> str:
+        """Where a file of results has it."""
+        return self.source.replace(":", "/")
+
+
+@dataclass(frozen=True)
+class Setting(Member):
+    """A parameter, with its default and its range."""
+
+    default: float = math.nan
+    low: float = -math.inf
+    high: float = math.inf
+
+
+@dataclass(frozen=True)
+class LinkContract:
+    """A link that has sections: its name, and its number in C."""
+
+    name: str
+    constant: str
+    stations: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Contract:
+    """An exported program's interface.
+
+    ``inputs`` and ``outputs`` are the members of these structs in order; ``rests`` tells that each coordinate, and the time, has
+    a second number, what rounding it to single precision left. ``settings`` are the parameters, ``links`` those with sections,
+    ``drives`` the driven joints. ``timed`` tells that the time itself matters.
+    """
+
+    prefix: str
+    name: str
+    precision: Precision
+    settings: tuple[Setting, ...]
+    inputs: tuple[Member, ...]
+    outputs: tuple[Member, ...]
+    links: tuple[LinkContract, ...]
+    drives: tuple[str, ...]
+    timed: bool
+    undetermined: tuple[str, ...]
+
+    @property
+    def rests(self) -> bool:
+        """Whether coordinates come in two numbers."""
+        return self.precision == "single"
+
+    @property
+    def real(self) -> str:
+        """The type of numbers."""
+        return "float" if self.precision == "single" else "double"
+
+    @property
+    def mapped(self) -> dict[str, str]:
+        """Names that C writes otherwise: a parameter's or a joint's own name, and what it is called."""
+        found = {"mechanism " + self.name: self.prefix} if self.name != self.prefix else {}
+        for kind, struct in (("parameter", self.settings), ("input", self.inputs), ("output", self.outputs)):
+            found |= {f"{kind} {_short(m.source)}": m.name for m in struct if m.name != re.sub(r"\W", "_", _short(m.source, kind))}
+        return found
+
+    def input_of(self, name: str) -> str:
+        """The member for the input of a full name, such as ``motion:O_rate`` or ``time``."""
+        return next(member.name for member in self.inputs if member.source == name)
+
+
+def _short(source: str, kind: str = "") -> str:
+    """A full name without what C leaves out: of inputs, that they are motions; of a section's law, the word."""
+    return source.removeprefix("motion:") if kind == "input" else source.replace(":law:", ":")
+
+
+def contract(graph: SceneGraph, name: str, precision: Precision, solution: Solution, *, fixed: bool) -> Contract:
+    """The contract of a graph whose evaluation over its cycle is ``solution``; ``fixed`` leaves no parameter open."""
+    mechanism, values = graph.scene.mechanism, solution.description["parameters"]
+    timed = _timed(graph)
+    settings = [] if fixed else [_setting(key, values[key]) for key in mechanism.parameters]
+    names = members(setting.source for setting in settings)
+    inputs = _inputs(graph, precision, solution, timed)
+    shown = members(_short(key, "input") for key in inputs)
+    columns = [key for key in graph.columns if not key.startswith("_") and key not in inputs]
+    called = members(_short(key) for key in columns)
+    links = []
+    for link in graph.wanted.sections:
+        stations = dict.fromkeys(key.split(":")[2] for key in columns if key.startswith(f"section:{link}:") and ":law:" not in key)
+        links.append(LinkContract(link, f"{prefix(name)}_link_{link}".upper(), tuple(stations)))
+    return Contract(
+        prefix(name),
+        name,
+        precision,
+        tuple(Setting(**(vars(s) | {"name": names[s.source]})) for s in settings),
+        tuple(Member(**(vars(m) | {"name": shown[_short(key, "input")]})) for key, m in inputs.items()),
+        tuple(_output(graph, key, called[_short(key)], solution) for key in columns),
+        tuple(links),
+        graph.driven,
+        timed,
+        graph.undetermined,
+    )
+
+
+def _timed(graph: SceneGraph) -> bool:
+    """Whether anything but the motion depends on the time."""
+    functions = [graph.instant] if graph.newton is None else [graph.instant, graph.newton.step]
+    index = {"instant": 0}
+    for function in functions:
+        symbols = function.sx_in()
+        t = symbols[index.get(function.name(), 1)]
+        if ca.depends_on(ca.veccat(*function.call(symbols)), t):
+            return True
+    return False
+
+
+def _setting(key: str, parameter: dict[str, float]) -> Setting:
+    low, high = (
+        -math.inf if parameter["low"] is None else parameter["low"],
+        math.inf if parameter["high"] is None else parameter["high"],
+    )
+    within = f"{_bracket(low, '[', '(')}{low:.6g}, {high:.6g}{_bracket(high, ']', ')')}"
+    unit = str(parameter["unit"])
+    default = parameter["value"]
+    return Setting(key, key, unit, f"parameter {key}", "", f"in {within}; default {default:.6g}", default, low, high)
+
+
+def _bracket(value: float, closed: str, opened: str) -> str:
+    return closed if math.isfinite(value) else opened
+
+
+def _inputs(graph: SceneGraph, precision: Precision, solution: Solution, timed: bool) -> dict[str, Member]:
+    rests, joints = precision == "single", graph.scene.mechanism.joints
+    found: dict[str, Member] = {}
+
+    def add(key: str, unit: str, meaning: str, sign: str = "", range_: str = "any finite number") -> None:
+        found[key] = Member("", key, unit, meaning, sign, range_)
+
+    rest = "what rounding to single precision left of {}, 0 where it is not known"
+    if timed:
+        add("time", "s", "time, which loads of this mechanism depend on")
+        if rests:
+            add("time_rest", "s", rest.format("the time"))
+    for joint in graph.driven:
+        kind = joints[joint].coordinate or "slide"
+        for key in (f"motion:{joint}", f"motion:{joint}_rate", f"motion:{joint}_acceleration"):
+            quantity = quantity_of(key)
+            meaning = quantity.long_name.replace("the joint", f"joint {joint}")
+            within = (
+                "any finite number; digits are those of a number of its size"
+                if not quantity.member and kind == "angle"
+                else "any finite number"
+            )
+            add(key, quantity.unit_for(kind), meaning, quantity.sign, within)
+            if rests and not quantity.member:
+                add(f"{key}_rest", quantity.unit_for(kind), rest.format("it"))
+    return found
+
+
+def _output(graph: SceneGraph, key: str, member: str, solution: Solution) -> Member:
+    quantity, joints = quantity_of(key), graph.scene.mechanism.joints
+    part = key.split(":")[1]
+    joint = part if part in joints else part.removesuffix("_rate").removesuffix("_acceleration")
+    kind = (joints[joint].coordinate if joint in joints else None) or "slide"
+    where = ", ".join(_places(key, joint))
+    within = "in (-pi, pi]" if key in graph.wrapped else _range(solution, key)
+    return Member(member, key, quantity.unit_for(kind), f"{quantity.long_name}: {where}", quantity.sign, within)
+
+
+def _places(key: str, joint: str) -> list[str]:
+    group, part, *rest = key.split(":")
+    kinds = {"motion": "joint", "pose": "body", "effort": "joint", "reaction": "joint", "load": "load", "section": "link"}
+    found = [f"{kinds.get(group, group)} {joint if group == 'motion' else part}"]
+    return [*found, f"station {rest[0]}"] if group == "section" and rest[0] != "law" else found
+
+
+def _range(solution: Solution, key: str) -> str:
+    """What a quantity's values are over the cycle of the scene, in a few digits."""
+    values = solution.series[key]
+    alike = [np.abs(row).max() for name, row in solution.series.items() if name.split(":")[0] == key.split(":")[0]]
+    faint = max(_FAINT * max(alike), 2.0 * solution.errors.get(key, 0.0))
+    low, high = (0.0 if abs(x) <= faint else float(x) for x in (values.min(), values.max()))
+    return f"from {low:.{_DIGITS}g} to {high:.{_DIGITS}g} over the scene's motion"

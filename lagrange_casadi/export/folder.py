@@ -1,0 +1,168 @@
+"""A scene as a folder of C that stands alone."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..compensated import Precision
+from ..derive import derive
+from ..errors import DeclarationError, PathError
+from ..evaluate import evaluate
+from ..fingerprint import declaration
+from ..publish import check_writable, filling
+from ..reading import drive_of, table_of
+from ..rung import Rung
+from ..scene import Scene
+from ..scene_graph import SceneGraph
+from ..version import __version__
+from .companions import companions
+from .contract import Contract, contract
+from .data import check_size
+from .golden import golden
+from .header import header
+from .program import program
+from .source import Source
+
+LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
+"""Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""
+
+MANIFEST = "export.json"
+
+
+def export(
+    scene: Scene,
+    out: str | os.PathLike[str],
+    *,
+    name: str | None = None,
+    parameters: Mapping[str, float] | None = None,
+    wanted: Sequence[str] | None = None,
+    precision: Precision = "double",
+    newton: int | None = None,
+    table: float | None = None,
+    largest: int | None = None,
+    force: bool = False,
+) -> Contract:
+    """Write a scene as C into the folder ``out``: header, source, self-test, example, build files, README.
+
+    Parameters
+    ----------
+    name
+        What it is called in C; default: the mechanism's name.
+    parameters
+        Values that become the defaults; with ``table`` they are fixed.
+    wanted
+        Output names; default: the scene's.
+    precision, newton, table
+        How it is evaluated there: see :class:`.Rung`.
+    largest
+        Bytes that a table may take; default: 16 MB, in single precision 64 kB.
+    force
+        Write into a folder that holds other files, too, or files of an earlier export that were changed since. Files that are not
+        an export's are never touched.
+
+    Returns what it takes and gives. Raises :class:`PathError` where the folder is taken, :class:`SizeError` for a table that is too
+    large, and what :func:`.evaluate` raises.
+    """
+    if not isinstance(scene, Scene):
+        raise DeclarationError(f"export: expected a Scene, got {scene!r}")
+    folder = Path(out)
+    rung = Rung("auto", precision, newton, table)
+    check_writable(folder, folder=True)
+    values = scene.mechanism.values(parameters)
+    p = np.array(list(values.values()))
+    graph = derive(scene, wanted, iterate=newton is not None)
+    exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm")
+    plain = newton is None and table is None
+    solution = exact if plain else evaluate(scene, parameters=values, wanted=wanted, backend="vm", newton=newton, table=table)
+    read = None if table is None else (drive_of(graph), table_of(graph, solution.t, p, rung))
+    agreed = contract(graph, name or scene.mechanism.name, precision, solution, fixed=table is not None)
+    emitted = program(graph, precision, newton, p, read)
+    check_size(emitted, LARGEST[precision] if largest is None else largest)
+    guess = graph.newton.guess if graph.newton is not None and read is None else ()
+    source = Source(agreed, emitted, _hash(graph, values), guess)
+    files = {f"{agreed.prefix}.h": header(source), f"{agreed.prefix}.c": source.code}
+    files |= companions(source, golden(graph, agreed, solution, exact.errors, p))
+    _check_free(folder, files, force=force)
+    files[MANIFEST] = _manifest(agreed, source.scene, files)
+    with filling(folder) as draft:
+        for file, text in files.items():
+            (draft / file).write_text(text)
+    return agreed
+
+
+def _hash(graph: SceneGraph, values: Mapping[str, float]) -> str:
+    """The hash of what is declared, wanted and set."""
+    declared = declaration(graph.scene, graph.wanted) or graph.dumps()
+    return hashlib.sha256("\0".join([declared, json.dumps(values)]).encode()).hexdigest()[:32]
+
+
+def _manifest(agreed: Contract, scene: str, files: Mapping[str, str]) -> str:
+    """What the folder holds, for programs: names, units and places of all members, and a digest of each file."""
+
+    def rows(members: Sequence[Any]) -> list[dict[str, str]]:
+        return [{"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.meaning} for m in members]
+
+    content = {
+        "schema": "lagrange-casadi export",
+        "schema_version": 1,
+        "versions": {"lagrange_casadi": __version__, "casadi": ca.CasadiMeta.version()},
+        "mechanism": agreed.name,
+        "prefix": agreed.prefix,
+        "precision": agreed.precision,
+        "scene": scene,
+        "parameters": [row | {"default": m.default} for row, m in zip(rows(agreed.settings), agreed.settings, strict=True)],
+        "inputs": rows(agreed.inputs),
+        "outputs": rows(agreed.outputs),
+        "links": [link.name for link in agreed.links],
+        "files": {file: hashlib.sha256(text.encode()).hexdigest() for file, text in sorted(files.items())},
+    }
+    return json.dumps(content, indent=1) + "\n"
+
+
+def _check_free(folder: Path, files: Mapping[str, str], *, force: bool) -> None:
+    """Raise :class:`PathError` unless the folder may be written into."""
+    if not folder.exists():
+        return
+    known = _known(folder / MANIFEST)
+    present = {path.name: path for path in folder.iterdir() if path.name != MANIFEST or not known}
+    same = {name for name, path in present.items() if name in known and path.is_file() and _digest(path) == known[name]}
+    changed = sorted(name for name in present if name in known and name not in same)
+    foreign = sorted(name for name in present if name not in known)
+    in_the_way = [name for name in foreign if name in files or name == MANIFEST]
+    if in_the_way:
+        raise PathError(
+            f"cannot export into {folder}: '{in_the_way[0]}' there is no file of an export; move it, or choose another folder"
+        )
+    if (foreign or changed) and not force:
+        what = (
+            f"holds other files, '{foreign[0]}' among them"
+            if foreign
+            else f"holds an export whose '{changed[0]}' was changed since"
+        )
+        raise PathError(
+            f"cannot export into {folder}: it {what}; choose another folder, or give --force, which touches no other file"
+        )
+
+
+def _known(manifest: Path) -> dict[str, str]:
+    try:
+        content = json.loads(manifest.read_text())
+        return (
+            {str(name): str(digest) for name, digest in content["files"].items()}
+            if content["schema"] == "lagrange-casadi export"
+            else {}
+        )
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return {}
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -1,0 +1,79 @@
+"""What an exported program must compute: inputs and outputs at instants of the scene's motion, and how far off they may be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from ..compensated import ROUNDING, Precision
+from ..density import Array
+from ..scene_graph import SceneGraph
+from ..section_law import FORCES
+from ..solution import Solution
+from .contract import Contract
+
+INSTANTS = 9
+RATIOS = (0.0, 0.5, 1.0)
+ALLOWED = 16.0
+"""Estimates of the error: the same arithmetic by other compilers, libraries and machines is within."""
+
+_MOTION = 4096.0
+"""Roundings of a motion's largest value."""
+
+
+@dataclass(frozen=True, eq=False)
+class Golden:
+    """Instants, ``steps`` of the scene's grid apart, and there ``inputs`` (instants, inputs) and ``outputs`` (instants, outputs).
+
+    ``forces`` (instants, links, ratios, 3) are axial, shear and bending. What has a tolerance has one a column, ``forces`` one a
+    link and force. ``times`` and, in single precision, ``inputs`` are what two singles hold of a value.
+    """
+
+    times: Array
+    steps: int
+    inputs: Array
+    outputs: Array
+    forces: Array
+    inputs_off: Array
+    outputs_off: Array
+    forces_off: Array
+
+
+def golden(graph: SceneGraph, contract: Contract, solution: Solution, rounding: Mapping[str, float], p: Array) -> Golden:
+    """The golden vectors of a contract, by a solution in doubles over the scene's grid; ``rounding`` is what rounding makes of each
+    quantity there.
+    """
+    precision = contract.precision
+    scale, least = ALLOWED * ROUNDING[precision] / ROUNDING["double"], ALLOWED * ROUNDING[precision]
+    count = solution.t.size
+    stride = max(1, (count - 1) // (INSTANTS - 1))
+    chosen = np.arange(0, count, stride)
+    t = solution.t[chosen]
+    inputs = np.stack([_input(graph, m.source, t, p, precision) for m in contract.inputs], axis=1)
+    outputs = np.stack([solution.series[m.source][chosen] for m in contract.outputs], axis=1)
+    off = np.array([scale * rounding[m.source] for m in contract.outputs]) + least * np.abs(outputs).max(axis=0)
+    forces = np.zeros((t.size, len(contract.links), len(RATIOS), 3))
+    forces_off = np.zeros((len(contract.links), 3))
+    for i, link in enumerate(contract.links):
+        law = solution.section(link.name).law.during(slice(None, None, stride))
+        for k, force in enumerate(FORCES):
+            forces[:, i, :, k] = law.at(force, np.tile(RATIOS, (t.size, 1)))
+            forces_off[i, k] = scale * rounding[f"section:{link.name}:{force}"] + least * np.abs(forces[:, i, :, k]).max()
+    inputs_off = _MOTION * ROUNDING[precision] * np.abs(inputs).max(axis=0)
+    steps = stride if graph.newton is not None else 1
+    return Golden(t, steps, inputs, outputs, forces, inputs_off, off, forces_off)
+
+
+def _input(graph: SceneGraph, source: str, t: Array, p: Array, precision: Precision) -> Array:
+    """The values of an input over instants; of a rest, what rounding its value to single leaves."""
+    name = source.removesuffix("_rest") if source.endswith("_rest") else source
+    order = 1 if name.endswith("_rate") else 2 if name.endswith("_acceleration") else 0
+    joint = name.removeprefix("motion:").removesuffix("_rate").removesuffix("_acceleration")
+    motion = np.atleast_2d(graph.motion(ca.DM(t).T, ca.DM(p))[order].full())
+    values = t if name == "time" else motion[graph.driven.index(joint)]
+    if source.endswith("_rest"):
+        return np.asarray(values - values.astype(np.float32))
+    return np.asarray(values.astype(np.float32).astype(float) if precision == "single" else values)

@@ -1,0 +1,104 @@
+"""The header of an exported program: the contract, as C."""
+
+from __future__ import annotations
+
+import math
+
+from ..quantities import CONVENTIONS
+from .contract import Contract
+from .source import Source
+from .stack import deepest
+from .statuses import STATUSES
+from .text import member, template, wrapped
+
+
+def header(source: Source) -> str:
+    """The header, ``<prefix>.h``."""
+    c, p, P = source.contract, source.contract.prefix, source.contract.prefix.upper()
+    first = next(m for m in c.inputs if m.source.startswith("motion:"))
+    loops = source.program.sizes["loops"]
+    span = source.span
+    return template(
+        "mechanism.h",
+        **source.words,
+        null=", 0" if c.settings else "",
+        first=first.name,
+        f="f" if c.rests else "",
+        conventions=wrapped(f"Conventions: {CONVENTIONS}."),
+        mapping=wrapped("Called otherwise here: " + ", ".join(f"{k} is {v}" for k, v in c.mapped.items()) + ".", "\n\n")
+        if c.mapped
+        else "",
+        undetermined=wrapped("Not determined by equilibrium, and left out: " + ", ".join(c.undetermined) + ".", "\n\n")
+        if c.undetermined
+        else "",
+        precision=c.precision,
+        stack=deepest(source.code),
+        real=c.real,
+        statuses=",\n".join(f"  {P}_{key} = {k} /* {text} */" for k, (key, text) in enumerate(STATUSES.items())),
+        parameters=_parameters(c),
+        inputs="\n".join(member(p, m.name, m.comment) for m in c.inputs),
+        outputs_note=" Angles that loops set are within a turn." if any("pi]" in m.range for m in c.outputs) else "",
+        outputs="\n".join(member(p, m.name, m.comment) for m in c.outputs),
+        links=_links(c),
+        model="\n".join(f"  {line}" for line in _model(source)),
+        for_parameters=", for parameters, or 0 for the defaults" if c.settings else "",
+        anew=" Begins anew: iterated loops are where the scene's motion begins." if loops else "",
+        given=f", const {p}_parameters* parameters" if c.settings else "",
+        span=f", from {span[0]:.6g} to {span[1]:.6g} s" if math.isfinite(span[0]) else "",
+        pair_note="\n   The time is time + time_rest, for single precision holds few digits of it; time_rest may be 0."
+        if c.rests
+        else "",
+        time_rest=f", {p}_real time_rest" if c.rests else "",
+        follows=" Iterated loops are followed from the instant before, which must be near." if loops else "",
+        sections=_section_functions(c),
+    )
+
+
+def _parameters(c: Contract) -> str:
+    p = c.prefix
+    if not c.settings:
+        return ""
+    rows = "\n".join(member(p, m.name, m.comment) for m in c.settings)
+    about = "/* Numbers that may change without generating anything again. */"
+    return f"\n{about}\ntypedef struct {{\n{rows}\n}} {p}_parameters;\n\nextern const {p}_parameters {p}_defaults;\n"
+
+
+def _model(source: Source) -> list[str]:
+    p, sizes = source.contract.prefix, source.program.sizes
+    rows = ["unsigned seal;"]
+    if source.program.newton is not None:
+        rows.append("int closed;")
+    sized = {"parameters": sizes["p"], "constants": sizes["constants"], "matter": sizes["matter"], "loops": sizes["loops"]}
+    return rows + [f"{p}_real {name}[{size}];" for name, size in sized.items() if size]
+
+
+def _links(c: Contract) -> str:
+    p = c.prefix
+    if not c.links:
+        return ""
+    rows = ",\n".join(f"  {link.constant} = {k}" for k, link in enumerate(c.links))
+    forces = "\n".join(
+        member(p, *row)
+        for row in (
+            ("axial", "axial force [N]; tension is positive; any"),
+            ("shear", "shear force [N]; 90 deg counter-clockwise of the axis; any"),
+            ("bending", "bending moment [N m]; counter-clockwise; any"),
+        )
+    )
+    about = "/* What the part towards the tip does to the part towards the base. */"
+    return f"\ntypedef enum {{\n{rows}\n}} {p}_link;\n\n{about}\ntypedef struct {{\n{forces}\n}} {p}_forces;\n"
+
+
+def _section_functions(c: Contract) -> str:
+    p = c.prefix
+    if not c.links:
+        return ""
+    take = f"const {p}_model* model, const {p}_outputs* outputs, {p}_link link"
+    one, many = f"{p}_status {p}_section(", f"{p}_status {p}_sections("
+    return (
+        "\n/* The forces inside a link at the ratio xi = distance from the base / length, from 0 to 1, for outputs of this\n"
+        "   model; at a station, where they jump, those on its side towards the tip. */\n"
+        f"{one}{take}, {p}_real xi,\n{' ' * len(one)}{p}_forces* forces);\n"
+        f"\n/* The same at many ratios. Returns the first status that is not {p.upper()}_OK, if any. */\n"
+        f"{many}{take}, long many, const {p}_real* xi,\n{' ' * len(many)}{p}_forces* forces);\n"
+    )

@@ -1,0 +1,173 @@
+"""The functions of an exported program: what of a scene graph it evaluates, how much of it, and from what constants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..codegen.emit import hoisted, newton_rule
+from ..codegen.plain import plain
+from ..compensated import Precision
+from ..cycle_table import CycleTable
+from ..density import Array, Density
+from ..errors import DeclarationError
+from ..parts import Link, RigidMass
+from ..scene_graph import SceneGraph
+from ..stages import controlled
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """The motion of a joint by samples: cubics between ``knots`` (n + 1): value, rate, acceleration and jerk of each (n, 4)."""
+
+    joint: str
+    knots: Array
+    pieces: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """What is emitted.
+
+    ``columns`` are those of a table or of ``functions``, in order, ``sizes`` the lengths of all vectors. ``order`` says which of
+    the motions, written in scalars and then ``samples``, each drive has. ``cycle`` is a table to be read instead of an instant.
+    """
+
+    graph: SceneGraph
+    precision: Precision
+    functions: tuple[ca.Function, ...]
+    columns: tuple[str, ...]
+    sizes: dict[str, int]
+    order: tuple[int, ...]
+    samples: tuple[Samples, ...]
+    newton: int | None
+    cycle: CycleTable | None
+
+    @property
+    def text(self) -> str:
+        """The C of its functions."""
+        return plain(self.functions, self.precision)
+
+    @property
+    def rule(self) -> dict[str, float]:
+        """When iterated loops are done, and lost."""
+        return newton_rule(self.precision, self.newton)
+
+
+def program(
+    graph: SceneGraph, precision: Precision, newton: int | None, p: Array, read: tuple[SceneGraph, CycleTable] | None
+) -> Program:
+    """The program of a graph; ``read`` are the graph of its drive alone and a table, to be read for parameters ``p``.
+
+    Raises :class:`DeclarationError` for a motion by a spline that does not tell its knots.
+    """
+    evaluated = graph if read is None else read[0]
+    stages = controlled(evaluated, precision)
+    kept = [k for k, name in enumerate(evaluated.columns) if not name.startswith(("_turns:", "_held:"))]
+    columns = tuple(evaluated.columns[k] for k in kept) if read is None else read[1].columns
+    constants, instant = hoisted(_rows(stages.instant, kept))
+    mechanism = graph.scene.mechanism
+    symbols, fixed = mechanism.symbols, read is not None
+    by_parameters = [_named("law", stages.law), stages.count, constants, _matter(graph, symbols), _sound(graph, symbols)]
+    if fixed:
+        by_parameters = [_fixed(function, p) for function in by_parameters]
+    functions = [*by_parameters, instant]
+    if stages.loops is not None:
+        functions.append(stages.loops)
+    sizes = {
+        "p": 0 if fixed else symbols.numel(),
+        "constants": constants.size1_out(0),
+        "moment": stages.count.size1_in(0),
+        "counted": stages.count.size1_out(0),
+        "drives": len(graph.driven),
+        "smooth": stages.law.size1_out(1),
+        "loops": stages.instant.size1_in(3),
+        "evaluated": len(kept),
+        "rows": max(1, len(columns)),
+        "matter": by_parameters[3].size1_out(0),
+        "sound": by_parameters[4].size1_out(0),
+    }
+    samples = tuple(_samples(graph, joint, p) for joint in graph.driven if graph.scene.motion[joint].spline)
+    filled, cycle = tuple(f for f in functions if f.size1_out(0)), None if read is None else read[1]
+    return Program(graph, precision, filled, columns, sizes, graph.laws.order, samples, newton, cycle)
+
+
+def _named(name: str, function: Any) -> Any:
+    symbols = function.sx_in()
+    return ca.Function(name, symbols, function.call(symbols))
+
+
+def _rows(instant: Any, kept: list[int]) -> Any:
+    inputs = instant.sx_in()
+    return ca.Function("instant", inputs, [instant(*inputs)[kept]])
+
+
+def _fixed(function: Any, p: Array) -> Any:
+    """A function with numbers for its parameters, which are its last input."""
+    inputs = function.sx_in()
+    return ca.Function(function.name(), [*inputs[:-1], ca.SX(0, 1)], function.call([*inputs[:-1], ca.DM(p)]), {"cse": True})
+
+
+def _matter(graph: SceneGraph, symbols: Any) -> Any:
+    """``matter(p)``: of each link with sections its length, and the coefficients of its density per unit of the ratio."""
+    found: list[Any] = []
+    for name in graph.wanted.sections:
+        link = graph.scene.mechanism.links[name]
+        assert isinstance(link.mass, Density)
+        density = link.mass.at(lambda e: e, link.length)
+        found += [link.length, *(c for cell in density.cells for c in cell)]
+    return ca.Function("matter", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *found))])
+
+
+def _sound(graph: SceneGraph, symbols: Any) -> Any:
+    """``sound(p)``: what must not be negative for the parts to be possible, as far as parameters change it."""
+    mechanism = graph.scene.mechanism
+    found: list[Any] = []
+    for body in mechanism.moving:
+        if isinstance(body, Link):
+            found.append(body.length)
+        if isinstance(body.mass, Density):
+            density = body.mass
+            ends = zip(density.breaks, density.breaks[1:], density.cells, strict=False)
+            found += [sum(c * u**n for n, c in enumerate(cell)) for a, b, cell in ends for u in (a, b)]
+        else:
+            found += [body.mass.mass, body.mass.inertia] if isinstance(body.mass, RigidMass) else [body.mass]
+    points = [point for joint in mechanism.joints.values() for point in (joint.parent, joint.child)]
+    for point in [*points, *(point for load in mechanism.loads.values() for point in load.points)]:
+        if isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None:
+            found += [point.x, point.body.length - point.x]
+    changing = [value for value in found if isinstance(value, ca.SX) and not value.is_constant()]
+    return ca.Function("sound", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *changing))], {"cse": True})
+
+
+def _samples(graph: SceneGraph, joint: str, p: Array) -> Samples:
+    law = graph.scene.motion[joint]
+    if not law.knots:
+        raise DeclarationError(f"the motion of joint '{joint}' does not tell its knots, which exported C needs")
+    number, knots = graph.driven.index(joint), np.array(law.knots)
+    rows = [np.atleast_2d(row.full())[number] for row in graph.motion(ca.DM(knots).T, ca.DM(p))]
+    jerk = np.diff(rows[2]) / np.diff(knots)
+    return Samples(joint, knots, np.stack([*(row[:-1] for row in rows), jerk], axis=1))
+
+
+Format = Callable[[float], str]
+
+
+def literal(precision: Precision) -> Format:
+    """How a number is written in C, so that it is read as the same number again."""
+    single = precision == "single"
+
+    def write(value: float) -> str:
+        number = float(np.float32(value)) if single else float(value)
+        if math.isinf(number):
+            return "-INFINITY" if number < 0 else "INFINITY"
+        text = f"{number:.9g}" if single else f"{number:.17g}"
+        text = text if any(mark in text for mark in ".en") else f"{text}.0"
+        return f"{text}f" if single else text
+
+    return write

@@ -1,0 +1,328 @@
+"""The header and the source of an exported program, filled in from their templates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+
+from ..density import Density
+from ..refusal import MISFIT, dead_centre
+from ..version import __version__
+from .contract import LAW, STATION, Contract
+from .data import sampled, table_call, table_text
+from .program import Format, Program, literal
+from .statuses import STATUSES
+from .text import indented, template
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """What header and source are written from; ``scene`` is the hash of the scene."""
+
+    contract: Contract
+    program: Program
+    scene: str
+    guess: Sequence[float]
+
+    @cached_property
+    def code(self) -> str:
+        """The source: ``<prefix>.c``."""
+        p, sizes = self.contract.prefix, self.program.sizes
+        sections = self._sections() if self.contract.links else ""
+        return template(
+            "mechanism.c",
+            **self.words,
+            includes="\n#include <string.h>" if self.program.cycle is not None else "",
+            graph=self.program.text,
+            seal=f"0x{self.scene[:8]}u",
+            helpers=self._helpers(),
+            put="\n".join(f"  outputs->{m.name} = {self._value(m.source)};" for m in self.contract.outputs),
+            defaults=self._defaults(),
+            given=f", const {p}_parameters* parameters" if self.contract.settings else "",
+            time_rest=f", {p}_real time_rest" if self.contract.rests else "",
+            prepare=indented(self._prepare()),
+            motion=indented(self._motion()),
+            instant=indented(self._instant()),
+            rows=sizes["rows"],
+            sections=sections,
+            messages="\n".join(f'  case {self._upper}_{key}:\n    return "{text}";' for key, text in STATUSES.items()),
+        )
+
+    @property
+    def _upper(self) -> str:
+        return self.contract.prefix.upper()
+
+    @property
+    def words(self) -> dict[str, str]:
+        """What every template is filled with."""
+        return {
+            "name": self.contract.name,
+            "p": self.contract.prefix,
+            "P": self._upper,
+            "version": __version__,
+            "casadi": ca.CasadiMeta.version(),
+            "scene": self.scene,
+        }
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The times [s] that all motions cover."""
+        spans = [law.span for law in self.program.graph.scene.motion.values()]
+        return max(low for low, _ in spans), min(high for _, high in spans)
+
+    def _value(self, source: str) -> str:
+        value = f"y[{self.program.columns.index(source)}]"
+        return f"direction({value})" if source in self.program.graph.wrapped else value
+
+    @property
+    def _number(self) -> Format:
+        return literal(self.contract.precision)
+
+    def _function(self, name: str) -> str:
+        return f"{name}f" if self.contract.precision == "single" else name
+
+    def _helpers(self) -> str:
+        number, found = self._number, ""
+        if self.program.graph.wrapped:
+            turn = number(math.tau)
+            found += (
+                "\n/* An angle without its whole turns, in (-pi, pi]. */\nstatic casadi_real direction(casadi_real angle) {\n"
+                f"  return angle - {turn}*{self._function('ceil')}(angle/{turn} - {number(0.5)});\n}}\n"
+            )
+        if self.program.sizes["loops"] and self.program.cycle is None:
+            rule = {key: number(value) for key, value in self.program.rule.items()}
+            newton = self.program.graph.newton
+            assert newton is not None
+            found += template(
+                "loops.c",
+                **self.words,
+                nz=self.program.sizes["loops"],
+                turning=", ".join(str(int(turning)) for turning in newton.turning),
+                turn=number(math.tau),
+                inverse=number(1.0 / math.tau),
+                half=number(0.5),
+                floor=self._function("floor"),
+                rate=rule["rate"],
+                rounding=rule["rounding"],
+                p_values="model->parameters" if self.program.sizes["p"] else "0",
+            )
+        found += sampled(self.program, self.words, number)
+        return found + table_text(self.program)
+
+    def _defaults(self) -> str:
+        c, p = self.contract, self.contract.prefix
+        if not c.settings:
+            return ""
+        rows = ",\n".join(f"  {self._number(m.default)} /* {m.name} */" for m in c.settings)
+        return f"\nconst {p}_parameters {p}_defaults = {{\n{rows}\n}};\n"
+
+    def _prepare(self) -> Iterable[str]:
+        c, P, sizes, number = self.contract, self._upper, self.program.sizes, self._number
+        if c.settings:
+            yield f"const {c.prefix}_parameters* values = parameters ? parameters : &{c.prefix}_defaults;"
+        if sizes["sound"]:
+            yield f"casadi_real sound_of[{sizes['sound']}];"
+            yield "int k;"
+        yield "const casadi_real* arg[1];"
+        yield "casadi_real* res[1];"
+        yield "model->seal = 0;"
+        for k, m in enumerate(c.settings):
+            low, high = (
+                (f"values->{m.name} >= {number(m.low)}" if math.isfinite(m.low) else ""),
+                (f"values->{m.name} <= {number(m.high)}" if math.isfinite(m.high) else ""),
+            )
+            within = " && ".join(part for part in (f"is_finite(values->{m.name})", low, high) if part)
+            yield f"if (!({within})) return {P}_BAD_PARAMETER;"
+            yield f"model->parameters[{k}] = values->{m.name};"
+        yield f"arg[0] = {self._p};"
+        if sizes["sound"]:
+            yield "res[0] = sound_of;"
+            yield "sound(arg, res);"
+            yield f"for (k = 0; k < {sizes['sound']}; ++k) {{"
+            yield f"  if (!(sound_of[k] >= 0)) return {P}_BAD_PARAMETER;"
+            yield "}"
+        for vector, function in (("constants", "constants_of"), ("matter", "matter")):
+            if sizes[vector]:
+                yield f"res[0] = model->{vector};"
+                yield f"{function}(arg, res);"
+        if self.program.newton is not None:
+            yield "model->closed = 0;"
+        yield from (f"model->loops[{k}] = {number(value)};" for k, value in enumerate(self.guess))
+        if not any(sizes[vector] for vector in ("constants", "matter", "sound")):
+            yield "(void) arg;"
+            yield "(void) res;"
+
+    @property
+    def _p(self) -> str:
+        return "model->parameters" if self.program.sizes["p"] else "0"
+
+    def _motion(self) -> Iterable[str]:
+        c, P, sizes = self.contract, self._upper, self.program.sizes
+        smooth, rests = sizes["smooth"], c.rests
+        values = 2 * smooth if rests else smooth
+        moment = "time + time_rest" if rests else "time"
+        if smooth:
+            yield f"casadi_real at[{1 + rests}], d[{max(1, values)}], rate[{smooth}], acceleration[{smooth}];"
+            yield "const casadi_real* arg[2];"
+            yield "casadi_real* res[3];"
+        for k, _ in enumerate(self.program.samples):
+            yield f"casadi_real sample_{k}[4];"
+        yield "if (model->seal != SEAL) {"
+        yield from _spoiled(c, f"{P}_NOT_PREPARED")
+        yield "}"
+        low, high = self.span
+        bad = f"!is_finite({moment})"
+        if math.isfinite(low):
+            bad += f" || {moment} < {self._number(low)} || {moment} > {self._number(high)}"
+        yield f"if ({bad}) {{"
+        yield from _spoiled(c, f"{P}_BAD_TIME")
+        yield "}"
+        if smooth:
+            yield "at[0] = time;"
+            if rests:
+                yield "at[1] = time_rest;"
+            yield "arg[0] = at;"
+            yield f"arg[1] = {self._p};"
+            yield "res[0] = d;"
+            yield "res[1] = rate;"
+            yield "res[2] = acceleration;"
+            yield "law(arg, res);"
+        for k, _ in enumerate(self.program.samples):
+            yield f"sample_of_{k}(time, {'time_rest' if rests else '0'}, sample_{k});"
+        if c.timed:
+            yield f"inputs->{c.input_of('time')} = time;"
+            if rests:
+                yield f"inputs->{c.input_of('time_rest')} = time_rest;"
+        for drive, place in zip(c.drives, self.program.order, strict=True):
+            terms = (
+                [f"d[{place}]", f"d[{smooth + place}]", f"rate[{place}]", f"acceleration[{place}]"]
+                if place < smooth
+                else [f"sample_{place - smooth}[{k}]" for k in (0, 3, 1, 2)]
+            )
+            yield f"inputs->{c.input_of(f'motion:{drive}')} = {terms[0]};"
+            if rests:
+                yield f"inputs->{c.input_of(f'motion:{drive}_rest')} = {terms[1]};"
+            yield f"inputs->{c.input_of(f'motion:{drive}_rate')} = {terms[2]};"
+            yield f"inputs->{c.input_of(f'motion:{drive}_acceleration')} = {terms[3]};"
+        yield f"return {P}_OK;"
+
+    def _instant(self) -> Iterable[str]:
+        c, P, sizes = self.contract, self._upper, self.program.sizes
+        drives, nz = sizes["drives"], sizes["loops"]
+        yield f"casadi_real moment[{sizes['moment']}], counted[{max(1, sizes['counted'])}];"
+        yield f"casadi_real rate[{drives}], acceleration[{drives}], sum = 0;"
+        if self.program.cycle is not None:
+            yield f"casadi_real drive[{sizes['evaluated']}];"
+        yield "const casadi_real* arg[5];"
+        yield "casadi_real* res[1];"
+        yield f"{c.prefix}_status closed = {P}_OK;"
+        yield "int k;"
+        yield f"if (model->seal != SEAL) return {P}_NOT_PREPARED;"
+        names = ["time", *(f"motion:{drive}" for drive in c.drives)]
+        names += [f"{name}_rest" for name in names] if c.rests else []
+        for k, name in enumerate(names):
+            given = name.startswith("motion:") or c.timed
+            yield f"moment[{k}] = {f'inputs->{c.input_of(name)}' if given else '0'};"
+        for k, drive in enumerate(c.drives):
+            yield f"rate[{k}] = inputs->{c.input_of(f'motion:{drive}_rate')};"
+            yield f"acceleration[{k}] = inputs->{c.input_of(f'motion:{drive}_acceleration')};"
+        yield f"for (k = 0; k < {sizes['moment']}; ++k) sum = sum + (moment[k] - moment[k]);"
+        yield f"for (k = 0; k < {drives}; ++k) sum = sum + ((rate[k] - rate[k]) + (acceleration[k] - acceleration[k]));"
+        yield f"if (!(sum == 0)) return {P}_BAD_INPUT;"
+        yield "arg[0] = moment;"
+        yield f"arg[1] = {self._p};"
+        if sizes["counted"]:
+            yield "res[0] = counted;"
+            yield "count(arg, res);"
+        if nz and self.program.cycle is None:
+            yield from self._close()
+        yield "arg[0] = counted;"
+        yield "arg[1] = rate;"
+        yield "arg[2] = acceleration;"
+        yield f"arg[3] = {'model->loops' if nz and self.program.cycle is None else '0'};"
+        yield f"arg[4] = {'model->constants' if sizes['constants'] else '0'};"
+        yield f"res[0] = {'y' if self.program.cycle is None else 'drive'};"
+        yield "instant(arg, res);"
+        if self.program.cycle is not None:
+            yield from table_call(self.program)
+        yield from self._verdict()
+
+    def _close(self) -> Iterable[str]:
+        P, rule, number = self._upper, self.program.rule, self._number
+        done, lost, most = number(rule["done"]), number(rule["lost"]), int(rule["steps"])
+        if self.program.newton is not None:
+            full = Program(**(vars(self.program) | {"newton": None})).rule
+            limits = f"{int(full['steps'])}, {number(full['done'])}, {number(full['lost'])}"
+            yield f"if (!model->closed && close_loops(model, counted, {limits}) == {P}_NOT_CONVERGED) {{"
+            yield f"  return {P}_NOT_CONVERGED;"
+            yield "}"
+            yield "model->closed = 1;"
+        yield f"closed = close_loops(model, counted, {most}, {done}, {lost});"
+        yield f"if (closed == {P}_NOT_CONVERGED) return closed;"
+        if self.program.newton is not None:
+            yield f"closed = {P}_OK;"
+
+    def _verdict(self) -> Iterable[str]:
+        P, precision, number = self._upper, self.contract.precision, self._number
+        graph, misfit = self.program.graph, number(MISFIT[precision])
+        for k, name in enumerate(self.program.columns):
+            kind, _, part = name.partition(":")
+            if kind == "_closure":
+                dead = number(dead_centre(graph, precision, name))
+                lost = "JUMPED" if graph.iterates(part) else "NOT_ASSEMBLED"
+                yield f"if (y[{k}] < -{dead}) return {P}_{lost};"
+                yield f"if (!(y[{k}] > {dead})) return {P}_DEAD_CENTRE;"
+            elif kind == "_misfit":
+                yield f"if (!(y[{k}] <= {misfit})) return {P}_INCONSISTENT;"
+            elif kind == "_row":
+                size = self.program.columns.index(name.replace("_row:", "_rowsize:"))
+                yield f"if (!({self._function('fabs')}(y[{k}]) <= {misfit}*y[{size}])) return {P}_INCONSISTENT;"
+        yield f"if (closed != {P}_OK) return closed;"
+        rows = len(self.program.columns)
+        yield f"for (k = 0; k < {rows}; ++k) sum = sum + (y[k] - y[k]);"
+        yield f"if (!(sum == 0)) return {P}_NOT_FINITE;"
+
+    def _sections(self) -> str:
+        c, links = self.contract, self.program.graph.scene.mechanism.links
+        shapes, laws, place, most = [], [], 0, 1
+        names = {m.source: m.name for m in c.outputs}
+        text = ""
+        for k, link in enumerate(c.links):
+            density = links[link.name].mass
+            assert isinstance(density, Density)
+            sizes = [len(cell) for cell in density.cells]
+            most = max(most, *sizes)
+            breaks = ", ".join(self._number(u) for u in density.breaks)
+            text += f"\nstatic const casadi_real breaks_{k}[] = {{{breaks}}};"
+            text += f"\nstatic const int sizes_{k}[] = {{{', '.join(map(str, sizes))}}};"
+            shapes.append(f"  {{{len(sizes)}, breaks_{k}, sizes_{k}}}")
+            rows = [
+                f"  case {link.constant}:",
+                f"    matter_of = model->matter + {place};",
+                f"    stations = {len(link.stations)};",
+            ]
+            rows += [f"    law[{i}] = outputs->{names[f'section:{link.name}:law:{term}']};" for i, term in enumerate(LAW)]
+            acting = [f"section:{link.name}:{station}:{term}" for station in link.stations for term in STATION]
+            rows += [f"    acting[{i}] = outputs->{names[name]};" for i, name in enumerate(acting)]
+            laws.append("\n".join([*rows, "    break;"]))
+            place += 1 + sum(sizes)
+        text += "\n\nstatic const struct {\n  int cells;\n  const casadi_real* breaks;\n  const int* sizes;\n} shapes[] = {\n"
+        text += ",\n".join(shapes) + "\n};\n"
+        body = template(
+            "sections.c",
+            **self.words,
+            most=most,
+            loads=4 * max(1, *(len(link.stations) for link in c.links)) if c.links else 4,
+            laws="\n".join(laws),
+            indent=" " * (len(c.prefix) * 2 + 16),
+        )
+        return text + body
+
+
+def _spoiled(c: Contract, status: str) -> Iterable[str]:
+    yield from (f"  inputs->{m.name} = nothing;" for m in c.inputs)
+    yield f"  return {status};"

@@ -1,0 +1,42 @@
+"""How much stack straight C of this package's own style takes at most: what its functions declare, along the deepest calls."""
+
+from __future__ import annotations
+
+import functools
+import re
+
+_DEFINITION = re.compile(r"^(?:static )?[\w \*]*?\b(\w+)\([^;{}]*\) \{(?:([^\n]*)\}\n|\n(.*?)^\}\n)", re.DOTALL | re.MULTILINE)
+_DECLARATION = re.compile(
+    r"^ +(?:const )?(?:casadi_real|int|long|double|float|\w+_(?:real|status|parameters))\b(\*?) ?([^()=;]*(?:=[^;]*)?);",
+    re.MULTILINE,
+)
+_CALL = re.compile(r"\b(\w+)\(")
+_SLOT = 8
+_FRAME = 192
+"""What a call and saved registers take besides, with a margin."""
+
+
+def deepest(source: str) -> int:
+    """Bytes, with 8 for every variable, also where a compiler keeps it in a register. Raises ``ValueError`` where calls recur."""
+    bodies = {found[1]: found[2] or found[3] or "" for found in _DEFINITION.finditer(source)}
+    own = {name: _FRAME + _SLOT * sum(_slots(found[2]) for found in _DECLARATION.finditer(body)) for name, body in bodies.items()}
+    calls = {name: sorted(set(_CALL.findall(body)) & bodies.keys()) for name, body in bodies.items()}
+
+    @functools.cache
+    def depth(name: str, above: tuple[str, ...] = ()) -> int:
+        if name in above:
+            raise ValueError(f"{name} calls itself")
+        return own[name] + max((depth(other, (*above, name)) for other in calls[name]), default=0)
+
+    return max(depth(name) for name in bodies)
+
+
+def _slots(declarators: str) -> int:
+    """How many slots the variables of a declaration take."""
+    found = 0
+    for word in re.split(r",(?![^\[{(]*[\]})])", declarators):
+        count = 1
+        for size in re.findall(r"\[([^\]]+)\]", word.partition("=")[0]):
+            count *= eval(size, {"__builtins__": {}})
+        found += count
+    return found

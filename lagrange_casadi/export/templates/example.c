@@ -1,0 +1,29 @@
+/* The mechanism over its scene's motion. Build: cc example.c $p.c -lm */
+#include "$p.h"
+
+#include <stdio.h>
+
+static int failed(${p}_status status) {
+  fprintf(stderr, "$name: %s\n", ${p}_message(status));
+  return 1;
+}
+
+int main(void) {
+  ${p}_model model;
+  ${p}_inputs inputs;
+  ${p}_outputs outputs;
+$declared  ${p}_status status;
+  int k;
+  status = ${p}_prepare(&model$null);
+  if (status != ${P}_OK) return failed(status);
+  printf("%13s  %13s  %13s\n", "time [s]", "$coordinate [$coordinate_unit]", "$output [$output_unit]");
+  for (k = 0; k < 12; ++k) {
+    const ${p}_real time = $start + (${p}_real) k*$step;
+    status = ${p}_motion(&model, time$rest, &inputs);
+    if (status == ${P}_OK) status = ${p}_evaluate(&model, &inputs, &outputs);
+    if (status != ${P}_OK) return failed(status);
+    printf("%13.6g  %13.6g  %13.6g", (double) time, (double) inputs.$coordinate, (double) outputs.$output);
+$section    printf("\n");
+  }
+  return 0;
+}

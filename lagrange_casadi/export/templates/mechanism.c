@@ -1,0 +1,75 @@
+/* $name: see ${p}.h. Written by lagrange_casadi $version, scene $scene. */
+#include "${p}.h"
+
+#include <math.h>$includes
+
+#ifdef __FAST_MATH__
+#error "compile without -ffast-math: it takes away NaN, by which failures are told, and the digits of phases"
+#endif
+#ifdef __clang__
+#pragma STDC FP_CONTRACT OFF
+#endif
+
+typedef ${p}_real casadi_real;
+
+/* ---- Written by CasADi $casadi ---- */
+
+$graph
+/* ---- Written by lagrange_casadi ---- */
+
+#define SEAL $seal
+
+static const casadi_real nothing = (casadi_real) NAN;
+
+static int is_finite(casadi_real x) {
+  return x - x == 0;
+}
+$helpers
+static void put(const casadi_real* y, ${p}_outputs* outputs) {
+$put
+}
+$defaults
+${p}_status ${p}_prepare(${p}_model* model$given) {
+$prepare
+  model->seal = SEAL;
+  return ${P}_OK;
+}
+
+${p}_status ${p}_motion(const ${p}_model* model, ${p}_real time$time_rest, ${p}_inputs* inputs) {
+$motion
+}
+
+/* The columns of an instant, all of them finite unless what is returned is not ${P}_OK. */
+static ${p}_status columns_of(${p}_model* model, const ${p}_inputs* inputs, casadi_real* y) {
+$instant
+  return ${P}_OK;
+}
+
+${p}_status ${p}_evaluate(${p}_model* model, const ${p}_inputs* inputs, ${p}_outputs* outputs) {
+  casadi_real y[$rows];
+  int k;
+  const ${p}_status status = columns_of(model, inputs, y);
+  if (status != ${P}_OK) {
+    for (k = 0; k < $rows; ++k) y[k] = nothing;
+  }
+  put(y, outputs);
+  return status;
+}
+
+${p}_status ${p}_batch(${p}_model* model, long many, const ${p}_inputs* inputs, ${p}_outputs* outputs, ${p}_status* statuses) {
+  ${p}_status first = ${P}_OK, status;
+  long i;
+  for (i = 0; i < many; ++i) {
+    status = ${p}_evaluate(model, inputs + i, outputs + i);
+    if (first == ${P}_OK) first = status;
+    if (statuses) statuses[i] = status;
+  }
+  return first;
+}
+$sections
+const char* ${p}_message(${p}_status status) {
+  switch (status) {
+$messages
+  }
+  return "no status of this mechanism";
+}
