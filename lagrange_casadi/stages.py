@@ -96,7 +96,7 @@ def controlled(graph: SceneGraph, precision: Precision) -> Controlled:
     if precision == "double":
         stages, p = plain(graph), graph.instant.sx_in("p")
         moment = ca.SX.sym("moment", stages.instant.size1_in(0))
-        return Controlled(graph.laws.smooth, ca.Function("count", [moment, p], [moment], names, ["counted"]), *_rest(stages))
+        return Controlled(graph.laws.smooth, ca.Function("count", [moment, p], [moment], names, ["counted"]), *_others(stages))
     laws = graph.laws
     with unsimplified():
         pairs, rows = Pairs(precision), 1 + len(graph.driven)
@@ -107,15 +107,19 @@ def controlled(graph: SceneGraph, precision: Precision) -> Controlled:
         return Controlled(_paired_law(laws.smooth, pairs, p), count, loops, instant, precision)
 
 
-def _rest(stages: Stages) -> tuple[Any | None, Any, Precision]:
+def _others(stages: Stages) -> tuple[Any | None, Any, Precision]:
     return stages.loops, stages.instant, stages.precision
+
+
+def _rest(pair: Pair) -> Any:
+    return ca.SX(0) if pair.low is None else pair.low
 
 
 def _paired_law(smooth: Any, pairs: Pairs, p: Any) -> Any:
     """The motion of drives by a time in pairs, each coordinate as a pair."""
     time = ca.SX.sym("t", 2)
     values, *changes = interpret(smooth, [[Pair(time[0], time[1])], [Pair(x) for x in _split(p)]], pairs.arithmetic)
-    found = [[x.high for x in values], [ca.SX(0) if x.low is None else x.low for x in values]]
+    found = [[x.high for x in values], [_rest(x) for x in values]]
     found += [[pair.value for pair in row] for row in changes]
     return ca.Function("law", [time, p], [_column([*found[0], *found[1]]), *(_column(row) for row in found[2:])], {"cse": True})
 
@@ -246,6 +250,8 @@ def _compensated(graph: SceneGraph, laws: Laws, precision: Precision) -> Stages:
     smooth = interpret(laws.smooth, [[t_pair], p_pairs], pairs.arithmetic)
     sampled = ca.SX.sym("sampled", len(laws.order) - len(smooth[0]))
     driven = [*smooth[0], *(Pair(x) for x in _split(sampled))]
+    # As a controller gives them: see controlled().
+    driven = [Pair(x.high, _rest(x)) for x in driven] if single else driven
     handed, loops, instant = _counted(graph, pairs, t_pair, [driven[k] for k in laws.order], p_pairs)
     given = [handed, *(_column([pair.value for pair in row]) for row in smooth[1:])]
     inputs = [time, ca.vec(parameters)]

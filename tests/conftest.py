@@ -51,4 +51,8 @@ def solution(slider_crank):
 
 
 def pytest_addoption(parser):
-    parser.addoption("--update", action="store_true", help="write the generated parts of the documentation anew")
+    parser.addoption(
+        "--update",
+        action="store_true",
+        help="write anew what is generated: parts of the documentation, and the golden text of an export",
+    )

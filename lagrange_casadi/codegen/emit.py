@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import casadi as ca
@@ -283,10 +284,11 @@ def _sizes(graph: SceneGraph, stages: Stages) -> dict[str, Any]:
     }
 
 
-def hoisted(instant: ca.Function) -> tuple[ca.Function, ca.Function]:
-    """What of an instant depends on parameters alone, ``constants_of(p) -> c``, and the instant with c for p."""
+def hoisted(instant: ca.Function, rows: Sequence[int] | None = None) -> tuple[ca.Function, ca.Function]:
+    """What of an instant depends on parameters alone, ``constants_of(p) -> c``, and the instant with c for p; of some ``rows``."""
     inputs = instant.sx_in()
-    rest, symbols, constants = ca.extract_parametric(instant(*inputs), inputs[-1], {"extract_trivial": True})
+    out = instant(*inputs) if rows is None else instant(*inputs)[list(rows)]
+    rest, symbols, constants = ca.extract_parametric(out, inputs[-1], {"extract_trivial": True})
     c = ca.vertcat(ca.SX(0, 1), *symbols)
     hoisted = ca.Function("constants_of", [inputs[-1]], [ca.densify(ca.vertcat(ca.SX(0, 1), *constants))], {"cse": True})
     return hoisted, ca.Function("instant", [*inputs[:-1], c], [ca.densify(rest)], {"cse": True})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping
 
 import casadi as ca
 
@@ -20,19 +20,20 @@ _DEFINITION = re.compile(r"^(static void \w+\((const casadi_real\*\* arg[^)]*)\)
 _WORD = re.compile(r"\w+")
 
 
-def plain(functions: Sequence[ca.Function], precision: Precision) -> str:
-    """Static C functions of SX functions, each ``void NAME(const casadi_real** arg, casadi_real** res)``.
+def plain(functions: Mapping[str, ca.Function], precision: Precision) -> str:
+    """Static C functions of SX functions by name, each ``void NAME(const casadi_real** arg, casadi_real** res)``.
 
     ``casadi_real`` is for the caller to define. Nothing of it allocates, recurs, or is seen outside.
     """
     generator = ca.CodeGenerator("graph", {"with_header": False})
-    for function in functions:
+    for function in functions.values():
         generator.add(function)
+    called = {function.name(): name for name, function in functions.items()}
     text = re.sub(r"if \(res\[(\d+)\]!=0\) ", "", str(generator.dump()))
     text = split(re.sub(r"arg\[(\d+)\]\? (arg\[\1\]\[\d+\]) : 0", r"\2", text))
     text = re.sub(r"CASADI_PREFIX\((\w+)\)", r"casadi_\1", text).replace("LAGRANGE_CASADI_PART ", "")
     items = {found["name"]: found.group() for found in _ITEM.finditer(text)}
-    entries = {found[2]: found[1] for found in _ENTRY.finditer(text)}
+    entries = {found[2]: called[found[1]] for found in _ENTRY.finditer(text) if found[1] in called}
     needed: set[str] = set()
     wanted = list(entries)
     while wanted:

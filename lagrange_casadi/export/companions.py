@@ -111,7 +111,7 @@ def _selftest(source: Source, g: Golden, words: dict[str, str]) -> str:
         given="\n".join(f"  inputs->{m.name} = ({c.prefix}_real) row[{k}];" for k, m in enumerate(c.inputs)),
         taken_inputs="\n".join(_taken(c, m, coordinates) for m in c.inputs if not m.source.endswith("_rest")),
         taken_outputs="\n".join(
-            f'  compare("{m.name}", row[{k}], (double) outputs->{m.name}, outputs_off[{k}], {int("pi]" in m.range)});'
+            f'  compare("{m.name}", row[{k}], (double) outputs->{m.name}, outputs_off[{k}], {int(m.wrapped)});'
             for k, m in enumerate(c.outputs)
         ),
         sections=_sections(c, links) if c.links else "",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import casadi as ca
@@ -24,7 +25,10 @@ _FAINT = 1e-9
 
 @dataclass(frozen=True)
 class Member:
-    """A member of a struct: its name in C, the full name of what it holds, and what a reader must know of it."""
+    """A member of a struct: its name in C, the full name of what it holds, and what a reader must know of it.
+
+    ``wrapped`` tells that it is an angle known up to whole turns.
+    """
 
     name: str
     source: str
@@ -32,6 +36,7 @@ class Member:
     meaning: str
     sign: str = ""
     range: str = ""
+    wrapped: bool = False
 
     @property
     def comment(self) -> str:
@@ -97,7 +102,8 @@ class Contract:
         """Names that C writes otherwise: a parameter's or a joint's own name, and what it is called."""
         found = {"mechanism " + self.name: self.prefix} if self.name != self.prefix else {}
         for kind, struct in (("parameter", self.settings), ("input", self.inputs), ("output", self.outputs)):
-            found |= {f"{kind} {_short(m.source)}": m.name for m in struct if m.name != re.sub(r"\W", "_", _short(m.source, kind))}
+            own = {_short(m.source, kind): m.name for m in struct}
+            found |= {f"{kind} {name}": called for name, called in own.items() if called != re.sub(r"\W", "_", name)}
         return found
 
     def input_of(self, name: str) -> str:
@@ -116,10 +122,13 @@ def contract(graph: SceneGraph, name: str, precision: Precision, solution: Solut
     timed = _timed(graph)
     settings = [] if fixed else [_setting(key, values[key]) for key in mechanism.parameters]
     names = members(setting.source for setting in settings)
-    inputs = _inputs(graph, precision, solution, timed)
+    inputs = _inputs(graph, precision, timed)
     shown = members(_short(key, "input") for key in inputs)
     columns = [key for key in graph.columns if not key.startswith("_") and key not in inputs]
     called = members(_short(key) for key in columns)
+    largest: dict[str, float] = {}
+    for key in columns:
+        largest[_unit(graph, key)] = max(largest.get(_unit(graph, key), 0.0), float(np.abs(solution.series[key]).max()))
     links = []
     for link in graph.wanted.sections:
         stations = dict.fromkeys(key.split(":")[2] for key in columns if key.startswith(f"section:{link}:") and ":law:" not in key)
@@ -130,7 +139,7 @@ def contract(graph: SceneGraph, name: str, precision: Precision, solution: Solut
         precision,
         tuple(Setting(**(vars(s) | {"name": names[s.source]})) for s in settings),
         tuple(Member(**(vars(m) | {"name": shown[_short(key, "input")]})) for key, m in inputs.items()),
-        tuple(_output(graph, key, called[_short(key)], solution) for key in columns),
+        tuple(_output(graph, key, called[_short(key)], solution, largest) for key in columns),
         tuple(links),
         graph.driven,
         timed,
@@ -158,15 +167,24 @@ def _setting(key: str, parameter: dict[str, float]) -> Setting:
     within = f"{_bracket(low, '[', '(')}{low:.6g}, {high:.6g}{_bracket(high, ']', ')')}"
     unit = str(parameter["unit"])
     default = parameter["value"]
-    return Setting(key, key, unit, f"parameter {key}", "", f"in {within}; default {default:.6g}", default, low, high)
+    return Setting(
+        name=key,
+        source=key,
+        unit=unit,
+        meaning=f"parameter {key}",
+        range=f"in {within}; default {default:.6g}",
+        default=default,
+        low=low,
+        high=high,
+    )
 
 
 def _bracket(value: float, closed: str, opened: str) -> str:
     return closed if math.isfinite(value) else opened
 
 
-def _inputs(graph: SceneGraph, precision: Precision, solution: Solution, timed: bool) -> dict[str, Member]:
-    rests, joints = precision == "single", graph.scene.mechanism.joints
+def _inputs(graph: SceneGraph, precision: Precision, timed: bool) -> dict[str, Member]:
+    rests = precision == "single"
     found: dict[str, Member] = {}
 
     def add(key: str, unit: str, meaning: str, sign: str = "", range_: str = "any finite number") -> None:
@@ -178,42 +196,59 @@ def _inputs(graph: SceneGraph, precision: Precision, solution: Solution, timed: 
         if rests:
             add("time_rest", "s", rest.format("the time"))
     for joint in graph.driven:
-        kind = joints[joint].coordinate or "slide"
         for key in (f"motion:{joint}", f"motion:{joint}_rate", f"motion:{joint}_acceleration"):
-            quantity = quantity_of(key)
-            meaning = quantity.long_name.replace("the joint", f"joint {joint}")
-            within = (
-                "any finite number; digits are those of a number of its size"
-                if not quantity.member and kind == "angle"
-                else "any finite number"
-            )
-            add(key, quantity.unit_for(kind), meaning, quantity.sign, within)
+            quantity, unit = quantity_of(key), _unit(graph, key)
+            sign = _sign(graph, key)
+            add(key, unit, f"{_where(key, joint)}: {_brief(quantity.long_name)}", sign)
             if rests and not quantity.member:
-                add(f"{key}_rest", quantity.unit_for(kind), rest.format("it"))
+                add(f"{key}_rest", unit, rest.format("it"))
     return found
 
 
-def _output(graph: SceneGraph, key: str, member: str, solution: Solution) -> Member:
-    quantity, joints = quantity_of(key), graph.scene.mechanism.joints
+def _joint(graph: SceneGraph, key: str) -> str:
+    """The joint that a full name is of, or its part that is none."""
     part = key.split(":")[1]
-    joint = part if part in joints else part.removesuffix("_rate").removesuffix("_acceleration")
-    kind = (joints[joint].coordinate if joint in joints else None) or "slide"
-    where = ", ".join(_places(key, joint))
-    within = "in (-pi, pi]" if key in graph.wrapped else _range(solution, key)
-    return Member(member, key, quantity.unit_for(kind), f"{quantity.long_name}: {where}", quantity.sign, within)
+    return part if part in graph.scene.mechanism.joints else part.removesuffix("_rate").removesuffix("_acceleration")
 
 
-def _places(key: str, joint: str) -> list[str]:
+def _unit(graph: SceneGraph, key: str) -> str:
+    joints, joint = graph.scene.mechanism.joints, _joint(graph, key)
+    kind = joints[joint].coordinate if joint in joints else None
+    return quantity_of(key).unit_for(kind or "slide")
+
+
+def _sign(graph: SceneGraph, key: str) -> str:
+    quantity, joints, joint = quantity_of(key), graph.scene.mechanism.joints, _joint(graph, key)
+    if quantity.group == "motion" and not quantity.member:
+        return "counter-clockwise" if joints[joint].coordinate == "angle" else "along the axis"
+    return quantity.sign
+
+
+def _output(graph: SceneGraph, key: str, member: str, solution: Solution, largest: Mapping[str, float]) -> Member:
+    quantity, unit, wrapped = quantity_of(key), _unit(graph, key), key in graph.wrapped
+    within = "in (-pi, pi]" if wrapped else _range(solution, key, largest[unit])
+    meaning = f"{_where(key, _joint(graph, key))}: {_brief(quantity.long_name)}"
+    return Member(member, key, unit, meaning, _sign(graph, key), within, wrapped)
+
+
+def _where(key: str, joint: str) -> str:
     group, part, *rest = key.split(":")
     kinds = {"motion": "joint", "pose": "body", "effort": "joint", "reaction": "joint", "load": "load", "section": "link"}
-    found = [f"{kinds.get(group, group)} {joint if group == 'motion' else part}"]
-    return [*found, f"station {rest[0]}"] if group == "section" and rest[0] != "law" else found
+    found = f"{kinds.get(group, group)} {joint if group == 'motion' else part}"
+    return f"{found}, station {rest[0]}" if group == "section" and rest[0] != "law" else found
 
 
-def _range(solution: Solution, key: str) -> str:
-    """What a quantity's values are over the cycle of the scene, in a few digits."""
+def _brief(meaning: str) -> str:
+    """A meaning as it is said of a part that was named."""
+    for words in (" of the joint's coordinate", " of the joint", " of the drive", ", continuous in time"):
+        meaning = meaning.replace(words, "")
+    return meaning
+
+
+def _range(solution: Solution, key: str, largest: float) -> str:
+    """What a quantity's values are over the cycle of the scene, in a few digits; ``largest`` is the largest of its unit."""
     values = solution.series[key]
-    alike = [np.abs(row).max() for name, row in solution.series.items() if name.split(":")[0] == key.split(":")[0]]
-    faint = max(_FAINT * max(alike), 2.0 * solution.errors.get(key, 0.0))
+    faint = max(_FAINT * largest, 2.0 * solution.errors.get(key, 0.0))
     low, high = (0.0 if abs(x) <= faint else float(x) for x in (values.min(), values.max()))
-    return f"from {low:.{_DIGITS}g} to {high:.{_DIGITS}g} over the scene's motion"
+    ends = [f"{x:.{_DIGITS}g}" for x in (low, high)]
+    return f"{ends[0] if ends[0] == ends[1] else f'from {ends[0]} to {ends[1]}'} over the scene's motion"

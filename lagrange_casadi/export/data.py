@@ -72,7 +72,7 @@ def _motion(k: int, sample: Samples, single: bool, number: Format) -> str:
         *([] if single else ["(void) rest;"]),
     ]
     body = "\n".join(f"  {line}" for line in lines)
-    return f"\nstatic void sample_of_{k}(casadi_real time, casadi_real rest, casadi_real* found) {{\n{body}\n}}\n"
+    return f"{text}\nstatic void sample_of_{k}(casadi_real time, casadi_real rest, casadi_real* found) {{\n{body}\n}}\n"
 
 
 def _parts(values: Array, single: bool) -> tuple[Array, Array]:

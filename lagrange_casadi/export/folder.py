@@ -35,6 +35,7 @@ LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 """Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""
 
 MANIFEST = "export.json"
+_ENOUGH = 8
 
 
 def export(
@@ -79,8 +80,10 @@ def export(
     values = scene.mechanism.values(parameters)
     p = np.array(list(values.values()))
     graph = derive(scene, wanted, iterate=newton is not None)
-    exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm")
-    plain = newton is None and table is None
+    # What rounding alone makes of it: all steps that loops want, and no table.
+    enough = None if newton is None else max(newton, _ENOUGH)
+    exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm", newton=enough)
+    plain = newton == enough and table is None
     solution = exact if plain else evaluate(scene, parameters=values, wanted=wanted, backend="vm", newton=newton, table=table)
     read = None if table is None else (drive_of(graph), table_of(graph, solution.t, p, rung))
     agreed = contract(graph, name or scene.mechanism.name, precision, solution, fixed=table is not None)
@@ -89,9 +92,9 @@ def export(
     guess = graph.newton.guess if graph.newton is not None and read is None else ()
     source = Source(agreed, emitted, _hash(graph, values), guess)
     files = {f"{agreed.prefix}.h": header(source), f"{agreed.prefix}.c": source.code}
-    files |= companions(source, golden(graph, agreed, solution, exact.errors, p))
+    files |= companions(source, golden(graph, agreed, solution, exact, p))
     _check_free(folder, files, force=force)
-    files[MANIFEST] = _manifest(agreed, source.scene, files)
+    files[MANIFEST] = _manifest(source, files)
     with filling(folder) as draft:
         for file, text in files.items():
             (draft / file).write_text(text)
@@ -104,8 +107,9 @@ def _hash(graph: SceneGraph, values: Mapping[str, float]) -> str:
     return hashlib.sha256("\0".join([declared, json.dumps(values)]).encode()).hexdigest()[:32]
 
 
-def _manifest(agreed: Contract, scene: str, files: Mapping[str, str]) -> str:
+def _manifest(source: Source, files: Mapping[str, str]) -> str:
     """What the folder holds, for programs: names, units and places of all members, and a digest of each file."""
+    agreed = source.contract
 
     def rows(members: Sequence[Any]) -> list[dict[str, str]]:
         return [{"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.meaning} for m in members]
@@ -117,11 +121,12 @@ def _manifest(agreed: Contract, scene: str, files: Mapping[str, str]) -> str:
         "mechanism": agreed.name,
         "prefix": agreed.prefix,
         "precision": agreed.precision,
-        "scene": scene,
+        "scene": source.scene,
         "parameters": [row | {"default": m.default} for row, m in zip(rows(agreed.settings), agreed.settings, strict=True)],
         "inputs": rows(agreed.inputs),
         "outputs": rows(agreed.outputs),
-        "links": [link.name for link in agreed.links],
+        "links": [{"name": link.name, "constant": link.constant} for link in agreed.links],
+        "model": [{"name": name, "type": kind, "count": count} for name, kind, count in source.model],
         "files": {file: hashlib.sha256(text.encode()).hexdigest() for file, text in sorted(files.items())},
     }
     return json.dumps(content, indent=1) + "\n"

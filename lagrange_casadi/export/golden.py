@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
 from dataclasses import dataclass
 
 import casadi as ca
@@ -13,7 +13,7 @@ from ..density import Array
 from ..scene_graph import SceneGraph
 from ..section_law import FORCES
 from ..solution import Solution
-from .contract import Contract
+from .contract import Contract, Member
 
 INSTANTS = 9
 RATIOS = (0.0, 0.5, 1.0)
@@ -42,9 +42,10 @@ class Golden:
     forces_off: Array
 
 
-def golden(graph: SceneGraph, contract: Contract, solution: Solution, rounding: Mapping[str, float], p: Array) -> Golden:
-    """The golden vectors of a contract, by a solution in doubles over the scene's grid; ``rounding`` is what rounding makes of each
-    quantity there.
+def golden(graph: SceneGraph, contract: Contract, solution: Solution, exact: Solution, p: Array) -> Golden:
+    """The golden vectors of a contract, by a solution in doubles over the scene's grid.
+
+    ``exact`` is the same without what its rung saves: its errors are those of rounding, which another precision magnifies.
     """
     precision = contract.precision
     scale, least = ALLOWED * ROUNDING[precision] / ROUNDING["double"], ALLOWED * ROUNDING[precision]
@@ -54,17 +55,25 @@ def golden(graph: SceneGraph, contract: Contract, solution: Solution, rounding: 
     t = solution.t[chosen]
     inputs = np.stack([_input(graph, m.source, t, p, precision) for m in contract.inputs], axis=1)
     outputs = np.stack([solution.series[m.source][chosen] for m in contract.outputs], axis=1)
-    off = np.array([scale * rounding[m.source] for m in contract.outputs]) + least * np.abs(outputs).max(axis=0)
+    off = np.array([scale * exact.errors[m.source] + ALLOWED * _saved(m, solution, exact) for m in contract.outputs])
+    off += least * np.abs(outputs).max(axis=0)
     forces = np.zeros((t.size, len(contract.links), len(RATIOS), 3))
     forces_off = np.zeros((len(contract.links), 3))
     for i, link in enumerate(contract.links):
         law = solution.section(link.name).law.during(slice(None, None, stride))
         for k, force in enumerate(FORCES):
             forces[:, i, :, k] = law.at(force, np.tile(RATIOS, (t.size, 1)))
-            forces_off[i, k] = scale * rounding[f"section:{link.name}:{force}"] + least * np.abs(forces[:, i, :, k]).max()
+            forces_off[i, k] = scale * exact.errors[f"section:{link.name}:{force}"] + least * np.abs(forces[:, i, :, k]).max()
     inputs_off = _MOTION * ROUNDING[precision] * np.abs(inputs).max(axis=0)
     steps = stride if graph.newton is not None else 1
     return Golden(t, steps, inputs, outputs, forces, inputs_off, off, forces_off)
+
+
+def _saved(member: Member, solution: Solution, exact: Solution) -> float:
+    """What a rung's steps or table miss of a quantity."""
+    gaps = solution.series[member.source] - exact.series[member.source]
+    gaps -= math.tau * np.round(gaps / math.tau) if member.wrapped else 0.0
+    return float(np.abs(gaps).max())
 
 
 def _input(graph: SceneGraph, source: str, t: Array, p: Array, precision: Precision) -> Array:

@@ -21,6 +21,7 @@ def header(source: Source) -> str:
     return template(
         "mechanism.h",
         **source.words,
+        space=" " * (2 * len(p) + 9),
         null=", 0" if c.settings else "",
         first=first.name,
         f="f" if c.rests else "",
@@ -37,7 +38,7 @@ def header(source: Source) -> str:
         statuses=",\n".join(f"  {P}_{key} = {k} /* {text} */" for k, (key, text) in enumerate(STATUSES.items())),
         parameters=_parameters(c),
         inputs="\n".join(member(p, m.name, m.comment) for m in c.inputs),
-        outputs_note=" Angles that loops set are within a turn." if any("pi]" in m.range for m in c.outputs) else "",
+        outputs_note=" Angles that loops set are within a turn." if any(m.wrapped for m in c.outputs) else "",
         outputs="\n".join(member(p, m.name, m.comment) for m in c.outputs),
         links=_links(c),
         model="\n".join(f"  {line}" for line in _model(source)),
@@ -64,12 +65,8 @@ def _parameters(c: Contract) -> str:
 
 
 def _model(source: Source) -> list[str]:
-    p, sizes = source.contract.prefix, source.program.sizes
-    rows = ["unsigned seal;"]
-    if source.program.newton is not None:
-        rows.append("int closed;")
-    sized = {"parameters": sizes["p"], "constants": sizes["constants"], "matter": sizes["matter"], "loops": sizes["loops"]}
-    return rows + [f"{p}_real {name}[{size}];" for name, size in sized.items() if size]
+    real = f"{source.contract.prefix}_real"
+    return [f"{real} {name}[{count}];" if kind == "real" else f"{kind} {name};" for name, kind, count in source.model]
 
 
 def _links(c: Contract) -> str:
@@ -80,9 +77,9 @@ def _links(c: Contract) -> str:
     forces = "\n".join(
         member(p, *row)
         for row in (
-            ("axial", "axial force [N]; tension is positive; any"),
-            ("shear", "shear force [N]; 90 deg counter-clockwise of the axis; any"),
-            ("bending", "bending moment [N m]; counter-clockwise; any"),
+            ("axial", "axial force [N]; tension is positive; any number"),
+            ("shear", "shear force [N]; 90 deg counter-clockwise of the axis; any number"),
+            ("bending", "bending moment [N m]; counter-clockwise; any number"),
         )
     )
     about = "/* What the part towards the tip does to the part towards the base. */"
@@ -98,7 +95,7 @@ def _section_functions(c: Contract) -> str:
     return (
         "\n/* The forces inside a link at the ratio xi = distance from the base / length, from 0 to 1, for outputs of this\n"
         "   model; at a station, where they jump, those on its side towards the tip. */\n"
-        f"{one}{take}, {p}_real xi,\n{' ' * len(one)}{p}_forces* forces);\n"
+        f"{one}{take},\n{' ' * len(one)}{p}_real xi, {p}_forces* forces);\n"
         f"\n/* The same at many ratios. Returns the first status that is not {p.upper()}_OK, if any. */\n"
-        f"{many}{take}, long many, const {p}_real* xi,\n{' ' * len(many)}{p}_forces* forces);\n"
+        f"{many}{take},\n{' ' * len(many)}long many, const {p}_real* xi, {p}_forces* forces);\n"
     )

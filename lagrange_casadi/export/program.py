@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from ..codegen.emit import hoisted, newton_rule
 from ..codegen.plain import plain
-from ..compensated import Precision
+from ..compensated import Precision, unsimplified
 from ..cycle_table import CycleTable
 from ..density import Array, Density
 from ..errors import DeclarationError
@@ -40,7 +40,7 @@ class Program:
 
     graph: SceneGraph
     precision: Precision
-    functions: tuple[ca.Function, ...]
+    functions: Mapping[str, ca.Function]
     columns: tuple[str, ...]
     sizes: dict[str, int]
     order: tuple[int, ...]
@@ -70,15 +70,22 @@ def program(
     stages = controlled(evaluated, precision)
     kept = [k for k, name in enumerate(evaluated.columns) if not name.startswith(("_turns:", "_held:"))]
     columns = tuple(evaluated.columns[k] for k in kept) if read is None else read[1].columns
-    constants, instant = hoisted(_rows(stages.instant, kept))
+    constants, instant = hoisted(stages.instant, kept)
     mechanism = graph.scene.mechanism
     symbols, fixed = mechanism.symbols, read is not None
-    by_parameters = [_named("law", stages.law), stages.count, constants, _matter(graph, symbols), _sound(graph, symbols)]
+    functions = {
+        "law": stages.law,
+        "count": stages.count,
+        "constants_of": constants,
+        "matter": _matter(graph, symbols),
+        "sound": _sound(graph, symbols),
+    }
     if fixed:
-        by_parameters = [_fixed(function, p) for function in by_parameters]
-    functions = [*by_parameters, instant]
+        with unsimplified():
+            functions = {name: _fixed(function, p) for name, function in functions.items()}
+    functions["instant"] = instant
     if stages.loops is not None:
-        functions.append(stages.loops)
+        functions["loops"] = stages.loops
     sizes = {
         "p": 0 if fixed else symbols.numel(),
         "constants": constants.size1_out(0),
@@ -89,22 +96,12 @@ def program(
         "loops": stages.instant.size1_in(3),
         "evaluated": len(kept),
         "rows": max(1, len(columns)),
-        "matter": by_parameters[3].size1_out(0),
-        "sound": by_parameters[4].size1_out(0),
+        "matter": functions["matter"].size1_out(0),
+        "sound": functions["sound"].size1_out(0),
     }
     samples = tuple(_samples(graph, joint, p) for joint in graph.driven if graph.scene.motion[joint].spline)
-    filled, cycle = tuple(f for f in functions if f.size1_out(0)), None if read is None else read[1]
+    filled, cycle = {name: f for name, f in functions.items() if f.size1_out(0)}, None if read is None else read[1]
     return Program(graph, precision, filled, columns, sizes, graph.laws.order, samples, newton, cycle)
-
-
-def _named(name: str, function: Any) -> Any:
-    symbols = function.sx_in()
-    return ca.Function(name, symbols, function.call(symbols))
-
-
-def _rows(instant: Any, kept: list[int]) -> Any:
-    inputs = instant.sx_in()
-    return ca.Function("instant", inputs, [instant(*inputs)[kept]])
 
 
 def _fixed(function: Any, p: Array) -> Any:

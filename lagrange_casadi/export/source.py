@@ -69,6 +69,14 @@ class Source:
         }
 
     @property
+    def model(self) -> list[tuple[str, str, int]]:
+        """The members of a model: name, type, where ``real`` is that of the precision, and how many of it."""
+        sizes = self.program.sizes
+        vectors = {"parameters": sizes["p"]} | {name: sizes[name] for name in ("constants", "matter", "loops")}
+        closed = [("closed", "int", 1)] if self.program.newton is not None else []
+        return [("seal", "unsigned", 1), *closed, *((name, "real", size) for name, size in vectors.items() if size)]
+
+    @property
     def span(self) -> tuple[float, float]:
         """The times [s] that all motions cover."""
         spans = [law.span for law in self.program.graph.scene.motion.values()]
@@ -214,13 +222,12 @@ class Source:
         c, P, sizes = self.contract, self._upper, self.program.sizes
         drives, nz = sizes["drives"], sizes["loops"]
         yield f"casadi_real moment[{sizes['moment']}], counted[{max(1, sizes['counted'])}];"
-        yield f"casadi_real rate[{drives}], acceleration[{drives}], sum = 0;"
+        yield f"casadi_real rate[{drives}], acceleration[{drives}];"
         if self.program.cycle is not None:
             yield f"casadi_real drive[{sizes['evaluated']}];"
         yield "const casadi_real* arg[5];"
         yield "casadi_real* res[1];"
         yield f"{c.prefix}_status closed = {P}_OK;"
-        yield "int k;"
         yield f"if (model->seal != SEAL) return {P}_NOT_PREPARED;"
         names = ["time", *(f"motion:{drive}" for drive in c.drives)]
         names += [f"{name}_rest" for name in names] if c.rests else []
@@ -230,9 +237,8 @@ class Source:
         for k, drive in enumerate(c.drives):
             yield f"rate[{k}] = inputs->{c.input_of(f'motion:{drive}_rate')};"
             yield f"acceleration[{k}] = inputs->{c.input_of(f'motion:{drive}_acceleration')};"
-        yield f"for (k = 0; k < {sizes['moment']}; ++k) sum = sum + (moment[k] - moment[k]);"
-        yield f"for (k = 0; k < {drives}; ++k) sum = sum + ((rate[k] - rate[k]) + (acceleration[k] - acceleration[k]));"
-        yield f"if (!(sum == 0)) return {P}_BAD_INPUT;"
+        for vector, size in (("moment", sizes["moment"]), ("rate", drives), ("acceleration", drives)):
+            yield f"if (!all_finite({vector}, {size})) return {P}_BAD_INPUT;"
         yield "arg[0] = moment;"
         yield f"arg[1] = {self._p};"
         if sizes["counted"]:
@@ -283,44 +289,41 @@ class Source:
                 yield f"if (!({self._function('fabs')}(y[{k}]) <= {misfit}*y[{size}])) return {P}_INCONSISTENT;"
         yield f"if (closed != {P}_OK) return closed;"
         rows = len(self.program.columns)
-        yield f"for (k = 0; k < {rows}; ++k) sum = sum + (y[k] - y[k]);"
-        yield f"if (!(sum == 0)) return {P}_NOT_FINITE;"
+        yield f"if (!all_finite(y, {rows})) return {P}_NOT_FINITE;"
 
     def _sections(self) -> str:
         c, links = self.contract, self.program.graph.scene.mechanism.links
-        shapes, laws, place, most = [], [], 0, 1
+        shapes: list[str] = []
+        laws: list[str] = []
+        breaks: list[float] = []
+        sizes: list[int] = []
+        place = 0
         names = {m.source: m.name for m in c.outputs}
-        text = ""
-        for k, link in enumerate(c.links):
+        for link in c.links:
             density = links[link.name].mass
             assert isinstance(density, Density)
-            sizes = [len(cell) for cell in density.cells]
-            most = max(most, *sizes)
-            breaks = ", ".join(self._number(u) for u in density.breaks)
-            text += f"\nstatic const casadi_real breaks_{k}[] = {{{breaks}}};"
-            text += f"\nstatic const int sizes_{k}[] = {{{', '.join(map(str, sizes))}}};"
-            shapes.append(f"  {{{len(sizes)}, breaks_{k}, sizes_{k}}}")
-            rows = [
-                f"  case {link.constant}:",
-                f"    matter_of = model->matter + {place};",
-                f"    stations = {len(link.stations)};",
-            ]
+            lengths = [len(cell) for cell in density.cells]
+            shapes.append(f"  {{{len(lengths)}, {len(breaks)}, {len(sizes)}}}")
+            breaks += density.breaks
+            sizes += lengths
+            rows = [f"  case {link.constant}:", f"    matter_of = model->matter + {place};"]
+            rows.append(f"    stations = {len(link.stations)};")
             rows += [f"    law[{i}] = outputs->{names[f'section:{link.name}:law:{term}']};" for i, term in enumerate(LAW)]
             acting = [f"section:{link.name}:{station}:{term}" for station in link.stations for term in STATION]
             rows += [f"    acting[{i}] = outputs->{names[name]};" for i, name in enumerate(acting)]
             laws.append("\n".join([*rows, "    break;"]))
-            place += 1 + sum(sizes)
-        text += "\n\nstatic const struct {\n  int cells;\n  const casadi_real* breaks;\n  const int* sizes;\n} shapes[] = {\n"
-        text += ",\n".join(shapes) + "\n};\n"
-        body = template(
+            place += 1 + sum(lengths)
+        return template(
             "sections.c",
             **self.words,
-            most=most,
+            most=max(sizes),
+            breaks=", ".join(self._number(u) for u in breaks),
+            sizes=", ".join(map(str, sizes)),
+            shapes=",\n".join(shapes),
             loads=4 * max(1, *(len(link.stations) for link in c.links)) if c.links else 4,
             laws="\n".join(laws),
             indent=" " * (len(c.prefix) * 2 + 16),
         )
-        return text + body
 
 
 def _spoiled(c: Contract, status: str) -> Iterable[str]:

@@ -24,6 +24,20 @@ static const casadi_real nothing = (casadi_real) NAN;
 static int is_finite(casadi_real x) {
   return x - x == 0;
 }
+
+/* One value that is not finite makes their sum so; four sums, for each addition waits for the one before. */
+static int all_finite(const casadi_real* x, int many) {
+  casadi_real a = 0, b = 0, c = 0, d = 0;
+  int k;
+  for (k = 0; k + 4 <= many; k += 4) {
+    a = a + x[k];
+    b = b + x[k + 1];
+    c = c + x[k + 2];
+    d = d + x[k + 3];
+  }
+  for (; k < many; ++k) a = a + x[k];
+  return is_finite((a + b) + (c + d));
+}
 $helpers
 static void put(const casadi_real* y, ${p}_outputs* outputs) {
 $put

@@ -1,7 +1,7 @@
 /* $name: efforts, reactions and section forces of a mechanism, at any instant of any motion of its drives.
 
-   Written by lagrange_casadi $version, scene $scene. C99 or C++, the C library's mathematics, and nothing else: no memory is
-   asked for, no state is kept but in the model that you hand over, nothing recurs.
+   Written by lagrange_casadi $version, scene $scene. C99 or C++ and the C library's mathematics,
+   nothing else: no memory is asked for, no state is kept but in the model that you hand over, nothing recurs.
 
      ${p}_model model;
      ${p}_inputs inputs = {0};
@@ -14,7 +14,7 @@
    A function that fails returns why, and fills what it should have filled with NaN. Calls that share a model must not run at the
    same time; calls with a model each may. Do not compile with -ffast-math: there NaN is not told from a number.
 
-$conventions$mapping$undetermined */
+   $conventions$mapping$undetermined */
 #ifndef ${P}_H
 #define ${P}_H
 
@@ -59,11 +59,13 @@ ${p}_status ${p}_prepare(${p}_model* model$given);
 ${p}_status ${p}_motion(const ${p}_model* model, ${p}_real time$time_rest, ${p}_inputs* inputs);
 
 /* The outputs at an instant.$follows */
-${p}_status ${p}_evaluate(${p}_model* model, const ${p}_inputs* inputs, ${p}_outputs* outputs);
+${p}_status ${p}_evaluate(${p}_model* model, const ${p}_inputs* inputs,
+$space         ${p}_outputs* outputs);
 
 /* The same for many instants, in order; the status of each in statuses, unless that is 0. Returns the first that is not
    ${P}_OK, if any. */
-${p}_status ${p}_batch(${p}_model* model, long many, const ${p}_inputs* inputs, ${p}_outputs* outputs, ${p}_status* statuses);
+${p}_status ${p}_batch(${p}_model* model, long many, const ${p}_inputs* inputs,
+$space      ${p}_outputs* outputs, ${p}_status* statuses);
 $sections
 /* What a status means, as a sentence; of a number that is none as well. */
 const char* ${p}_message(${p}_status status);

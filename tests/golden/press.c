@@ -1,0 +1,503 @@
+/* press: see press.h. Written by lagrange_casadi <version>, scene <scene>. */
+#include "press.h"
+
+#include <math.h>
+
+#ifdef __FAST_MATH__
+#error "compile without -ffast-math: it takes away NaN, by which failures are told, and the digits of phases"
+#endif
+#ifdef __clang__
+#pragma STDC FP_CONTRACT OFF
+#endif
+
+typedef press_real casadi_real;
+
+/* ---- Written by CasADi <casadi> ---- */
+
+static casadi_real casadi_sq(casadi_real x) { return x*x;}
+
+static void law(const casadi_real** arg, casadi_real** res) {
+  casadi_real a0, a1, a2;
+  a0=1.5707963267948967e-02;
+  a1=arg[0][0];
+  a0=(a0*a1);
+  a2=7.8539816339744831e+01;
+  a2=(a0+a2);
+  a1=(a2*a1);
+  res[0][0]=a1;
+  a0=(a0+a2);
+  res[1][0]=a0;
+  a0=3.1415926535897934e-02;
+  res[2][0]=a0;
+}
+
+static void count(const casadi_real** arg, casadi_real** res) {
+  casadi_real a0;
+  a0=arg[0][0];
+  res[0][0]=a0;
+  a0=arg[0][1];
+  res[0][1]=a0;
+}
+
+static void constants_of(const casadi_real** arg, casadi_real** res) {
+  casadi_real a0, a1, a2, a3, a4, a5, a6, a7, a8, a9;
+  a0=arg[0][0];
+  res[0][0]=a0;
+  a1=arg[0][1];
+  res[0][1]=a1;
+  a2=casadi_sq(a1);
+  a3=(1./a2);
+  a3=copysign(a3,a2);
+  res[0][2]=a3;
+  a3=-1.6666666666666669e-01;
+  a2=arg[0][2];
+  a4=(a3*a2);
+  a4=(a4*a0);
+  a4=(a4*a0);
+  a5=5.0000000000000000e-01;
+  a6=(a5*a2);
+  a0=casadi_sq(a0);
+  a6=(a6*a0);
+  a4=(a4+a6);
+  res[0][3]=a4;
+  a4=9.8100000000000005e+00;
+  a6=arg[0][4];
+  a4=(a4*a6);
+  a0=4.9050000000000002e+00;
+  a7=arg[0][3];
+  a8=(a0*a7);
+  a9=(a4+a8);
+  res[0][4]=a9;
+  a3=(a3*a7);
+  a3=(a3*a1);
+  a9=(a3*a1);
+  res[0][5]=a9;
+  res[0][6]=a6;
+  a5=(a5*a7);
+  res[0][7]=a5;
+  res[0][8]=a4;
+  res[0][9]=a8;
+  a0=(a0*a2);
+  res[0][10]=a0;
+  a0=(1./a1);
+  a0=copysign(a0,a1);
+  res[0][11]=a0;
+  a5=(a5*a1);
+  a5=(a5+a3);
+  res[0][12]=a5;
+}
+
+static void matter(const casadi_real** arg, casadi_real** res) {
+  casadi_real a0;
+  a0=arg[0][1];
+  res[0][0]=a0;
+  a0=arg[0][3];
+  res[0][1]=a0;
+}
+
+static void sound(const casadi_real** arg, casadi_real** res) {
+  casadi_real a0;
+  a0=arg[0][0];
+  res[0][0]=a0;
+  a0=arg[0][2];
+  res[0][1]=a0;
+  res[0][2]=a0;
+  a0=arg[0][1];
+  res[0][3]=a0;
+  a0=arg[0][3];
+  res[0][4]=a0;
+  res[0][5]=a0;
+  a0=arg[0][4];
+  res[0][6]=a0;
+}
+
+static void instant(const casadi_real** arg, casadi_real** res) {
+  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
+  casadi_real a12, a13, a14;
+  a00=arg[4][1];
+  a01=arg[0][1];
+  a02=sin(a01);
+  a03=arg[4][0];
+  a02=(a02*a03);
+  a04=(a00-a02);
+  a00=(a00+a02);
+  a04=(a04*a00);
+  a00=arg[4][2];
+  a00=(a04*a00);
+  res[0][0]=a00;
+  a00=arg[4][3];
+  a05=arg[2][0];
+  a00=(a00*a05);
+  a01=cos(a01);
+  a01=(a01*a03);
+  a03=arg[4][8];
+  a04=sqrt(a04);
+  a06=arg[4][4];
+  a06=(a04*a06);
+  a07=arg[4][5];
+  a08=(a05*a01);
+  a09=arg[1][0];
+  a10=casadi_sq(a09);
+  a11=(a10*a02);
+  a08=(a08-a11);
+  a09=(a09*a01);
+  a11=(1./a04);
+  a11=copysign(a11,a04);
+  a09=(a09*a11);
+  a09=casadi_sq(a09);
+  a12=(a09*a02);
+  a12=(a08+a12);
+  a12=(a12*a11);
+  a07=(a07*a12);
+  a06=(a06-a07);
+  a07=arg[4][6];
+  a10=(a10*a01);
+  a05=(a05*a02);
+  a10=(a10+a05);
+  a05=(a09*a04);
+  a13=(a12*a02);
+  a05=(a05+a13);
+  a05=(a10+a05);
+  a07=(a07*a05);
+  a13=arg[4][7];
+  a05=(a13*a05);
+  a05=(a07+a05);
+  a14=(a02*a05);
+  a06=(a06-a14);
+  a06=(a06*a11);
+  a03=(a03-a06);
+  a06=arg[4][9];
+  a06=(a03+a06);
+  a11=9.8100000000000005e+00;
+  a11=(a11+a08);
+  a08=(a13*a11);
+  a06=(a06+a08);
+  a08=arg[4][10];
+  a06=(a06+a08);
+  a01=(a01*a06);
+  a00=(a00+a01);
+  a01=(a13*a10);
+  a05=(a05+a01);
+  a05=(a02*a05);
+  a00=(a00+a05);
+  res[0][1]=a00;
+  a00=arg[4][11];
+  a04=(a04*a00);
+  a07=(a04*a07);
+  a02=(a02*a00);
+  a03=(a02*a03);
+  a07=(a07+a03);
+  res[0][2]=a07;
+  a07=(a02*a11);
+  a03=(a04*a10);
+  a07=(a07+a03);
+  res[0][3]=a07;
+  res[0][4]=a09;
+  a04=(a04*a11);
+  a02=(a02*a10);
+  a04=(a04-a02);
+  a13=(a04*a13);
+  a02=arg[4][12];
+  a02=(a12*a02);
+  a13=(a13-a02);
+  res[0][5]=a13;
+  a04=(-a04);
+  res[0][6]=a04;
+  res[0][7]=a12;
+  a12=0.;
+  res[0][8]=a12;
+}
+
+/* ---- Written by lagrange_casadi ---- */
+
+#define SEAL <seal>
+
+static const casadi_real nothing = (casadi_real) NAN;
+
+static int is_finite(casadi_real x) {
+  return x - x == 0;
+}
+
+/* One value that is not finite makes their sum so; four sums, for each addition waits for the one before. */
+static int all_finite(const casadi_real* x, int many) {
+  casadi_real a = 0, b = 0, c = 0, d = 0;
+  int k;
+  for (k = 0; k + 4 <= many; k += 4) {
+    a = a + x[k];
+    b = b + x[k + 1];
+    c = c + x[k + 2];
+    d = d + x[k + 3];
+  }
+  for (; k < many; ++k) a = a + x[k];
+  return is_finite((a + b) + (c + d));
+}
+
+static void put(const casadi_real* y, press_outputs* outputs) {
+  outputs->effort_O = y[1];
+  outputs->section_rod_n0 = y[2];
+  outputs->section_rod_n1 = y[3];
+  outputs->section_rod_n2 = y[4];
+  outputs->section_rod_f0 = y[5];
+  outputs->section_rod_f1 = y[6];
+  outputs->section_rod_f2 = y[7];
+  outputs->section_rod_m0 = y[8];
+}
+
+const press_parameters press_defaults = {
+  0.10000000000000001 /* r */,
+  0.20000000000000001 /* l */,
+  0.10000000000000001 /* m1 */,
+  0.10000000000000001 /* m2 */,
+  0.10000000000000001 /* m3 */
+};
+
+press_status press_prepare(press_model* model, const press_parameters* parameters) {
+  const press_parameters* values = parameters ? parameters : &press_defaults;
+  casadi_real sound_of[7];
+  int k;
+  const casadi_real* arg[1];
+  casadi_real* res[1];
+  model->seal = 0;
+  if (!(is_finite(values->r))) return PRESS_BAD_PARAMETER;
+  model->parameters[0] = values->r;
+  if (!(is_finite(values->l))) return PRESS_BAD_PARAMETER;
+  model->parameters[1] = values->l;
+  if (!(is_finite(values->m1))) return PRESS_BAD_PARAMETER;
+  model->parameters[2] = values->m1;
+  if (!(is_finite(values->m2))) return PRESS_BAD_PARAMETER;
+  model->parameters[3] = values->m2;
+  if (!(is_finite(values->m3))) return PRESS_BAD_PARAMETER;
+  model->parameters[4] = values->m3;
+  arg[0] = model->parameters;
+  res[0] = sound_of;
+  sound(arg, res);
+  for (k = 0; k < 7; ++k) {
+    if (!(sound_of[k] >= 0)) return PRESS_BAD_PARAMETER;
+  }
+  res[0] = model->constants;
+  constants_of(arg, res);
+  res[0] = model->matter;
+  matter(arg, res);
+  model->seal = SEAL;
+  return PRESS_OK;
+}
+
+press_status press_motion(const press_model* model, press_real time, press_inputs* inputs) {
+  casadi_real at[1], d[1], rate[1], acceleration[1];
+  const casadi_real* arg[2];
+  casadi_real* res[3];
+  if (model->seal != SEAL) {
+    inputs->O = nothing;
+    inputs->O_rate = nothing;
+    inputs->O_acceleration = nothing;
+    return PRESS_NOT_PREPARED;
+  }
+  if (!is_finite(time)) {
+    inputs->O = nothing;
+    inputs->O_rate = nothing;
+    inputs->O_acceleration = nothing;
+    return PRESS_BAD_TIME;
+  }
+  at[0] = time;
+  arg[0] = at;
+  arg[1] = model->parameters;
+  res[0] = d;
+  res[1] = rate;
+  res[2] = acceleration;
+  law(arg, res);
+  inputs->O = d[0];
+  inputs->O_rate = rate[0];
+  inputs->O_acceleration = acceleration[0];
+  return PRESS_OK;
+}
+
+/* The columns of an instant, all of them finite unless what is returned is not PRESS_OK. */
+static press_status columns_of(press_model* model, const press_inputs* inputs, casadi_real* y) {
+  casadi_real moment[2], counted[2];
+  casadi_real rate[1], acceleration[1];
+  const casadi_real* arg[5];
+  casadi_real* res[1];
+  press_status closed = PRESS_OK;
+  if (model->seal != SEAL) return PRESS_NOT_PREPARED;
+  moment[0] = 0;
+  moment[1] = inputs->O;
+  rate[0] = inputs->O_rate;
+  acceleration[0] = inputs->O_acceleration;
+  if (!all_finite(moment, 2)) return PRESS_BAD_INPUT;
+  if (!all_finite(rate, 1)) return PRESS_BAD_INPUT;
+  if (!all_finite(acceleration, 1)) return PRESS_BAD_INPUT;
+  arg[0] = moment;
+  arg[1] = model->parameters;
+  res[0] = counted;
+  count(arg, res);
+  arg[0] = counted;
+  arg[1] = rate;
+  arg[2] = acceleration;
+  arg[3] = 0;
+  arg[4] = model->constants;
+  res[0] = y;
+  instant(arg, res);
+  if (y[0] < -7.1054273576010019e-15) return PRESS_NOT_ASSEMBLED;
+  if (!(y[0] > 7.1054273576010019e-15)) return PRESS_DEAD_CENTRE;
+  if (closed != PRESS_OK) return closed;
+  if (!all_finite(y, 9)) return PRESS_NOT_FINITE;
+  return PRESS_OK;
+}
+
+press_status press_evaluate(press_model* model, const press_inputs* inputs, press_outputs* outputs) {
+  casadi_real y[9];
+  int k;
+  const press_status status = columns_of(model, inputs, y);
+  if (status != PRESS_OK) {
+    for (k = 0; k < 9; ++k) y[k] = nothing;
+  }
+  put(y, outputs);
+  return status;
+}
+
+press_status press_batch(press_model* model, long many, const press_inputs* inputs, press_outputs* outputs, press_status* statuses) {
+  press_status first = PRESS_OK, status;
+  long i;
+  for (i = 0; i < many; ++i) {
+    status = press_evaluate(model, inputs + i, outputs + i);
+    if (first == PRESS_OK) first = status;
+    if (statuses) statuses[i] = status;
+  }
+  return first;
+}
+
+/* How the density of each link is given: how many cells, and where in these lists their breaks and numbers of coefficients begin. */
+static const casadi_real breaks[] = {0.0, 1.0};
+static const int sizes[] = {1};
+static const struct {
+  int cells, first_break, first_size;
+} shapes[] = {
+  {1, 0, 0}
+};
+
+/* Moments of the material from a ratio u to the tip: T[k] is the integral of the density times the distance to the power k, per
+   unit of the ratio. density holds, of each cell between breaks, so many coefficients of a polynomial. */
+static void tails(casadi_real u, int link, const casadi_real* density, casadi_real* T) {
+  const casadi_real* at = breaks + shapes[link].first_break;
+  const int* many = sizes + shapes[link].first_size;
+  casadi_real parts[1 + 2], high, low, width, total, power, shifted, term;
+  int i, j, k, n, choose;
+  for (k = 0; k < 3; ++k) T[k] = 0;
+  for (i = 0; i < shapes[link].cells; ++i) {
+    high = at[i + 1] - u > 0 ? at[i + 1] - u : 0;
+    low = at[i] - u > 0 ? at[i] - u : 0;
+    width = high - low;
+    total = 1;
+    power = low;
+    for (n = 0; n < many[i] + 2; ++n) {
+      parts[n] = width*total;
+      total = total*high + power;
+      power = power*low;
+    }
+    for (j = 0; j < many[i]; ++j) {
+      shifted = 0;
+      for (n = j; n < many[i]; ++n) {
+        choose = 1;
+        for (k = 0; k < j; ++k) choose = choose*(n - k)/(k + 1);
+        term = density[n]*(casadi_real) choose;
+        power = 1;
+        for (k = 0; k < n - j; ++k) power = power*u;
+        shifted = shifted + term*power;
+      }
+      for (k = 0; k < 3; ++k) T[k] = T[k] + shifted*parts[j + k]/(casadi_real) (j + k + 1);
+    }
+    density += many[i];
+  }
+}
+
+static void no_forces(press_forces* forces) {
+  forces->axial = forces->shear = forces->bending = nothing;
+}
+
+press_status press_section(const press_model* model, const press_outputs* outputs, press_link link, press_real xi, press_forces* forces) {
+  casadi_real law[7], acting[4], T[3], l, first, axial, shear, bending;
+  const casadi_real* matter_of;
+  int k, stations = 0;
+  no_forces(forces);
+  if (model->seal != SEAL) return PRESS_NOT_PREPARED;
+  if (!(xi >= 0 && xi <= 1)) return PRESS_BAD_RATIO;
+  switch (link) {
+  case PRESS_LINK_ROD:
+    matter_of = model->matter + 0;
+    stations = 0;
+    law[0] = outputs->section_rod_n0;
+    law[1] = outputs->section_rod_n1;
+    law[2] = outputs->section_rod_n2;
+    law[3] = outputs->section_rod_f0;
+    law[4] = outputs->section_rod_f1;
+    law[5] = outputs->section_rod_f2;
+    law[6] = outputs->section_rod_m0;
+    break;
+  default:
+    return PRESS_NO_LINK;
+  }
+  l = matter_of[0];
+  tails(xi, (int) link, matter_of + 1, T);
+  first = l*(xi*T[0] + T[1]);
+  axial = law[0] + law[1]*T[0] + law[2]*first;
+  shear = law[3] + law[4]*T[0] + law[5]*first;
+  bending = law[6] + law[3]*(l*(1 - xi)) + law[4]*(l*T[1]) + law[5]*(l*l*(xi*T[1] + T[2]));
+  /* What acts at a station is seen by the sections on its base side, and at the very tip always. */
+  for (k = 0; k < 4*stations; k += 4) {
+    if (xi < acting[k] || (xi >= 1 && acting[k] >= 1)) {
+      axial = axial + acting[k + 1];
+      shear = shear + acting[k + 2];
+      bending = bending + (acting[k + 3] + acting[k + 2]*l*(acting[k] - xi));
+    }
+  }
+  if (!is_finite(axial + shear + bending)) return PRESS_NOT_FINITE;
+  forces->axial = axial;
+  forces->shear = shear;
+  forces->bending = bending;
+  return PRESS_OK;
+}
+
+press_status press_sections(const press_model* model, const press_outputs* outputs, press_link link, long many, const press_real* xi,
+                           press_forces* forces) {
+  press_status first = PRESS_OK, status;
+  long i;
+  for (i = 0; i < many; ++i) {
+    status = press_section(model, outputs, link, xi[i], forces + i);
+    if (first == PRESS_OK) first = status;
+  }
+  return first;
+}
+
+const char* press_message(press_status status) {
+  switch (status) {
+  case PRESS_OK:
+    return "everything is well";
+  case PRESS_NOT_PREPARED:
+    return "the model was not prepared";
+  case PRESS_BAD_PARAMETER:
+    return "a parameter is not finite, or out of its range, or leaves a link without length or with a negative mass";
+  case PRESS_BAD_INPUT:
+    return "an input is not finite";
+  case PRESS_BAD_TIME:
+    return "the time is not finite, or outside the samples of the motion";
+  case PRESS_BAD_RATIO:
+    return "a ratio xi/l is outside 0 to 1";
+  case PRESS_NO_LINK:
+    return "there is no such link";
+  case PRESS_NOT_ASSEMBLED:
+    return "a loop cannot be closed: its links do not reach";
+  case PRESS_DEAD_CENTRE:
+    return "a loop is at a dead centre: the forces are not determined";
+  case PRESS_NOT_CONVERGED:
+    return "the iteration of the loops did not converge";
+  case PRESS_JUMPED:
+    return "an iterated loop has jumped to another branch";
+  case PRESS_SLOW:
+    return "the iteration of the loops converges slowly: they are near a dead centre";
+  case PRESS_INCONSISTENT:
+    return "the motion violates a loop that is over-constrained, or a non-holonomic row";
+  case PRESS_NOT_FINITE:
+    return "a result is not finite: the mechanism is singular there, or its numbers overflow";
+  }
+  return "no status of this mechanism";
+}
