@@ -96,6 +96,7 @@ for language in ("c", "c++"):
         said += f", {{language}} {{state}} {{1e3 * (time.perf_counter() - start):.1f}} ms"
 print(said)
 """
+_EXPORTED = "from benchmarks.exported import report; print(report('{0}'))"
 _LARGE = "from benchmarks.large import report; print(report({0}))"
 
 PROGRAMS = (
@@ -117,6 +118,10 @@ PROGRAMS = (
     ),
     Program("stages-sympy", "SymPy derives and lambdifies the same three forces", "from benchmarks.peers.sympy_lambdify import *\n"
             "from benchmarks.peers.paper_case import SliderCrank\nsections(SliderCrank(), np.zeros(1), np.zeros(1))", repeat=3),
+    *(
+        Program(f"exported-{case}", f"{case}, everything, by exported C", _EXPORTED.format(case), repeat=1, reports=True)
+        for case in ("slider_crank", "four_bar", "andrews_squeezer")
+    ),
     *(
         Program(f"large-{n}", f"an open chain of {n} links, everything", _LARGE.format(n), cold=True, repeat=1, reports=True)
         for n in (16, 64, 256, 750)

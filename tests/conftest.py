@@ -51,8 +51,5 @@ def solution(slider_crank):
 
 
 def pytest_addoption(parser):
-    parser.addoption(
-        "--update",
-        action="store_true",
-        help="write anew what is generated: parts of the documentation, and the golden text of an export",
-    )
+    generated = "parts of the documentation, and the golden text of an export"
+    parser.addoption("--update", action="store_true", help=f"write anew what is generated: {generated}")

@@ -1,5 +1,6 @@
 """The command line: what it writes, and the one line and status of every mistake."""
 
+import errno
 import os
 import re
 import resource
@@ -165,6 +166,15 @@ def scene():
         (["plot", "raises.py", "--out", "figures"], 1, "not a whole HDF5 file"),
         (["info", "nothing.h5"], 2, "nothing.h5: no such file"),
         (["info", "x.h5", "--want", "effort"], 2, "--want goes with a case"),
+        (["export", "CASE"], 2, "Missing option '--out'"),
+        (["export", "CASE", "--out", "raises.py"], 2, "it is a file, not a folder"),
+        (["export", "CASE", "--out", "."], 2, "cannot export into .: it holds other files, 'draws.py' among them"),
+        (["export", "CASE", "--out", "c", "--precision", "half"], 2, "'half' is not one of 'double', 'single'"),
+        (["export", "CASE", "--out", "c", "--want", "torque"], 2, "unknown output 'torque'"),
+        (["export", "CASE", "--out", "c", "--set", "r=0.3"], 1, "closed by joint 'guide' cannot be closed"),
+        (["export", "CASE", "--out", "c", "--table", "64", "--newton", "2"], 2, "newton and table exclude each other"),
+        (["export", "CASE", "--out", "c", "--table", "4096", "--precision", "single"], 1, "and the limit is 64000"),
+        (["export", "CASE", "--out", "nowhere/c"], 2, "folder nowhere does not exist"),
     ],
 )
 def test_a_mistake_is_one_line_and_leaves_nothing(here, capfd, arguments, status, says):
@@ -178,6 +188,31 @@ def test_a_mistake_is_one_line_and_leaves_nothing(here, capfd, arguments, status
     assert says in err
     assert out == ""
     assert sorted(name for name in os.listdir(here) if name != "__pycache__") == before
+
+
+def test_export_says_what_it_wrote_and_how_to_try_it(here, capfd):
+    case = here / "float"
+    case.mkdir()
+    (case / "case.py").write_text(BROKEN["heavy.py"].replace('"m"', '"int"'))
+    assert main(["export", "float", "--out", "c", "--precision", "single", "--want", "effort"]) == 0
+    out, err = capfd.readouterr()
+    assert err == ""
+    assert out.splitlines() == [
+        "mechanism float is called float_mechanism in C",
+        "parameter int is called int_ in C",
+        "wrote c: float_mechanism.h, float_mechanism.c and what goes with them; 4 inputs, 1 outputs",
+        "try it: cd c && cmake -B build && cmake --build build && ctest --test-dir build",
+    ]
+
+
+def test_export_to_a_full_disk_is_one_line(here, capfd, monkeypatch):
+    def full(*_arguments, **_options):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", full)
+    assert main(["export", str(CASE), "--out", "c"]) == 1
+    assert capfd.readouterr().err == "error: cannot write c: No space left on device\n"
+    assert os.listdir(here) == []
 
 
 def test_a_failing_compiler_is_one_line(here, capfd, monkeypatch, tmp_path_factory):

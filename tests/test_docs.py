@@ -22,7 +22,9 @@ def test_examples_run(page, tmp_path, monkeypatch, capsys):
         exec(compile(block, page, "exec"), {})
 
 
-@pytest.mark.parametrize("page", [*PAGES, "docs/accuracy.md", "docs/schema.md", "CONTRIBUTING.md", "cases/slider_crank/README.md"])
+@pytest.mark.parametrize(
+    "page", [*PAGES, "docs/accuracy.md", "docs/export.md", "docs/schema.md", "CONTRIBUTING.md", "cases/slider_crank/README.md"]
+)
 def test_links_lead_somewhere(page):
     for target in re.findall(r"\]\(([^)#]+)\)", (ROOT / page).read_text()):
         assert ((ROOT / page).parent / target).exists(), f"{page}: {target}"

@@ -1,4 +1,4 @@
-"""The text of a small export, word for word: ``pytest tests/test_golden.py --update`` takes a change over, after you have read it."""
+"""The text of a small export, word for word; ``pytest tests/test_golden.py --update`` takes over a change that you have read."""
 
 import difflib
 import re

@@ -34,7 +34,10 @@ from .source import Source
 LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 """Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""
 
-MANIFEST = "export.json"
+MANIFEST, SCHEMA = "export.json", "lagrange-casadi export"
+_BUILD = "build"
+"""Where README says to build: no obstacle to exporting once more, nor touched by it."""
+
 _ENOUGH = 8
 
 
@@ -93,11 +96,13 @@ def export(
     source = Source(agreed, emitted, _hash(graph, values), guess)
     files = {f"{agreed.prefix}.h": header(source), f"{agreed.prefix}.c": source.code}
     files |= companions(source, golden(graph, agreed, solution, exact, p))
-    _check_free(folder, files, force=force)
+    known = _check_free(folder, files, force=force)
     files[MANIFEST] = _manifest(source, files)
     with filling(folder) as draft:
         for file, text in files.items():
             (draft / file).write_text(text)
+    for stale in known - files.keys():
+        (folder / stale).unlink()
     return agreed
 
 
@@ -115,7 +120,7 @@ def _manifest(source: Source, files: Mapping[str, str]) -> str:
         return [{"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.meaning} for m in members]
 
     content = {
-        "schema": "lagrange-casadi export",
+        "schema": SCHEMA,
         "schema_version": 1,
         "versions": {"lagrange_casadi": __version__, "casadi": ca.CasadiMeta.version()},
         "mechanism": agreed.name,
@@ -132,39 +137,32 @@ def _manifest(source: Source, files: Mapping[str, str]) -> str:
     return json.dumps(content, indent=1) + "\n"
 
 
-def _check_free(folder: Path, files: Mapping[str, str], *, force: bool) -> None:
-    """Raise :class:`PathError` unless the folder may be written into."""
+def _check_free(folder: Path, files: Mapping[str, str], *, force: bool) -> set[str]:
+    """The files of an earlier export there, as it left them. Raises :class:`PathError` unless the folder may be written into."""
     if not folder.exists():
-        return
+        return set()
     known = _known(folder / MANIFEST)
-    present = {path.name: path for path in folder.iterdir() if path.name != MANIFEST or not known}
-    same = {name for name, path in present.items() if name in known and path.is_file() and _digest(path) == known[name]}
-    changed = sorted(name for name in present if name in known and name not in same)
-    foreign = sorted(name for name in present if name not in known)
-    in_the_way = [name for name in foreign if name in files or name == MANIFEST]
-    if in_the_way:
-        raise PathError(
-            f"cannot export into {folder}: '{in_the_way[0]}' there is no file of an export; move it, or choose another folder"
-        )
-    if (foreign or changed) and not force:
-        what = (
-            f"holds other files, '{foreign[0]}' among them"
-            if foreign
-            else f"holds an export whose '{changed[0]}' was changed since"
-        )
+    present = {path.name for path in folder.iterdir()} - {_BUILD} - ({MANIFEST} if known else set())
+    same = {name for name in present & known.keys() if (folder / name).is_file() and _digest(folder / name) == known[name]}
+    foreign, changed = sorted(present - known.keys()), sorted(present & known.keys() - same)
+    for name in foreign:
+        if name in files or name == MANIFEST:
+            raise PathError(f"cannot export into {folder}: '{name}' there is no file of an export; move it, or export elsewhere")
+    what = f"holds other files, '{foreign[0]}' among them" if foreign else ""
+    what = what or (f"holds an export whose '{changed[0]}' was changed since" if changed else "")
+    if what and not force:
         raise PathError(
             f"cannot export into {folder}: it {what}; choose another folder, or give --force, which touches no other file"
         )
+    return same
 
 
 def _known(manifest: Path) -> dict[str, str]:
+    """The files of an earlier export and their digests; none where there is no manifest of one."""
     try:
         content = json.loads(manifest.read_text())
-        return (
-            {str(name): str(digest) for name, digest in content["files"].items()}
-            if content["schema"] == "lagrange-casadi export"
-            else {}
-        )
+        files = content["files"] if content["schema"] == SCHEMA else {}
+        return {str(name): str(digest) for name, digest in files.items()}
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return {}
 
