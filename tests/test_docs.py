@@ -1,16 +1,20 @@
 """The documentation is run, and its tables are the code's."""
 
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
 
 import lagrange_casadi
+from lagrange_casadi import export, load_case
+from lagrange_casadi.codegen import find_compiler
 from lagrange_casadi.quantities import QUANTITIES
 from lagrange_casadi.store import SCHEMA_VERSION
 
 ROOT = Path(__file__).parent.parent
 PAGES = ["README.md", "docs/method.md", "docs/declaring.md"]
+LINKING = [*PAGES, "docs/accuracy.md", "docs/export.md", "docs/schema.md", "CONTRIBUTING.md", "cases/slider_crank/README.md"]
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -22,9 +26,20 @@ def test_examples_run(page, tmp_path, monkeypatch, capsys):
         exec(compile(block, page, "exec"), {})
 
 
-@pytest.mark.parametrize(
-    "page", [*PAGES, "docs/accuracy.md", "docs/export.md", "docs/schema.md", "CONTRIBUTING.md", "cases/slider_crank/README.md"]
-)
+def test_the_exported_c_is_called_as_shown(tmp_path):
+    compiler = find_compiler("c")
+    (block,) = re.findall(r"```c\n(.*?)```", (ROOT / "docs" / "export.md").read_text(), re.DOTALL)
+    export(load_case(ROOT / "cases" / "slider_crank").scene, tmp_path)
+    body = block.replace("slider_crank_prepare(", "slider_crank_status s = slider_crank_prepare(")
+    checked = re.sub(r"^slider_crank_(evaluate|section)\(", r"s = s ? s : slider_crank_\1(", body, flags=re.MULTILINE)
+    program = f'#include "slider_crank.h"\nint main(void) {{\n{checked}\nreturn s || forces.bending == 0;\n}}\n'
+    (tmp_path / "shown.c").write_text(program)
+    command = [*compiler.command, "-std=c99", tmp_path / "shown.c", tmp_path / "slider_crank.c", "-o", tmp_path / "shown", "-lm"]
+    subprocess.run(command, check=True)
+    subprocess.run([tmp_path / "shown"], check=True)
+
+
+@pytest.mark.parametrize("page", LINKING)
 def test_links_lead_somewhere(page):
     for target in re.findall(r"\]\(([^)#]+)\)", (ROOT / page).read_text()):
         assert ((ROOT / page).parent / target).exists(), f"{page}: {target}"
