@@ -39,6 +39,7 @@ def companions(source: Source, vectors: Golden) -> dict[str, str]:
             output_unit=effort.unit,
             declared=f"  {c.prefix}_forces forces;\n" if link else "",
             section=mid,
+            heading=f'"   {link.name}, bending at 0.5 [N m]' + '"' if link else '""',
         ),
         "selftest.c": _selftest(source, vectors, words),
         "README.md": template(

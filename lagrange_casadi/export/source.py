@@ -227,7 +227,9 @@ class Source:
             yield f"casadi_real drive[{sizes['evaluated']}];"
         yield "const casadi_real* arg[5];"
         yield "casadi_real* res[1];"
-        yield f"{c.prefix}_status closed = {P}_OK;"
+        iterated = bool(nz) and self.program.cycle is None
+        if iterated:
+            yield f"{c.prefix}_status closed;"
         yield f"if (model->seal != SEAL) return {P}_NOT_PREPARED;"
         names = ["time", *(f"motion:{drive}" for drive in c.drives)]
         names += [f"{name}_rest" for name in names] if c.rests else []
@@ -244,12 +246,12 @@ class Source:
         if sizes["counted"]:
             yield "res[0] = counted;"
             yield "count(arg, res);"
-        if nz and self.program.cycle is None:
+        if iterated:
             yield from self._close()
         yield "arg[0] = counted;"
         yield "arg[1] = rate;"
         yield "arg[2] = acceleration;"
-        yield f"arg[3] = {'model->loops' if nz and self.program.cycle is None else '0'};"
+        yield f"arg[3] = {'model->loops' if iterated else '0'};"
         yield f"arg[4] = {'model->constants' if sizes['constants'] else '0'};"
         yield f"res[0] = {'y' if self.program.cycle is None else 'drive'};"
         yield "instant(arg, res);"
@@ -287,7 +289,8 @@ class Source:
             elif kind == "_row":
                 size = self.program.columns.index(name.replace("_row:", "_rowsize:"))
                 yield f"if (!({self._function('fabs')}(y[{k}]) <= {misfit}*y[{size}])) return {P}_INCONSISTENT;"
-        yield f"if (closed != {P}_OK) return closed;"
+        if self.program.sizes["loops"] and self.program.cycle is None:
+            yield f"if (closed != {P}_OK) return closed;"
         rows = len(self.program.columns)
         yield f"if (!all_finite(y, {rows})) return {P}_NOT_FINITE;"
 

@@ -17,7 +17,7 @@ int main(void) {
   int k;
   status = press_prepare(&model, 0);
   if (status != PRESS_OK) return failed(status);
-  printf("%13s  %13s  %13s\n", "time [s]", "O [rad]", "effort_O [N m]");
+  printf("%13s  %13s  %13s%s\n", "time [s]", "O [rad]", "effort_O [N m]", "   rod, bending at 0.5 [N m]");
   for (k = 0; k < 12; ++k) {
     const press_real time = 0.0 + (press_real) k*0.0066666666666666671;
     status = press_motion(&model, time, &inputs);

@@ -317,7 +317,6 @@ static press_status columns_of(press_model* model, const press_inputs* inputs, c
   casadi_real rate[1], acceleration[1];
   const casadi_real* arg[5];
   casadi_real* res[1];
-  press_status closed = PRESS_OK;
   if (model->seal != SEAL) return PRESS_NOT_PREPARED;
   moment[0] = 0;
   moment[1] = inputs->O;
@@ -339,7 +338,6 @@ static press_status columns_of(press_model* model, const press_inputs* inputs, c
   instant(arg, res);
   if (y[0] < -7.1054273576010019e-15) return PRESS_NOT_ASSEMBLED;
   if (!(y[0] > 7.1054273576010019e-15)) return PRESS_DEAD_CENTRE;
-  if (closed != PRESS_OK) return closed;
   if (!all_finite(y, 9)) return PRESS_NOT_FINITE;
   return PRESS_OK;
 }

@@ -16,7 +16,7 @@ $declared  ${p}_status status;
   int k;
   status = ${p}_prepare(&model$null);
   if (status != ${P}_OK) return failed(status);
-  printf("%13s  %13s  %13s\n", "time [s]", "$coordinate [$coordinate_unit]", "$output [$output_unit]");
+  printf("%13s  %13s  %13s%s\n", "time [s]", "$coordinate [$coordinate_unit]", "$output [$output_unit]", $heading);
   for (k = 0; k < 12; ++k) {
     const ${p}_real time = $start + (${p}_real) k*$step;
     status = ${p}_motion(&model, time$rest, &inputs);
