@@ -26,6 +26,8 @@ from ..version import __version__
 from .companions import companions
 from .contract import Contract, contract
 from .data import check_size
+from .fmu import check_tools
+from .fmu import fmu as archive
 from .golden import golden
 from .header import header
 from .program import program
@@ -49,6 +51,7 @@ def export(
     table: float | None = None,
     largest: int | None = None,
     force: bool = False,
+    fmu: bool = False,
 ) -> Contract:
     """Write a scene as C into the folder ``out``: header, source, self-test, example, build files, README.
 
@@ -67,15 +70,19 @@ def export(
     force
         Write into a folder that holds other files, too, or files of an earlier export that were changed since. Files that are not
         an export's are never touched.
+    fmu
+        Write ``<prefix>.fmu``, too: a unit of FMI 2.0. Needs FMPy and a C compiler.
 
     Returns what it takes and gives. Raises :class:`PathError` where the folder is taken, :class:`SizeError` for a table that is too
-    large, and what :func:`.evaluate` raises.
+    large, :class:`CompilerError` for an FMU without a compiler, and what :func:`.evaluate` raises.
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"export: expected a Scene, got {scene!r}")
     folder = Path(out)
     rung = Rung("auto", precision, newton, table)
     check_writable(folder, folder=True)
+    if fmu:
+        check_tools()
     values = scene.mechanism.values(parameters)
     p = np.array(list(values.values()))
     graph = derive(scene, wanted, iterate=newton is not None)
@@ -88,13 +95,19 @@ def export(
     check_size(emitted, LARGEST[precision] if largest is None else largest)
     guess = graph.newton.guess if graph.newton is not None and read is None else ()
     source = Source(agreed, emitted, _hash(graph, values), guess)
-    files = {f"{agreed.prefix}.h": header(source), f"{agreed.prefix}.c": source.code}
-    files |= companions(source, golden(graph, agreed, solution, exact.errors, p))
-    _check_free(folder, files, force=force)
-    files[MANIFEST] = _manifest(agreed, source.scene, files)
+    texts = {f"{agreed.prefix}.h": header(source), f"{agreed.prefix}.c": source.code}
+    texts |= companions(source, golden(graph, agreed, solution, exact.errors, p))
+    files = {file: text.encode() for file, text in texts.items()}
+    unit = f"{agreed.prefix}.fmu"
+    stale = _check_free(folder, [*files, *([unit] if fmu else [])], force=force)
+    if fmu:
+        files[unit] = archive(source, p)
+    files[MANIFEST] = _manifest(agreed, source.scene, files).encode()
     with filling(folder) as draft:
-        for file, text in files.items():
-            (draft / file).write_text(text)
+        for file, content in files.items():
+            (draft / file).write_bytes(content)
+    for path in stale:
+        path.unlink()
     return agreed
 
 
@@ -104,7 +117,7 @@ def _hash(graph: SceneGraph, values: Mapping[str, float]) -> str:
     return hashlib.sha256("\0".join([declared, json.dumps(values)]).encode()).hexdigest()[:32]
 
 
-def _manifest(agreed: Contract, scene: str, files: Mapping[str, str]) -> str:
+def _manifest(agreed: Contract, scene: str, files: Mapping[str, bytes]) -> str:
     """What the folder holds, for programs: names, units and places of all members, and a digest of each file."""
 
     def rows(members: Sequence[Any]) -> list[dict[str, str]]:
@@ -122,15 +135,17 @@ def _manifest(agreed: Contract, scene: str, files: Mapping[str, str]) -> str:
         "inputs": rows(agreed.inputs),
         "outputs": rows(agreed.outputs),
         "links": [link.name for link in agreed.links],
-        "files": {file: hashlib.sha256(text.encode()).hexdigest() for file, text in sorted(files.items())},
+        "files": {file: hashlib.sha256(content).hexdigest() for file, content in sorted(files.items())},
     }
     return json.dumps(content, indent=1) + "\n"
 
 
-def _check_free(folder: Path, files: Mapping[str, str], *, force: bool) -> None:
-    """Raise :class:`PathError` unless the folder may be written into."""
+def _check_free(folder: Path, files: Sequence[str], *, force: bool) -> list[Path]:
+    """The files of an earlier export, unchanged, that are none of this one. Raises :class:`PathError` unless the folder may be
+    written into.
+    """
     if not folder.exists():
-        return
+        return []
     known = _known(folder / MANIFEST)
     present = {path.name: path for path in folder.iterdir() if path.name != MANIFEST or not known}
     same = {name for name, path in present.items() if name in known and path.is_file() and _digest(path) == known[name]}
@@ -150,6 +165,7 @@ def _check_free(folder: Path, files: Mapping[str, str], *, force: bool) -> None:
         raise PathError(
             f"cannot export into {folder}: it {what}; choose another folder, or give --force, which touches no other file"
         )
+    return [present[name] for name in sorted(same - set(files))]
 
 
 def _known(manifest: Path) -> dict[str, str]:
