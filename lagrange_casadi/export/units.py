@@ -25,7 +25,7 @@ def base_unit(text: str) -> BaseUnit | None:
     factor, exponents = 1.0, [0] * len(BASE)
     for sign, part in ((1, top), *((-1, part) for part in bottom)):
         for word in _factors(part):
-            found = re.fullmatch(r"([^\d^*\s-]+)\^?(-?\d)?|1", word)
+            found = re.fullmatch(r"([^\d^*\s-]+)(?:\^?(-?\d))?|1", word)
             known = _named(found[1] or "1") if found else None
             if found is None or known is None:
                 return None

@@ -90,7 +90,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
 
 fmi2Status fmi2Terminate(fmi2Component c) {
   Unit* unit = (Unit*) c;
-  if (out_of_order(unit, RUNNING, "fmi2Terminate")) return fmi2Error;
+  if (out_of_order(unit, INITIALIZING | RUNNING, "fmi2Terminate")) return fmi2Error;
   unit->state.mode = TERMINATED;
   return fmi2OK;
 }
@@ -224,7 +224,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean last, fmi2Bo
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
   Unit* unit = (Unit*) c;
-  if (out_of_order(unit, RUNNING, "fmi2SetTime")) return fmi2Error;
+  if (out_of_order(unit, INSTANTIATED | INITIALIZING | RUNNING, "fmi2SetTime")) return fmi2Error;
   set_time(&unit->state, time);
   return fmi2OK;
 }
