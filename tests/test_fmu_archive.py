@@ -34,6 +34,7 @@ def archives(tmp_path_factory):
     for name, scene in scenes.items():
         export(scene, folder / name, name=name, fmu=True)
     export(scenes["windy"], folder / "single", name="single", fmu=True, precision="single")
+    export(scenes["slider_crank"], folder / "table", name="table", fmu=True, table=1e-6)
     return {path.stem: path for path in folder.glob("*/*.fmu")}
 
 
@@ -69,7 +70,7 @@ def test_another_scene_is_another_unit(archives, tmp_path):
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
-@pytest.mark.parametrize("name", ["slider_crank", "robot", "windy", "single"])
+@pytest.mark.parametrize("name", ["slider_crank", "robot", "windy", "single", "table"])
 def test_the_sources_compile_elsewhere(archives, name, compiler, tmp_path):
     if shutil.which(compiler) is None:
         pytest.skip(f"{compiler} is not installed")

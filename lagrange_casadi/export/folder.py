@@ -69,7 +69,7 @@ def export(
         Bytes that a table may take; default: 16 MB, in single precision 64 kB.
     force
         Write into a folder that holds other files, too, or files of an earlier export that were changed since. Files that are not
-        an export's are never touched.
+        an export's are never touched; those of an earlier one that this one has not are removed, unless they were changed.
     fmu
         Write ``<prefix>.fmu``, too: a unit of FMI 2.0. Needs FMPy and a C compiler.
 
