@@ -69,8 +69,8 @@ def simulated(path, solution, kind="ModelExchange", ahead=0, start=None, **tuned
         start_values=start or {},
         record_events=False,
     )
-    # Older versions may end twice.
-    return found[np.append(np.diff(found["time"]) > step / 2, True)]
+    # Older versions may take a step too many.
+    return found[: solution.t.size]
 
 
 class Instance:

@@ -106,8 +106,8 @@ def export(
     with filling(folder) as draft:
         for file, content in files.items():
             (draft / file).write_bytes(content)
-    for path in stale:
-        path.unlink()
+        for path in stale:
+            path.unlink()
     return agreed
 
 
