@@ -209,7 +209,7 @@ def test_export_to_a_full_disk_is_one_line(here, capfd, monkeypatch):
     def full(*_arguments, **_options):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_text", full)
+    monkeypatch.setattr(Path, "write_bytes", full)
     assert main(["export", str(CASE), "--out", "c"]) == 1
     assert capfd.readouterr().err == "error: cannot write c: No space left on device\n"
     assert os.listdir(here) == []

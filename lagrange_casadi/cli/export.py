@@ -22,6 +22,7 @@ from .options import arithmetic, parameters, setting
 @click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
 @arithmetic
 @click.option("--largest", type=click.IntRange(0), metavar="BYTES", help="Of a table; default: 16 MB, in single precision 64 kB.")
+@click.option("--fmu", is_flag=True, help="Also DIR/CASE.fmu, a unit of FMI 2.0 for simulation tools; needs FMPy and a C compiler.")
 @click.option("--force", is_flag=True, help="Also into a folder that holds other files; these are not touched.")
 def export(
     case: Path,
@@ -32,6 +33,7 @@ def export(
     newton: int | None,
     table: float | None,
     largest: int | None,
+    fmu: bool,
     force: bool,
 ) -> None:
     """Write CASE as C for other programs: a library, a self-test and an example, in a folder that stands alone."""
@@ -47,9 +49,12 @@ def export(
         table=table,
         largest=largest,
         force=force,
+        fmu=fmu,
     )
     for name, called in made.mapped.items():
         click.echo(f"{name} is called {called} in C")
     p = made.prefix
     click.echo(f"wrote {out}: {p}.h, {p}.c and what goes with them; {len(made.inputs)} inputs, {len(made.outputs)} outputs")
+    if fmu:
+        click.echo(f"wrote {out / f'{p}.fmu'}: FMI 2.0, for Model Exchange and Co-Simulation")
     click.echo(f"try it: cd {out} && cmake -B build && cmake --build build && ctest --test-dir build")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,8 @@ from ..version import __version__
 from .companions import companions
 from .contract import Contract, contract
 from .data import check_size
+from .fmu import check_tools
+from .fmu import fmu as archive
 from .golden import golden
 from .header import header
 from .program import program
@@ -53,6 +55,7 @@ def export(
     table: float | None = None,
     largest: int | None = None,
     force: bool = False,
+    fmu: bool = False,
 ) -> Contract:
     """Write a scene as C into the folder ``out``: header, source, self-test, example, build files, README.
 
@@ -70,16 +73,20 @@ def export(
         Bytes that a table may take; default: 16 MB, in single precision 64 kB.
     force
         Write into a folder that holds other files, too, or files of an earlier export that were changed since. Files that are not
-        an export's are never touched.
+        an export's are never touched; those of an earlier one that this one has not are removed, unless they were changed.
+    fmu
+        Write ``<prefix>.fmu``, too: a unit of FMI 2.0. Needs FMPy and a C compiler.
 
     Returns what it takes and gives. Raises :class:`PathError` where the folder is taken, :class:`SizeError` for a table that is too
-    large, and what :func:`.evaluate` raises.
+    large, :class:`CompilerError` for an FMU without a compiler, and what :func:`.evaluate` raises.
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"export: expected a Scene, got {scene!r}")
     folder = Path(out)
     rung = Rung("auto", precision, newton, table)
     check_writable(folder, folder=True)
+    if fmu:
+        check_tools()
     values = scene.mechanism.values(parameters)
     p = np.array(list(values.values()))
     graph = derive(scene, wanted, iterate=newton is not None)
@@ -94,13 +101,17 @@ def export(
     check_size(emitted, LARGEST[precision] if largest is None else largest)
     guess = graph.newton.guess if graph.newton is not None and read is None else ()
     source = Source(agreed, emitted, _hash(graph, values), guess)
-    files = {f"{agreed.prefix}.h": header(source), f"{agreed.prefix}.c": source.code}
-    files |= companions(source, golden(graph, agreed, solution, exact, p))
-    known = _check_free(folder, files, force=force)
-    files[MANIFEST] = _manifest(source, files)
+    texts = {f"{agreed.prefix}.h": header(source), f"{agreed.prefix}.c": source.code}
+    texts |= companions(source, golden(graph, agreed, solution, exact, p))
+    files = {file: text.encode() for file, text in texts.items()}
+    unit = f"{agreed.prefix}.fmu"
+    known = _check_free(folder, [*files, *([unit] if fmu else [])], force=force)
+    if fmu:
+        files[unit] = archive(source, p)
+    files[MANIFEST] = _manifest(source, files).encode()
     with filling(folder) as draft:
-        for file, text in files.items():
-            (draft / file).write_text(text)
+        for file, content in files.items():
+            (draft / file).write_bytes(content)
     for stale in known - files.keys():
         (folder / stale).unlink()
     return agreed
@@ -112,7 +123,7 @@ def _hash(graph: SceneGraph, values: Mapping[str, float]) -> str:
     return hashlib.sha256("\0".join([declared, json.dumps(values)]).encode()).hexdigest()[:32]
 
 
-def _manifest(source: Source, files: Mapping[str, str]) -> str:
+def _manifest(source: Source, files: Mapping[str, bytes]) -> str:
     """What the folder holds, for programs: names, units and places of all members, and a digest of each file."""
     agreed = source.contract
 
@@ -132,12 +143,12 @@ def _manifest(source: Source, files: Mapping[str, str]) -> str:
         "outputs": rows(agreed.outputs),
         "links": [{"name": link.name, "constant": link.constant} for link in agreed.links],
         "model": [{"name": name, "type": kind, "count": count} for name, kind, count in source.model],
-        "files": {file: hashlib.sha256(text.encode()).hexdigest() for file, text in sorted(files.items())},
+        "files": {file: hashlib.sha256(content).hexdigest() for file, content in sorted(files.items())},
     }
     return json.dumps(content, indent=1) + "\n"
 
 
-def _check_free(folder: Path, files: Mapping[str, str], *, force: bool) -> set[str]:
+def _check_free(folder: Path, files: Collection[str], *, force: bool) -> set[str]:
     """The files of an earlier export there, as it left them. Raises :class:`PathError` unless the folder may be written into."""
     if not folder.exists():
         return set()

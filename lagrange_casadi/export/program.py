@@ -81,6 +81,8 @@ def program(
         "sound": _sound(graph, symbols),
     }
     if fixed:
+        # They were checked when they were fixed.
+        del functions["sound"]
         with unsimplified():
             functions = {name: _fixed(function, p) for name, function in functions.items()}
     functions["instant"] = instant
@@ -97,7 +99,8 @@ def program(
         "evaluated": len(kept),
         "rows": max(1, len(columns)),
         "matter": functions["matter"].size1_out(0),
-        "sound": functions["sound"].size1_out(0),
+        "sound": 0 if fixed else functions["sound"].size1_out(0),
+        "lengths": 0 if fixed else len(_lengths(graph)),
     }
     samples = tuple(_samples(graph, joint, p) for joint in graph.driven if graph.scene.motion[joint].spline)
     filled, cycle = {name: f for name, f in functions.items() if f.size1_out(0)}, None if read is None else read[1]
@@ -121,13 +124,17 @@ def _matter(graph: SceneGraph, symbols: Any) -> Any:
     return ca.Function("matter", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *found))])
 
 
+def _lengths(graph: SceneGraph) -> list[Any]:
+    """The lengths of links that parameters change: they must be positive."""
+    links = (body for body in graph.scene.mechanism.moving if isinstance(body, Link))
+    return [link.length for link in links if _changes(link.length)]
+
+
 def _sound(graph: SceneGraph, symbols: Any) -> Any:
-    """``sound(p)``: what must not be negative for the parts to be possible, as far as parameters change it."""
+    """``sound(p)``: the lengths, and what else parameters change and must not be negative for the parts to be possible."""
     mechanism = graph.scene.mechanism
     found: list[Any] = []
     for body in mechanism.moving:
-        if isinstance(body, Link):
-            found.append(body.length)
         if isinstance(body.mass, Density):
             density = body.mass
             ends = zip(density.breaks, density.breaks[1:], density.cells, strict=False)
@@ -138,8 +145,12 @@ def _sound(graph: SceneGraph, symbols: Any) -> Any:
     for point in [*points, *(point for load in mechanism.loads.values() for point in load.points)]:
         if isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None:
             found += [point.x, point.body.length - point.x]
-    changing = [value for value in found if isinstance(value, ca.SX) and not value.is_constant()]
-    return ca.Function("sound", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *changing))], {"cse": True})
+    checked = [*_lengths(graph), *(value for value in found if _changes(value))]
+    return ca.Function("sound", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *checked))], {"cse": True})
+
+
+def _changes(value: Any) -> bool:
+    return isinstance(value, ca.SX) and not value.is_constant()
 
 
 def _samples(graph: SceneGraph, joint: str, p: Array) -> Samples:

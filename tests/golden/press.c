@@ -99,10 +99,10 @@ static void sound(const casadi_real** arg, casadi_real** res) {
   casadi_real a0;
   a0=arg[0][0];
   res[0][0]=a0;
-  a0=arg[0][2];
-  res[0][1]=a0;
-  res[0][2]=a0;
   a0=arg[0][1];
+  res[0][1]=a0;
+  a0=arg[0][2];
+  res[0][2]=a0;
   res[0][3]=a0;
   a0=arg[0][3];
   res[0][4]=a0;
@@ -271,7 +271,10 @@ press_status press_prepare(press_model* model, const press_parameters* parameter
   arg[0] = model->parameters;
   res[0] = sound_of;
   sound(arg, res);
-  for (k = 0; k < 7; ++k) {
+  for (k = 0; k < 2; ++k) {
+    if (!(sound_of[k] > 0)) return PRESS_BAD_PARAMETER;
+  }
+  for (k = 2; k < 7; ++k) {
     if (!(sound_of[k] >= 0)) return PRESS_BAD_PARAMETER;
   }
   res[0] = model->constants;

@@ -1,0 +1,316 @@
+/* ---- For Model Exchange and Co-Simulation ---- */
+
+const char* fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
+
+const char* fmi2GetVersion(void) { return fmi2Version; }
+
+fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t many, const fmi2String categories[]) {
+  Unit* unit = (Unit*) c;
+  size_t i;
+  if (many == 0) unit->discards = on;
+  for (i = 0; i < many; ++i) {
+    if (!strcmp(categories[i], "logStatusDiscard")) {
+      unit->discards = on;
+    } else if (strcmp(categories[i], "logStatusError") != 0) {
+      return tell(unit, fmi2Error, "no such category to log: ", categories[i]);
+    }
+  }
+  return fmi2OK;
+}
+
+fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
+                              const fmi2CallbackFunctions* functions, fmi2Boolean visible, fmi2Boolean logging) {
+  Unit* unit;
+  Unit made;
+  size_t length;
+  (void) type;
+  (void) resources;
+  (void) visible;
+  (void) logging; /* what fails is told in any case */
+  if (!functions || !functions->allocateMemory || !functions->freeMemory || !name) return NULL;
+  reset(&made.state);
+  made.logger = functions->logger;
+  made.allocate = functions->allocateMemory;
+  made.release = functions->freeMemory;
+  made.environment = functions->componentEnvironment;
+  made.discards = 1;
+  length = strlen(name) + 1;
+  made.name = (char*) made.allocate(length, 1);
+  if (!made.name) return NULL;
+  memcpy(made.name, name, length);
+  if (!guid || strcmp(guid, GUID) != 0) {
+    tell(&made, fmi2Error, "the GUID is not that of this unit: ", guid ? guid : "none");
+    made.release(made.name);
+    return NULL;
+  }
+  unit = (Unit*) made.allocate(1, sizeof *unit);
+  if (!unit) {
+    made.release(made.name);
+    return NULL;
+  }
+  *unit = made;
+  return unit;
+}
+
+void fmi2FreeInstance(fmi2Component c) {
+  Unit* unit = (Unit*) c;
+  if (!unit) return;
+  unit->release(unit->name);
+  unit->release(unit);
+}
+
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start_time,
+                               fmi2Boolean stop_defined, fmi2Real stop) {
+  Unit* unit = (Unit*) c;
+  (void) tolerance_defined;
+  (void) tolerance;
+  (void) stop_defined;
+  (void) stop;
+  if (out_of_order(unit, INSTANTIATED, "fmi2SetupExperiment")) return fmi2Error;
+  set_time(&unit->state, start_time);
+  unit->state.reached = start_time;
+  return fmi2OK;
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
+  Unit* unit = (Unit*) c;
+  if (out_of_order(unit, INSTANTIATED, "fmi2EnterInitializationMode")) return fmi2Error;
+  unit->state.mode = INITIALIZING;
+  return fmi2OK;
+}
+
+/* From here on loops and angles go on; the first instant begins anew. */
+fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
+  Unit* unit = (Unit*) c;
+  if (out_of_order(unit, INITIALIZING, "fmi2ExitInitializationMode")) return fmi2Error;
+  unit->state.mode = RUNNING;
+  unit->state.begun = unit->state.current = 0;
+  return prepare(unit);
+}
+
+fmi2Status fmi2Terminate(fmi2Component c) {
+  Unit* unit = (Unit*) c;
+  if (out_of_order(unit, INITIALIZING | RUNNING, "fmi2Terminate")) return fmi2Error;
+  unit->state.mode = TERMINATED;
+  return fmi2OK;
+}
+
+fmi2Status fmi2Reset(fmi2Component c) {
+  reset(&((Unit*) c)->state);
+  return fmi2OK;
+}
+
+fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[]) {
+  Unit* unit = (Unit*) c;
+  fmi2Status status = fmi2OK;
+  size_t i;
+  for (i = 0; i < nvr; ++i) {
+    if (vr[i] < VALUES) {
+      value[i] = unit->state.values[vr[i]];
+    } else if (vr[i] < VALUES + OUTPUTS) {
+      const fmi2Status found = update(unit);
+      value[i] = found == fmi2OK ? unit->state.outputs[vr[i] - VALUES] : (double) NAN;
+      if (found != fmi2OK) status = found;
+    } else if (TIMED && vr[i] == VALUES + OUTPUTS) {
+      value[i] = unit->state.time;
+    } else {
+      return tell(unit, fmi2Error, "fmi2GetReal: no such variable", "");
+    }
+  }
+  return status;
+}
+
+fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Real value[]) {
+  Unit* unit = (Unit*) c;
+  State* state = &unit->state;
+  size_t i;
+  if (out_of_order(unit, INSTANTIATED | INITIALIZING | RUNNING, "fmi2SetReal")) return fmi2Error;
+  for (i = 0; i < nvr; ++i) {
+    if (vr[i] >= VALUES) return tell(unit, fmi2Error, "fmi2SetReal: no such input or parameter", "");
+    if (state->values[vr[i]] == value[i]) continue;
+$check    state->values[vr[i]] = value[i];
+    state->current = 0;
+  }
+  return fmi2OK;
+}
+
+#define NONE_OF(Type)                                                                                                        \
+  fmi2Status fmi2Get##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2##Type value[]) {                 \
+    (void) vr;                                                                                                               \
+    (void) value;                                                                                                            \
+    return nvr == 0 ? fmi2OK : unsupported(c, "fmi2Get" #Type);                                                              \
+  }                                                                                                                          \
+  fmi2Status fmi2Set##Type(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2##Type value[]) {           \
+    (void) vr;                                                                                                               \
+    (void) value;                                                                                                            \
+    return nvr == 0 ? fmi2OK : unsupported(c, "fmi2Set" #Type);                                                              \
+  }
+
+NONE_OF(Integer)
+NONE_OF(Boolean)
+NONE_OF(String)
+
+fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* kept) {
+  Unit* unit = (Unit*) c;
+  if (!*kept) *kept = unit->allocate(1, sizeof(State));
+  if (!*kept) return tell(unit, fmi2Error, "fmi2GetFMUstate: no memory", "");
+  memcpy(*kept, &unit->state, sizeof(State));
+  return fmi2OK;
+}
+
+fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate kept) {
+  Unit* unit = (Unit*) c;
+  if (!kept) return tell(unit, fmi2Error, "fmi2SetFMUstate: there is no state", "");
+  memcpy(&unit->state, kept, sizeof(State));
+  return fmi2OK;
+}
+
+fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* kept) {
+  if (*kept) ((Unit*) c)->release(*kept);
+  *kept = NULL;
+  return fmi2OK;
+}
+
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate kept, size_t* size) {
+  (void) kept;
+  (void) size;
+  return unsupported(c, "fmi2SerializedFMUstateSize");
+}
+
+fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate kept, fmi2Byte bytes[], size_t size) {
+  (void) kept;
+  (void) bytes;
+  (void) size;
+  return unsupported(c, "fmi2SerializeFMUstate");
+}
+
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* kept) {
+  (void) bytes;
+  (void) size;
+  (void) kept;
+  return unsupported(c, "fmi2DeSerializeFMUstate");
+}
+
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t unknowns,
+                                        const fmi2ValueReference known[], size_t knowns, const fmi2Real change[],
+                                        fmi2Real derivative[]) {
+  (void) unknown;
+  (void) unknowns;
+  (void) known;
+  (void) knowns;
+  (void) change;
+  (void) derivative;
+  return unsupported(c, "fmi2GetDirectionalDerivative");
+}
+
+/* ---- For Model Exchange: there are no states and no events ---- */
+
+fmi2Status fmi2EnterEventMode(fmi2Component c) { return out_of_order((Unit*) c, RUNNING, "fmi2EnterEventMode") ? fmi2Error : fmi2OK; }
+
+fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
+  memset(info, 0, sizeof *info);
+  return out_of_order((Unit*) c, RUNNING, "fmi2NewDiscreteStates") ? fmi2Error : fmi2OK;
+}
+
+fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
+  return out_of_order((Unit*) c, RUNNING, "fmi2EnterContinuousTimeMode") ? fmi2Error : fmi2OK;
+}
+
+fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean last, fmi2Boolean* event, fmi2Boolean* terminate) {
+  (void) last;
+  *event = *terminate = fmi2False;
+  return out_of_order((Unit*) c, RUNNING, "fmi2CompletedIntegratorStep") ? fmi2Error : fmi2OK;
+}
+
+fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
+  Unit* unit = (Unit*) c;
+  if (out_of_order(unit, INSTANTIATED | INITIALIZING | RUNNING, "fmi2SetTime")) return fmi2Error;
+  set_time(&unit->state, time);
+  return fmi2OK;
+}
+
+fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t nx) {
+  (void) x;
+  return nx == 0 ? fmi2OK : unsupported(c, "fmi2SetContinuousStates");
+}
+
+#define NO_NUMBERS(Function)                                                                                                 \
+  fmi2Status Function(fmi2Component c, fmi2Real x[], size_t many) {                                                          \
+    (void) x;                                                                                                                \
+    return many == 0 ? fmi2OK : unsupported(c, "a state or event");                                                          \
+  }
+
+NO_NUMBERS(fmi2GetDerivatives)
+NO_NUMBERS(fmi2GetEventIndicators)
+NO_NUMBERS(fmi2GetContinuousStates)
+NO_NUMBERS(fmi2GetNominalsOfContinuousStates)
+
+/* ---- For Co-Simulation: inputs are held during a step ---- */
+
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[],
+                                       const fmi2Real value[]) {
+  (void) vr;
+  (void) order;
+  (void) value;
+  return nvr == 0 ? fmi2OK : unsupported(c, "fmi2SetRealInputDerivatives");
+}
+
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer order[],
+                                        fmi2Real value[]) {
+  (void) vr;
+  (void) order;
+  (void) value;
+  return nvr == 0 ? fmi2OK : unsupported(c, "fmi2GetRealOutputDerivatives");
+}
+
+fmi2Status fmi2DoStep(fmi2Component c, fmi2Real now, fmi2Real step, fmi2Boolean no_return) {
+  Unit* unit = (Unit*) c;
+  fmi2Status status;
+  (void) no_return;
+  if (out_of_order(unit, RUNNING, "fmi2DoStep")) return fmi2Error;
+  set_time(&unit->state, now + step);
+  status = update(unit);
+  if (status == fmi2OK) {
+    unit->state.reached = unit->state.time;
+  } else {
+    set_time(&unit->state, now);
+  }
+  return status;
+}
+
+fmi2Status fmi2CancelStep(fmi2Component c) { return unsupported(c, "fmi2CancelStep"); }
+
+/* Nothing is ever pending. */
+fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status* value) {
+  (void) c;
+  (void) kind;
+  (void) value;
+  return fmi2Discard;
+}
+
+fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real* value) {
+  if (kind != fmi2LastSuccessfulTime) return fmi2Discard;
+  *value = ((Unit*) c)->state.reached;
+  return fmi2OK;
+}
+
+fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer* value) {
+  (void) c;
+  (void) kind;
+  (void) value;
+  return fmi2Discard;
+}
+
+fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean* value) {
+  (void) c;
+  if (kind != fmi2Terminated) return fmi2Discard;
+  *value = fmi2False;
+  return fmi2OK;
+}
+
+fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String* value) {
+  (void) c;
+  (void) kind;
+  (void) value;
+  return fmi2Discard;
+}

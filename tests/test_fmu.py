@@ -1,0 +1,311 @@
+"""The exported FMU, imported by FMPy: the numbers of the API, told in the words of the results file, and loud where it fails."""
+
+import math
+
+import numpy as np
+import pytest
+from builders import slider_crank as free
+from conftest import CASES
+from importer import Instance, refusing, robot, signals, simulated, windy
+
+from lagrange_casadi import evaluate, load_case
+from lagrange_casadi.codegen import find_compiler
+from lagrange_casadi.export import export
+
+fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
+fmi2 = pytest.importorskip("fmpy.fmi2")
+pytestmark = pytest.mark.skipif(find_compiler() is None, reason="there is no C compiler to build an FMU with")
+
+WITHIN = 1e-12
+
+
+SCENES = {
+    "slider_crank": lambda: load_case(CASES / "slider_crank").scene,
+    "rrr3": lambda: load_case(CASES / "rrr3").scene,
+    "robot": robot,
+    "arm": lambda: load_case(CASES / "arm").scene,
+    "windy": windy,
+    "free": free,
+}
+
+
+@pytest.fixture(scope="session")
+def unit(tmp_path_factory):
+    """The FMU of a scene, by its name and how it is exported; made once."""
+    made = {}
+
+    def make(name, **how):
+        key = (name, *sorted(how.items()))
+        if key not in made:
+            folder = tmp_path_factory.mktemp(name) / "out"
+            scene = SCENES[name]()
+            made[key] = scene, folder / f"{export(scene, folder, name=name, fmu=True, **how).prefix}.fmu"
+        return made[key]
+
+    return make
+
+
+def outputs(path):
+    return [v.name for v in fmpy.read_model_description(str(path)).modelVariables if v.causality == "output"]
+
+
+def assert_alike(found, solution, names, rows=slice(None), within=WITHIN):
+    assert names
+    for name in names:
+        expected = solution.series[name.replace("/", ":")]
+        assert found[name].shape == expected.shape
+        gap = np.abs(found[name] - expected)[rows].max()
+        assert gap <= within * np.abs(expected).max(), f"{name}: {gap:.3g} of {np.abs(expected).max():.3g}"
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_nothing_is_wrong_with_it(unit, name):
+    from fmpy.validation import validate_fmu
+
+    assert validate_fmu(str(unit(name)[1])) == []
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_model_exchange_gives_the_numbers_of_the_api(unit, name):
+    scene, path = unit(name)
+    solution = evaluate(scene)
+    assert_alike(simulated(path, solution), solution, outputs(path))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_co_simulation_gives_the_numbers_of_the_api(unit, name):
+    """What FMPy reads after a step is of the inputs that it set before: they are given one step early."""
+    scene, path = unit(name)
+    solution = evaluate(scene)
+    assert_alike(simulated(path, solution, "CoSimulation", ahead=1), solution, outputs(path), slice(1, None))
+
+
+CHANGES = {"slider_crank": {"r": 0.08, "m3": 0.4}, "robot": {"shin": 0.29, "mass": 2.0}, "windy": {"gust": 9.0}}
+
+
+@pytest.mark.parametrize("kind", ["ModelExchange", "CoSimulation"])
+@pytest.mark.parametrize("name", CHANGES)
+def test_parameters_change_between_runs(unit, name, kind):
+    scene, path = unit(name)
+    solution = evaluate(scene, parameters=CHANGES[name])
+    late = kind == "CoSimulation"
+    found = simulated(path, solution, kind, ahead=int(late), start=CHANGES[name])
+    assert_alike(found, solution, outputs(path), slice(int(late), None))
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_parameters_change_during_a_run(unit, name):
+    """Loops and angles go on from where they are."""
+    scene, path = unit(name)
+    before, after = evaluate(scene), evaluate(scene, parameters=CHANGES[name])
+    late = np.arange(before.t.size) >= before.t.size // 2
+    defaults = {key: p["value"] for key, p in before.description["parameters"].items()}
+    tuned = {key: np.where(late, value, defaults[key]) for key, value in CHANGES[name].items()}
+    found = simulated(path, before, **tuned)
+    for solution, rows in ((before, ~late), (after, late)):
+        assert_alike(found, solution, outputs(path), rows)
+    assert np.abs(after.series["effort:" + drive(scene)] - before.series["effort:" + drive(scene)]).max() > 0
+
+
+def drive(scene):
+    return next(iter(scene.motion))
+
+
+@pytest.mark.parametrize(("name", "how", "within"), [("robot", {"newton": 4}, 1e-12), ("slider_crank", {"table": 1e-9}, 1e-7)])
+def test_the_other_rungs(unit, name, how, within):
+    scene, path = unit(name, **how)
+    solution = evaluate(scene)
+    assert_alike(simulated(path, solution), solution, outputs(path), within=within)
+
+
+def test_single_precision_keeps_phases(unit):
+    """After 10^5 turns a single holds an angle to 0.06 rad: the rest comes from the importer's double."""
+    scene, path = unit("slider_crank", precision="single")
+    solution = evaluate(scene)
+    turned = signals(solution)
+    turned["motion/O"] += math.tau * 1e5
+    step = float(solution.t[1] - solution.t[0])
+    found = fmpy.simulate_fmu(str(path), fmi_type="ModelExchange", stop_time=0.08, output_interval=step, input=turned)
+    for name in ("effort/O", "reaction/guide/fy", "motion/guide"):
+        expected = solution.series[name.replace("/", ":")]
+        assert np.abs(found[name] - expected).max() < 2e-5 * np.abs(expected).max(), name
+
+
+@pytest.fixture
+def instances(tmp_path):
+    made = []
+
+    def make(path, kind="ModelExchange"):
+        made.append(Instance(path, tmp_path / f"unit{len(made)}", kind))
+        return made[-1]
+
+    yield make
+    for instance in made:
+        instance.fmu.freeInstance()
+
+
+def test_a_bad_parameter_is_an_error_that_names_it(unit, instances):
+    it = instances(unit("slider_crank")[1]).begin()
+    (effort,) = it.get("effort/O")
+    for value in (-0.1, math.nan, math.inf):
+        refusing(fmi2.fmi2Error, it.set, r=value)
+        status, category, message = it.log.pop()
+        assert (status, category) == (fmi2.fmi2Error, "logStatusError")
+        assert message.startswith(f"r = {value:.9g}: a parameter is not finite, or out of its range")
+    assert it.get("effort/O", "r") == [effort, 0.1]
+    assert not it.log
+
+
+def test_parameters_that_make_a_part_impossible_are_an_error(unit, instances):
+    """They have no limits of their own there."""
+    it = instances(unit("free")[1]).begin()
+    (effort,) = it.get("effort/O")
+    it.set(m2=-0.1)
+    for _ in range(2):
+        refusing(fmi2.fmi2Error, it.get, "effort/O")
+    assert [message for _, _, message in it.log] == [
+        "t = 0 s: a parameter is not finite, or out of its range, or leaves a link without length or with a negative mass"
+    ]
+    it.set(m2=0.1)
+    assert it.get("effort/O") == [effort]
+    it.fmu.reset()
+    refusing(fmi2.fmi2Error, it.begin, m2=-0.1)
+
+
+def test_an_instant_without_a_result_is_discarded_and_says_why(unit, instances):
+    it = instances(unit("slider_crank")[1]).begin(l=0.05)
+    (effort,) = it.get("effort/O")
+    it.set(motion__O=1.5)
+    for _ in range(2):
+        refusing(fmi2.fmi2Discard, it.get, "effort/O")
+    assert it.log == [(fmi2.fmi2Discard, "logStatusDiscard", "t = 0 s: a loop cannot be closed: its links do not reach")]
+    it.set(motion__O=math.nan)
+    refusing(fmi2.fmi2Discard, it.get, "effort/O")
+    assert it.log.pop()[2] == "t = 0 s: an input is not finite"
+    it.set(motion__O=0.0)
+    assert it.get("effort/O") == [effort]
+
+
+def test_discards_may_be_left_unlogged(unit, instances):
+    it = instances(unit("slider_crank")[1]).begin(l=0.05, motion__O=1.5)
+    it.fmu.setDebugLogging(False, ["logStatusDiscard"])
+    refusing(fmi2.fmi2Discard, it.get, "effort/O")
+    assert not it.log
+    refusing(fmi2.fmi2Error, it.set, l=-1.0)
+    assert len(it.log) == 1
+    refusing(fmi2.fmi2Error, it.fmu.setDebugLogging, True, ["logEvents"])
+
+
+def test_a_lost_loop_leaves_the_others_where_they_were(unit, instances):
+    it = instances(unit("robot")[1]).begin()
+    before = it.get("motion/knee0", "effort/drive0")
+    (start,) = it.get("motion/drive0")
+    it.set(motion__drive0=start + 3.0)
+    refusing(fmi2.fmi2Discard, it.get, "motion/knee0")
+    it.set(motion__drive0=start)
+    np.testing.assert_allclose(it.get("motion/knee0", "effort/drive0"), before, rtol=1e-12)
+
+
+def test_instances_know_nothing_of_each_other(unit, instances):
+    scene, path = unit("robot")
+    solution = evaluate(scene)
+    one, other = instances(path), instances(path, "CoSimulation")
+    one.begin()
+    other.begin(mass=3.0)
+    heavy = evaluate(scene, parameters={"mass": 3.0})
+    for i in (0, 20, 40, 60):
+        for it, expected in ((one, solution), (other, heavy)):
+            it.set(**motion_at(solution, i))
+            for name in ("motion/foot1", "effort/drive0"):
+                values = expected.series[name.replace("/", ":")]
+                assert it.get(name) == pytest.approx([values[i]], abs=WITHIN * np.abs(values).max())
+
+
+def motion_at(solution, i):
+    """The motion of drives at an instant."""
+    drives = [name for name in solution.series if name.startswith(("motion:O", "motion:drive"))]
+    return {name.replace(":", "__"): float(solution.series[name][i]) for name in drives}
+
+
+def test_a_state_is_kept_and_taken_back(unit, instances):
+    """Whole turns and loops included."""
+    it = instances(unit("slider_crank")[1]).begin()
+    for angle in np.arange(0.0, 20.0, 0.5):
+        it.set(motion__O=float(angle))
+        kept_values = it.get("motion/A", "effort/O", "r")
+    assert kept_values[0] < -math.tau
+    state = it.fmu.getFMUstate()
+    for angle in np.arange(20.0, 0.0, -0.5):
+        it.set(motion__O=float(angle), r=0.09)
+        it.get("motion/A")
+    it.fmu.setFMUstate(state)
+    assert it.get("motion/A", "effort/O", "r") == kept_values
+    it.fmu.freeFMUstate(state)
+    it.fmu.reset()
+    it.begin()
+    assert it.get("motion/A", "r") == [0.0, 0.1]
+
+
+def test_every_initialization_begins_anew(unit, instances):
+    """What is asked for while inputs are being set leaves no turns behind."""
+    it = instances(unit("slider_crank")[1])
+    it.fmu.setupExperiment()
+    it.fmu.enterInitializationMode()
+    for angle in np.arange(0.0, 9.0, 0.5):
+        it.set(motion__O=float(angle))
+        assert abs(it.get("motion/A")[0]) <= math.pi
+    it.fmu.exitInitializationMode()
+    assert abs(it.get("motion/A")[0]) <= math.pi
+
+
+def test_inputs_that_are_set_after_a_step_count_at_once(unit, instances):
+    scene, path = unit("windy")
+    solution = evaluate(scene)
+    it = instances(path, "CoSimulation").begin(0.3)
+    peak = np.abs(solution.series["effort:O"]).max()
+    for i in range(1, 20):
+        it.fmu.doStep(float(solution.t[i - 1]), float(solution.t[i] - solution.t[i - 1]))
+        table = signals(solution)
+        it.set(
+            **{name.replace("/", "__"): float(table[name][i]) for name in ("motion/O", "motion/O_rate", "motion/O_acceleration")}
+        )
+        assert it.get("effort/O", "time") == pytest.approx([solution.series["effort:O"][i], solution.t[i]], abs=WITHIN * peak)
+    assert it.fmu.getRealStatus(fmi2.fmi2LastSuccessfulTime) == pytest.approx(solution.t[19], abs=1e-15)
+
+
+def test_a_step_without_a_result_is_discarded_and_the_time_stays(unit, instances):
+    it = instances(unit("windy")[1], "CoSimulation").begin(0.3)
+    it.fmu.doStep(0.3, 0.1)
+    it.set(motion__O=math.inf)
+    refusing(fmi2.fmi2Discard, it.fmu.doStep, 0.4, 0.1)
+    assert it.log.pop()[2] == "t = 0.5 s: an input is not finite"
+    assert it.get("time") == [0.4]
+    assert it.fmu.getRealStatus(fmi2.fmi2LastSuccessfulTime) == 0.4
+    assert not it.fmu.getBooleanStatus(fmi2.fmi2Terminated)
+
+
+def test_calls_out_of_order_and_what_is_not_there_are_errors(unit, instances):
+    it = instances(unit("slider_crank")[1])
+    refusing(fmi2.fmi2Error, it.fmu.newDiscreteStates)
+    refusing(fmi2.fmi2Error, it.fmu.exitInitializationMode)
+    it.begin()
+    refusing(fmi2.fmi2Error, it.fmu.enterInitializationMode)
+    assert [message for _, _, message in it.log] == [
+        "fmi2NewDiscreteStates is called out of order",
+        "fmi2ExitInitializationMode is called out of order",
+        "fmi2EnterInitializationMode is called out of order",
+    ]
+    refusing(fmi2.fmi2Error, it.fmu.getReal, [len(it.of)])
+    refusing(fmi2.fmi2Error, it.fmu.setReal, [it.of["effort/O"]], [1.0])
+    refusing(fmi2.fmi2Error, it.fmu.getInteger, [0])
+    refusing(fmi2.fmi2Error, it.fmu.setString, [0], [""])
+    it.fmu.terminate()
+    refusing(fmi2.fmi2Error, it.set, motion__O=0.1)
+
+
+def test_a_unit_of_another_description_is_not_made(unit, tmp_path):
+    path = unit("slider_crank")[1]
+    fmpy.extract(str(path), str(tmp_path))
+    fmu = fmi2.FMU2Model(guid="{other}", unzipDirectory=str(tmp_path), modelIdentifier="slider_crank", instanceName="it")
+    with pytest.raises(Exception, match="instantiate"):
+        fmu.instantiate()
