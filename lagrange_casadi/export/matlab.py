@@ -9,8 +9,8 @@ from .program import literal
 from .source import Source
 from .text import template
 
-_RESTS = """ Numbers are
-   doubles here: what single precision would round off a coordinate or a time is kept, without a member of its own."""
+_RESTS = """
+   Numbers are doubles here: what single precision would round off a coordinate or a time is kept, without a member of its own."""
 
 _WORDS = frozenset(["catch", "classdef", "elseif", "end", "function", "global", "otherwise", "parfor", "persistent", "spmd", "try"])
 """Words of MATLAB and Octave that are none of C."""
