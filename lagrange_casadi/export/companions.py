@@ -6,6 +6,7 @@ import numpy as np
 
 from .contract import Contract, Member
 from .golden import RATIOS, Golden
+from .matlab import matlab
 from .program import literal
 from .source import Source
 from .text import template
@@ -52,7 +53,7 @@ def companions(source: Source, vectors: Golden) -> dict[str, str]:
             links=", ".join(f"`{k.constant}`" for k in c.links) or "none",
             mapped=_mapped(c),
         ),
-    }
+    } | matlab(source, drive, effort)
 
 
 def _example_section(c: Contract) -> str:

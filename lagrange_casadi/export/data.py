@@ -95,6 +95,8 @@ def table_text(program: Program) -> str:
     )
     for word, value in (("BLOCK", "1"), ("PACK", "1"), ("TILE", "32"), ("WEIGHTS", "6"), ("FACTORS", "4")):
         text = re.sub(rf"\b{word}\b", value, text)
+    # A number becomes a long by one instruction of a small machine, a long long by a library's arithmetic of doubles.
+    text = text.replace("long long", "long")
     text = re.sub(r"\breal\b", "casadi_real", text).replace("lagrange_casadi_interpolate", "interpolate")
     if program.precision == "single":
         text = text.replace("floor(", "floorf(")

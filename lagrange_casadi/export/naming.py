@@ -19,8 +19,8 @@ _KEYWORDS = frozenset(
 )
 _FILES = frozenset(
     """
-    all clean edit_cache example fmu help install list_install_components make mex package package_source rebuild_cache selftest
-    test
+    all build clean edit_cache example fmu help install list_install_components make mex package package_source rebuild_cache
+    selftest test
     assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdarg stdbool stddef stdint stdio
     stdlib string tgmath time wchar wctype algorithm array cmath cstdio vector
     """.split()  # noqa: SIM905

@@ -1,0 +1,87 @@
+"""No call takes more stack than the header says, whatever compiles it."""
+
+import re
+import shutil
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from stack_usage import deepest
+
+from lagrange_casadi.case import load_case
+from lagrange_casadi.export import export, stack
+
+CASES = sorted(path.parent.name for path in (Path(__file__).parents[1] / "cases").glob("*/case.py"))
+FLAGS = ("-std=c99", "-ffp-contract=off", "-fno-math-errno")
+CORTEX = ("-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16")
+COMPILERS = {
+    "gcc -O0": ("gcc", "-O0"),
+    "gcc -O2": ("gcc", "-O2"),
+    "clang -O2": ("clang", "-O2"),
+    "arm -O2": ("arm-none-eabi-gcc", *CORTEX, "-O2"),
+    "arm -Os": ("arm-none-eabi-gcc", *CORTEX, "-Os"),
+}
+RUNGS = {
+    "double": {},
+    "single": {"precision": "single"},
+    "newton": {"newton": 2},
+    "table": {"table": 1e-6, "precision": "single", "wanted": ["effort"]},
+}
+
+
+def stated(header):
+    return int(re.search(r"^#define \w+_STACK (\d+)$", header.read_text(), re.MULTILINE)[1])
+
+
+def exported(name, rung, folder):
+    loaded = load_case(Path(__file__).parents[1] / "cases" / name)
+    agreed = export(loaded.scene, folder, name=loaded.name, **RUNGS[rung])
+    return folder / f"{agreed.prefix}.c"
+
+
+# A bound is nearest where functions are inlined in one another, and iterated loops are one more.
+PAIRS = [(rung, name) for rung in ("double", "single", "table") for name in COMPILERS]
+PAIRS += [("newton", name) for name in COMPILERS if name.endswith("-O2")]
+
+
+@pytest.mark.parametrize(("rung", "compiler"), PAIRS)
+def test_the_stack_that_the_header_states_is_never_exceeded(rung, compiler, tmp_path):
+    command = (*COMPILERS[compiler], *FLAGS)
+    if shutil.which(command[0]) is None:
+        pytest.skip(f"there is no {command[0]}")
+    names = {"table": ("slider_crank", "six_bar")}.get(rung, CASES)
+    sources = [exported(name, rung, tmp_path / name) for name in names]
+    with ThreadPoolExecutor() as pool:
+        for source, used in zip(sources, pool.map(lambda source: deepest(command, source, tmp_path), sources), strict=True):
+            assert 64 < used <= stated(source.with_suffix(".h")), source.name
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no gcc")
+def test_the_statement_is_of_use(tmp_path):
+    """A bound of megabytes would never be exceeded, either."""
+    source = exported("slider_crank", "double", tmp_path / "slider_crank")
+    assert stated(source.with_suffix(".h")) < 2 * deepest(("gcc", "-O0", *FLAGS), source, tmp_path) < 16_384
+
+
+SOURCE = """
+static double inner(const double* x, int n) {
+  double row[4][3], sum = 0;
+  return sum + row[0][0] + x[n];
+}
+static double aside(double x) { return x; }
+double outer(const double* x) {
+  double y[10], z;
+  z = inner(x, 3) + aside(x[0]);
+  return z + y[0];
+}
+"""
+
+
+def test_the_bound_is_the_deepest_path():
+    frame = stack.deepest("double leaf(double x) {\n  return x;\n}\n")
+    assert stack.deepest(SOURCE) == 2 * frame + 8 * (11 + 13)
+
+
+def test_recursion_has_no_bound():
+    with pytest.raises(ValueError, match="inner calls itself"):
+        stack.deepest(SOURCE.replace("x[n]", "outer(x)"))
