@@ -313,7 +313,7 @@ def test_what_an_earlier_export_alone_had_goes(tmp_path):
     export(slider_crank(), tmp_path, name="press")
     (tmp_path / "build").mkdir()
     export(slider_crank(), tmp_path, name="pump")
-    assert {path.stem for path in tmp_path.glob("*.[ch]")} == {"pump", "example", "selftest"}
+    assert {path.stem for path in tmp_path.glob("*.[ch]")} == {"pump", "pump_mex", "example", "selftest"}
     assert (tmp_path / "build").is_dir()
 
 
