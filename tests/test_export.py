@@ -12,7 +12,7 @@ from builders import slider_crank
 from test_codegen import spline_arm
 from test_mobility import truss_platform
 
-from lagrange_casadi import Mechanism, Scene, export, motion
+from lagrange_casadi import Mechanism, Scene, export, load_case, motion
 from lagrange_casadi.errors import DeclarationError, PathError, SizeError, UnknownNameError
 
 ARITHMETIC = [
@@ -23,6 +23,7 @@ ARITHMETIC = [
     {"table": 64, "precision": "single"},
 ]
 SCENES = {"slider_crank": slider_crank, "spline_arm": spline_arm, "truss_platform": truss_platform}
+CASES = sorted(path.parent for path in (Path(__file__).parents[1] / "cases").glob("*/case.py"))
 
 
 def keywords():
@@ -34,9 +35,10 @@ def keywords():
     return Scene(m, {"class": motion.polynomial(0, 2)}, t=(0, 1, 11))
 
 
-def cc(command, folder, *sources, output="program", more=()):
+def cc(command, folder, *sources, output="program"):
     files = [folder / source for source in sources]
-    return subprocess.run([*command, *files, "-o", folder / output, *more, "-lm"], capture_output=True, text=True, check=False)
+    linked = [] if "-c" in command else ["-lm"]
+    return subprocess.run([*command, *files, "-o", folder / output, *linked], capture_output=True, text=True, check=False)
 
 
 def compilers():
@@ -60,15 +62,23 @@ def present(command):
     ("name", "options"), [(n, o) for n in SCENES for o in ARITHMETIC if n == "slider_crank" or "table" not in o], ids=str
 )
 def test_the_source_is_clean(name, options, tmp_path):
-    made = export(SCENES[name](), tmp_path, **options)
-    for label, command in compilers():
+    clean(SCENES[name](), tmp_path, options, compilers())
+
+
+@pytest.mark.parametrize("options", ARITHMETIC[:2], ids=str)
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_the_source_of_every_case_is_clean(case, options, tmp_path):
+    clean(load_case(case).scene, tmp_path, options, compilers()[:2])
+
+
+def clean(scene, folder, options, commands):
+    made = export(scene, folder, **options)
+    for label, command in commands:
         if not present(command[0]):
             continue
         programs = [f"{made.prefix}.c"] if "++" in label else [f"{made.prefix}.c", "selftest.c", "example.c"]
         for source in programs:
-            result = subprocess.run(
-                [*command, "-O2", "-c", tmp_path / source, "-o", tmp_path / "x.o"], capture_output=True, text=True, check=False
-            )
+            result = cc([*command, "-O2", "-c"], folder, source, output="x.o")
             assert result.returncode == 0, f"{label} {source}: {result.stderr}"
 
 

@@ -239,13 +239,13 @@ class Source:
         names = ["time", *(f"motion:{drive}" for drive in c.drives)]
         names += [f"{name}_rest" for name in names] if c.rests else []
         for k, name in enumerate(names):
-            given = name.startswith("motion:") or c.timed
-            yield f"moment[{k}] = {f'inputs->{c.input_of(name)}' if given else '0'};"
+            known = name.startswith("motion:") or c.timed
+            yield f"moment[{k}] = {f'inputs->{c.input_of(name)}' if known else '0'};"
         for k, drive in enumerate(c.drives):
             yield f"rate[{k}] = inputs->{c.input_of(f'motion:{drive}_rate')};"
             yield f"acceleration[{k}] = inputs->{c.input_of(f'motion:{drive}_acceleration')};"
-        for vector, size in (("moment", sizes["moment"]), ("rate", drives), ("acceleration", drives)):
-            yield f"if (!all_finite({vector}, {size})) return {P}_BAD_INPUT;"
+        given = " + ".join(f"inputs->{m.name}" for m in c.inputs)
+        yield f"if (!is_finite({given})) return {P}_BAD_INPUT;"
         yield "arg[0] = moment;"
         yield f"arg[1] = {self._p};"
         if sizes["counted"]:

@@ -221,14 +221,15 @@ static int is_finite(casadi_real x) {
 /* One value that is not finite makes their sum so; four sums, for each addition waits for the one before. */
 static int all_finite(const casadi_real* x, int many) {
   casadi_real a = 0, b = 0, c = 0, d = 0;
+  const int most = many - many%4;
   int k;
-  for (k = 0; k + 4 <= many; k += 4) {
+  for (k = 0; k < most; k += 4) {
     a = a + x[k];
     b = b + x[k + 1];
     c = c + x[k + 2];
     d = d + x[k + 3];
   }
-  for (; k < many; ++k) a = a + x[k];
+  for (k = most; k < many; ++k) a = a + x[k];
   return is_finite((a + b) + (c + d));
 }
 
@@ -325,9 +326,7 @@ static press_status columns_of(press_model* model, const press_inputs* inputs, c
   moment[1] = inputs->O;
   rate[0] = inputs->O_rate;
   acceleration[0] = inputs->O_acceleration;
-  if (!all_finite(moment, 2)) return PRESS_BAD_INPUT;
-  if (!all_finite(rate, 1)) return PRESS_BAD_INPUT;
-  if (!all_finite(acceleration, 1)) return PRESS_BAD_INPUT;
+  if (!is_finite(inputs->O + inputs->O_rate + inputs->O_acceleration)) return PRESS_BAD_INPUT;
   arg[0] = moment;
   arg[1] = model->parameters;
   res[0] = counted;

@@ -28,14 +28,15 @@ static int is_finite(casadi_real x) {
 /* One value that is not finite makes their sum so; four sums, for each addition waits for the one before. */
 static int all_finite(const casadi_real* x, int many) {
   casadi_real a = 0, b = 0, c = 0, d = 0;
+  const int most = many - many%4;
   int k;
-  for (k = 0; k + 4 <= many; k += 4) {
+  for (k = 0; k < most; k += 4) {
     a = a + x[k];
     b = b + x[k + 1];
     c = c + x[k + 2];
     d = d + x[k + 3];
   }
-  for (; k < many; ++k) a = a + x[k];
+  for (k = most; k < many; ++k) a = a + x[k];
   return is_finite((a + b) + (c + d));
 }
 $helpers
