@@ -36,8 +36,12 @@ class Case:
 def load_case(path: str | os.PathLike[str]) -> Case:
     """Load a case's folder or Python file. Raises :class:`CaseError`; an error of a declaration passes as it is."""
     given = Path(path)
-    file = given / "case.py" if given.is_dir() else given
-    if not file.is_file():
+    try:
+        file = given / "case.py" if given.is_dir() else given
+        there = file.is_file()
+    except OSError as error:
+        raise CaseError(f"case {given}: {error.strerror}") from None
+    if not there:
         expected = "a folder with a case.py, or a Python file"
         raise CaseError(f"case {given}: {'has no case.py' if given.is_dir() else 'no such file'}; expected {expected}")
     if file.suffix != ".py":

@@ -17,12 +17,17 @@ from .errors import PathError, StoreError
 
 def check_writable(target: Path, *, folder: bool = False) -> None:
     """Raise :class:`PathError` where no file (or folder) can be put at ``target``: said before anything is computed."""
-    if not folder and target.is_dir():
+    try:
+        taken, whole = target.exists() or target.is_symlink(), target.is_dir()
+    except OSError as error:
+        raise PathError(f"cannot write {target}: {error.strerror}") from None
+    if not folder and whole:
         raise PathError(f"cannot write {target}: it is a folder")
-    if folder and target.exists() and not target.is_dir():
+    if folder and taken and not whole:
         raise PathError(f"cannot write {target}: it is a file, not a folder")
     if not target.parent.is_dir():
-        raise PathError(f"cannot write {target}: folder {target.parent} does not exist")
+        lacking = "is a file" if target.parent.exists() else "does not exist"
+        raise PathError(f"cannot write {target}: folder {target.parent} {lacking}")
     for place in (target.parent, *([target] if target.is_dir() else [])):
         if not os.access(place, os.W_OK):
             raise PathError(f"cannot write {target}: folder {place} is not writable")
@@ -104,7 +109,9 @@ class PatientFile(io.FileIO):
 def filling(folder: Path) -> Iterator[Path]:
     """A temporary folder to fill, whose files move into ``folder`` on success and are removed on any failure."""
     check_writable(folder, folder=True)
-    with _failing(folder), _beside(folder) as work:
+    # What is mounted there takes no file from beside it by a new name.
+    within = folder / folder.name if os.path.ismount(folder) else folder
+    with _failing(folder), _beside(within) as work:
         yield work
         folder.mkdir(exist_ok=True)
         for draft in sorted(work.iterdir()):

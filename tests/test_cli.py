@@ -175,6 +175,9 @@ def scene():
         (["export", "CASE", "--out", "c", "--table", "64", "--newton", "2"], 2, "newton and table exclude each other"),
         (["export", "CASE", "--out", "c", "--table", "4096", "--precision", "single"], 1, "and the limit is 64000"),
         (["export", "CASE", "--out", "nowhere/c"], 2, "folder nowhere does not exist"),
+        (["export", "CASE", "--out", "raises.py/c"], 2, "folder raises.py is a file"),
+        (["export", "CASE", "--out", "a" * 300], 2, "File name too long"),
+        (["run", "a" * 300], 2, "File name too long"),
     ],
 )
 def test_a_mistake_is_one_line_and_leaves_nothing(here, capfd, arguments, status, says):
@@ -198,7 +201,7 @@ def test_export_says_what_it_wrote_and_how_to_try_it(here, capfd):
     out, err = capfd.readouterr()
     assert err == ""
     assert out.splitlines() == [
-        "mechanism float is called float_mechanism in C",
+        "name float is called float_mechanism in C",
         "parameter int is called int_ in C",
         "wrote c: float_mechanism.h, float_mechanism.c and what goes with them; 4 inputs, 1 outputs",
         "try it: cd c && cmake -B build && cmake --build build && ctest --test-dir build",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from .options import arithmetic, parameters, setting
 @click.command()
 @click.argument("case", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), required=True, metavar="DIR", help="The folder to write.")
+@click.option("--name", metavar="NAME", help="What it is called in C; default: the case's name.")
 @click.option(
     "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another default; repeatable."
 )
@@ -27,6 +29,7 @@ from .options import arithmetic, parameters, setting
 def export(
     case: Path,
     out: Path,
+    name: str | None,
     settings: Sequence[tuple[str, float]],
     want: Sequence[str],
     precision: Precision,
@@ -41,7 +44,7 @@ def export(
     made = write(
         loaded.scene,
         out,
-        name=loaded.name,
+        name=name or loaded.name,
         parameters=parameters(settings),
         wanted=want or None,
         precision=precision,
@@ -51,10 +54,10 @@ def export(
         force=force,
         fmu=fmu,
     )
-    for name, called in made.mapped.items():
-        click.echo(f"{name} is called {called} in C")
+    for own, called in made.mapped.items():
+        click.echo(f"{own} is called {called} in C")
     p = made.prefix
     click.echo(f"wrote {out}: {p}.h, {p}.c and what goes with them; {len(made.inputs)} inputs, {len(made.outputs)} outputs")
     if fmu:
         click.echo(f"wrote {out / f'{p}.fmu'}: FMI 2.0, for Model Exchange and Co-Simulation")
-    click.echo(f"try it: cd {out} && cmake -B build && cmake --build build && ctest --test-dir build")
+    click.echo(f"try it: cd {shlex.quote(str(out))} && cmake -B build && cmake --build build && ctest --test-dir build")

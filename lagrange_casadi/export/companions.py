@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from .contract import Contract, Member
+from .contract import REST, Contract, Member
 from .golden import RATIOS, Golden
 from .matlab import matlab
 from .program import literal
 from .source import Source
 from .text import template
 
+_ROWS = 12
+"""That the example prints."""
 
-def companions(source: Source, vectors: Golden) -> dict[str, str]:
+
+def companions(source: Source) -> dict[str, str]:
     """The other files of the folder, by name."""
     c = source.contract
     words = source.words
@@ -22,7 +25,8 @@ def companions(source: Source, vectors: Golden) -> dict[str, str]:
     rest = f", {literal(c.precision)(0.0)}" if c.rests else ""
     null = ", 0" if c.settings else ""
     mid = _example_section(c) if link else ""
-    start, stop = source.program.graph.scene.t[:2]
+    start, stop, count = source.program.graph.scene.t
+    steps = max(1, round((count - 1) / _ROWS)) if source.iterated else 1
     number = literal(c.precision)
     return {
         "CMakeLists.txt": template("CMakeLists.txt", **words),
@@ -33,7 +37,9 @@ def companions(source: Source, vectors: Golden) -> dict[str, str]:
             null=null,
             rest=rest,
             start=number(start),
-            step=number((stop - start) / 12),
+            step=number((stop - start) / (_ROWS * steps)),
+            skip=f"    if (k%{steps} != 0) continue; /* the loops are followed in small steps */\n" if steps > 1 else "",
+            count=_ROWS * steps,
             coordinate=drive.name,
             coordinate_unit=drive.unit,
             output=effort.name,
@@ -42,11 +48,11 @@ def companions(source: Source, vectors: Golden) -> dict[str, str]:
             section=mid,
             heading=f'"   {link.name}, bending at 0.5 [N m]' + '"' if link else '""',
         ),
-        "selftest.c": _selftest(source, vectors, words),
+        "selftest.c": _selftest(source, words),
         "README.md": template(
             "README.md",
             **words,
-            precision=c.precision,
+            story=source.story,
             inputs=_table(c.inputs),
             outputs=_table(c.outputs),
             parameters=_settings(c),
@@ -84,8 +90,9 @@ def _mapped(c: Contract) -> str:
     return f"\nSome names cannot stand in C as they are:\n\n| in the scene | here |\n| --- | --- |\n{rows}\n"
 
 
-def _selftest(source: Source, g: Golden, words: dict[str, str]) -> str:
-    c, number = source.contract, literal(source.contract.precision)
+def _selftest(source: Source, words: dict[str, str]) -> str:
+    g, c = source.golden, source.contract
+    number = literal(c.precision)
     coordinates = {m.source: k for k, m in enumerate(c.inputs)}
     times = [(t, _rest(t) if c.rests else 0.0) for t in g.times]
     links = "\n".join(_link_check(c, k) for k in range(len(c.links)))
@@ -111,7 +118,7 @@ def _selftest(source: Source, g: Golden, words: dict[str, str]) -> str:
         outputs_off=", ".join(wide(float(x)) for x in g.outputs_off),
         forces=_forces(rows(forces), g, wide) if forces is not None else "",
         given="\n".join(f"  inputs->{m.name} = ({c.prefix}_real) row[{k}];" for k, m in enumerate(c.inputs)),
-        taken_inputs="\n".join(_taken(c, m, coordinates) for m in c.inputs if not m.source.endswith("_rest")),
+        taken_inputs="\n".join(_taken(c, m, coordinates) for m in c.inputs if not m.rest_of),
         taken_outputs="\n".join(
             f'  compare("{m.name}", row[{k}], (double) outputs->{m.name}, outputs_off[{k}], {int(m.wrapped)});'
             for k, m in enumerate(c.outputs)
@@ -134,7 +141,7 @@ def _rest(t: float) -> float:
 
 def _taken(c: Contract, m: Member, coordinates: dict[str, int]) -> str:
     k = coordinates[m.source]
-    rest = coordinates.get(f"{m.source}_rest")
+    rest = coordinates.get(f"{REST}{m.source}")
     value, given = f"(double) inputs.{m.name}", f"inputs_at[k][{k}]"
     if rest is not None:
         value, given = f"{value} + (double) inputs.{c.inputs[rest].name}", f"{given} + inputs_at[k][{rest}]"

@@ -18,8 +18,11 @@ from .naming import members, prefix
 
 LAW = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
 STATION = ("station", "n", "f", "m")
+REST = "rest:"
+"""What the full name of a rest begins with."""
+
 _DIGITS = 3
-_FAINT = 1e-9
+FAINT = 1e-9
 """Of a kind's largest value: what is smaller is written as zero, for its digits are rounding."""
 
 
@@ -37,6 +40,11 @@ class Member:
     sign: str = ""
     range: str = ""
     wrapped: bool = False
+
+    @property
+    def rest_of(self) -> str:
+        """The full name of what this is the rest of, empty where it is none."""
+        return self.source.removeprefix(REST) if self.source.startswith(REST) else ""
 
     @property
     def comment(self) -> str:
@@ -98,12 +106,19 @@ class Contract:
         return "float" if self.precision == "single" else "double"
 
     @property
+    def units(self) -> set[str]:
+        """The units of the outputs."""
+        return {m.unit for m in self.outputs}
+
+    @property
     def mapped(self) -> dict[str, str]:
         """Names that C writes otherwise: a parameter's or a joint's own name, and what it is called."""
-        found = {"mechanism " + self.name: self.prefix} if self.name != self.prefix else {}
+        found = {f"name {self.name}": self.prefix} if self.name != self.prefix else {}
         for kind, struct in (("parameter", self.settings), ("input", self.inputs), ("output", self.outputs)):
-            own = {_short(m.source, kind): m.name for m in struct}
-            found |= {f"{kind} {name}": called for name, called in own.items() if called != re.sub(r"\W", "_", name)}
+            for m in struct:
+                own = _short(m.source, kind)
+                if m.name != re.sub(r"\W", "_", own):
+                    found[f"{kind} {own}, a rest" if m.rest_of else f"{kind} {own}"] = m.name
         return found
 
     def input_of(self, name: str) -> str:
@@ -113,7 +128,9 @@ class Contract:
 
 def _short(source: str, kind: str = "") -> str:
     """A full name without what C leaves out: of inputs, that they are motions; of a section's law, the word."""
-    return source.removeprefix("motion:") if kind == "input" else source.replace(":law:", ":")
+    if kind != "input":
+        return source.replace(":law:", ":")
+    return f"{_short(source.removeprefix(REST), kind)}_rest" if source.startswith(REST) else source.removeprefix("motion:")
 
 
 def contract(graph: SceneGraph, name: str, precision: Precision, solution: Solution, *, fixed: bool) -> Contract:
@@ -121,11 +138,11 @@ def contract(graph: SceneGraph, name: str, precision: Precision, solution: Solut
     mechanism, values = graph.scene.mechanism, solution.description["parameters"]
     timed = _timed(graph)
     settings = [] if fixed else [_setting(key, values[key]) for key in mechanism.parameters]
-    names = members(setting.source for setting in settings)
+    names = members({setting.source: setting.source for setting in settings})
     inputs = _inputs(graph, precision, timed)
-    shown = members(_short(key, "input") for key in inputs)
+    shown = members({key: _short(key, "input") for key in inputs})
     columns = [key for key in graph.columns if not key.startswith("_") and key not in inputs]
-    called = members(_short(key) for key in columns)
+    called = members({key: _short(key) for key in columns})
     largest: dict[str, float] = {}
     for key in columns:
         largest[_unit(graph, key)] = max(largest.get(_unit(graph, key), 0.0), float(np.abs(solution.series[key]).max()))
@@ -138,8 +155,8 @@ def contract(graph: SceneGraph, name: str, precision: Precision, solution: Solut
         name,
         precision,
         tuple(Setting(**(vars(s) | {"name": names[s.source]})) for s in settings),
-        tuple(Member(**(vars(m) | {"name": shown[_short(key, "input")]})) for key, m in inputs.items()),
-        tuple(_output(graph, key, called[_short(key)], solution, largest) for key in columns),
+        tuple(Member(**(vars(m) | {"name": shown[key]})) for key, m in inputs.items()),
+        tuple(_output(graph, key, called[key], solution, largest) for key in columns),
         tuple(links),
         graph.driven,
         timed,
@@ -194,14 +211,14 @@ def _inputs(graph: SceneGraph, precision: Precision, timed: bool) -> dict[str, M
     if timed:
         add("time", "s", "time, which loads of this mechanism depend on")
         if rests:
-            add("time_rest", "s", rest.format("the time"))
+            add(f"{REST}time", "s", rest.format("the time"))
     for joint in graph.driven:
         for key in (f"motion:{joint}", f"motion:{joint}_rate", f"motion:{joint}_acceleration"):
             quantity, unit = quantity_of(key), _unit(graph, key)
             sign = _sign(graph, key)
             add(key, unit, f"{_where(key, joint)}: {_brief(quantity.long_name)}", sign)
             if rests and not quantity.member:
-                add(f"{key}_rest", unit, rest.format("it"))
+                add(f"{REST}{key}", unit, rest.format("it"))
     return found
 
 
@@ -248,7 +265,7 @@ def _brief(meaning: str) -> str:
 def _range(solution: Solution, key: str, largest: float) -> str:
     """What a quantity's values are over the cycle of the scene, in a few digits; ``largest`` is the largest of its unit."""
     values = solution.series[key]
-    faint = max(_FAINT * largest, 2.0 * solution.errors.get(key, 0.0))
+    faint = max(FAINT * largest, 2.0 * solution.errors.get(key, 0.0))
     low, high = (0.0 if abs(x) <= faint else float(x) for x in (values.min(), values.max()))
     ends = [f"{x:.{_DIGITS}g}" for x in (low, high)]
     return f"{ends[0] if ends[0] == ends[1] else f'from {ends[0]} to {ends[1]}'} over the scene's motion"

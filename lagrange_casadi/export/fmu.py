@@ -14,6 +14,7 @@ from ..codegen import find_compiler
 from ..codegen.compiler import Compiler
 from ..density import Array
 from ..errors import CompilerError, LagrangeCasadiError, StoreError
+from .contract import REST
 from .fmu_description import Description, page
 from .header import header
 from .program import literal
@@ -108,7 +109,7 @@ def _given(description: Description) -> Iterable[str]:
         if m.source in places:
             yield f"inputs->{m.name} = ({c.prefix}_real) {places[m.source]};"
         else:
-            whole = m.source.removesuffix("_rest")
+            whole = m.source.removeprefix(REST)
             yield f"inputs->{m.name} = ({c.prefix}_real) ({places[whole]} - (double) inputs->{c.input_of(whole)});"
 
 

@@ -100,12 +100,13 @@ def export(
     emitted = program(graph, precision, newton, p, read)
     check_size(emitted, LARGEST[precision] if largest is None else largest)
     guess = graph.newton.guess if graph.newton is not None and read is None else ()
-    source = Source(agreed, emitted, _hash(graph, values), guess)
+    vectors = golden(graph, agreed, solution, exact, p)
+    source = Source(agreed, emitted, _hash(graph, values), guess, rung.options, values, vectors)
     texts = {f"{agreed.prefix}.h": header(source), f"{agreed.prefix}.c": source.code}
-    texts |= companions(source, golden(graph, agreed, solution, exact, p))
+    texts |= companions(source)
     files = {file: text.encode() for file, text in texts.items()}
     unit = f"{agreed.prefix}.fmu"
-    known = _check_free(folder, [*files, *([unit] if fmu else [])], force=force)
+    known = _check_free(folder, agreed.prefix, [*files, *([unit] if fmu else [])], force=force)
     if fmu:
         files[unit] = archive(source, p)
     files[MANIFEST] = _manifest(source, files).encode()
@@ -137,6 +138,9 @@ def _manifest(source: Source, files: Mapping[str, bytes]) -> str:
         "mechanism": agreed.name,
         "prefix": agreed.prefix,
         "precision": agreed.precision,
+        "options": source.rung,
+        "error": {"largest": float(f"{source.golden.worst[0]:.0e}"), "output": source.golden.worst[1]},
+        "fixed": dict(source.fixed),
         "scene": source.scene,
         "parameters": [row | {"default": m.default} for row, m in zip(rows(agreed.settings), agreed.settings, strict=True)],
         "inputs": rows(agreed.inputs),
@@ -148,7 +152,7 @@ def _manifest(source: Source, files: Mapping[str, bytes]) -> str:
     return json.dumps(content, indent=1) + "\n"
 
 
-def _check_free(folder: Path, files: Collection[str], *, force: bool) -> set[str]:
+def _check_free(folder: Path, prefix: str, files: Collection[str], *, force: bool) -> set[str]:
     """The files of an earlier export there, as it left them. Raises :class:`PathError` unless the folder may be written into."""
     if not folder.exists():
         return set()
@@ -161,6 +165,7 @@ def _check_free(folder: Path, files: Collection[str], *, force: bool) -> set[str
             raise PathError(f"cannot export into {folder}: '{name}' there is no file of an export; move it, or export elsewhere")
     what = f"holds other files, '{foreign[0]}' among them" if foreign else ""
     what = what or (f"holds an export whose '{changed[0]}' was changed since" if changed else "")
+    what = what or ("holds an export of another name" if known and f"{prefix}.h" not in known else "")
     if what and not force:
         raise PathError(
             f"cannot export into {folder}: it {what}; choose another folder, or give --force, which touches no other file"

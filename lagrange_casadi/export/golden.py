@@ -13,7 +13,7 @@ from ..density import Array
 from ..scene_graph import SceneGraph
 from ..section_law import FORCES
 from ..solution import Solution
-from .contract import Contract, Member
+from .contract import FAINT, REST, Contract, Member
 
 INSTANTS = 9
 RATIOS = (0.0, 0.5, 1.0)
@@ -29,7 +29,8 @@ class Golden:
     """Instants, ``steps`` of the scene's grid apart, and there ``inputs`` (instants, inputs) and ``outputs`` (instants, outputs).
 
     ``forces`` (instants, links, ratios, 3) are axial, shear and bending. What has a tolerance has one a column, ``forces`` one a
-    link and force. ``times`` and, in single precision, ``inputs`` are what two singles hold of a value.
+    link and force. ``times`` and, in single precision, ``inputs`` are what two singles hold of a value. ``worst`` is the largest
+    error expected of an output, of its largest value, and which output that is.
     """
 
     times: Array
@@ -40,12 +41,13 @@ class Golden:
     inputs_off: Array
     outputs_off: Array
     forces_off: Array
+    worst: tuple[float, str]
 
 
 def golden(graph: SceneGraph, contract: Contract, solution: Solution, exact: Solution, p: Array) -> Golden:
-    """The golden vectors of a contract, by a solution in doubles over the scene's grid.
+    """The golden vectors of a contract, over the scene's grid and in doubles: by ``exact``, which saves nothing.
 
-    ``exact`` is the same without what its rung saves: its errors are those of rounding, which another precision magnifies.
+    ``solution`` is what the program's rung makes of it: what that misses is allowed, twice. Rounding is magnified by the precision.
     """
     precision = contract.precision
     scale, least = ALLOWED * ROUNDING[precision] / ROUNDING["double"], ALLOWED * ROUNDING[precision]
@@ -54,19 +56,31 @@ def golden(graph: SceneGraph, contract: Contract, solution: Solution, exact: Sol
     chosen = np.arange(0, count, stride)
     t = solution.t[chosen]
     inputs = np.stack([_input(graph, m.source, t, p, precision) for m in contract.inputs], axis=1)
-    outputs = np.stack([solution.series[m.source][chosen] for m in contract.outputs], axis=1)
-    off = np.array([scale * exact.errors[m.source] + ALLOWED * _saved(m, solution, exact) for m in contract.outputs])
-    off += least * np.abs(outputs).max(axis=0)
+    outputs = np.stack([exact.series[m.source][chosen] for m in contract.outputs], axis=1)
+    rounding = np.array([scale * exact.errors[m.source] for m in contract.outputs])
+    saved = np.array([_saved(m, solution, exact) for m in contract.outputs])
+    off = rounding + 2.0 * saved + least * np.abs(outputs).max(axis=0)
     forces = np.zeros((t.size, len(contract.links), len(RATIOS), 3))
     forces_off = np.zeros((len(contract.links), 3))
     for i, link in enumerate(contract.links):
-        law = solution.section(link.name).law.during(slice(None, None, stride))
+        laws = [solved.section(link.name).law for solved in (exact, solution)]
         for k, force in enumerate(FORCES):
-            forces[:, i, :, k] = law.at(force, np.tile(RATIOS, (t.size, 1)))
-            forces_off[i, k] = scale * exact.errors[f"section:{link.name}:{force}"] + least * np.abs(forces[:, i, :, k]).max()
+            true, found = (law.at(force, np.tile(RATIOS, (exact.t.size, 1))) for law in laws)
+            forces[:, i, :, k] = true[chosen]
+            forces_off[i, k] = scale * exact.errors[f"section:{link.name}:{force}"] + least * np.abs(true).max()
+            forces_off[i, k] += 2.0 * np.abs(found - true).max()
     inputs_off = _MOTION * ROUNDING[precision] * np.abs(inputs).max(axis=0)
     steps = stride if graph.newton is not None else 1
-    return Golden(t, steps, inputs, outputs, forces, inputs_off, off, forces_off)
+    worst = _worst(contract, exact, rounding / ALLOWED + saved)
+    return Golden(t, steps, inputs, outputs, forces, inputs_off, off, forces_off, worst)
+
+
+def _worst(contract: Contract, exact: Solution, errors: Array) -> tuple[float, str]:
+    """The largest of some errors, of an output's largest value, where that is more than rounding of others of its unit."""
+    peaks = [float(np.abs(exact.series[m.source]).max()) for m in contract.outputs]
+    largest = {unit: max(p for p, m in zip(peaks, contract.outputs, strict=True) if m.unit == unit) for unit in contract.units}
+    rows = zip(errors, peaks, contract.outputs, strict=True)
+    return max(((float(e) / p, m.name) for e, p, m in rows if p > FAINT * largest[m.unit]), default=(0.0, ""))
 
 
 def _saved(member: Member, solution: Solution, exact: Solution) -> float:
@@ -78,11 +92,11 @@ def _saved(member: Member, solution: Solution, exact: Solution) -> float:
 
 def _input(graph: SceneGraph, source: str, t: Array, p: Array, precision: Precision) -> Array:
     """The values of an input over instants; of a rest, what rounding its value to single leaves."""
-    name = source.removesuffix("_rest") if source.endswith("_rest") else source
+    name = source.removeprefix(REST)
     order = 1 if name.endswith("_rate") else 2 if name.endswith("_acceleration") else 0
     joint = name.removeprefix("motion:").removesuffix("_rate").removesuffix("_acceleration")
     motion = np.atleast_2d(graph.motion(ca.DM(t).T, ca.DM(p))[order].full())
     values = t if name == "time" else motion[graph.driven.index(joint)]
-    if source.endswith("_rest"):
+    if source.startswith(REST):
         return np.asarray(values - values.astype(np.float32))
     return np.asarray(values.astype(np.float32).astype(float) if precision == "single" else values)

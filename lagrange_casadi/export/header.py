@@ -15,17 +15,16 @@ from .text import member, template, wrapped
 def header(source: Source) -> str:
     """The header, ``<prefix>.h``."""
     c, p, P = source.contract, source.contract.prefix, source.contract.prefix.upper()
-    first = next(m for m in c.inputs if m.source.startswith("motion:"))
-    loops = source.program.sizes["loops"]
     span = source.span
     return template(
         "mechanism.h",
         **source.words,
         space=" " * (2 * len(p) + 9),
         null=", 0" if c.settings else "",
-        first=first.name,
-        f="f" if c.rests else "",
-        conventions=wrapped(f"Conventions: {CONVENTIONS}."),
+        begin=_begin(source),
+        story=wrapped(source.story),
+        conventions=wrapped(f"Conventions: {CONVENTIONS}. {_ZERO} Gravity is ({_gravity(source)}) m/s^2."),
+        law=_LAW if c.links else "",
         mapping=wrapped("Called otherwise here: " + ", ".join(f"{k} is {v}" for k, v in c.mapped.items()) + ".", "\n\n")
         if c.mapped
         else "",
@@ -43,16 +42,51 @@ def header(source: Source) -> str:
         links=_links(c),
         model="\n".join(f"  {line}" for line in _model(source)),
         for_parameters=", for parameters, or 0 for the defaults" if c.settings else "",
-        anew=" Begins anew: iterated loops are where the scene's motion begins." if loops else "",
+        anew=" Begins anew: iterated loops are where the scene's motion begins." if source.iterated else "",
         given=f", const {p}_parameters* parameters" if c.settings else "",
         span=f", from {span[0]:.6g} to {span[1]:.6g} s" if math.isfinite(span[0]) else "",
         pair_note="\n   The time is time + time_rest, for single precision holds few digits of it; time_rest may be 0."
         if c.rests
         else "",
         time_rest=f", {p}_real time_rest" if c.rests else "",
-        follows=" Iterated loops are followed from the instant before, which must be near." if loops else "",
+        follows=_follows(source),
         sections=_section_functions(c),
     )
+
+
+_ZERO = (
+    "A joint's angle is the direction of the child's axis less that of the parent's, which of the ground is x; a slide is how far "
+    "the child's point is from the parent's, along the joint's axis."
+)
+_LAW = """ Those of a section law are for _section, which is all you need.
+   They mean: axial = n0 + n1 mu0 + n2 mu1, shear = f0 + f1 mu0 + f2 mu1, bending = m0 + f0 (l - xi) + f1 (mu1 - xi mu0) + f2 (mu2 -
+   xi mu1) at xi from the base, where mu0 is the mass from there to the tip, mu1 and mu2 its first and second moment about the base;
+   and then what acts on the link at stations, where something joins or loads it between its ends, beyond xi."""
+
+
+def _begin(source: Source) -> str:
+    """What the header's example does before it asks."""
+    c, start = source.contract, source.program.graph.scene.t[0]
+    if source.iterated:
+        return f"status = {c.prefix}_motion(&model, {start:g}{', 0' if c.rests else ''}, &inputs);"
+    drive = next(m for m in c.inputs if m.source.startswith("motion:"))
+    return f"inputs.{drive.name} = 0.3{'f' if c.rests else ''};"
+
+
+def _follows(source: Source) -> str:
+    if not source.iterated:
+        return ""
+    start, stop, count = source.program.graph.scene.t
+    near = f", as instants {(stop - start) / (count - 1):.2g} s apart are in the scene's motion" if count > 1 else ""
+    return (
+        f" Iterated loops are followed from the instant before, which must be near{near};\n"
+        "   where a call fails they stay where they stood. To begin elsewhere than the scene does, go there in small steps."
+    )
+
+
+def _gravity(source: Source) -> str:
+    mechanism = source.program.graph.scene.mechanism
+    return ", ".join(f"{mechanism.number(component, source.values):g}" for component in mechanism.gravity)
 
 
 def _parameters(c: Contract) -> str:

@@ -29,7 +29,7 @@ def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]
             "mex.c",
             **words,
             rests=_RESTS if c.rests else "",
-            inputs=_members(c, "inputs", [m for m in c.inputs if not m.source.endswith("_rest")]),
+            inputs=_members(c, "inputs", [m for m in c.inputs if not m.rest_of]),
             outputs=_members(c, "outputs", c.outputs),
             parameters=_members(c, "parameters", c.settings),
             links=", ".join(f'"{link.name}"' for link in c.links) or "0",
@@ -51,7 +51,7 @@ def _field(member: Member) -> str:
 
 
 def _members(c: Contract, struct: str, members: Iterable[Member]) -> str:
-    rests = {m.source.removesuffix("_rest"): m.name for m in c.inputs if m.source.endswith("_rest")} if struct == "inputs" else {}
+    rests = {m.rest_of: m.name for m in c.inputs if m.rest_of} if struct == "inputs" else {}
 
     def place(name: str) -> str:
         return f"offsetof({c.prefix}_{struct}, {name})"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Mapping
 
 _KEYWORDS = frozenset(
     """
@@ -20,7 +20,7 @@ _KEYWORDS = frozenset(
 _FILES = frozenset(
     """
     all build clean edit_cache example fmu help install list_install_components make mex package package_source rebuild_cache
-    selftest test
+    selftest test c dl m pthread rt
     assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdarg stdbool stddef stdint stdio
     stdlib string tgmath time wchar wctype algorithm array cmath cstdio vector
     """.split()  # noqa: SIM905
@@ -35,16 +35,19 @@ def prefix(name: str) -> str:
     return f"{word}_mechanism" if word.lower() in _FILES or word in _KEYWORDS else word
 
 
-def members(names: Iterable[str]) -> dict[str, str]:
-    """Members of one struct for full names, with underscores for colons; where two would be alike, the later one is numbered."""
+def members(names: Mapping[str, str]) -> dict[str, str]:
+    """Members of one struct for full names and what each is to be called, with underscores for colons.
+
+    Where two would be alike, the later one is numbered.
+    """
     found: dict[str, str] = {}
     taken: set[str] = set()
-    for name in names:
+    for full, name in names.items():
         plain = re.sub(r"\W", "_", name)
         word = f"{plain}_" if plain in _KEYWORDS else plain
         number = 2
         while word in taken:
             word, number = f"{plain}_{number}", number + 1
         taken.add(word)
-        found[name] = word
+        found[full] = word
     return found

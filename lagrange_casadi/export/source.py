@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,8 +12,9 @@ import casadi as ca
 from ..density import Density
 from ..refusal import MISFIT, dead_centre
 from ..version import __version__
-from .contract import LAW, STATION, Contract
+from .contract import LAW, REST, STATION, Contract
 from .data import sampled, table_call, table_text
+from .golden import Golden
 from .program import Format, Program, literal
 from .statuses import STATUSES
 from .text import indented, template
@@ -21,12 +22,19 @@ from .text import indented, template
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """What header and source are written from; ``scene`` is the hash of the scene."""
+    """What header and source are written from.
+
+    ``scene`` is the hash of the scene, ``guess`` where iterated loops begin, ``rung`` the options by which it is evaluated,
+    ``values`` are the parameters, of which a table leaves none open, and ``golden`` what it must compute.
+    """
 
     contract: Contract
     program: Program
     scene: str
     guess: Sequence[float]
+    rung: str
+    values: Mapping[str, float]
+    golden: Golden
 
     @cached_property
     def code(self) -> str:
@@ -69,6 +77,26 @@ class Source:
         }
 
     @property
+    def fixed(self) -> Mapping[str, float]:
+        """The parameters that are no longer open."""
+        return {} if self.contract.settings else self.values
+
+    @property
+    def story(self) -> str:
+        """How it is evaluated, how exactly, and for which fixed numbers."""
+        error, output = self.golden.worst
+        told = f"Exported by: {self.rung}. "
+        told += f"Its outputs are off by about {error:.0e} of their largest values over the scene's motion at most ({output})."
+        if self.fixed:
+            told += " Fixed here: " + ", ".join(f"{name} = {value:.6g}" for name, value in self.fixed.items()) + "."
+        return told
+
+    @property
+    def iterated(self) -> bool:
+        """Whether it follows loops from one instant to the next."""
+        return bool(self.program.sizes["loops"]) and self.program.cycle is None
+
+    @property
     def model(self) -> list[tuple[str, str, int]]:
         """The members of a model: name, type, where ``real`` is that of the precision, and how many of it."""
         sizes = self.program.sizes
@@ -101,7 +129,7 @@ class Source:
                 "\n/* An angle without its whole turns, in (-pi, pi]. */\nstatic casadi_real direction(casadi_real angle) {\n"
                 f"  return angle - {turn}*{self._function('ceil')}(angle/{turn} - {number(0.5)});\n}}\n"
             )
-        if self.program.sizes["loops"] and self.program.cycle is None:
+        if self.iterated:
             rule = {key: number(value) for key, value in self.program.rule.items()}
             newton = self.program.graph.newton
             assert newton is not None
@@ -209,7 +237,7 @@ class Source:
         if c.timed:
             yield f"inputs->{c.input_of('time')} = time;"
             if rests:
-                yield f"inputs->{c.input_of('time_rest')} = time_rest;"
+                yield f"inputs->{c.input_of(f'{REST}time')} = time_rest;"
         for drive, place in zip(c.drives, self.program.order, strict=True):
             terms = (
                 [f"d[{place}]", f"d[{smooth + place}]", f"rate[{place}]", f"acceleration[{place}]"]
@@ -218,28 +246,27 @@ class Source:
             )
             yield f"inputs->{c.input_of(f'motion:{drive}')} = {terms[0]};"
             if rests:
-                yield f"inputs->{c.input_of(f'motion:{drive}_rest')} = {terms[1]};"
+                yield f"inputs->{c.input_of(f'{REST}motion:{drive}')} = {terms[1]};"
             yield f"inputs->{c.input_of(f'motion:{drive}_rate')} = {terms[2]};"
             yield f"inputs->{c.input_of(f'motion:{drive}_acceleration')} = {terms[3]};"
         yield f"return {P}_OK;"
 
     def _instant(self) -> Iterable[str]:
         c, P, sizes = self.contract, self._upper, self.program.sizes
-        drives, nz = sizes["drives"], sizes["loops"]
+        drives = sizes["drives"]
         yield f"casadi_real moment[{sizes['moment']}], counted[{max(1, sizes['counted'])}];"
         yield f"casadi_real rate[{drives}], acceleration[{drives}];"
         if self.program.cycle is not None:
             yield f"casadi_real drive[{sizes['evaluated']}];"
         yield "const casadi_real* arg[5];"
         yield "casadi_real* res[1];"
-        iterated = bool(nz) and self.program.cycle is None
-        if iterated:
+        if self.iterated:
             yield f"{c.prefix}_status closed;"
         yield f"if (model->seal != SEAL) return {P}_NOT_PREPARED;"
         names = ["time", *(f"motion:{drive}" for drive in c.drives)]
-        names += [f"{name}_rest" for name in names] if c.rests else []
+        names += [f"{REST}{name}" for name in names] if c.rests else []
         for k, name in enumerate(names):
-            known = name.startswith("motion:") or c.timed
+            known = "motion:" in name or c.timed
             yield f"moment[{k}] = {f'inputs->{c.input_of(name)}' if known else '0'};"
         for k, drive in enumerate(c.drives):
             yield f"rate[{k}] = inputs->{c.input_of(f'motion:{drive}_rate')};"
@@ -251,12 +278,12 @@ class Source:
         if sizes["counted"]:
             yield "res[0] = counted;"
             yield "count(arg, res);"
-        if iterated:
+        if self.iterated:
             yield from self._close()
         yield "arg[0] = counted;"
         yield "arg[1] = rate;"
         yield "arg[2] = acceleration;"
-        yield f"arg[3] = {'model->loops' if iterated else '0'};"
+        yield f"arg[3] = {'model->loops' if self.iterated else '0'};"
         yield f"arg[4] = {'model->constants' if sizes['constants'] else '0'};"
         yield f"res[0] = {'y' if self.program.cycle is None else 'drive'};"
         yield "instant(arg, res);"
@@ -294,7 +321,7 @@ class Source:
             elif kind == "_row":
                 size = self.program.columns.index(name.replace("_row:", "_rowsize:"))
                 yield f"if (!({self._function('fabs')}(y[{k}]) <= {misfit}*y[{size}])) return {P}_INCONSISTENT;"
-        if self.program.sizes["loops"] and self.program.cycle is None:
+        if self.iterated:
             yield f"if (closed != {P}_OK) return closed;"
         rows = len(self.program.columns)
         yield f"if (!all_finite(y, {rows})) return {P}_NOT_FINITE;"

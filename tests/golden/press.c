@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-#ifdef __FAST_MATH__
-#error "compile without -ffast-math: it takes away NaN, by which failures are told, and the digits of phases"
+#if defined __FAST_MATH__ || (defined __FINITE_MATH_ONLY__ && __FINITE_MATH_ONLY__ > 0) || defined __ASSOCIATIVE_MATH__ || defined _M_FP_FAST
+#error "compile without -ffast-math and what it stands for: it takes away NaN, by which failures are told, and digits of phases"
 #endif
 #ifdef __clang__
 #pragma STDC FP_CONTRACT OFF

@@ -17,12 +17,12 @@ $declared  ${p}_status status;
   status = ${p}_prepare(&model$null);
   if (status != ${P}_OK) return failed(status);
   printf("%13s  %13s  %13s%s\n", "time [s]", "$coordinate [$coordinate_unit]", "$output [$output_unit]", $heading);
-  for (k = 0; k < 12; ++k) {
+  for (k = 0; k < $count; ++k) {
     const ${p}_real time = $start + (${p}_real) k*$step;
     status = ${p}_motion(&model, time$rest, &inputs);
     if (status == ${P}_OK) status = ${p}_evaluate(&model, &inputs, &outputs);
     if (status != ${P}_OK) return failed(status);
-    printf("%13.6g  %13.6g  %13.6g", (double) time, (double) inputs.$coordinate, (double) outputs.$output);
+$skip    printf("%13.6g  %13.6g  %13.6g", (double) time, (double) inputs.$coordinate, (double) outputs.$output);
 $section    printf("\n");
   }
   return 0;

@@ -7,12 +7,15 @@
      ${p}_inputs inputs = {0};
      ${p}_outputs outputs;
      ${p}_status status = ${p}_prepare(&model$null);
-     inputs.$first = 0.3$f;
+     $begin
      status = ${p}_evaluate(&model, &inputs, &outputs);
      if (status != ${P}_OK) puts(${p}_message(status));
 
    A function that fails returns why, and fills what it should have filled with NaN. Calls that share a model must not run at the
-   same time; calls with a model each may. Do not compile with -ffast-math: there NaN is not told from a number.
+   same time; calls with a model each may, and those that take a const model. Do not compile with -ffast-math or what it stands
+   for: there NaN is not told from a number. Ranges "over the scene's motion" are what its author saw, no limits.
+
+   $story
 
    $conventions$mapping$undetermined */
 #ifndef ${P}_H
@@ -42,7 +45,7 @@ typedef struct {
 $inputs
 } ${p}_inputs;
 
-/* What follows from it.$outputs_note */
+/* What follows from it.$outputs_note$law */
 typedef struct {
 $outputs
 } ${p}_outputs;
