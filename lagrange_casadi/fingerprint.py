@@ -45,7 +45,7 @@ def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
     declared = ca.Function("declared", ca.symvar(written), [written])
     if any(f.class_name() in _UNTOLD for f in declared.find_functions()):
         return None
-    identity = "\0".join([_code(), ca.CasadiMeta.version(), *words, declared.serialize(), laws.serialize()])
+    identity = "\0".join([sources(), ca.CasadiMeta.version(), *words, declared.serialize(), laws.serialize()])
     return hashlib.sha256(identity.encode()).hexdigest()[:32]
 
 
@@ -85,7 +85,7 @@ def _spell(item: Any, words: list[str], expressions: list[Any]) -> None:
 
 
 @functools.cache
-def _code() -> str:
+def sources() -> str:
     """The hash of this package's own sources: another version may derive other graphs."""
     digest = hashlib.sha256()
     root = Path(__file__).parent

@@ -64,6 +64,7 @@ ORDER = (
     "trade",
     "trade_plot",
     "case",
+    "sweep",
     "cli",
 )
 

@@ -18,6 +18,7 @@ from .check import check
 from .info import info
 from .plot import plot
 from .run import run
+from .sweep import sweep
 from .trade import trade
 
 INTERRUPTED = 130
@@ -38,7 +39,9 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-@click.group(cls=_Commands, commands=[run, trade, plot, info, check], context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    cls=_Commands, commands=[run, sweep, trade, plot, info, check], context_settings={"help_option_names": ["-h", "--help"]}
+)
 @click.version_option(__version__, prog_name="lagrange-casadi")
 def program() -> None:
     """Efforts, reactions and section forces of a mechanism that must make a given motion."""

@@ -9,10 +9,13 @@ from typing import Any
 import click
 
 from ..compensated import PRECISIONS
+from ..errors import DeclarationError
 from ..rung import BACKENDS
 from ..scene import Grid
+from ..sweep import Axis, Range, Values
 
 GRID = "START:STOP:COUNT"
+AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
 
 def grid(text: str) -> Grid:
@@ -22,6 +25,26 @@ def grid(text: str) -> Grid:
         return float(start), float(stop), int(count)
     except ValueError:
         raise click.BadParameter(f"expected START:STOP:COUNT, as in 0:0.08:801, got '{text}'") from None
+
+
+def axis(text: str) -> tuple[str, Axis]:
+    """NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..."""
+    name, equals, words = text.partition("=")
+    try:
+        if not (equals and name.strip()):
+            raise ValueError
+        if ":" not in words:
+            return name.strip(), Values(tuple(float(word) for word in words.split(",")))
+        start, stop, count, *log = words.split(":")
+        if log not in ([], ["log"]):
+            raise ValueError
+        return name.strip(), Range(float(start), float(stop), int(count), bool(log))
+    except ValueError:
+        raise click.BadParameter(
+            f"expected NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..., as in l=0.1:0.4:31, got '{text}'"
+        ) from None
+    except DeclarationError as error:
+        raise click.BadParameter(f"{name.strip()}: {error}") from None
 
 
 def setting(text: str) -> tuple[str, float]:
@@ -55,6 +78,12 @@ def table(text: str) -> float:
 
 def rung(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options of a :class:`.Rung`."""
+    table_option = click.option("--table", type=table, metavar="NODES|ACCURACY", help="Read outputs from a table over a turn.")
+    return untabled_rung(table_option(command))
+
+
+def untabled_rung(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The options of a :class:`.Rung` that reads no table."""
     steps = "Close every loop by so many Newton steps from the instant before."
     for option in reversed(
         (
@@ -67,7 +96,6 @@ def rung(command: Callable[..., Any]) -> Callable[..., Any]:
             ),
             click.option("--precision", type=click.Choice(PRECISIONS), default="double", show_default=True),
             click.option("--newton", type=int, metavar="STEPS", help=steps),
-            click.option("--table", type=table, metavar="NODES|ACCURACY", help="Read outputs from a table over a turn."),
             click.option("--flags", default="", metavar="FLAGS", help="Further flags of the compiler, as one word."),
         )
     ):
