@@ -92,12 +92,9 @@ class Cluster:
 
     @contextmanager
     def _connected(self) -> Iterator[Any]:
-        """A client; its own log is kept silent, for what fails is said in one line."""
+        """A client, while it is needed."""
         dask = _dask()
-        logger = logging.getLogger("distributed")
-        before = logger.level
-        logger.setLevel(logging.CRITICAL + 1)
-        try:
+        with _silenced():
             try:
                 client = dask.Client(self.address, timeout=_PATIENCE, set_as_default=False)
             except (OSError, ValueError, RuntimeError) as error:
@@ -107,8 +104,6 @@ class Cluster:
             finally:
                 with suppress(Exception):
                     client.close(timeout=2)
-        finally:
-            logger.setLevel(before)
 
     def _result(self, future: Any, start: int, stop: int) -> tuple[float, list[Any]]:
         dask = _dask()
@@ -133,6 +128,20 @@ def _dask() -> Any:
         return importlib.import_module("distributed")
     except ImportError:
         raise ClusterError("--dask needs Dask; install it with: pip install 'lagrange_casadi[cluster]'") from None
+
+
+@contextmanager
+def _silenced() -> Iterator[None]:
+    """Keep Dask's own log from saying at length what is said here in a line."""
+    loggers = [logging.getLogger(name) for name in list(logging.root.manager.loggerDict) if name.startswith("distributed")]
+    before = [(logger, logger.disabled) for logger in loggers]
+    for logger in loggers:
+        logger.disabled = True
+    try:
+        yield
+    finally:
+        for logger, disabled in before:
+            logger.disabled = disabled
 
 
 def _evaluate(source: Source, task: Task, told: Mapping[str, Any], p: Array) -> tuple[float, list[Any]]:

@@ -29,6 +29,9 @@ KEEPS: tuple[Keep, ...] = ("peaks", "laws", "histories")
 STATUS = "status"
 """The one column whose name stands alone: why a design has no result, 0 where it has one."""
 
+KINDS = (STATUS, "peak", "peak_t", "peak_xi", "mean", "rms", "peak_at", "history")
+"""What columns are of, in the order in which they are listed."""
+
 
 @dataclass(frozen=True)
 class Column:

@@ -19,7 +19,7 @@ from ..errors import DeclarationError
 from ..publish import PatientFile
 from ..quantities import CONVENTIONS
 from .axes import DESIGN, Designs, Grid
-from .columns import Column
+from .columns import KINDS, Column
 from .parts import Part
 from .plan import SCHEMA, Plan
 
@@ -31,7 +31,7 @@ _CHUNK_WITH_AXES = 1 << 17
 _TAIL = 1 << 20
 _FILTERS = {"shuffle": True, "compression": "gzip", "compression_opts": 1, "fletcher32": True}
 _AXES = {"t": ("s", "time"), "xi": ("1", "place along a link, ratio xi/l")}
-_TAKEN = ("status", "grid", "peak", "peak_t", "peak_xi", "mean", "rms", "peak_at", "history", DESIGN, *_AXES)
+_TAKEN = ("grid", *KINDS, DESIGN, *_AXES)
 
 Slab = tuple[int, int, tuple[Any, ...]]
 

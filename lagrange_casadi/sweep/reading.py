@@ -17,7 +17,7 @@ import numpy.typing as npt
 from ..density import Array
 from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError
 from .axes import DESIGN
-from .columns import STATUS
+from .columns import KINDS, STATUS
 from .file import WORDS, chunk_of, slabs
 from .plan import SCHEMA, SCHEMA_VERSION
 
@@ -120,8 +120,18 @@ class Sweep:
             chosen[axis] = found if before is None else before[found]
         return replace(self, chosen=chosen)
 
+    def thinned(self, axis: str, stride: int) -> Sweep:
+        """Every so many-th along an axis."""
+        numbers = self.chosen.get(axis, np.arange(self.dimensions[axis]))
+        return replace(self, chosen={**self.chosen, axis: numbers[::stride]})
+
+    def at_number(self, axis: str, number: int) -> Sweep:
+        """One place along an axis, by its number among those selected."""
+        numbers = self.chosen.get(axis, np.arange(self.dimensions[axis]))
+        return replace(self, chosen={**self.chosen, axis: numbers[number : number + 1]})
+
     def blocks(self, names: Sequence[str]) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
-        """All designs of the file in turn, in blocks: their numbers, and values of parameters and columns by name, each (designs,).
+        """The selected designs in turn, in blocks: their numbers, and values of parameters and columns by name, each (designs,).
 
         Raises :class:`DeclarationError` for a column with axes of its own.
         """
@@ -139,13 +149,21 @@ class Sweep:
                         found[name] = _along(file["grid"][name], name, list(self.dimensions), dims, where)
                     else:
                         found[name] = np.asarray(file[name.replace(":", "/")][where]).ravel()
-                yield np.arange(start, stop), found
+                numbers = np.arange(start, stop)
+                left = self._left(numbers)
+                yield numbers[left], {name: values[left] for name, values in found.items()}
 
     def design(self, number: int) -> dict[str, float]:
         """The values of the swept parameters of a design, by its number."""
         with self._opened() as file:
             places = dict(zip(self.dimensions, np.unravel_index(number, tuple(self.dimensions.values())), strict=True))
             return {name: float(file["grid"][name][places.get(name, number)]) for name in self.parameters}
+
+    def values(self, number: int, names: Sequence[str]) -> dict[str, float]:
+        """Columns of a design, by its number."""
+        place = tuple(int(i) for i in np.unravel_index(number, tuple(self.dimensions.values())))
+        with self._opened() as file:
+            return {self.column(name).name: float(file[name.replace(":", "/")][place]) for name in names}
 
     def counts(self) -> dict[int, int]:
         """How many designs have each status."""
@@ -178,6 +196,13 @@ class Sweep:
     def description(self) -> dict[str, Any]:
         """The mechanism as a file describes it, swept parameters at their defaults."""
         return dict(self.identity["mechanism"])
+
+    def _left(self, numbers: npt.NDArray[np.int64]) -> Any:
+        """Which designs are selected."""
+        if not self.chosen:
+            return slice(None)
+        places = dict(zip(self.dimensions, np.unravel_index(numbers, tuple(self.dimensions.values())), strict=True))
+        return np.all([np.isin(places[axis], chosen) for axis, chosen in self.chosen.items()], axis=0)
 
     def _axis(self, parameter: str) -> str:
         return parameter if parameter in self.dimensions else DESIGN
@@ -238,7 +263,7 @@ def _described(path: Path, file: h5py.File, keeper: Any) -> Sweep:
         identity,
         dict(zip(names, status.shape, strict=True)),
         {name: str(file["grid"][name].attrs["units"]) for name in file["grid"]},
-        columns,
+        {name: columns[name] for name in sorted(columns, key=lambda name: (KINDS.index(name.partition(":")[0]), name))},
         {int(number): (word, sentence) for (number, sentence), word in words},
         tuple(json.loads(attributes["undetermined"])),
         {},
