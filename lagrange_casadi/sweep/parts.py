@@ -45,9 +45,8 @@ class Part:
             file.seek(place)
             content = file.read(size)
         if hashlib.sha256(content).hexdigest() != digest:
-            raise StoreError(
-                f"{self.path}: damaged: column {column.name} is not what was committed; delete it and go on with --resume"
-            )
+            self.path.unlink()
+            raise StoreError(f"{self.path} was damaged, in column {column.name}, and is deleted")
         return np.frombuffer(content, column.dtype).reshape(self.stop - self.start, *column.lengths)
 
 

@@ -17,10 +17,11 @@ from ..errors import DeclarationError, SizeError
 from ..fingerprint import fingerprint, sources
 from ..rung import Rung
 from ..scene import Grid as Span
-from ..scene import Scene, Wanted, checked, checked_ratios
+from ..scene import Scene, Wanted, checked, checked_ratios, outputs
 from ..solution import Provenance
 from .axes import Designs, check_designs
 from .columns import Column, Harvest, Keep, check_keep
+from .engine import Engine
 from .loop import Loop
 
 SCHEMA = "lagrange-casadi-sweep"
@@ -44,7 +45,13 @@ class Task:
         """The scene compiled, and what is kept of its outcomes."""
         xi = np.zeros(0) if self.xi is None else np.linspace(*self.xi)
         series = Harvest.needs_series(self.keep, xi)
-        return Harvest(Loop(scene, self.wanted, self.t, self.rung, series), scene.mechanism, self.keep, np.linspace(*self.t), xi)
+        engine = compiled(scene, self.wanted, self.t, self.rung, series)
+        return Harvest(engine, scene.mechanism, self.keep, np.linspace(*self.t), xi)
+
+
+def compiled(scene: Scene, wanted: Sequence[str], t: Span, rung: Rung, series: bool) -> Engine:
+    """The engine of a scene; with ``series`` it gives whole histories."""
+    return Loop(scene, wanted, t, rung, series)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,8 +89,7 @@ class Plan:
             raise SizeError(
                 f"the grid has {designs.size:,} designs".replace(",", " ") + ", more than 10^9; if that is meant, say --yes"
             )
-        names = tuple(scene.wanted if wanted is None else wanted)
-        Wanted.of(scene.mechanism, names)
+        names = _wanted(scene, wanted)
         ratios = None if xi is None else checked_ratios(xi)
         task = Task(names, checked("t", scene.t if t is None else t), ratios, keep, rung)
         return cls(scene, designs, values, task, task.harvest(scene))
@@ -122,6 +128,15 @@ class Plan:
         }
         told: dict[str, Any] = json.loads(json.dumps(words))
         return told
+
+
+def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
+    """Output names; ``all`` are all but the motion, whose peaks size nothing."""
+    names = tuple(scene.wanted if wanted is None else wanted)
+    Wanted.of(scene.mechanism, names)
+    if "all" not in names or "motion" in names:
+        return names
+    return tuple(name for name in outputs(scene.mechanism) if name not in ("all", "motion"))
 
 
 def signature(scene: Scene, task: Task, provenance: Provenance) -> dict[str, Any]:

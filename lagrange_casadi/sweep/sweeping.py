@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
+import weakref
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -57,7 +59,7 @@ def sweep(
     parameters
         Values of parameters that are not swept.
     t, wanted
-        As in :func:`.evaluate`.
+        As in :func:`.evaluate`; ``all`` leaves out the motion, unless that is wanted by name.
     xi
         Ratios xi/l at which section forces are kept too: over the instants, the value largest in size at each.
     keep
@@ -94,10 +96,18 @@ def sweep(
         rung=Rung(backend, precision, newton, None, flags),
         many=many,
     )
-    keeper = tempfile.TemporaryDirectory(prefix="lagrange_casadi-") if out is None else None
-    target = Path(keeper.name) / "sweep.h5" if keeper else Path(out or "")
+    keeper = _Temporary() if out is None else None
+    target = keeper.path / "sweep.h5" if keeper else Path(out or "")
     conduct(plan, target, hired(workers, dask, case), resume=resume, force=force, progress=progress or (lambda *_: None))
     return Sweep.open(target, keeper)
+
+
+class _Temporary:
+    """A folder that goes with the object."""
+
+    def __init__(self) -> None:
+        self.path = Path(tempfile.mkdtemp(prefix="lagrange_casadi-"))
+        weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
 
 
 def hired(workers: int | None, dask: str | None, case: Case | None) -> Workers:
