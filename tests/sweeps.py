@@ -22,7 +22,7 @@ STATUSES = {0: ("ok", "there is a result"), 1: ("none", "there is none")}
 
 
 class Formula:
-    """Numbers that tell the design and the column apart; every thirteenth or so has no result. ``pause`` [s] a design."""
+    """Numbers that tell the design and the column apart; some have no result. ``pause`` [s] a design."""
 
     quantities = ("effort:O", "reaction:A", "reaction:A:fx", "section:rod:axial", "section:rod:shear", "section:rod:bending")
     efforts = ("effort:O",)
@@ -38,8 +38,9 @@ class Formula:
         self.threads.append(threads)
         self.calls.append((len(p), threading.get_ident()))
         time.sleep(self.pause * len(p))
-        seed = p @ np.array([1.0, 2.0, 5.0, 7.0, 11.0])
-        status = (np.floor(1e4 * seed) % 13 == 0).astype(np.int8)
+        # Not by a product of matrices, whose rounding depends on how many rows there are.
+        seed = sum(factor * column for factor, column in zip((1.0, 2.0, 5.0, 7.0, 11.0), p.T, strict=True))
+        status = (np.sin(1e3 * seed) > 0.8).astype(np.int8)
 
         def numbers(width, shift):
             values = np.sin(seed[:, None] * (1.0 + np.arange(width)) + shift)

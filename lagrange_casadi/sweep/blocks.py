@@ -22,9 +22,9 @@ class Cutter:
     gaps: Sequence[tuple[int, int]]
     bytes_per_design: int
     stopped: bool = field(default=False, init=False)
-    _length: int = field(default=_FIRST, init=False)
 
     def __post_init__(self) -> None:
+        self._length = _FIRST
         self._rest = list(self.gaps)[::-1]
         self._most = max(1, _BYTES // self.bytes_per_design)
 
