@@ -70,13 +70,13 @@ class Cluster:
             blocks: dict[Any, tuple[int, int]] = {}
 
             def send() -> None:
-                most = max(1, _AHEAD * sum(client.nthreads().values()))
+                most = max(1, _AHEAD * self._threads(client))
                 while len(blocks) < most and (block := cutter.cut()):
                     future = client.submit(_evaluate, source, plan.task, told, plan.block(*block), pure=False)
                     blocks[future] = block
                     waiting.add(future)
 
-            if not client.nthreads():
+            if not self._threads(client):
                 warnings.warn(f"the scheduler at {self.address} has no workers yet; waiting for some", stacklevel=2)
             send()
             while blocks:
@@ -118,6 +118,13 @@ class Cluster:
         except Exception as error:
             raise ClusterError(f"a worker failed: {type(error).__name__}: {' '.join(str(error).split())}") from None
         return seconds, columns
+
+    def _threads(self, client: Any) -> int:
+        """How many threads the workers have; workers come and go."""
+        try:
+            return sum(client.nthreads().values())
+        except (_dask().CancelledError, OSError):
+            raise self._lost() from None
 
     def _lost(self) -> ClusterError:
         return ClusterError(f"the Dask scheduler at {self.address} was lost")
