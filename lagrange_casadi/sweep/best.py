@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -13,23 +12,26 @@ import numpy.typing as npt
 
 from ..density import Array
 from ..errors import DeclarationError
-from .reading import Sweep
+from .reading import Sweep, near
 
-_RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
-    "<=": operator.le,
-    ">=": operator.ge,
-    "!=": operator.ne,
-    "==": operator.eq,
-    "<": operator.lt,
-    ">": operator.gt,
-    "=": operator.eq,
+_RELATIONS: dict[str, Callable[[Any, Any, Any], Any]] = {
+    "<=": lambda values, number, same: (values < number) | same,
+    ">=": lambda values, number, same: (values > number) | same,
+    "!=": lambda values, number, same: ~same,
+    "==": lambda values, number, same: same,
+    "<": lambda values, number, same: (values < number) & ~same,
+    ">": lambda values, number, same: (values > number) & ~same,
+    "=": lambda values, number, same: same,
 }
 _CONDITION = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|!=|==|<|>|=)\s*([^<>=!]+?)\s*")
 
 
 @dataclass(frozen=True)
 class Condition:
-    """A parameter or a column against a number; peaks by their size, whatever their sign."""
+    """A parameter or a column against a number; peaks by their size, whatever their sign.
+
+    What differs from the number by a billionth of it is equal to it: 0.3 on a grid may be 0.30000000000000004.
+    """
 
     name: str
     relation: str
@@ -49,7 +51,7 @@ class Condition:
     def holds(self, values: Array) -> npt.NDArray[np.bool_]:
         """Where it holds; nowhere where there is no number."""
         sized = size(self.name, values)
-        return np.asarray(_RELATIONS[self.relation](sized, self.value) & ~np.isnan(sized))
+        return np.asarray(_RELATIONS[self.relation](sized, self.value, near(sized, self.value)) & ~np.isnan(sized))
 
 
 @dataclass(frozen=True)

@@ -249,7 +249,7 @@ def _described(path: Path, file: h5py.File, keeper: Any) -> Sweep:
 
     def visit(place: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset) and not item.is_scale and not place.startswith("grid/"):
-            axes = tuple(dim[0].name.rpartition("/")[2] for dim in item.dims)[len(names) :]
+            axes = tuple(item.dims[axis][0].name.rpartition("/")[2] for axis in range(len(names), item.ndim))
             name = place.replace("/", ":")
             columns[name] = Kept(name, str(item.attrs["units"]), str(item.attrs["long_name"]), axes)
 
@@ -275,12 +275,17 @@ def _plain(value: Any) -> Any:
     return int(value) if isinstance(value, np.integer) else str(value)
 
 
+def near(values: Array, number: float) -> npt.NDArray[np.bool_]:
+    """Where values are a number, but for the rounding of a grid."""
+    return np.asarray(np.abs(values - number) <= _NEAR * np.maximum(np.abs(values), abs(number)))
+
+
 def _matches(name: str, there: Array, wanted: Any) -> npt.NDArray[np.bool_]:
     if isinstance(wanted, (tuple, list)):
         low, high = wanted
-        found = (there >= low) & (there <= high)
+        found = ((there > low) | near(there, low)) & ((there < high) | near(there, high))
     else:
-        found = np.abs(there - wanted) <= _NEAR * np.maximum(np.abs(there), abs(wanted))
+        found = near(there, wanted)
     if not found.any():
         close = there[np.argsort(np.abs(there - np.mean(wanted)))[:2]]
         raise DeclarationError(f"no design has {name} = {wanted}; nearest: {', '.join(f'{value:.10g}' for value in close)}")
