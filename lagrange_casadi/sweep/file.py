@@ -7,18 +7,22 @@ from __future__ import annotations
 
 import json
 import math
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 
+from ..codegen import cores
 from ..derive import derive
 from ..errors import DeclarationError
 from ..publish import PatientFile
 from ..quantities import CONVENTIONS
 from .axes import DESIGN, Designs, Grid
+from .chunks import FILTERS, encoded
 from .columns import KINDS, Column
 from .parts import Part
 from .plan import SCHEMA, Plan
@@ -28,8 +32,6 @@ WORDS = ("versions", "mechanism", "wanted", "t", "xi", "grid")
 
 _CHUNK = 1 << 15
 _CHUNK_WITH_AXES = 1 << 17
-_TAIL = 1 << 20
-_FILTERS = {"shuffle": True, "compression": "gzip", "compression_opts": 1, "fletcher32": True}
 _AXES = {"t": ("s", "time"), "xi": ("1", "place along a link, ratio xi/l")}
 _TAKEN = ("grid", *KINDS, DESIGN, *_AXES)
 
@@ -74,10 +76,14 @@ def join(plan: Plan, parts: Sequence[Part], path: Path, breathe: Callable[[], No
     Raises :class:`StoreError` for a damaged part, and ``OSError`` where the file cannot be written.
     """
     columns = plan.columns
-    with PatientFile(path, "w+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
+    with (
+        ThreadPoolExecutor(cores()) as pool,
+        PatientFile(path, "w+") as bytes_,
+        h5py.File(bytes_, "w", track_order=True) as file,
+    ):
         _begin(file, plan)
         for done, column in enumerate(columns):
-            _write(file, plan, column, parts, breathe)
+            _write(file, plan, column, parts, breathe, pool)
             told((done + 1) / len(columns))
         file.flush()
         file.attrs["complete"] = True
@@ -118,31 +124,41 @@ def _begin(file: h5py.File, plan: Plan) -> None:
 def _stream(group: Any, name: str, shape: tuple[int, ...], values: Callable[..., Any], dtype: Any) -> Any:
     """A dataset over one axis, filled in pieces."""
     chunk = chunk_of(shape, _CHUNK)
-    dataset = group.create_dataset(name, shape, dtype, chunks=chunk, **_FILTERS)
+    dataset = group.create_dataset(name, shape, dtype, chunks=chunk, **FILTERS)
     for start, stop, where in slabs(shape, chunk):
         dataset[where] = values(start, stop)
     return dataset
 
 
-def _write(file: h5py.File, plan: Plan, column: Column, parts: Sequence[Part], breathe: Callable[[], None]) -> None:
+def _write(file: h5py.File, plan: Plan, column: Column, parts: Sequence[Part], breathe: Callable[[], None], pool: Executor) -> None:
     dims = tuple(plan.designs.dimensions.values())
     chunk = chunk_of(dims, _CHUNK_WITH_AXES // math.prod(column.lengths) if column.axes else _CHUNK)
-    tail = chunk_of(column.lengths, _TAIL)
-    dataset = file.create_dataset(column.place, (*dims, *column.lengths), column.dtype, chunks=(*chunk, *tail), **_FILTERS)
+    dataset = file.create_dataset(
+        column.place, (*dims, *column.lengths), column.dtype, chunks=(*chunk, *column.lengths), fillvalue=0, **FILTERS
+    )
     dataset.attrs["units"] = column.unit
     for key, text in column.attributes.items():
         dataset.attrs[key] = text
     for axis, name in enumerate((*plan.designs.dimensions, *column.axes)):
         dataset.dims[axis].attach_scale(file[name])
+    size = math.prod((*chunk, *column.lengths))
     pieces = recut((part.read(column) for part in parts), (stop for _, stop, _ in slabs(dims, chunk)))
-    for (_, _, where), values in zip(slabs(dims, chunk), pieces, strict=True):
+    made = _ahead(pool, lambda values: encoded(values, size), pieces)
+    for (_, _, where), content in zip(slabs(dims, chunk), made, strict=True):
         breathe()
-        dataset[where] = values.reshape(_shape(where, dims, column))
+        corner = (place.start or 0 if isinstance(place, slice) else place for place in where)
+        dataset.id.write_direct_chunk((*corner, *(0 for _ in column.lengths)), content)
 
 
-def _shape(where: tuple[Any, ...], dims: Sequence[int], column: Column) -> tuple[int, ...]:
-    kept = [len(range(*place.indices(length))) for place, length in zip(where, dims, strict=True) if isinstance(place, slice)]
-    return (*kept, *column.lengths)
+def _ahead(pool: Executor, make: Callable[[Any], bytes], pieces: Iterable[Any]) -> Iterator[bytes]:
+    """What a pool makes of pieces, in their order, a few at a time."""
+    waiting: deque[Any] = deque()
+    for piece in pieces:
+        waiting.append(pool.submit(make, piece))
+        if len(waiting) > 2 * cores():
+            yield waiting.popleft().result()
+    while waiting:
+        yield waiting.popleft().result()
 
 
 def recut(pieces: Iterable[Any], stops: Iterable[int]) -> Iterator[Any]:

@@ -1,7 +1,7 @@
 """What a sweep has committed so far: a folder of parts, each whole or not there, and a lock on it that dies with its process.
 
 A part holds the columns of the designs from ``start`` to before ``stop``: a line of JSON that tells what is in it, a line that
-is the digest of that line, and then the columns one after another, raw, each with a digest of its own.
+is the SHA-256 of that line, and then the columns one after another, raw, each with a CRC-32 of its own.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import hashlib
 import json
 import os
 import shutil
+import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -31,20 +32,20 @@ _PLAN, _LOCK, _JOINED, _DRAFT, _PART = "plan.json", "lock", "joined.h5", ".draft
 
 @dataclass(frozen=True)
 class Part:
-    """A committed part: its designs, and where each column is in its file, how long it is, and its digest."""
+    """A committed part: its designs, and where each column is in its file, how long it is, and its checksum."""
 
     path: Path
     start: int
     stop: int
-    columns: Mapping[str, tuple[int, int, str]]
+    columns: Mapping[str, tuple[int, int, int]]
 
     def read(self, column: Column) -> Any:
         """A column (designs, its own axes). Where it is not what was committed the part is deleted: raises :class:`StoreError`."""
-        place, size, digest = self.columns[column.name]
+        place, size, checksum = self.columns[column.name]
         with self.path.open("rb") as file:
             file.seek(place)
             content = file.read(size)
-        if hashlib.sha256(content).hexdigest() != digest:
+        if zlib.crc32(content) != checksum:
             self.path.unlink()
             raise StoreError(f"{self.path} was damaged, in column {column.name}, and is deleted")
         return np.frombuffer(content, column.dtype).reshape(self.stop - self.start, *column.lengths)
@@ -123,7 +124,7 @@ class Folder:
         contents = [np.ascontiguousarray(array).data.cast("B") for array in arrays]
         table, place = {}, 0
         for column, content in zip(columns, contents, strict=True):
-            table[column.name] = (place, content.nbytes, hashlib.sha256(content).hexdigest())
+            table[column.name] = (place, content.nbytes, zlib.crc32(content))
             place += content.nbytes
         head = json.dumps({"start": start, "stop": stop, "columns": table}).encode()
         lines = head + b"\n" + hashlib.sha256(head).hexdigest().encode() + b"\n"
@@ -205,7 +206,7 @@ def _whole(path: Path) -> Part | None:
 
 def _part(path: Path, head: bytes, offset: int) -> Part:
     told = json.loads(head)
-    columns = {name: (place + offset, length, digest) for name, (place, length, digest) in told["columns"].items()}
+    columns = {name: (place + offset, length, checksum) for name, (place, length, checksum) in told["columns"].items()}
     return Part(path, told["start"], told["stop"], columns)
 
 
