@@ -149,10 +149,16 @@ def test_what_is_there_is_not_overwritten(whole, tmp_path):
     assert path.read_bytes() == whole
     with pytest.raises(PathError, match=r"whole\.h5\.parts holds an unfinished sweep: go on with --resume, or start anew"):
         run(path)
+    assert run(path, resume=True) == whole
     assert run(path, force=True) == whole
     with pytest.raises(DeclarationError, match="--resume and --force exclude each other"):
         run(path, force=True, resume=True)
+    with pytest.raises(_StopError):
+        run(tmp_path / "notes.h5", progress=stop_after(2))
     (tmp_path / "notes.h5").write_text("mine")
+    with pytest.raises(PathError, match=r"notes\.h5 is there now, which was not when the sweep began"):
+        run(tmp_path / "notes.h5", resume=True)
+    shutil.rmtree(tmp_path / "notes.h5.parts")
     for keywords, says in (({}, "exists"), ({"resume": True}, "not a whole HDF5 file")):
         with pytest.raises((PathError, StoreError), match=says):
             run(tmp_path / "notes.h5", **keywords)

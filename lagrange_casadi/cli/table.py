@@ -25,11 +25,11 @@ def table(file: Path, where: Sequence[str], columns: Sequence[str], rows: int, c
     sweep = Sweep.open(file)
     single = [name for name, kept in sweep.columns.items() if not kept.axes]
     if csv:
-        names = [*sweep.parameters, *(columns or single)]
+        names = list(dict.fromkeys([*sweep.parameters, *(columns or single)]))
         click.echo(f"wrote {csv}: {write_csv(names, _designs(sweep, names, where), csv)} designs")
         return
     main = ["status", *(name for name in single if name.startswith("peak:") and name.split(":")[1] in ("effort", "section"))]
-    names = [*sweep.parameters, *(columns or main[:_WIDE])]
+    names = list(dict.fromkeys([*sweep.parameters, *(columns or main[:_WIDE])]))
     shown = show(sweep, names, islice(_designs(sweep, names, where), rows))
     if shown == rows < sweep.size:
         click.echo(f"... of {sweep.size} designs; --rows N shows more, --csv OUT.csv writes all")

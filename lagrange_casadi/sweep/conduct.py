@@ -38,14 +38,18 @@ def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: 
             with uninterrupted() as breathe:
                 _fill(folder, plan, workers, breathe, progress)
         except KeyboardInterrupt:
-            raise StoppedError(f"stopped; {_kept(folder, plan)}: go on with --resume") from None
+            raise StoppedError(f"stopped; {_kept(folder, plan)}") from None
         except (StoreError, ClusterError) as error:
-            raise type(error)(f"{error}; {_kept(folder, plan)}: go on with --resume") from None
+            raise type(error)(f"{error}; {_kept(folder, plan)}") from None
+        finally:
+            if not folder.parts():
+                folder.remove()
 
 
 def _kept(folder: Folder, plan: Plan) -> str:
     kept = sum(part.stop - part.start for part in folder.parts())
-    return f"{kept:,} of {plan.size:,} designs".replace(",", " ") + f" are kept in {folder.path}"
+    count = f"{kept:,} of {plan.size:,} designs".replace(",", " ")
+    return f"{count} are kept in {folder.path}: go on with --resume" if kept else "nothing was done yet"
 
 
 def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
@@ -56,10 +60,12 @@ def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
     if there and not (resume or force):
         raise PathError(f"{folder.target} exists: --force replaces it, --resume goes on with a sweep that was not finished")
     if force or not (folder.begun or there):
-        folder.begin(plan.identity)
+        folder.begin(plan.identity, forced=force)
         return False
     if folder.begun:
         _refuse_other(folder.path, difference(folder.identity, plan.identity))
+        if there and not folder.forced and not _is_whole(folder.target, plan):
+            raise PathError(f"{folder.target} is there now, which was not when the sweep began: move it, or --force starts anew")
         return there and _is_whole(folder.target, plan)
     _refuse_other(folder.target, difference(identity_of(folder.target), plan.identity))
     return True

@@ -27,7 +27,7 @@ try:
 except ImportError:  # where there is none, nothing keeps two sweeps apart
     fcntl = None  # type: ignore[assignment]
 
-_PLAN, _LOCK, _JOINED, _DRAFT, _PART = "plan.json", "lock", "joined.h5", ".draft", ".part"
+_PLAN, _LOCK, _FORCED, _JOINED, _DRAFT, _PART = "plan.json", "lock", "forced", "joined.h5", ".draft", ".part"
 
 
 @dataclass(frozen=True)
@@ -112,10 +112,17 @@ class Folder:
         except (OSError, ValueError) as error:
             raise StoreError(f"{self.path / _PLAN}: damaged: {error}; start anew with --force") from None
 
-    def begin(self, identity: Mapping[str, Any]) -> None:
+    @property
+    def forced(self) -> bool:
+        """Whether a file that was there when the sweep began is to be replaced."""
+        return (self.path / _FORCED).is_file()
+
+    def begin(self, identity: Mapping[str, Any], *, forced: bool = False) -> None:
         """Say what the parts will be of, and remove what is there of another sweep."""
         with telling(self.target):
             self._clear()
+            if forced:
+                (self.path / _FORCED).touch()
             self._publish(_PLAN, [json.dumps(identity, indent=1).encode()])
 
     def commit(self, start: int, stop: int, columns: Sequence[Column], arrays: Sequence[Any]) -> Part:
