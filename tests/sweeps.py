@@ -18,15 +18,12 @@ from lagrange_casadi.sweep import plan
 from lagrange_casadi.sweep.engine import Outcome
 from lagrange_casadi.version import __version__
 
-STATUSES = {0: ("ok", "there is a result"), 1: ("none", "there is none")}
-
 
 class Formula:
     """Numbers that tell the design and the column apart; some have no result. ``pause`` [s] a design."""
 
     quantities = ("effort:O", "reaction:A", "reaction:A:fx", "section:rod:axial", "section:rod:shear", "section:rod:bending")
     efforts = ("effort:O",)
-    statuses = STATUSES
     provenance = Provenance("formula", "double", "", "", "(default)", {"lagrange_casadi": __version__})
 
     def __init__(self, count=7, pause=0.0):
@@ -34,7 +31,7 @@ class Formula:
         self.columns = ("effort:O", *(f"section:rod:law:{name}" for name in laws))
         self.count, self.pause, self.threads, self.calls = count, pause, [], []
 
-    def evaluate(self, p, threads=None):
+    def evaluate(self, p, *, threads=None, histories=False):
         self.threads.append(threads)
         self.calls.append((len(p), threading.get_ident()))
         time.sleep(self.pause * len(p))
@@ -47,7 +44,7 @@ class Formula:
             return np.where(status[:, None] == 0, values, np.nan)
 
         value, t, xi = (numbers(len(self.quantities), k) for k in range(3))
-        series = np.stack([numbers(self.count, 10 + k) for k in range(len(self.columns))], axis=1)
+        series = np.stack([numbers(self.count, 10 + k) for k in range(len(self.columns))], axis=1) if histories else None
         return Outcome(status, value, t, np.abs(xi), numbers(1, 5), numbers(1, 6), series)
 
 

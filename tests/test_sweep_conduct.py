@@ -243,11 +243,11 @@ def test_ctrl_c_finishes_the_block_and_says_how_to_go_on(whole, engine, tmp_path
 def test_an_engine_that_fails_leaves_what_was_committed(whole, engine, tmp_path, monkeypatch):
     fine, calls = engine.evaluate, []
 
-    def fail(p, threads=None):
+    def fail(p, **keywords):
         calls.append(p)
         if len(calls) == 3:
             raise DeclarationError("no")
-        return fine(p, threads)
+        return fine(p, **keywords)
 
     monkeypatch.setattr(blocks, "_SECONDS", 1e-9)
     monkeypatch.setattr(engine, "evaluate", fail)

@@ -122,7 +122,7 @@ def test_columns_stand_at_their_designs(file, monkeypatch):
     """Against the formula itself, called for all designs at once in an order written out here."""
     engine = sweeps.Formula()
     designs = [[r, l, 0.1, 0.1, 0.1] for l in np.linspace(0.15, 0.4, 6) for r in (0.05, 0.1, 0.07)]
-    outcome = engine.evaluate(np.array(designs))
+    outcome = engine.evaluate(np.array(designs), histories=True)
     with h5py.File(file) as h:
         np.testing.assert_array_equal(h["status"][()].ravel(), outcome.status)
         np.testing.assert_array_equal(h["peak/reaction/A/resultant"][()].ravel(), outcome.value[:, 1])

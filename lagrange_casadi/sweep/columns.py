@@ -21,7 +21,7 @@ from ..errors import DeclarationError, UnknownNameError
 from ..mechanism import Mechanism
 from ..quantities import FORCE, quantity_of
 from ..section_law import FORCES, SectionLaw, StationLoad
-from .engine import Engine, Outcome
+from .engine import STATUSES, Engine, Outcome
 
 Keep = Literal["peaks", "laws", "histories"]
 KEEPS: tuple[Keep, ...] = ("peaks", "laws", "histories")
@@ -113,17 +113,17 @@ class Harvest:
     def bytes_per_design(self) -> int:
         """What a design takes in memory, of columns and of the engine's outcome."""
         outcome = 8 * (3 * len(self.engine.quantities) + 2 * len(self.engine.efforts) + len(self.mechanism.parameters))
-        series = 8 * len(self.engine.columns) * self.t.size if self.needs_series(self.keep, self.xi) else 0
+        series = 8 * len(self.engine.columns) * self.t.size if self._histories else 0
         return outcome + series + sum(column.width for column in self.columns)
 
-    @staticmethod
-    def needs_series(keep: Keep, xi: Array) -> bool:
+    @property
+    def _histories(self) -> bool:
         """Whether whole histories must be evaluated."""
-        return keep != "peaks" or bool(xi.size)
+        return self.keep != "peaks" or bool(self.xi.size)
 
     def evaluate(self, p: Array, threads: int | None = None) -> list[Any]:
         """The columns of designs ``p`` (designs, parameters), each of shape (designs, its own axes)."""
-        outcome = self.engine.evaluate(p, threads)
+        outcome = self.engine.evaluate(p, threads=threads, histories=self._histories)
         found: list[Any] = [outcome.status.astype(np.int8)]
         for k, name in enumerate(self.engine.quantities):
             found += [outcome.value[:, k], outcome.t[:, k]]
@@ -153,11 +153,10 @@ class Harvest:
         return tuple(name for name in self.engine.columns if name.startswith(wanted))
 
     def _status(self) -> Column:
-        statuses = self.engine.statuses
         words = {
             "long_name": "whether a design has a result, or why it has none",
-            "flag_meanings": " ".join(word for word, _ in statuses.values()),
-            "sentences": json.dumps({number: sentence for number, (_, sentence) in statuses.items()}),
+            "flag_meanings": " ".join(word for word, _ in STATUSES.values()),
+            "sentences": json.dumps({number: sentence for number, (_, sentence) in STATUSES.items()}),
         }
         return Column(STATUS, "1", words, dtype="|i1")
 

@@ -12,6 +12,13 @@ import numpy.typing as npt
 from ..density import Array
 from ..solution import Provenance
 
+STATUSES: Mapping[int, tuple[str, str]] = {
+    0: ("ok", "there is a result"),
+    1: ("not_assembled", "a loop cannot be closed, or is singular, at some instant"),
+    2: ("impossible", "a part is impossible at these parameters"),
+}
+"""A word and a sentence for each status."""
+
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
@@ -47,12 +54,8 @@ class Engine(Protocol):
         """Full names of what histories hold."""
 
     @property
-    def statuses(self) -> Mapping[int, tuple[str, str]]:
-        """A word and a sentence for each status."""
-
-    @property
     def provenance(self) -> Provenance:
         """How the numbers are made."""
 
-    def evaluate(self, p: Array, threads: int | None = None) -> Outcome:
+    def evaluate(self, p: Array, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """Evaluate designs ``p`` (designs, parameters), every parameter in the order of declaration; default: a thread a core."""

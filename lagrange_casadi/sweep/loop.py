@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
-from typing import ClassVar
 
 import numpy as np
 
@@ -25,15 +24,9 @@ _OK, _NOT_ASSEMBLED, _IMPOSSIBLE = 0, 1, 2
 class Loop:
     """An engine of plain evaluations. The resultant of a reaction is sought at the instants alone."""
 
-    statuses: ClassVar[Mapping[int, tuple[str, str]]] = {
-        _OK: ("ok", "there is a result"),
-        _NOT_ASSEMBLED: ("not_assembled", "a loop cannot be closed, or is singular, at some instant"),
-        _IMPOSSIBLE: ("impossible", "a part is impossible at these parameters"),
-    }
-
-    def __init__(self, scene: Scene, wanted: Sequence[str], t: Grid, rung: Rung, series: bool) -> None:
+    def __init__(self, scene: Scene, wanted: Sequence[str], t: Grid, rung: Rung) -> None:
         graph = derive(scene, wanted, iterate=rung.newton is not None)
-        self._scene, self._wanted, self._t, self._rung, self._series = scene, wanted, t, rung, series
+        self._scene, self._wanted, self._t, self._rung = scene, wanted, t, rung
         mechanism = scene.mechanism
         sample = np.linspace(*t)
         self.provenance = run(graph, sample, np.array(list(mechanism.values().values())), rung)[1]
@@ -45,13 +38,13 @@ class Loop:
         self.quantities = (*members, *self._resultants, *sections)
         self.efforts = tuple(name for name in members if name.startswith("effort:"))
 
-    def evaluate(self, p: Array, threads: int | None = None) -> Outcome:
+    def evaluate(self, p: Array, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """One design after another."""
         n, q, e = len(p), len(self.quantities), len(self.efforts)
         status = np.zeros(n, np.int8)
         value, t, xi = (np.full((n, q), np.nan) for _ in range(3))
         mean, rms = (np.full((n, e), np.nan) for _ in range(2))
-        series = np.full((n, len(self.columns), self._t[2]), np.nan) if self._series else None
+        series = np.full((n, len(self.columns), self._t[2]), np.nan) if histories else None
         names = list(self._scene.mechanism.parameters)
         for i, row in enumerate(p):
             try:

@@ -44,14 +44,13 @@ class Task:
     def harvest(self, scene: Scene) -> Harvest:
         """The scene compiled, and what is kept of its outcomes."""
         xi = np.zeros(0) if self.xi is None else np.linspace(*self.xi)
-        series = Harvest.needs_series(self.keep, xi)
-        engine = compiled(scene, self.wanted, self.t, self.rung, series)
+        engine = compiled(scene, self.wanted, self.t, self.rung)
         return Harvest(engine, scene.mechanism, self.keep, np.linspace(*self.t), xi)
 
 
-def compiled(scene: Scene, wanted: Sequence[str], t: Span, rung: Rung, series: bool) -> Engine:
-    """The engine of a scene; with ``series`` it gives whole histories."""
-    return Loop(scene, wanted, t, rung, series)
+def compiled(scene: Scene, wanted: Sequence[str], t: Span, rung: Rung) -> Engine:
+    """The engine of a scene."""
+    return Loop(scene, wanted, t, rung)
 
 
 @dataclass(frozen=True, eq=False)
