@@ -11,6 +11,7 @@ from .mechanism import Mechanism
 from .scene import Scene
 from .solution import Peak, Solution
 from .store import check, load, save
+from .sweep import Sweep, best, read_designs, sweep
 from .version import __version__
 
 __all__ = [
@@ -21,7 +22,9 @@ __all__ = [
     "Peak",
     "Scene",
     "Solution",
+    "Sweep",
     "__version__",
+    "best",
     "check",
     "density",
     "derive",
@@ -30,6 +33,8 @@ __all__ = [
     "load",
     "load_case",
     "motion",
+    "read_designs",
     "save",
+    "sweep",
     "table",
 ]

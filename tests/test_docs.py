@@ -10,7 +10,7 @@ from lagrange_casadi.quantities import QUANTITIES
 from lagrange_casadi.store import SCHEMA_VERSION
 
 ROOT = Path(__file__).parent.parent
-PAGES = ["README.md", "docs/method.md", "docs/declaring.md"]
+PAGES = ["README.md", "docs/method.md", "docs/declaring.md", "docs/sweeps.md"]
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -10,7 +10,7 @@ from lagrange_casadi.peaks import forces, refine
 from lagrange_casadi.section_law import FORCES
 from lagrange_casadi.sweep import sweep
 
-SPAN = (0, 0.08, 33)
+SPAN = (0, 0.08, 129)
 LENGTHS, CRANKS = (0.13, 0.25), (0.06, 0.1)
 
 
@@ -35,7 +35,7 @@ def test_peaks_are_those_between_the_instants(slider_crank, swept, plain):
     for place, solution in plain.items():
         for peak in refine(slider_crank.scene, solution, forces(solution)):
             if solution.unit(peak.name) and abs(peak.value) > 1e-9:
-                np.testing.assert_allclose(swept[f"peak:{peak.name}"][place], peak.value, rtol=1e-9, err_msg=peak.name)
+                np.testing.assert_allclose(swept[f"peak:{peak.name}"][place], peak.value, rtol=1e-8, err_msg=peak.name)
                 compared += 1
             if peak.xi is not None:
                 assert 0.0 <= swept[f"peak_xi:{peak.name}"][place] <= 1.0
@@ -66,7 +66,7 @@ def test_means_are_over_time(swept, plain):
 
 def test_histories_are_those_of_a_plain_evaluation(swept, plain):
     for name in ("effort:O", "reaction:guide:fy", "section:rod:law:f1"):
-        assert swept[f"history:{name}"].shape == (2, 2, 33)
+        assert swept[f"history:{name}"].shape == (2, 2, 129)
         for place, solution in plain.items():
             size = np.abs(solution.series[name]).max()
             np.testing.assert_allclose(swept[f"history:{name}"][place], solution.series[name], atol=1e-11 * size, err_msg=name)
@@ -75,7 +75,7 @@ def test_histories_are_those_of_a_plain_evaluation(swept, plain):
 def test_section_forces_along_the_link(swept, plain):
     for force in FORCES:
         grid, largest = (swept[f"{kind}:section:rod:{force}"] for kind in ("history", "peak_at"))
-        assert grid.shape == (2, 2, 33, 5)
+        assert grid.shape == (2, 2, 129, 5)
         for place, solution in plain.items():
             expected = getattr(solution.section("rod"), force)
             np.testing.assert_allclose(grid[place], expected, atol=1e-11 * np.abs(expected).max())
