@@ -159,6 +159,7 @@ def test_memory_of_a_design_counts_everything(monkeypatch):
 
     task = Task((), (0, 1, 7), (0, 1, 3), "histories", Rung())
     harvest = task.harvest(sweeps.scene())
-    arrays = harvest.evaluate(np.full((5, 5), 0.1))
-    held = sum(array.nbytes for array in arrays) + 8 * 5 * len(engine.columns) * 7
-    assert 5 * harvest.bytes_per_design >= held
+    p = np.full((5, 5), 0.1)
+    outcome = engine.evaluate(p, histories=True)
+    held = sum(array.nbytes for array in (*harvest.evaluate(p), *vars(outcome).values())) - 5 + p.nbytes
+    assert 5 * harvest.bytes_per_design == held + 5 * 8 * 3 * 7 * 3

@@ -111,10 +111,11 @@ class Harvest:
 
     @property
     def bytes_per_design(self) -> int:
-        """What a design takes in memory, of columns and of the engine's outcome."""
+        """What a design takes in memory, of columns, of the engine's outcome, and of section forces over time and ratio."""
         outcome = 8 * (3 * len(self.engine.quantities) + 2 * len(self.engine.efforts) + len(self.mechanism.parameters))
         series = 8 * len(self.engine.columns) * self.t.size if self._histories else 0
-        return outcome + series + sum(column.width for column in self.columns)
+        grids = 8 * len(FORCES) * len(self._links) * self.t.size * self.xi.size
+        return outcome + series + grids + sum(column.width for column in self.columns)
 
     @property
     def _histories(self) -> bool:

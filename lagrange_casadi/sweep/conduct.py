@@ -41,9 +41,6 @@ def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: 
             raise StoppedError(f"stopped; {_kept(folder, plan)}") from None
         except (StoreError, ClusterError) as error:
             raise type(error)(f"{error}; {_kept(folder, plan)}") from None
-        finally:
-            if not folder.parts():
-                folder.remove()
 
 
 def _kept(folder: Folder, plan: Plan) -> str:

@@ -69,13 +69,17 @@ class Folder:
 
     @contextmanager
     def locked(self) -> Iterator[None]:
-        """Hold the folder, made where it is not. Raises :class:`BusyError` where another process does."""
+        """Hold the folder, made where it is not, and removed where no part is left in it.
+
+        Raises :class:`BusyError` where another process holds it.
+        """
         with telling(self.target):
             number = self._lock()
         try:
             yield
         finally:
-            if not self.begun:
+            # After the folder was removed, another sweep may have made it anew: then its lock is not this one.
+            if self._is_held(number) and not list(self.path.glob(f"*{_PART}")):
                 self.remove()
             os.close(number)
 
@@ -90,14 +94,19 @@ class Folder:
                 if fcntl is not None:
                     fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 # Another sweep may have ended, and removed the folder, between the two calls.
-                if os.path.samestat(os.fstat(number), os.stat(self.path / _LOCK)):
+                if self._is_held(number):
                     return number
             except BlockingIOError:
                 os.close(number)
                 raise BusyError(f"another sweep is writing {self.target}: wait for it, or choose another --out") from None
-            except FileNotFoundError:
-                pass
             os.close(number)
+
+    def _is_held(self, number: int) -> bool:
+        """Whether the lock that is open is the folder's."""
+        try:
+            return os.path.samestat(os.fstat(number), os.stat(self.path / _LOCK))
+        except FileNotFoundError:
+            return False
 
     @property
     def begun(self) -> bool:
