@@ -5,7 +5,7 @@ import zlib
 import h5py
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lagrange_casadi.sweep.chunks import FILTERS, deflated, encoded, fletcher32
@@ -59,6 +59,7 @@ def test_the_checksum_of_any_bytes(content):
     assert fletcher32(content) == second << 16 | first
 
 
+@settings(deadline=None)
 @given(st.integers(1, 8), st.integers(1, 200_000), st.integers(0, 255))
 def test_zlib_reads_what_is_partly_stored(rows, size, value):
     planes = RANDOM.integers(0, 256, (rows, size), np.uint8)

@@ -15,7 +15,7 @@ import sweeps
 from lagrange_casadi import Case, load_case
 from lagrange_casadi.errors import ClusterError, DeclarationError, StoppedError
 from lagrange_casadi.rung import Rung
-from lagrange_casadi.sweep import cluster, sweep
+from lagrange_casadi.sweep import blocks, cluster, sweep
 from lagrange_casadi.sweep.cluster import Cluster, Source
 from lagrange_casadi.sweep.plan import Task, signature
 
@@ -68,7 +68,7 @@ def test_two_worker_processes_give_the_same_bytes(slider_crank, two_workers, who
 
 
 def test_ctrl_c_commits_what_is_under_way(slider_crank, two_workers, whole, tmp_path, monkeypatch):
-    monkeypatch.setattr("lagrange_casadi.sweep.blocks._SECONDS", 0.02)
+    monkeypatch.setattr(blocks, "_SECONDS", 0.02)
     path, asked = tmp_path / "x.h5", []
 
     def progress(_what, done, _total):
@@ -83,7 +83,7 @@ def test_ctrl_c_commits_what_is_under_way(slider_crank, two_workers, whole, tmp_
 
 
 def test_a_worker_that_is_killed_is_done_without(slider_crank, whole, tmp_path, monkeypatch):
-    monkeypatch.setattr("lagrange_casadi.sweep.blocks._SECONDS", 0.05)
+    monkeypatch.setattr(blocks, "_SECONDS", 0.05)
     path, killed = tmp_path / "x.h5", []
     with started(tmp_path, 2) as (address, _, workers):
 
@@ -97,7 +97,7 @@ def test_a_worker_that_is_killed_is_done_without(slider_crank, whole, tmp_path, 
 
 
 def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, whole, tmp_path, monkeypatch, capfd):
-    monkeypatch.setattr("lagrange_casadi.sweep.blocks._SECONDS", 0.05)
+    monkeypatch.setattr(blocks, "_SECONDS", 0.05)
     path = tmp_path / "x.h5"
     with started(tmp_path, 1) as (address, scheduler, _):
 
