@@ -12,6 +12,7 @@ from .mechanism import Mechanism
 from .scene import Scene
 from .solution import Peak, Solution
 from .store import check, load, save
+from .sweep import Sweep, best, read_designs, sweep
 from .version import __version__
 
 __all__ = [
@@ -22,7 +23,9 @@ __all__ = [
     "Peak",
     "Scene",
     "Solution",
+    "Sweep",
     "__version__",
+    "best",
     "check",
     "density",
     "derive",
@@ -32,6 +35,8 @@ __all__ = [
     "load",
     "load_case",
     "motion",
+    "read_designs",
     "save",
+    "sweep",
     "table",
 ]

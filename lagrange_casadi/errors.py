@@ -75,3 +75,21 @@ class AccuracyError(LagrangeCasadiError):
     """No way to evaluate reaches a wanted accuracy."""
 
     exit_status = 1
+
+
+class BusyError(LagrangeCasadiError):
+    """Another process is writing the same file."""
+
+    exit_status = 1
+
+
+class ClusterError(LagrangeCasadiError):
+    """A scheduler cannot be reached or was lost, or its workers cannot do what they are sent."""
+
+    exit_status = 1
+
+
+class StoppedError(LagrangeCasadiError):
+    """What was asked for was stopped from outside, by Ctrl-C or a signal; what is done is kept."""
+
+    exit_status = 130

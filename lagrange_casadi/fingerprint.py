@@ -24,7 +24,7 @@ def fingerprint(scene: Scene, wanted: Wanted) -> str | None:
     declared = declaration(scene, wanted)
     if declared is None:
         return None
-    return hashlib.sha256("\0".join([_code(), ca.CasadiMeta.version(), declared]).encode()).hexdigest()[:32]
+    return hashlib.sha256("\0".join([sources(), ca.CasadiMeta.version(), declared]).encode()).hexdigest()[:32]
 
 
 def declaration(scene: Scene, wanted: Wanted) -> str | None:
@@ -92,7 +92,7 @@ def _spell(item: Any, words: list[str], expressions: list[Any]) -> None:
 
 
 @functools.cache
-def _code() -> str:
+def sources() -> str:
     """The hash of this package's own sources: another version may derive other graphs."""
     digest = hashlib.sha256()
     root = Path(__file__).parent

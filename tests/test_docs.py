@@ -13,7 +13,7 @@ from lagrange_casadi.quantities import QUANTITIES
 from lagrange_casadi.store import SCHEMA_VERSION
 
 ROOT = Path(__file__).parent.parent
-PAGES = ["README.md", "docs/method.md", "docs/declaring.md"]
+PAGES = ["README.md", "docs/method.md", "docs/declaring.md", "docs/sweeps.md"]
 LINKING = [*PAGES, "docs/accuracy.md", "docs/export.md", "docs/schema.md", "CONTRIBUTING.md", "cases/slider_crank/README.md"]
 
 

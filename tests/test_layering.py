@@ -65,6 +65,7 @@ ORDER = (
     "trade",
     "trade_plot",
     "case",
+    "sweep",
     "cli",
 )
 

@@ -14,11 +14,14 @@ import click
 
 from ..errors import LagrangeCasadiError, UnknownNameError
 from ..version import __version__
+from .best import best
 from .check import check
 from .export import export
 from .info import info
 from .plot import plot
 from .run import run
+from .sweep import sweep
+from .table import table
 from .trade import trade
 
 INTERRUPTED = 130
@@ -39,9 +42,10 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-@click.group(
-    cls=_Commands, commands=[run, trade, export, plot, info, check], context_settings={"help_option_names": ["-h", "--help"]}
-)
+_COMMANDS = (run, sweep, best, table, trade, export, plot, info, check)
+
+
+@click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="lagrange-casadi")
 def program() -> None:
     """Efforts, reactions and section forces of a mechanism that must make a given motion."""

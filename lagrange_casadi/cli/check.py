@@ -7,13 +7,15 @@ from pathlib import Path
 import click
 
 from .. import store
+from ..sweep import is_sweep
+from ..sweep.checking import check_sweep
 
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
 def check(file: Path) -> int:
     """Read all of FILE.h5 and verify it: exit status 0 if nothing is wrong with it, else 1."""
-    findings = store.check(file)
+    findings = check_sweep(file) if is_sweep(file) else store.check(file)
     for finding in findings:
         click.echo(f"{file}: {finding}", err=True)
     if not findings:

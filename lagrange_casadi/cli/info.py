@@ -13,6 +13,7 @@ from ..derive import derive
 from ..description import Description, describe
 from ..scene import Scene, outputs
 from ..solution import Solution
+from ..sweep import Sweep, is_sweep
 from .report import peak_line
 
 
@@ -20,11 +21,14 @@ from .report import peak_line
 @click.argument("target", metavar="CASE|FILE.h5", type=click.Path(path_type=Path))
 @click.option("--want", multiple=True, metavar="OUTPUT", help="Count the instructions of these outputs; default: the case's.")
 def info(target: Path, want: tuple[str, ...]) -> None:
-    """Describe a case (with its instruction count), or a result file."""
+    """Describe a case (with its instruction count), or a file of a run or a sweep."""
     if target.suffix in (".h5", ".hdf5"):
         if want:
             raise click.UsageError("--want goes with a case, not with a file")
-        _describe_file(store.load(target))
+        if is_sweep(target):
+            _describe_sweep(Sweep.open(target))
+        else:
+            _describe_file(store.load(target))
     else:
         _describe_case(load_case(target).scene, want)
 
@@ -55,6 +59,26 @@ def _describe_file(solution: Solution) -> None:
     click.echo("peaks:")
     for name in solution.names():
         click.echo(peak_line(solution, solution.peak(name)))
+
+
+def _describe_sweep(sweep: Sweep) -> None:
+    identity = sweep.identity
+    _describe_mechanism(sweep.description)
+    for name, words in identity["grid"].items():
+        click.echo(f"swept {name}: {words}")
+    (start, stop, count), xi = identity["t"], identity["xi"]
+    click.echo(f"t [s]: {start:g} to {stop:g}, {count} points")
+    if xi:
+        click.echo(f"xi/l: {xi[0]:g} to {xi[1]:g}, {xi[2]} points")
+    click.echo(f"backend: {identity['backend']}, {identity['precision']} {identity['compiler']} {identity['flags']}".rstrip())
+    click.echo(f"rung: {identity['rung']}")
+    click.echo(f"versions: {', '.join(f'{name} {version}' for name, version in identity['versions'].items())}")
+    for status, count in sweep.counts().items():
+        click.echo(f"{count} designs: {sweep.statuses[status][1]}")
+    click.echo("columns:")
+    for kept in sweep.columns.values():
+        axes = f" over {', '.join(kept.axes)}" if kept.axes else ""
+        click.echo(f"  {kept.name:<36} {kept.unit:<4} {kept.long_name}{axes}")
 
 
 def _describe_mechanism(description: Description) -> None:

@@ -1,0 +1,43 @@
+"""``lagrange-casadi best``: the best designs of a sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from ..sweep import Sweep
+from ..sweep import best as find
+from .rows import show, write_csv
+
+
+@click.command()
+@click.argument("file", metavar="FILE.h5", type=click.Path(path_type=Path))
+@click.option("--minimise", multiple=True, metavar="COLUMN", help="The column to be least; with two objectives, their front.")
+@click.option("--maximise", multiple=True, metavar="COLUMN", help="The column to be largest.")
+@click.option("--where", multiple=True, metavar="NAME<NUMBER", help="Only designs like this: <, <=, >, >=, == or !=; repeatable.")
+@click.option("--count", type=click.IntRange(1), default=1, show_default=True, metavar="N", help="How many of the best.")
+@click.option("--column", "columns", multiple=True, metavar="COLUMN", help="Show this column too; repeatable.")
+@click.option("--csv", type=click.Path(path_type=Path), metavar="OUT.csv", help="Write them as CSV too.")
+def best(
+    file: Path,
+    minimise: Sequence[str],
+    maximise: Sequence[str],
+    where: Sequence[str],
+    count: int,
+    columns: Sequence[str],
+    csv: Path | None,
+) -> None:
+    """Name the best designs of the sweep FILE.h5; peaks count by their size, whatever their sign."""
+    sweep = Sweep.open(file)
+    found = find(sweep, minimise=minimise, maximise=maximise, where=where, count=count, columns=columns)
+    if not found:
+        click.echo("no design has a result and meets the conditions")
+        return
+    names = list(found[0].values)
+    rows = [(design.number, list(design.values.values())) for design in found]
+    show(sweep, names, rows)
+    if csv:
+        write_csv(names, rows, csv)
+        click.echo(f"wrote {csv}")

@@ -1,0 +1,77 @@
+"""How far a sweep is: a bar on a terminal, a plain line now and then elsewhere."""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import dataclass, field
+from typing import Any
+
+import click
+from tqdm import tqdm
+
+_SECONDS = 10.0
+
+
+@dataclass
+class Lines:
+    """A line on standard error every ten seconds, with designs a second and the time left."""
+
+    _began: float = field(default=0.0, init=False)
+    _last: float = field(default=0.0, init=False)
+    _first: float = field(default=0.0, init=False)
+
+    def __call__(self, what: str, done: float, total: float) -> None:
+        """Hear of progress."""
+        now = time.monotonic()
+        if what != "designs":
+            return
+        if not self._began:
+            self._began, self._last, self._first = now, now, done
+            if done:
+                click.echo(f"going on after {_designs(done)} of {_designs(total)} designs", err=True)
+        elif now - self._last >= _SECONDS:
+            self._last = now
+            rate = (done - self._first) / (now - self._began)
+            left = tqdm.format_interval((total - done) / rate) if rate else "?"
+            click.echo(
+                f"{_designs(done)} of {_designs(total)} designs, {100 * done / total:.3g} %, {rate:.4g} a second, {left} left",
+                err=True,
+            )
+
+    def close(self) -> None:
+        """Nothing is left behind."""
+
+
+@dataclass
+class Bar:
+    """A bar of designs, and then one of the file."""
+
+    _bar: Any = field(default=None, init=False)
+    _what: str = field(default="", init=False)
+
+    def __call__(self, what: str, done: float, total: float) -> None:
+        """Hear of progress."""
+        if what != self._what:
+            self.close()
+            unit = {"designs": " designs"}.get(what, "")
+            bars = "{l_bar}{bar}| {n_fmt}/{total_fmt} [{elapsed}<{remaining}, {rate_fmt}]" if unit else "{l_bar}{bar}| [{elapsed}]"
+            self._bar = tqdm(total=total, initial=done, desc=what, unit=unit, unit_scale=bool(unit), leave=False, bar_format=bars)
+            self._what = what
+        self._bar.update(done - self._bar.n)
+
+    def close(self) -> None:
+        """Take the bar away."""
+        if self._bar is not None:
+            self._bar.close()
+
+
+def shown(quiet: bool) -> Lines | Bar | None:
+    """What shows progress: a bar on a terminal, lines elsewhere, nothing where it is to be quiet."""
+    if quiet:
+        return None
+    return Bar() if sys.stderr.isatty() else Lines()
+
+
+def _designs(count: float) -> str:
+    return f"{int(count):,}".replace(",", " ")

@@ -1,0 +1,106 @@
+"""``lagrange-casadi sweep``: a case over many designs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import closing, nullcontext
+from pathlib import Path
+
+import click
+
+from ..case import load_case
+from ..compensated import Precision
+from ..rung import Backend
+from ..scene import Grid
+from ..sweep import KEEPS, Axis, Keep, Sweep, read_designs
+from ..sweep import sweep as carry_out
+from .options import AXIS, GRID, axis, grid, parameters, setting, untabled_rung
+from .progress import shown
+
+
+@click.command()
+@click.argument("case", type=click.Path(path_type=Path))
+@click.option("--grid", "axes", type=axis, metavar=AXIS, multiple=True, help="Sweep a parameter; repeatable, the last is fastest.")
+@click.option(
+    "--designs", type=click.Path(path_type=Path), metavar="FILE.csv", help="Sweep a list: a line of names, a line a design."
+)
+@click.option(
+    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
+)
+@click.option("--t", type=grid, metavar=GRID, help="Instants [s]; default: the case's.")
+@click.option("--xi", type=grid, metavar=GRID, help="Keep section forces at these ratios xi/l too.")
+@click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK or all; repeatable.")
+@click.option("--keep", type=click.Choice(KEEPS), default="peaks", show_default=True, help="Peaks; with section laws; with all.")
+@untabled_rung
+@click.option("--workers", type=click.IntRange(1), metavar="N", help="Threads; default: one a core.")
+@click.option("--dask", metavar="ADDRESS", help="Evaluate on the workers of this Dask scheduler.")
+@click.option("--resume", is_flag=True, help="Go on with what is there of the same sweep; start where there is nothing.")
+@click.option("--force", is_flag=True, help="Start anew, whatever is there.")
+@click.option("--yes", is_flag=True, help="Mean it, with more than 10^9 designs.")
+@click.option("--quiet", is_flag=True, help="Show no progress.")
+@click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>_sweep.h5 here.")
+def sweep(
+    case: Path,
+    axes: Sequence[tuple[str, Axis]],
+    designs: Path | None,
+    settings: Sequence[tuple[str, float]],
+    t: Grid | None,
+    xi: Grid | None,
+    want: Sequence[str],
+    keep: Keep,
+    backend: Backend,
+    precision: Precision,
+    newton: int | None,
+    flags: str,
+    workers: int | None,
+    dask: str | None,
+    resume: bool,
+    force: bool,
+    yes: bool,
+    quiet: bool,
+    out: Path | None,
+) -> None:
+    """Evaluate CASE for every design of a grid or a list, and write one HDF5 file."""
+    if bool(axes) == bool(designs):
+        raise click.UsageError("expected either --grid, as in --grid l=0.1:0.4:31, or --designs FILE.csv")
+    if len({name for name, _ in axes}) < len(axes):
+        twice = next(name for k, (name, _) in enumerate(axes) if name in dict(axes[:k]))
+        raise click.UsageError(f"--grid: parameter '{twice}' is swept twice")
+    if out and out.suffix not in (".h5", ".hdf5"):
+        raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
+    loaded = load_case(case)
+    progress = shown(quiet)
+    with closing(progress) if progress else nullcontext():
+        found = carry_out(
+            loaded,
+            read_designs(designs) if designs else dict(axes),
+            out=out or Path(f"{loaded.name}_sweep.h5"),
+            parameters=parameters(settings),
+            t=t,
+            xi=xi,
+            wanted=want or None,
+            keep=keep,
+            backend=backend,
+            precision=precision,
+            newton=newton,
+            flags=flags,
+            workers=workers,
+            dask=dask,
+            resume=resume,
+            force=force,
+            many=yes,
+            progress=progress,
+        )
+    _report(found)
+
+
+def _report(found: Sweep) -> None:
+    shape = " x ".join(str(length) for length in found.dimensions.values())
+    count = f"{found.size:,}".replace(",", " ")
+    click.echo(
+        f"{found.case}: {f'{shape} = ' if len(found.dimensions) > 1 else ''}{count} designs over {', '.join(found.parameters)}"
+    )
+    for status, many in found.counts().items():
+        if status and many:
+            click.echo(f"  {many} without a result: {found.statuses[status][1]}")
+    click.echo(f"wrote {found.path}")

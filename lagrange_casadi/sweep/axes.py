@@ -1,0 +1,259 @@
+"""What is swept: axes of parameter values, their product as a grid, or a list of designs; a design is a number."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..density import Array
+from ..errors import DeclarationError, ParameterError, UnknownNameError
+from ..mechanism import Mechanism
+
+Numbers = npt.NDArray[np.int64]
+
+DESIGN = "design"
+"""The axis of a list."""
+
+_SHOWN = 20
+
+
+@dataclass(frozen=True)
+class Range:
+    """``count`` values from ``start`` to ``stop``, both included: evenly spaced, or with ``log`` in equal ratios.
+
+    Raises :class:`DeclarationError` for a range that is empty, reversed or not finite, or a log range that does not begin above 0.
+    """
+
+    start: float
+    stop: float
+    count: int
+    log: bool = False
+
+    def __post_init__(self) -> None:
+        if not all(type(x) in (int, float, np.float64) for x in (self.start, self.stop)) or type(self.count) is not int:
+            raise DeclarationError(
+                f"expected numbers for START and STOP and a whole COUNT, got {self.start}:{self.stop}:{self.count}"
+            )
+        if not (math.isfinite(self.start) and math.isfinite(self.stop)):
+            raise DeclarationError(f"START and STOP must be finite, got {self}")
+        if self.count < 1:
+            raise DeclarationError(f"COUNT must be at least 1, got {self}: the range is empty")
+        if self.stop < self.start:
+            raise DeclarationError(f"STOP must be after START, got {self}: the range is reversed")
+        if (self.stop == self.start) != (self.count == 1):
+            raise DeclarationError(f"START and STOP must differ, and COUNT be 2 or more, got {self}; one value is written alone")
+        if self.log and self.start <= 0.0:
+            raise DeclarationError(f"a log range must begin above 0, got {self}")
+
+    def __str__(self) -> str:
+        return f"{float(self.start)!r}:{float(self.stop)!r}:{self.count}" + (":log" if self.log else "")
+
+    def at(self, numbers: Numbers) -> Array:
+        """Values by number: those of ``numpy.linspace``, or start (stop/start)^(i/(count - 1))."""
+        steps = max(self.count - 1, 1)
+        ratio = self.stop / self.start if self.log else 1.0
+        values = self.start * ratio ** (numbers / steps) if self.log else numbers * ((self.stop - self.start) / steps) + self.start
+        return np.asarray(np.where(numbers == self.count - 1, float(self.stop), values), float)
+
+    def outside(self, low: float, high: float) -> str:
+        """What of it leaves a range, in words; nothing where none does."""
+        return "" if low <= self.start and self.stop <= high else f"{self.start:.10g} to {self.stop:.10g}"
+
+
+@dataclass(frozen=True)
+class Values:
+    """Values one by one. Raises :class:`DeclarationError` for none, for what is no finite number, and for one given twice."""
+
+    values: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        try:
+            numbers = tuple(float(value) for value in self.values)
+        except (TypeError, ValueError):
+            raise DeclarationError(f"expected numbers, got {self.values!r}") from None
+        object.__setattr__(self, "values", numbers)
+        if not numbers:
+            raise DeclarationError("expected at least one value, got none")
+        for value in numbers:
+            if not math.isfinite(value):
+                raise DeclarationError(f"values must be finite, got {value}")
+        if len(set(numbers)) < len(numbers):
+            twice = next(value for value in numbers if numbers.count(value) > 1)
+            raise DeclarationError(f"the value {twice:g} is given twice")
+
+    def __str__(self) -> str:
+        if len(self.values) <= _SHOWN:
+            return ",".join(map(repr, self.values))
+        return f"{len(self.values)} values, SHA-256 {hashlib.sha256(self._array.tobytes()).hexdigest()}"
+
+    @property
+    def count(self) -> int:
+        """How many."""
+        return len(self.values)
+
+    def at(self, numbers: Numbers) -> Array:
+        """Values by number."""
+        return self._array[numbers]
+
+    def outside(self, low: float, high: float) -> str:
+        """The values that leave a range, in words."""
+        return _named([f"{value:.10g}" for value in self.values if not low <= value <= high])
+
+    @cached_property
+    def _array(self) -> Array:
+        return np.array(self.values)
+
+
+Axis = Range | Values
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """The product of axes by the names of parameters; the last axis runs fastest. Raises :class:`DeclarationError` for none."""
+
+    axes: Mapping[str, Axis]
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.axes, Mapping) or not self.axes:
+            raise DeclarationError(f"grid: expected at least one axis, as in l=0.1:0.2:11, got {self.axes!r}")
+        object.__setattr__(self, "axes", MappingProxyType({name: _axis(name, axis) for name, axis in self.axes.items()}))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters that are swept."""
+        return tuple(self.axes)
+
+    @property
+    def dimensions(self) -> dict[str, int]:
+        """The axes of what is kept, and their lengths."""
+        return {name: axis.count for name, axis in self.axes.items()}
+
+    @property
+    def size(self) -> int:
+        """How many designs there are."""
+        return math.prod(axis.count for axis in self.axes.values())
+
+    def block(self, start: int, stop: int) -> Array:
+        """The designs from ``start`` to before ``stop``, of shape (designs, names)."""
+        rest = np.arange(start, stop, dtype=np.int64)
+        columns = []
+        for axis in list(self.axes.values())[::-1]:
+            rest, numbers = np.divmod(rest, axis.count)
+            columns.append(axis.at(numbers))
+        return np.stack(columns[::-1], axis=1)
+
+    def scale(self, name: str, start: int, stop: int) -> Array:
+        """Values along one parameter's own dimension."""
+        return self.axes[name].at(np.arange(start, stop, dtype=np.int64))
+
+    def describe(self) -> dict[str, str]:
+        """The axes in words, which tell one grid from another."""
+        return {name: str(axis) for name, axis in self.axes.items()}
+
+    def outside(self, name: str, low: float, high: float) -> str:
+        """The values of a parameter that leave a range, in words."""
+        return self.axes[name].outside(low, high)
+
+
+@dataclass(frozen=True, eq=False)
+class Listed:
+    """A list of designs: ``rows`` (designs, names) of values; ``lines`` tell where each row stood in a file.
+
+    Raises :class:`DeclarationError` for no designs, no or repeated names, or values that are not finite.
+    """
+
+    names: tuple[str, ...]
+    rows: Array
+    lines: Numbers | None = None
+
+    def __post_init__(self) -> None:
+        rows = np.ascontiguousarray(self.rows, dtype=np.float64)
+        if rows.ndim != 2 or rows.shape[1] != len(self.names) or not rows.size:
+            raise DeclarationError(f"designs: expected values of shape (designs, {len(self.names)}), got {rows.shape}")
+        if len(set(self.names)) < len(self.names):
+            raise DeclarationError(f"designs: a parameter is named twice in {', '.join(self.names)}")
+        if not np.isfinite(rows).all():
+            row, column = (int(i) for i in np.argwhere(~np.isfinite(rows))[0])
+            raise DeclarationError(f"designs: {self._where(row)}: {self.names[column]} must be finite, got {rows[row, column]}")
+        object.__setattr__(self, "rows", rows)
+
+    @property
+    def dimensions(self) -> dict[str, int]:
+        """The one axis of what is kept, and its length."""
+        return {DESIGN: self.size}
+
+    @property
+    def size(self) -> int:
+        """How many designs there are."""
+        return int(self.rows.shape[0])
+
+    def block(self, start: int, stop: int) -> Array:
+        """The designs from ``start`` to before ``stop``, of shape (designs, names)."""
+        return self.rows[start:stop]
+
+    def scale(self, name: str, start: int, stop: int) -> Array:
+        """Values of one parameter, design by design."""
+        return self.rows[start:stop, self.names.index(name)]
+
+    def describe(self) -> dict[str, str]:
+        """The list in words, which tell one from another."""
+        digest = hashlib.sha256(self.rows.tobytes()).hexdigest()
+        return {DESIGN: f"{self.size} designs of {', '.join(self.names)}, SHA-256 {digest}"}
+
+    def outside(self, name: str, low: float, high: float) -> str:
+        """The values of a parameter that leave a range, in words, each with its place."""
+        values = self.rows[:, self.names.index(name)]
+        rows = np.flatnonzero(~((values >= low) & (values <= high)))
+        return _named([f"{values[row]:.10g} in {self._where(int(row))}" for row in rows])
+
+    def _where(self, row: int) -> str:
+        return f"design {row}" if self.lines is None else f"line {self.lines[row]}"
+
+
+Designs = Grid | Listed
+
+
+def designs_of(given: Any) -> Designs:
+    """Designs from a :class:`Grid`, a :class:`Listed`, or a mapping of names to axes, ranges as tuples, or values."""
+    return given if isinstance(given, (Grid, Listed)) else Grid(given)
+
+
+def check_designs(designs: Designs, mechanism: Mechanism, fixed: Mapping[str, float]) -> None:
+    """Raise for parameters that are none or set twice, and for values out of their ranges, all of them at once."""
+    for name in designs.names:
+        if name not in mechanism.parameters:
+            raise UnknownNameError("parameter", name, mechanism.parameters)
+        if name in fixed:
+            raise DeclarationError(f"parameter '{name}' is swept and set to {fixed[name]:g} as well")
+    wrong = []
+    for name in designs.names:
+        parameter = mechanism.parameters[name]
+        if found := designs.outside(name, parameter.low, parameter.high):
+            wrong.append(f"{name} = {found}, out of its range [{parameter.low:g}, {parameter.high:g}]")
+    if wrong:
+        raise ParameterError("; ".join(wrong))
+
+
+def _named(words: Sequence[str]) -> str:
+    more = f" and {len(words) - _SHOWN} more" if len(words) > _SHOWN else ""
+    return ", ".join(words[:_SHOWN]) + more
+
+
+def _axis(name: str, given: Any) -> Axis:
+    """An axis, a tuple (start, stop, count) whose count is whole, or any other sequence of values; errors name the parameter."""
+    try:
+        if isinstance(given, (Range, Values)):
+            return given
+        if isinstance(given, tuple) and len(given) in (3, 4) and type(given[2]) is int:
+            return Range(*given)
+        return Values(tuple(np.atleast_1d(np.asarray(given, dtype=float)).tolist()))
+    except (DeclarationError, TypeError, ValueError) as error:
+        raise DeclarationError(f"grid of {name}: {error}") from None

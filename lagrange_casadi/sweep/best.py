@@ -1,0 +1,128 @@
+"""The best designs of a sweep: least or largest in one column, or the front of two, among those that meet conditions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..density import Array
+from ..errors import DeclarationError
+from .reading import Sweep, near
+
+_RELATIONS: dict[str, Callable[[Any, Any, Any], Any]] = {
+    "<=": lambda values, number, same: (values < number) | same,
+    ">=": lambda values, number, same: (values > number) | same,
+    "!=": lambda values, number, same: ~same,
+    "==": lambda values, number, same: same,
+    "<": lambda values, number, same: (values < number) & ~same,
+    ">": lambda values, number, same: (values > number) & ~same,
+    "=": lambda values, number, same: same,
+}
+_CONDITION = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|!=|==|<|>|=)\s*([^<>=!]+?)\s*")
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A parameter or a column against a number; peaks by their size, whatever their sign.
+
+    What differs from the number by a billionth of it is equal to it: 0.3 on a grid may be 0.30000000000000004.
+    """
+
+    name: str
+    relation: str
+    value: float
+
+    @classmethod
+    def parse(cls, text: str) -> Condition:
+        """Read ``NAME<NUMBER``, or with ``<=``, ``>``, ``>=``, ``==`` or ``!=``. Raises :class:`DeclarationError`."""
+        found = _CONDITION.fullmatch(text)
+        try:
+            if not found:
+                raise ValueError
+            return cls(found[1], found[2], float(found[3]))
+        except ValueError:
+            raise DeclarationError(f"expected a condition like l<0.3 or peak:effort:O<=12, got '{text}'") from None
+
+    def holds(self, values: Array) -> npt.NDArray[np.bool_]:
+        """Where it holds; nowhere where there is no number."""
+        sized = size(self.name, values)
+        return np.asarray(_RELATIONS[self.relation](sized, self.value, near(sized, self.value)) & ~np.isnan(sized))
+
+
+@dataclass(frozen=True)
+class Design:
+    """A design by its number, and values of parameters and columns by name."""
+
+    number: int
+    values: dict[str, float]
+
+
+def size(name: str, values: Array) -> Array:
+    """What a column is compared by: peaks by their size."""
+    return np.abs(values) if name.startswith(("peak:", "peak_at:")) else np.asarray(values, float)
+
+
+def best(
+    sweep: Sweep,
+    *,
+    minimise: Sequence[str] = (),
+    maximise: Sequence[str] = (),
+    where: Sequence[str | Condition] = (),
+    count: int = 1,
+    columns: Sequence[str] = (),
+) -> list[Design]:
+    """The ``count`` best designs that have a result and meet all conditions, the best first.
+
+    With two objectives, all designs of which no other is better in both and none is as good in one and better in the other: the
+    front, in the order of the first. Each design comes with its parameters, the objectives and ``columns``. Peaks count by size.
+
+    Raises :class:`UnknownNameError` for a column that is not there, :class:`DeclarationError` for no objective or more than two.
+    """
+    objectives = [*((name, 1.0) for name in minimise), *((name, -1.0) for name in maximise)]
+    if len(objectives) not in (1, 2):
+        raise DeclarationError(f"expected one column to minimise or maximise, or two for their front, got {len(objectives)}")
+    if count < 1:
+        raise DeclarationError(f"count: expected a whole number of at least 1, got {count}")
+    names = tuple(dict.fromkeys(name for name, _ in objectives))
+    kept: npt.NDArray[np.int64] = np.zeros(0, np.int64)
+    costs = np.zeros((len(objectives), 0))
+    for numbers, values in chosen(sweep, names, where):
+        cost = np.stack([sign * size(name, values[name]) for name, sign in objectives])
+        there = ~np.isnan(cost).any(axis=0)
+        kept, costs = np.concatenate([kept, numbers[there]]), np.concatenate([costs, cost[:, there]], axis=1)
+        order = _front(costs) if len(objectives) == 2 else np.lexsort((kept, costs[0]))[:count]
+        kept, costs = kept[order], costs[:, order]
+    asked = tuple(dict.fromkeys([*sweep.parameters, *names, *columns]))
+    return [row(sweep, int(number), asked) for number in kept]
+
+
+def chosen(
+    sweep: Sweep, names: Sequence[str], where: Sequence[str | Condition] = ()
+) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Any]]]:
+    """The designs that meet all conditions, in blocks, as :meth:`.Sweep.blocks` gives them."""
+    conditions = [Condition.parse(text) if isinstance(text, str) else text for text in where]
+    for numbers, values in sweep.blocks(list(dict.fromkeys([*names, *(condition.name for condition in conditions)]))):
+        met = np.ones(numbers.size, bool)
+        for condition in conditions:
+            met &= condition.holds(values[condition.name])
+        yield numbers[met], {name: values[name][met] for name in names}
+
+
+def row(sweep: Sweep, number: int, names: Sequence[str]) -> Design:
+    """A design with values of parameters and columns."""
+    values = sweep.design(number)
+    columns = [name for name in names if name not in values]
+    return Design(number, {name: values[name] for name in names if name in values} | sweep.values(number, columns))
+
+
+def _front(costs: Array) -> npt.NDArray[np.intp]:
+    """Those of pairs that nothing beats, by the first cost."""
+    order = np.lexsort((costs[1], costs[0]))
+    second = costs[1, order]
+    before = np.concatenate([[np.inf], np.minimum.accumulate(second)[:-1]])
+    return np.asarray(order[second < before])

@@ -1,0 +1,175 @@
+"""Who evaluates blocks: the workers of a Dask cluster. They are sent the case and designs, and send back columns."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import logging
+import tempfile
+import threading
+import time
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..case import Case, load_case
+from ..density import Array
+from ..errors import ClusterError, LagrangeCasadiError
+from ..scene import Scene
+from .blocks import Cutter
+from .columns import Harvest
+from .plan import Plan, Task, difference, signature
+from .workers import Block
+
+_PATIENCE = "10s"
+_AHEAD = 2
+"""Blocks sent out for each thread of the cluster."""
+
+_building = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Source:
+    """A case as it is sent: its file's path and content. Where a worker has no such file, the content alone serves."""
+
+    path: str
+    content: str
+
+    def load(self) -> Scene:
+        """The scene."""
+        path = Path(self.path)
+        with suppress(OSError, UnicodeDecodeError):
+            if path.read_text() == self.content:
+                return load_case(path).scene
+        with tempfile.TemporaryDirectory() as folder:
+            copy = Path(folder) / path.name
+            copy.write_text(self.content)
+            return load_case(copy).scene
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """The workers of the Dask scheduler at ``address``, all of which load ``case`` themselves.
+
+    A block whose worker dies is sent to another one. Raises :class:`ClusterError` where Dask is not installed, the scheduler cannot
+    be reached or is lost, or workers fail or have other versions.
+    """
+
+    address: str
+    case: Case
+
+    def results(self, plan: Plan, cutter: Cutter) -> Iterator[Block]:
+        """Evaluate what is cut, in the order in which workers are done."""
+        source = Source(str(self.case.path), self.case.path.read_text())
+        told = signature(plan.scene, plan.task, plan.harvest.engine.provenance)
+        with self._connected() as client:
+            waiting = _dask().as_completed(loop=client.loop)
+            blocks: dict[Any, tuple[int, int]] = {}
+
+            def send() -> None:
+                most = max(1, _AHEAD * self._threads(client))
+                while len(blocks) < most and (block := cutter.cut()):
+                    future = client.submit(_evaluate, source, plan.task, told, plan.block(*block), pure=False)
+                    blocks[future] = block
+                    waiting.add(future)
+
+            if not self._threads(client):
+                warnings.warn(f"the scheduler at {self.address} has no workers yet; waiting for some", stacklevel=2)
+            send()
+            while blocks:
+                future = next(waiting)
+                start, stop = blocks.pop(future)
+                seconds, columns = self._result(future, start, stop)
+                cutter.took(stop - start, seconds)
+                yield start, stop, columns
+                del future, columns
+                if client.status != "running":
+                    raise self._lost()
+                send()
+
+    @contextmanager
+    def _connected(self) -> Iterator[Any]:
+        """A client, while it is needed."""
+        dask = _dask()
+        with _silenced():
+            try:
+                client = dask.Client(self.address, timeout=_PATIENCE, set_as_default=False)
+            except (OSError, ValueError, RuntimeError) as error:
+                raise ClusterError(f"cannot reach a Dask scheduler at {self.address}: {' '.join(str(error).split())}") from None
+            try:
+                yield client
+            finally:
+                with suppress(Exception):
+                    client.close(timeout=2)
+
+    def _result(self, future: Any, start: int, stop: int) -> tuple[float, list[Any]]:
+        dask = _dask()
+        try:
+            seconds, columns = future.result()
+        except ClusterError:
+            raise
+        except dask.KilledWorker:
+            raise ClusterError(f"every worker that was sent designs {start} to {stop - 1} has died") from None
+        except (dask.CancelledError, OSError):
+            raise self._lost() from None
+        except Exception as error:
+            raise ClusterError(f"a worker failed: {type(error).__name__}: {' '.join(str(error).split())}") from None
+        return seconds, columns
+
+    def _threads(self, client: Any) -> int:
+        """How many threads the workers have; workers come and go."""
+        try:
+            return sum(client.nthreads().values())
+        except (_dask().CancelledError, OSError):
+            raise self._lost() from None
+
+    def _lost(self) -> ClusterError:
+        return ClusterError(f"the Dask scheduler at {self.address} was lost")
+
+
+def _dask() -> Any:
+    try:
+        return importlib.import_module("distributed")
+    except ImportError:
+        raise ClusterError("--dask needs Dask; install it with: pip install 'lagrange_casadi[cluster]'") from None
+
+
+@contextmanager
+def _silenced() -> Iterator[None]:
+    """Keep Dask's own log from saying at length what is said here in a line."""
+    loggers = [logging.getLogger(name) for name in list(logging.root.manager.loggerDict) if name.startswith("distributed")]
+    before = [(logger, logger.disabled) for logger in loggers]
+    for logger in loggers:
+        logger.disabled = True
+    try:
+        yield
+    finally:
+        for logger, disabled in before:
+            logger.disabled = disabled
+
+
+def _evaluate(source: Source, task: Task, told: Mapping[str, Any], p: Array) -> tuple[float, list[Any]]:
+    """On a worker: how long a block of designs took, and its columns."""
+    try:
+        with _building:
+            scene, harvest = _built(source, task)
+        found = difference(told, signature(scene, task, harvest.engine.provenance))
+        if found:
+            raise ClusterError(f"a worker would not give the same numbers: {found} there")
+        begun = time.perf_counter()
+        columns = harvest.evaluate(p, 1)
+        return time.perf_counter() - begun, columns
+    except ClusterError:
+        raise
+    except LagrangeCasadiError as error:
+        # Not every error of ours can be sent as what it is.
+        raise ClusterError(f"a worker failed: {error}") from None
+
+
+@functools.lru_cache(maxsize=4)
+def _built(source: Source, task: Task) -> tuple[Scene, Harvest]:
+    scene = source.load()
+    return scene, task.harvest(scene)

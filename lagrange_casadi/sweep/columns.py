@@ -1,0 +1,232 @@
+"""What a sweep keeps of each design: columns, their names, units and axes, and how they are taken from an engine's outcome.
+
+A column's full name is ``kind:quantity`` (``peak:section:rod:bending``, ``peak_t:effort:O``, ``rms:effort:O``), the quantity named
+as everywhere; the same with slashes is its place in the file.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal
+
+import casadi as ca
+import numpy as np
+
+from ..density import Array, Density
+from ..errors import DeclarationError, UnknownNameError
+from ..mechanism import Mechanism
+from ..quantities import FORCE, quantity_of
+from ..section_law import FORCES, SectionLaw, StationLoad
+from .engine import STATUSES, Engine, Outcome
+
+Keep = Literal["peaks", "laws", "histories"]
+KEEPS: tuple[Keep, ...] = ("peaks", "laws", "histories")
+
+STATUS = "status"
+"""The one column whose name stands alone: why a design has no result, 0 where it has one."""
+
+KINDS = (STATUS, "peak", "peak_t", "peak_xi", "mean", "rms", "peak_at", "history")
+"""What columns are of, in the order in which they are listed."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """One dataset: its full name, the axes beyond those of the designs, their lengths, unit, type, and what a file says of it."""
+
+    name: str
+    unit: str
+    attributes: Mapping[str, str]
+    axes: tuple[str, ...] = ()
+    lengths: tuple[int, ...] = ()
+    dtype: str = "<f8"
+
+    @property
+    def place(self) -> str:
+        """The dataset's path in the file."""
+        return self.name.replace(":", "/")
+
+    @property
+    def width(self) -> int:
+        """Bytes a design."""
+        return np.dtype(self.dtype).itemsize * math.prod(self.lengths)
+
+
+def check_keep(keep: str) -> None:
+    """Raise :class:`UnknownNameError` for what cannot be kept."""
+    if keep not in KEEPS:
+        raise UnknownNameError("choice of what to keep", str(keep), KEEPS)
+
+
+def unit_of(mechanism: Mechanism, name: str) -> str:
+    """The unit of a quantity of a mechanism by its full name."""
+    part = name.split(":")[1].removesuffix("_rate").removesuffix("_acceleration")
+    joint = mechanism.joints.get(part)
+    return quantity_of(name).unit_for((joint.coordinate if joint else None) or "angle")
+
+
+@dataclass(frozen=True, eq=False)
+class Harvest:
+    """An engine, and what is kept of its outcomes: ``t`` [s] are the instants, ``xi`` the ratios kept, none where empty."""
+
+    engine: Engine
+    mechanism: Mechanism
+    keep: Keep
+    t: Array
+    xi: Array
+
+    def __post_init__(self) -> None:
+        check_keep(self.keep)
+        if self.xi.size and not self._links:
+            raise DeclarationError("xi: ratios are kept of section forces, and none is wanted")
+        if self.keep == "laws" and not self._links:
+            raise DeclarationError("keep laws: the laws are those of section forces, and none is wanted")
+
+    @cached_property
+    def columns(self) -> tuple[Column, ...]:
+        """All columns, in the order of :meth:`evaluate`."""
+        engine = self.engine
+        found = [self._status()]
+        for name in engine.quantities:
+            found += self._peak(name)
+        for name in engine.efforts:
+            unit, words = unit_of(self.mechanism, name), quantity_of(name).attributes
+            found.append(Column(f"mean:{name}", unit, words | {"long_name": f"mean over time: {words['long_name']}"}))
+            found.append(Column(f"rms:{name}", unit, {"long_name": f"root of the mean square over time: {words['long_name']}"}))
+        found += [
+            self._along(f"peak_at:section:{link}:{force}", "largest in size over the instants: ", ("xi",))
+            for link in self._links
+            for force in FORCES
+            if self.xi.size
+        ]
+        for name in self._series:
+            words = quantity_of(name).attributes
+            found.append(Column(f"history:{name}", unit_of(self.mechanism, name), words, ("t",), (self.t.size,)))
+        if self.keep == "histories" and self.xi.size:
+            found += [self._along(f"history:section:{link}:{force}", "", ("t", "xi")) for link in self._links for force in FORCES]
+        return tuple(found)
+
+    @property
+    def bytes_per_design(self) -> int:
+        """What a design takes in memory, of columns, of the engine's outcome, and of section forces over time and ratio."""
+        outcome = 8 * (3 * len(self.engine.quantities) + 2 * len(self.engine.efforts) + len(self.mechanism.parameters))
+        series = 8 * len(self.engine.columns) * self.t.size if self._histories else 0
+        grids = 8 * len(FORCES) * len(self._links) * self.t.size * self.xi.size
+        return outcome + series + grids + sum(column.width for column in self.columns)
+
+    @property
+    def _histories(self) -> bool:
+        """Whether whole histories must be evaluated."""
+        return self.keep != "peaks" or bool(self.xi.size)
+
+    def evaluate(self, p: Array, threads: int | None = None) -> list[Any]:
+        """The columns of designs ``p`` (designs, parameters), each of shape (designs, its own axes)."""
+        outcome = self.engine.evaluate(p, threads=threads, histories=self._histories)
+        found: list[Any] = [outcome.status.astype(np.int8)]
+        for k, name in enumerate(self.engine.quantities):
+            found += [outcome.value[:, k], outcome.t[:, k]]
+            if name.startswith("section:"):
+                found.append(outcome.xi[:, k])
+        for k in range(len(self.engine.efforts)):
+            found += [outcome.mean[:, k], outcome.rms[:, k]]
+        grids = self._grids(outcome, p) if self.xi.size else {}
+        found += [_largest(grids[link, force]) for link in self._links for force in FORCES if self.xi.size]
+        if self._series:
+            assert outcome.series is not None
+            rows = {name: k for k, name in enumerate(self.engine.columns)}
+            found += [outcome.series[:, rows[name]] for name in self._series]
+        if self.keep == "histories":
+            found += list(grids.values())
+        return [np.ascontiguousarray(values, np.dtype(column.dtype)) for column, values in zip(self.columns, found, strict=True)]
+
+    @cached_property
+    def _links(self) -> tuple[str, ...]:
+        named = (name.split(":")[1] for name in self.engine.quantities if name.startswith("section:"))
+        return tuple(dict.fromkeys(named))
+
+    @cached_property
+    def _series(self) -> tuple[str, ...]:
+        """The engine's columns that are kept whole."""
+        wanted = {"peaks": ("!",), "laws": ("section:",), "histories": ("",)}[self.keep]
+        return tuple(name for name in self.engine.columns if name.startswith(wanted))
+
+    def _status(self) -> Column:
+        words = {
+            "long_name": "whether a design has a result, or why it has none",
+            "flag_meanings": " ".join(word for word, _ in STATUSES.values()),
+            "sentences": json.dumps({number: sentence for number, (_, sentence) in STATUSES.items()}),
+        }
+        return Column(STATUS, "1", words, dtype="|i1")
+
+    def _peak(self, name: str) -> list[Column]:
+        """The columns of one quantity of the engine's."""
+        kind, _, *member = name.split(":")
+        if kind == "reaction" and not member:
+            name, unit, words = f"{name}:resultant", FORCE, {"long_name": "resultant of the joint's reaction"}
+        else:
+            unit, words = unit_of(self.mechanism, name), quantity_of(name).attributes
+        what = words["long_name"]
+        found = [
+            Column(f"peak:{name}", unit, words | {"long_name": f"largest in size over time: {what}"}),
+            Column(f"peak_t:{name}", "s", {"long_name": f"instant of the peak: {what}"}),
+        ]
+        if kind == "section":
+            found.append(Column(f"peak_xi:{name}", "1", {"long_name": f"ratio xi/l of the peak: {what}"}))
+        return found
+
+    def _along(self, name: str, prefix: str, axes: tuple[str, ...]) -> Column:
+        quantity = quantity_of(name.partition(":")[2])
+        words = quantity.attributes | {"long_name": f"{prefix}{quantity.long_name}"}
+        lengths = tuple({"t": self.t.size, "xi": self.xi.size}[axis] for axis in axes)
+        return Column(name, quantity.unit, words, axes, lengths)
+
+    def _grids(self, outcome: Outcome, p: Array) -> dict[tuple[str, str], Array]:
+        """Section forces (designs, t, xi) by link and force; NaN where a design has no result."""
+        series = outcome.series
+        assert series is not None
+        found = {(link, force): np.full((len(p), self.t.size, self.xi.size), np.nan) for link in self._links for force in FORCES}
+        for link in self._links:
+            matter = _Matter.of(self.mechanism, link)
+            rows = {name: k for k, name in enumerate(self.engine.columns) if name.startswith(f"section:{link}:")}
+            for i in np.flatnonzero(outcome.status == 0):
+                law = matter.law({name.split(":", 2)[2]: series[i, k] for name, k in rows.items()}, p[i])
+                basis = law.basis(self.xi)
+                for force in FORCES:
+                    law.on_grid(force, basis, found[link, force][i], threads=1)
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Matter:
+    """A link's length and density over the parameters, without deriving either anew for each design."""
+
+    density: Density
+    numbers: Any
+
+    @classmethod
+    def of(cls, mechanism: Mechanism, name: str) -> _Matter:
+        link = mechanism.links[name]
+        assert isinstance(link.mass, Density)
+        cells = [c for cell in link.mass.cells for c in cell]
+        return cls(link.mass, ca.Function("matter", [mechanism.symbols], [ca.vertcat(ca.SX(0, 1), link.length, *cells)]))
+
+    def law(self, members: Mapping[str, Array], p: Array) -> SectionLaw:
+        """The law from its coefficients and loads, by ``law:n0``, ``STATION:n`` and so on."""
+        length, *cells = self.numbers(p).full().ravel().tolist()
+        rest = iter(cells)
+        density = self.density.at(lambda _: next(rest), length)
+        stations: dict[str, dict[str, Array]] = {}
+        for name, values in members.items():
+            part, member = name.split(":")
+            stations.setdefault(part, {})[member] = values
+        coefficients = stations.pop("law")
+        return SectionLaw(length, density, coefficients, tuple(StationLoad(part, **m) for part, m in stations.items()))
+
+
+def _largest(grid: Array) -> Array:
+    """Over the instants (axis 1), the value largest in size with its sign."""
+    best = np.argmax(np.abs(grid), axis=1)[:, None]
+    return np.take_along_axis(grid, best, axis=1)[:, 0]

@@ -1,0 +1,66 @@
+"""A list of designs from CSV: a head of parameters' names, and a line a design."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+from array import array
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import DeclarationError, PathError
+from .axes import Listed
+
+
+def read_designs(path: str | os.PathLike[str]) -> Listed:
+    """Read a list of designs. Empty lines are passed over.
+
+    Raises :class:`PathError` for no file, :class:`DeclarationError` for a head or a cell that is wrong, with its line and column.
+    """
+    if not Path(path).is_file():
+        raise PathError(f"{path}: {'is a folder, not a file' if Path(path).is_dir() else 'no such file'}")
+    values, lines = array("d"), array("q")
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            reader = csv.reader(file)
+            names = [name.strip() for name in next(reader, [])]
+            _check_head(path, names)
+            for row in reader:
+                if not any(cell.strip() for cell in row):
+                    continue
+                if len(row) != len(names):
+                    short = f", column '{names[len(row)]}' is missing" if len(row) < len(names) else ""
+                    raise DeclarationError(f"{path}, line {reader.line_num}: {len(row)} cells, expected {len(names)}{short}")
+                values.extend(_number(path, reader.line_num, name, cell) for name, cell in zip(names, row, strict=True))
+                lines.append(reader.line_num)
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise DeclarationError(f"{path}: not a table of text: {error}") from None
+    except OSError as error:
+        raise PathError(f"{path}: {error.strerror}") from None
+    if not lines:
+        raise DeclarationError(f"{path}: no designs below its head {', '.join(names)}")
+    return Listed(tuple(names), np.array(values).reshape(-1, len(names)), np.array(lines))
+
+
+def _check_head(path: str | os.PathLike[str], names: list[str]) -> None:
+    if not any(names):
+        raise DeclarationError(f"{path}: empty; expected a first line of parameters' names")
+    for column, name in enumerate(names, 1):
+        if not name:
+            raise DeclarationError(f"{path}, line 1, column {column}: expected a parameter's name, got an empty cell")
+        if names.index(name) != column - 1:
+            raise DeclarationError(
+                f"{path}, line 1, column {column}: '{name}' stands there already as column {names.index(name) + 1}"
+            )
+
+
+def _number(path: str | os.PathLike[str], line: int, name: str, cell: str) -> float:
+    try:
+        value = float(cell)
+        if not math.isfinite(value):
+            raise ValueError
+    except ValueError:
+        raise DeclarationError(f"{path}, line {line}, column '{name}': expected a finite number, got '{cell.strip()}'") from None
+    return value

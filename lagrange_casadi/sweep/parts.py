@@ -1,0 +1,244 @@
+"""What a sweep has committed so far: a folder of parts, each whole or not there, and a lock on it that dies with its process.
+
+A part holds the columns of the designs from ``start`` to before ``stop``: a line of JSON that tells what is in it, a line that
+is the SHA-256 of that line, and then the columns one after another, raw, each with a CRC-32 of its own.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import BusyError, StoreError
+from .columns import Column
+
+try:
+    import fcntl
+except ImportError:  # where there is none, nothing keeps two sweeps apart
+    fcntl = None  # type: ignore[assignment]
+
+_PLAN, _LOCK, _FORCED, _JOINED, _DRAFT, _PART = "plan.json", "lock", "forced", "joined.h5", ".draft", ".part"
+
+
+@dataclass(frozen=True)
+class Part:
+    """A committed part: its designs, and where each column is in its file, how long it is, and its checksum."""
+
+    path: Path
+    start: int
+    stop: int
+    columns: Mapping[str, tuple[int, int, int]]
+
+    def read(self, column: Column) -> Any:
+        """A column (designs, its own axes). Where it is not what was committed the part is deleted: raises :class:`StoreError`."""
+        place, size, checksum = self.columns[column.name]
+        with self.path.open("rb") as file:
+            file.seek(place)
+            content = file.read(size)
+        if zlib.crc32(content) != checksum:
+            self.path.unlink()
+            raise StoreError(f"{self.path} was damaged, in column {column.name}, and is deleted")
+        return np.frombuffer(content, column.dtype).reshape(self.stop - self.start, *column.lengths)
+
+
+@dataclass(frozen=True)
+class Folder:
+    """The folder of the parts of the sweep into ``target``."""
+
+    target: Path
+
+    @property
+    def path(self) -> Path:
+        """Where it is."""
+        return self.target.with_name(f"{self.target.name}.parts")
+
+    @property
+    def joined(self) -> Path:
+        """Where the file is written before it is in its place."""
+        return self.path / _JOINED
+
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Hold the folder, made where it is not, and removed where no part is left in it.
+
+        Raises :class:`BusyError` where another process holds it.
+        """
+        with telling(self.target):
+            number = self._lock()
+        try:
+            yield
+        finally:
+            # After the folder was removed, another sweep may have made it anew: then its lock is not this one.
+            if self._is_held(number) and not list(self.path.glob(f"*{_PART}")):
+                self.remove()
+            os.close(number)
+
+    def _lock(self) -> int:
+        while True:
+            self.path.mkdir(exist_ok=True)
+            try:
+                number = os.open(self.path / _LOCK, os.O_RDWR | os.O_CREAT, 0o666)
+            except FileNotFoundError:
+                continue
+            try:
+                if fcntl is not None:
+                    fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                # Another sweep may have ended, and removed the folder, between the two calls.
+                if self._is_held(number):
+                    return number
+            except BlockingIOError:
+                os.close(number)
+                raise BusyError(f"another sweep is writing {self.target}: wait for it, or choose another --out") from None
+            os.close(number)
+
+    def _is_held(self, number: int) -> bool:
+        """Whether the lock that is open is the folder's."""
+        try:
+            return os.path.samestat(os.fstat(number), os.stat(self.path / _LOCK))
+        except FileNotFoundError:
+            return False
+
+    @property
+    def begun(self) -> bool:
+        """Whether a sweep was begun here."""
+        return (self.path / _PLAN).is_file()
+
+    @property
+    def identity(self) -> Any:
+        """What the parts are of. Raises :class:`StoreError` where that cannot be read."""
+        try:
+            return json.loads((self.path / _PLAN).read_text())
+        except (OSError, ValueError) as error:
+            raise StoreError(f"{self.path / _PLAN}: damaged: {error}; start anew with --force") from None
+
+    @property
+    def forced(self) -> bool:
+        """Whether a file that was there when the sweep began is to be replaced."""
+        return (self.path / _FORCED).is_file()
+
+    def begin(self, identity: Mapping[str, Any], *, forced: bool = False) -> None:
+        """Say what the parts will be of, and remove what is there of another sweep."""
+        with telling(self.target):
+            self._clear()
+            if forced:
+                (self.path / _FORCED).touch()
+            self._publish(_PLAN, [json.dumps(identity, indent=1).encode()])
+
+    def commit(self, start: int, stop: int, columns: Sequence[Column], arrays: Sequence[Any]) -> Part:
+        """Commit a block: on return it outlives a kill and a loss of power. Raises :class:`StoreError` where that fails."""
+        name = f"{start:012d}-{stop:012d}{_PART}"
+        contents = [np.ascontiguousarray(array).data.cast("B") for array in arrays]
+        table, place = {}, 0
+        for column, content in zip(columns, contents, strict=True):
+            table[column.name] = (place, content.nbytes, zlib.crc32(content))
+            place += content.nbytes
+        head = json.dumps({"start": start, "stop": stop, "columns": table}).encode()
+        lines = head + b"\n" + hashlib.sha256(head).hexdigest().encode() + b"\n"
+        with telling(self.target):
+            self._publish(name, [lines, *contents])
+        return _part(self.path / name, head, len(lines))
+
+    def parts(self) -> list[Part]:
+        """The parts that are whole, in order; what is not is removed. Their columns are checked where they are read."""
+        found: list[Part] = []
+        for path in sorted(self.path.glob(f"*{_PART}")):
+            part = _whole(path)
+            if part is None or (found and part.start < found[-1].stop):
+                path.unlink()
+            else:
+                found.append(part)
+        for draft in self.path.glob(f"*{_DRAFT}"):
+            draft.unlink()
+        return found
+
+    def publish(self) -> None:
+        """Put the joined file into its place, and remove the folder."""
+        with telling(self.target):
+            _flush(self.joined)
+            os.replace(self.joined, self.target)
+            _flush(self.target.parent)
+        self.remove()
+
+    def remove(self) -> None:
+        """Remove the folder; the lock goes last."""
+        with suppress(OSError):
+            self._clear()
+            shutil.rmtree(self.path)
+
+    def _clear(self) -> None:
+        # The plan first: without it, what else is left is nobody's.
+        for path in sorted(self.path.iterdir(), key=lambda path: path.name != _PLAN):
+            if path.name != _LOCK:
+                path.unlink()
+
+    def _publish(self, name: str, contents: Sequence[Any]) -> None:
+        draft = self.path / f"{name}{_DRAFT}"
+        try:
+            with draft.open("wb") as file:
+                for content in contents:
+                    file.write(content)
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(draft, self.path / name)
+        except OSError:
+            with suppress(OSError):
+                draft.unlink()
+            raise
+        _flush(self.path)
+
+
+def missing(parts: Sequence[Part], size: int) -> list[tuple[int, int]]:
+    """The designs that no part covers, from and to before, in order."""
+    gaps, after = [], 0
+    for part in parts:
+        if part.start > after:
+            gaps.append((after, part.start))
+        after = part.stop
+    return [*gaps, (after, size)] if after < size else gaps
+
+
+def _whole(path: Path) -> Part | None:
+    try:
+        with path.open("rb") as file:
+            head, digest = file.readline(), file.readline()
+            size = os.fstat(file.fileno()).st_size
+        if hashlib.sha256(head[:-1]).hexdigest().encode() != digest[:-1]:
+            return None
+        part = _part(path, head, len(head) + len(digest))
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    return part if size == max(place + length for place, length, _ in part.columns.values()) else None
+
+
+def _part(path: Path, head: bytes, offset: int) -> Part:
+    told = json.loads(head)
+    columns = {name: (place + offset, length, checksum) for name, (place, length, checksum) in told["columns"].items()}
+    return Part(path, told["start"], told["stop"], columns)
+
+
+def _flush(path: Path) -> None:
+    number = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(number)
+    finally:
+        os.close(number)
+
+
+@contextmanager
+def telling(target: Path) -> Iterator[None]:
+    """Say failures of the disk in one line: raise :class:`StoreError` for ``OSError``."""
+    try:
+        yield
+    except OSError as error:
+        reason = os.strerror(error.errno) if error.errno else " ".join(str(error).split())
+        raise StoreError(f"cannot write {target}: {reason}") from None

@@ -1,0 +1,182 @@
+"""A sweep before it runs: which designs, what is kept of them, and the words that tell it from any other sweep."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..density import Array
+from ..description import Description, describe
+from ..errors import DeclarationError, SizeError
+from ..fingerprint import fingerprint, sources
+from ..rung import Rung
+from ..scene import Grid as Span
+from ..scene import Scene, Wanted, checked, checked_ratios, outputs
+from ..solution import Provenance
+from .axes import Designs, check_designs
+from .columns import Column, Harvest, Keep, check_keep
+from .engine import Engine
+from .loop import Loop
+
+SCHEMA = "lagrange-casadi-sweep"
+SCHEMA_VERSION = 1
+
+MANY = 10**9
+"""Designs from which on a sweep must be meant."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """How the designs of a scene are evaluated, as it is sent to a worker: nothing in it is of the designs themselves."""
+
+    wanted: tuple[str, ...]
+    t: Span
+    xi: Span | None
+    keep: Keep
+    rung: Rung
+
+    def harvest(self, scene: Scene) -> Harvest:
+        """The scene compiled, and what is kept of its outcomes."""
+        xi = np.zeros(0) if self.xi is None else np.linspace(*self.xi)
+        engine = compiled(scene, self.wanted, self.t, self.rung)
+        return Harvest(engine, scene.mechanism, self.keep, np.linspace(*self.t), xi)
+
+
+def compiled(scene: Scene, wanted: Sequence[str], t: Span, rung: Rung) -> Engine:
+    """The engine of a scene."""
+    return Loop(scene, wanted, t, rung)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A sweep before it runs; ``values`` are those of all parameters, the swept ones at their defaults."""
+
+    scene: Scene
+    designs: Designs
+    values: Mapping[str, float]
+    task: Task
+    harvest: Harvest
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        designs: Designs,
+        *,
+        fixed: Mapping[str, float] | None = None,
+        t: Span | None = None,
+        xi: Span | None = None,
+        wanted: Sequence[str] | None = None,
+        keep: Keep = "peaks",
+        rung: Rung | None = None,
+        many: bool = False,
+    ) -> Plan:
+        """Check everything that can be before anything is evaluated. Raises what :func:`.sweep` does."""
+        fixed, rung = fixed or {}, rung or Rung()
+        if rung.table is not None:
+            raise DeclarationError("a sweep reads no tables: every design would need one of its own")
+        check_keep(keep)
+        values = scene.mechanism.values(fixed)
+        check_designs(designs, scene.mechanism, fixed)
+        if designs.size > MANY and not many:
+            raise SizeError(
+                f"the grid has {designs.size:,} designs".replace(",", " ") + ", more than 10^9; if that is meant, say --yes"
+            )
+        names = _wanted(scene, wanted)
+        ratios = None if xi is None else checked_ratios(xi)
+        task = Task(names, checked("t", scene.t if t is None else t), ratios, keep, rung)
+        return cls(scene, designs, values, task, task.harvest(scene))
+
+    @property
+    def size(self) -> int:
+        """How many designs there are."""
+        return self.designs.size
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """What is kept of each."""
+        return self.harvest.columns
+
+    def block(self, start: int, stop: int) -> Array:
+        """Designs by number, of shape (designs, parameters): all parameters in the order of declaration."""
+        names = list(self.values)
+        p = np.tile(np.array(list(self.values.values())), (stop - start, 1))
+        p[:, [names.index(name) for name in self.designs.names]] = self.designs.block(start, stop)
+        return p
+
+    @property
+    def description(self) -> Description:
+        """The mechanism, the swept parameters at their defaults."""
+        return describe(self.scene.mechanism, self.values, self.scene.motion)
+
+    @cached_property
+    def identity(self) -> dict[str, Any]:
+        """What all numbers of the sweep follow from, in plain words: no clock, no path, nothing of how it is run."""
+        words = {
+            "schema_version": SCHEMA_VERSION,
+            "case": self.scene.mechanism.name,
+            **signature(self.scene, self.task, self.harvest.engine.provenance),
+            "mechanism": self.description,
+            "grid": self.designs.describe(),
+        }
+        told: dict[str, Any] = json.loads(json.dumps(words))
+        return told
+
+
+def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
+    """Output names; ``all`` are all but the motion, whose peaks size nothing."""
+    names = tuple(scene.wanted if wanted is None else wanted)
+    Wanted.of(scene.mechanism, names)
+    if "all" not in names or "motion" in names:
+        return names
+    return tuple(name for name in outputs(scene.mechanism) if name not in ("all", "motion"))
+
+
+def signature(scene: Scene, task: Task, provenance: Provenance) -> dict[str, Any]:
+    """What the numbers of a design follow from beside its parameters, wherever it is evaluated."""
+    wanted = Wanted.of(scene.mechanism, task.wanted)
+    words = {
+        "versions": dict(provenance.versions),
+        "sources": sources(),
+        "backend": provenance.backend,
+        "precision": provenance.precision,
+        "compiler": provenance.compiler,
+        "flags": provenance.flags,
+        "rung": provenance.rung,
+        "wanted": dataclasses.asdict(wanted),
+        "t": task.t,
+        "xi": task.xi,
+        "keep": task.keep,
+        "scene": fingerprint(scene, wanted) or "cannot be told",
+    }
+    told: dict[str, Any] = json.loads(json.dumps(words))
+    return told
+
+
+def difference(before: Any, now: Any, where: str = "") -> str | None:
+    """The first place at which two identities differ, in words; None where they do not."""
+    if isinstance(before, dict) and isinstance(now, dict):
+        for key in dict.fromkeys([*before, *now]):
+            place = f"{where} {key}".strip()
+            if key not in before or key not in now:
+                return f"{place} was {'not there' if key not in before else 'there'}, and {'is' if key in now else 'is not'}"
+            found = difference(before[key], now[key], place)
+            if found:
+                return found
+        return None
+    if before == now:
+        return None
+    if where in ("sources", "scene"):
+        what = {"sources": "the program's own code", "scene": "an expression or a law of motion of the scene"}[where]
+        return f"{what} has changed"
+    return f"{where} was {_short(before)} and is {_short(now)}"
+
+
+def _short(value: Any) -> str:
+    return value if isinstance(value, str) else json.dumps(value)

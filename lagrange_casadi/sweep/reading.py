@@ -1,0 +1,326 @@
+"""A sweep's file, read: whole columns, columns at given values of parameters, or all designs in turn, block by block."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import h5py
+import numpy as np
+import numpy.typing as npt
+
+from ..density import Array
+from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError
+from .axes import DESIGN
+from .columns import KINDS, STATUS
+from .file import WORDS, chunk_of, slabs
+from .plan import SCHEMA, SCHEMA_VERSION
+
+if TYPE_CHECKING:
+    import xarray
+
+_BLOCK = 1 << 15
+_NEAR = 1e-9
+_DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError)
+_NAMED = ("backend", "precision", "compiler", "flags", "rung", "sources", "keep", "scene", "case", "schema_version")
+
+Values = npt.NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What a file says of a column: unit, meaning, and its axes beyond those of the designs."""
+
+    name: str
+    unit: str
+    long_name: str
+    axes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep:
+    """A finished sweep; arrays are read when they are asked for.
+
+    ``dimensions`` are the axes of the designs and their lengths, of parameters, or ``design`` of a list; ``columns`` what is kept
+    of each, by full name; ``parameters`` the units of what was swept; ``chosen`` the numbers along axes that :meth:`select` left.
+    """
+
+    path: Path
+    identity: Mapping[str, Any]
+    dimensions: Mapping[str, int]
+    parameters: Mapping[str, str]
+    columns: Mapping[str, Kept]
+    statuses: Mapping[int, tuple[str, str]]
+    undetermined: tuple[str, ...] = ()
+    chosen: Mapping[str, npt.NDArray[np.int64]] = field(default_factory=dict)
+    keeper: Any = None
+
+    @classmethod
+    def open(cls, path: str | Path, keeper: Any = None) -> Sweep:
+        """Open a file. Raises :class:`PathError` for none, :class:`StoreError` for what is not a whole file of a sweep."""
+        with _reading(path) as file:
+            try:
+                return _described(Path(path), file, keeper)
+            except _DAMAGE as error:
+                raise StoreError(f"{path}: damaged: {' '.join(str(error).split())}") from None
+
+    def __repr__(self) -> str:
+        return f"<Sweep of {self.case}: {self.size} designs over {', '.join(self.parameters)}; {', '.join(self.columns)}>"
+
+    @property
+    def case(self) -> str:
+        """The mechanism's name."""
+        return str(self.identity["case"])
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The lengths of the designs' axes, as far as they are selected."""
+        return tuple(self.chosen[name].size if name in self.chosen else length for name, length in self.dimensions.items())
+
+    @property
+    def size(self) -> int:
+        """How many designs are selected."""
+        return int(np.prod(self.shape, dtype=np.int64))
+
+    def __getitem__(self, name: str) -> Values:
+        """A column (designs' axes, its own axes), a parameter along its axis, or ``t`` [s] or ``xi`` of columns that have them."""
+        with self._opened() as file:
+            if name in self.parameters:
+                return self._cut(file["grid"][name], (self._axis(name),))
+            if name in ("t", "xi") and name in file:
+                return np.asarray(file[name][()])
+            kept = self.column(name)
+            return self._cut(file[name.replace(":", "/")], (*self.dimensions, *kept.axes))
+
+    def column(self, name: str) -> Kept:
+        """What a column is. Raises :class:`UnknownNameError`."""
+        if name not in self.columns:
+            raise UnknownNameError("column", name, [*self.parameters, *self.columns])
+        return self.columns[name]
+
+    def select(self, **values: Any) -> Sweep:
+        """The designs with given values of parameters: a number that is on the grid, or a pair (low, high), both included.
+
+        An axis stays where one number is selected, of length one. Raises :class:`UnknownNameError` for what was not swept,
+        :class:`DeclarationError` where no design has such a value, with the nearest one that has.
+        """
+        chosen = dict(self.chosen)
+        for name, wanted in values.items():
+            if name not in self.parameters:
+                raise UnknownNameError("swept parameter", name, self.parameters)
+            axis = self._axis(name)
+            there = replace(self, chosen=chosen)[name]
+            found = np.flatnonzero(_matches(name, there, wanted))
+            before = chosen.get(axis)
+            chosen[axis] = found if before is None else before[found]
+        return replace(self, chosen=chosen)
+
+    def thinned(self, axis: str, stride: int) -> Sweep:
+        """Every so many-th along an axis."""
+        numbers = self.chosen.get(axis, np.arange(self.dimensions[axis]))
+        return replace(self, chosen={**self.chosen, axis: numbers[::stride]})
+
+    def at_number(self, axis: str, number: int) -> Sweep:
+        """One place along an axis, by its number among those selected."""
+        numbers = self.chosen.get(axis, np.arange(self.dimensions[axis]))
+        return replace(self, chosen={**self.chosen, axis: numbers[number : number + 1]})
+
+    def blocks(self, names: Sequence[str]) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
+        """The selected designs in turn, in blocks: their numbers, and values of parameters and columns by name, each (designs,).
+
+        Raises :class:`DeclarationError` for a column with axes of its own.
+        """
+        for name in names:
+            if name not in self.parameters and self.column(name).axes:
+                raise DeclarationError(
+                    f"column '{name}' has a value for every {' and '.join(self.columns[name].axes)}, not one a design"
+                )
+        dims = tuple(self.dimensions.values())
+        with self._opened() as file:
+            for start, stop, where in slabs(dims, chunk_of(dims, _BLOCK)):
+                found = {}
+                for name in names:
+                    if name in self.parameters:
+                        found[name] = _along(file["grid"][name], name, list(self.dimensions), dims, where)
+                    else:
+                        found[name] = np.asarray(file[name.replace(":", "/")][where]).ravel()
+                numbers = np.arange(start, stop)
+                left = self._left(numbers)
+                yield numbers[left], {name: values[left] for name, values in found.items()}
+
+    def design(self, number: int) -> dict[str, float]:
+        """The values of the swept parameters of a design, by its number."""
+        with self._opened() as file:
+            places = dict(zip(self.dimensions, np.unravel_index(number, tuple(self.dimensions.values())), strict=True))
+            return {name: float(file["grid"][name][places.get(name, number)]) for name in self.parameters}
+
+    def values(self, number: int, names: Sequence[str]) -> dict[str, float]:
+        """Columns of a design, by its number."""
+        place = tuple(int(i) for i in np.unravel_index(number, tuple(self.dimensions.values())))
+        with self._opened() as file:
+            return {self.column(name).name: float(file[name.replace(":", "/")][place]) for name in names}
+
+    def counts(self) -> dict[int, int]:
+        """How many designs have each status."""
+        found = dict.fromkeys(self.statuses, 0)
+        for _, values in self.blocks([STATUS]):
+            for status, count in zip(*np.unique(values[STATUS], return_counts=True), strict=True):
+                found[int(status)] = found.get(int(status), 0) + int(count)
+        return found
+
+    def to_xarray(self, names: Sequence[str] | None = None) -> xarray.Dataset:
+        """Columns, or all, as an ``xarray.Dataset`` over the parameters, with units. Raises where xarray is not installed."""
+        try:
+            import xarray
+        except ImportError:
+            raise LagrangeCasadiError("to_xarray needs xarray; install it with: pip install xarray") from None
+        kept = [self.column(name) for name in (self.columns if names is None else names)]
+        data = {k.name: ((*self.dimensions, *k.axes), self[k.name], {"units": k.unit, "long_name": k.long_name}) for k in kept}
+        coordinates = {
+            name: (name if name in self.dimensions else DESIGN, self[name], {"units": unit})
+            for name, unit in self.parameters.items()
+        }
+        if DESIGN in self.dimensions:
+            coordinates[DESIGN] = (DESIGN, self.chosen.get(DESIGN, np.arange(self.dimensions[DESIGN])), {"units": "1"})
+        for axis, unit in (("t", "s"), ("xi", "1")):
+            if any(axis in k.axes for k in kept):
+                coordinates[axis] = (axis, self[axis], {"units": unit})
+        return xarray.Dataset(data, coordinates, {"case": self.case})
+
+    @cached_property
+    def description(self) -> dict[str, Any]:
+        """The mechanism as a file describes it, swept parameters at their defaults."""
+        return dict(self.identity["mechanism"])
+
+    def _left(self, numbers: npt.NDArray[np.int64]) -> Any:
+        """Which designs are selected."""
+        if not self.chosen:
+            return slice(None)
+        places = dict(zip(self.dimensions, np.unravel_index(numbers, tuple(self.dimensions.values())), strict=True))
+        return np.all([np.isin(places[axis], chosen) for axis, chosen in self.chosen.items()], axis=0)
+
+    def _axis(self, parameter: str) -> str:
+        return parameter if parameter in self.dimensions else DESIGN
+
+    def _cut(self, dataset: Any, axes: Sequence[str]) -> Values:
+        """What is selected of a dataset: the box around it is read, and cut in memory."""
+        numbers = [self.chosen.get(axis) for axis in axes]
+        box = tuple(slice(None) if n is None else slice(int(n[0]), int(n[-1]) + 1) for n in numbers)
+        values = np.asarray(dataset[box])
+        for axis, n in enumerate(numbers):
+            if n is not None:
+                values = np.take(values, n - n[0], axis=axis)
+        return values
+
+    @contextmanager
+    def _opened(self) -> Iterator[h5py.File]:
+        with _reading(self.path) as file:
+            try:
+                yield file
+            except (OSError, RuntimeError) as error:
+                raise StoreError(f"{self.path}: damaged: {' '.join(str(error).split())}") from None
+
+
+def is_sweep(path: str | Path) -> bool:
+    """Whether a path is that of a sweep's file, whole or not."""
+    try:
+        with h5py.File(path, "r") as file:
+            return bool(file.attrs.get("schema") == SCHEMA)
+    except OSError:
+        return False
+
+
+def identity_of(path: Path) -> dict[str, Any]:
+    """What a finished sweep says it is of. Raises what :meth:`Sweep.open` does."""
+    return dict(Sweep.open(path).identity)
+
+
+def _described(path: Path, file: h5py.File, keeper: Any) -> Sweep:
+    attributes = file.attrs
+    identity = {key: json.loads(attributes[key]) for key in WORDS} | {key: _plain(attributes[key]) for key in _NAMED}
+    columns: dict[str, Kept] = {}
+    status = file[STATUS]
+    names = [dim[0].name.rpartition("/")[2] for dim in status.dims]
+
+    def visit(place: str, item: Any) -> None:
+        if isinstance(item, h5py.Dataset) and not item.is_scale and not place.startswith("grid/"):
+            axes = tuple(item.dims[axis][0].name.rpartition("/")[2] for axis in range(len(names), item.ndim))
+            name = place.replace("/", ":")
+            columns[name] = Kept(name, str(item.attrs["units"]), str(item.attrs["long_name"]), axes)
+
+    file.visititems(visit)
+    if len(columns) != attributes["columns"]:
+        raise StoreError(f"{path}: damaged: it has {len(columns)} columns of {attributes['columns']}")
+    sentences = json.loads(status.attrs["sentences"])
+    words = zip(sentences.items(), status.attrs["flag_meanings"].split(), strict=True)
+    return Sweep(
+        path,
+        identity,
+        dict(zip(names, status.shape, strict=True)),
+        {name: str(file["grid"][name].attrs["units"]) for name in file["grid"]},
+        {name: columns[name] for name in sorted(columns, key=lambda name: (KINDS.index(name.partition(":")[0]), name))},
+        {int(number): (word, sentence) for (number, sentence), word in words},
+        tuple(json.loads(attributes["undetermined"])),
+        {},
+        keeper,
+    )
+
+
+def _plain(value: Any) -> Any:
+    return int(value) if isinstance(value, np.integer) else str(value)
+
+
+def near(values: Array, number: float) -> npt.NDArray[np.bool_]:
+    """Where values are a number, but for the rounding of a grid."""
+    return np.asarray(np.abs(values - number) <= _NEAR * np.maximum(np.abs(values), abs(number)))
+
+
+def _matches(name: str, there: Array, wanted: Any) -> npt.NDArray[np.bool_]:
+    if isinstance(wanted, (tuple, list)):
+        low, high = wanted
+        found = ((there > low) | near(there, low)) & ((there < high) | near(there, high))
+    else:
+        found = near(there, wanted)
+    if not found.any():
+        close = there[np.argsort(np.abs(there - np.mean(wanted)))[:2]]
+        raise DeclarationError(f"no design has {name} = {wanted}; nearest: {', '.join(f'{value:.10g}' for value in close)}")
+    return np.asarray(found)
+
+
+def _along(dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], where: tuple[Any, ...]) -> Array:
+    """A parameter's values of the designs of a slab, flat."""
+    if name not in axes:
+        return np.asarray(dataset[where[0]])
+    axis = axes.index(name)
+    kept = [
+        len(range(*place.indices(length))) if isinstance(place, slice) else 1 for place, length in zip(where, dims, strict=True)
+    ]
+    shape = [1] * len(dims)
+    shape[axis] = kept[axis]
+    return np.broadcast_to(np.reshape(dataset[where[axis]], shape), kept).ravel()
+
+
+@contextmanager
+def _reading(path: str | Path) -> Iterator[h5py.File]:
+    if not Path(path).is_file():
+        raise PathError(f"{path}: {'is a folder, not a file' if Path(path).is_dir() else 'no such file'}")
+    try:
+        file = h5py.File(path, "r")
+    except OSError as error:
+        raise StoreError(f"{path}: not a whole HDF5 file ({' '.join(str(error).split())})") from None
+    with file:
+        attributes = file.attrs
+        if attributes.get("schema") != SCHEMA:
+            raise StoreError(f"{path}: not a sweep, its attribute 'schema' is {attributes.get('schema')!r}")
+        if attributes.get("schema_version") != SCHEMA_VERSION:
+            raise StoreError(
+                f"{path}: schema version {attributes.get('schema_version')} of sweeps, this program reads version {SCHEMA_VERSION}"
+            )
+        if not attributes.get("complete", False):
+            raise StoreError(f"{path}: was not written to its end")
+        yield file

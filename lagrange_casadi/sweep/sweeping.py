@@ -1,0 +1,125 @@
+"""Sweeps from Python: a scene, or a case, over a grid or a list of designs."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+import weakref
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..case import Case
+from ..compensated import Precision
+from ..errors import DeclarationError
+from ..rung import Backend, Rung
+from ..scene import Grid as Span
+from ..scene import Scene
+from .axes import designs_of
+from .columns import Keep
+from .conduct import Progress, conduct
+from .plan import Plan
+from .reading import Sweep
+from .workers import Threads, Workers
+
+
+def sweep(
+    scene: Scene | Case,
+    grid: Any,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    parameters: Mapping[str, float] | None = None,
+    t: Span | None = None,
+    xi: Span | None = None,
+    wanted: Sequence[str] | None = None,
+    keep: Keep = "peaks",
+    backend: Backend = "auto",
+    precision: Precision = "double",
+    newton: int | None = None,
+    flags: str = "",
+    workers: int | None = None,
+    dask: str | None = None,
+    resume: bool = False,
+    force: bool = False,
+    many: bool = False,
+    progress: Progress | None = None,
+) -> Sweep:
+    """Evaluate a scene for many designs, and keep of each what sizes its parts. Nothing is derived or compiled for a design.
+
+    Parameters
+    ----------
+    scene
+        A scene, or a case from :func:`.load_case`; a cluster needs a case, for its workers load it too.
+    grid
+        A mapping of parameters to axes, each a tuple (start, stop, count), a sequence of values, or a :class:`.Range`; or a
+        :class:`.Listed` of designs, as :func:`.read_designs` reads it from CSV.
+    out
+        The file; by default one that lives as long as what is returned.
+    parameters
+        Values of parameters that are not swept.
+    t, wanted
+        As in :func:`.evaluate`; ``all`` leaves out the motion, unless that is wanted by name.
+    xi
+        Ratios xi/l at which section forces are kept too: over the instants, the value largest in size at each.
+    keep
+        ``peaks``; with ``laws`` also the section laws over time; with ``histories`` also all outputs over time.
+    backend, precision, newton, flags
+        How it is evaluated: see :class:`.Rung`.
+    workers
+        How many threads share the designs; default: one a core.
+    dask
+        The address of a Dask scheduler whose workers evaluate instead.
+    resume, force
+        Go on with what an earlier sweep into ``out`` left, or start anew whatever is there.
+    many
+        Mean it where there are more than 10^9 designs.
+    progress
+        Called with what is being done (``designs``, then ``file``), how much of it is done, and of how much.
+
+    Raises :class:`DeclarationError`, :class:`UnknownNameError`, :class:`ParameterError` or :class:`PathError` for mistakes,
+    :class:`StoreError` where the file is another sweep's or cannot be written, :class:`BusyError` where another process writes it,
+    :class:`ClusterError` where a cluster cannot serve, :class:`StoppedError` after an interrupt. What was done is kept.
+    """
+    case = scene if isinstance(scene, Case) else None
+    own = scene.scene if isinstance(scene, Case) else scene
+    if not isinstance(own, Scene):
+        raise DeclarationError(f"sweep: expected a Scene or a Case, got {own!r}")
+    plan = Plan.of(
+        own,
+        designs_of(grid),
+        fixed=parameters,
+        t=t,
+        xi=xi,
+        wanted=wanted,
+        keep=keep,
+        rung=Rung(backend, precision, newton, None, flags),
+        many=many,
+    )
+    keeper = _Temporary() if out is None else None
+    target = keeper.path / "sweep.h5" if keeper else Path(out or "")
+    conduct(plan, target, hired(workers, dask, case), resume=resume, force=force, progress=progress or (lambda *_: None))
+    return Sweep.open(target, keeper)
+
+
+class _Temporary:
+    """A folder that goes with the object."""
+
+    def __init__(self) -> None:
+        self.path = Path(tempfile.mkdtemp(prefix="lagrange_casadi-"))
+        weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
+
+
+def hired(workers: int | None, dask: str | None, case: Case | None) -> Workers:
+    """Who evaluates. Raises :class:`DeclarationError` for a count below 1, both at once, or a cluster without a case."""
+    if workers is not None and (type(workers) is not int or workers < 1):
+        raise DeclarationError(f"workers: expected a whole number of at least 1, got {workers!r}")
+    if dask is None:
+        return Threads(workers)
+    if workers is not None:
+        raise DeclarationError("--workers and --dask exclude each other: a cluster has workers of its own")
+    if case is None:
+        raise DeclarationError("a cluster needs a case from load_case: its workers load the case themselves")
+    from .cluster import Cluster
+
+    return Cluster(dask, case)

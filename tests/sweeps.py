@@ -1,0 +1,87 @@
+"""An engine of plain formulas, for tests of what stands around an engine; and what sweeps leave behind."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import builders
+import numpy as np
+
+from lagrange_casadi.solution import Provenance
+from lagrange_casadi.sweep import plan
+from lagrange_casadi.sweep.engine import Outcome
+from lagrange_casadi.version import __version__
+
+
+class Formula:
+    """Numbers that tell the design and the column apart; some have no result. ``pause`` [s] a design."""
+
+    quantities = ("effort:O", "reaction:A", "reaction:A:fx", "section:rod:axial", "section:rod:shear", "section:rod:bending")
+    efforts = ("effort:O",)
+    provenance = Provenance("formula", "double", "", "", "(default)", {"lagrange_casadi": __version__})
+
+    def __init__(self, count=7, pause=0.0):
+        laws = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
+        self.columns = ("effort:O", *(f"section:rod:law:{name}" for name in laws))
+        self.count, self.pause, self.threads, self.calls = count, pause, [], []
+
+    def evaluate(self, p, *, threads=None, histories=False):
+        self.threads.append(threads)
+        self.calls.append((len(p), threading.get_ident()))
+        time.sleep(self.pause * len(p))
+        # Not by a product of matrices, whose rounding depends on how many rows there are.
+        seed = sum(factor * column for factor, column in zip((1.0, 2.0, 5.0, 7.0, 11.0), p.T, strict=True))
+        status = (np.sin(1e3 * seed) > 0.8).astype(np.int8)
+
+        def numbers(width, shift):
+            values = np.sin(seed[:, None] * (1.0 + np.arange(width)) + shift)
+            return np.where(status[:, None] == 0, values, np.nan)
+
+        value, t, xi = (numbers(len(self.quantities), k) for k in range(3))
+        series = np.stack([numbers(self.count, 10 + k) for k in range(len(self.columns))], axis=1) if histories else None
+        return Outcome(status, value, t, np.abs(xi), numbers(1, 5), numbers(1, 6), series)
+
+
+def use(monkeypatch, **keywords):
+    """Let sweeps use one :class:`Formula`, which is given back."""
+    engine = Formula(**keywords)
+    monkeypatch.setattr(plan, "compiled", lambda *_: engine)
+    return engine
+
+
+def scene(**keywords):
+    """The paper's mechanism, whose parameters are r, l, m1, m2 and m3."""
+    return builders.slider_crank(**{"t": (0, 0.08, 7), **keywords})
+
+
+@contextlib.contextmanager
+def process(*command, **keywords):
+    """A process of its own that does not outlive its test."""
+    started = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **keywords)
+    try:
+        yield started
+    finally:
+        started.kill()
+        started.communicate()
+
+
+def wait_for(condition, seconds=60.0):
+    """Wait until something is so."""
+    until = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < until, "it never came"
+        time.sleep(0.002)
+
+
+def interrupt_after(seconds):
+    """Send this process an interrupt in a while."""
+    threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT)).start()
+
+
+PYTHON = sys.executable

@@ -1,0 +1,256 @@
+"""Sweeps from the command line: what they write and say, and the one line and status of every mistake."""
+
+import csv
+import os
+import re
+import signal
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sweeps
+
+from lagrange_casadi.cli import main, progress
+from lagrange_casadi.sweep import Sweep, cluster
+
+CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
+ASKED = ["sweep", str(CASE), "--t", "0:0.08:21", "--want", "effort", "--want", "section:rod"]
+BENDING = "peak:section:rod:bending"
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def file(here, capfd):
+    """A small sweep's file."""
+    assert (
+        main([*ASKED, "--grid", "l=0.06:0.36:4", "--grid", "r=0.05,0.1", "--set", "m3=0.2", "--xi", "0:1:3", "--out", "s.h5"]) == 0
+    )
+    capfd.readouterr()
+    return Path("s.h5")
+
+
+def test_sweep_writes_one_file_and_says_what_is_in_it(here, capfd):
+    assert main([*ASKED, "--grid", "l=0.06:0.36:4", "--grid", "r=0.05,0.1"]) == 0
+    out, err = capfd.readouterr()
+    assert out.startswith("slider_crank: 4 x 2 = 8 designs over l, r\n  1 without a result: ")
+    assert out.endswith("wrote slider_crank_sweep.h5\n")
+    assert err == ""
+    assert os.listdir(here) == ["slider_crank_sweep.h5"]
+
+
+def test_sweep_takes_options(here):
+    options = ["--grid", "m3=0.1:10:3:log", "--set", "l=0.3", "--xi", "0:1:3", "--keep", "histories", "--backend", "vm"]
+    assert main([*ASKED, *options, "--workers", "1", "--quiet", "--out", "x.h5"]) == 0
+    found = Sweep.open("x.h5")
+    np.testing.assert_allclose(found["m3"], [0.1, 1.0, 10.0], rtol=1e-15)
+    assert found["history:section:rod:bending"].shape == (3, 21, 3)
+    assert found.identity["backend"] == "vm"
+    assert found.identity["mechanism"]["parameters"]["l"]["value"] == 0.3
+    assert main([*ASKED, *options, "--workers", "1", "--resume", "--out", "x.h5"]) == 0
+
+
+def test_sweep_of_a_list(here):
+    Path("d.csv").write_text("r,l\n0.05,0.2\n0.1,0.3\n0.1,0.05\n")
+    assert main([*ASKED, "--designs", "d.csv", "--out", "x.h5"]) == 0
+    found = Sweep.open("x.h5")
+    np.testing.assert_array_equal(found["l"], [0.2, 0.3, 0.05])
+    assert (found["status"] != 0).tolist() == [False, False, True]
+
+
+MISTAKES = [
+    (["--grid", "q=0.1:0.2:3"], 2, "unknown parameter 'q'; valid: r, l, m1, m2, m3"),
+    (["--grid", "l=0.4:0.1:3"], 2, "l: STOP must be after START, got 0.4:0.1:3: the range is reversed"),
+    (["--grid", "l=0.1:0.4:0"], 2, "l: COUNT must be at least 1, got 0.1:0.4:0: the range is empty"),
+    (["--grid", "l=nan:0.4:3"], 2, "l: START and STOP must be finite, got nan:0.4:3"),
+    (["--grid", "l=0.1,nan"], 2, "l: values must be finite, got nan"),
+    (["--grid", "l=0:0.4:3:log"], 2, "l: a log range must begin above 0, got 0.0:0.4:3:log"),
+    (["--grid", "l=0.1:0.4:3:lin"], 2, "expected NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..."),
+    (["--grid", "0.1:0.4:3"], 2, "as in l=0.1:0.4:31, got '0.1:0.4:3'"),
+    (["--grid", "l="], 2, "got 'l='"),
+    (["--grid", "l=0.1", "--grid", "l=0.2"], 2, "--grid: parameter 'l' is swept twice"),
+    (["--grid", "l=0.1", "--set", "l=0.2"], 2, "parameter 'l' is swept and set to 0.2 as well"),
+    (
+        ["--grid", "l=0.1:0.4:40000", "--grid", "r=0.1:0.4:40000"],
+        1,
+        "the grid has 1 600 000 000 designs, more than 10^9; if that is",
+    ),
+    (["--grid", "l=-0.1:0.4:6", "--grid", "m1=-1,1,-2"], 2, "l = -0.1 to 0.4, out of its range [0, inf]; m1 = -1, -2, out of its"),
+    ([], 2, "expected either --grid, as in --grid l=0.1:0.4:31, or --designs FILE.csv"),
+    (["--grid", "l=0.1", "--designs", "bad.csv"], 2, "expected either --grid"),
+    (["--designs", "none.csv"], 2, "none.csv: no such file"),
+    (["--designs", "bad.csv"], 2, "bad.csv, line 3, column 'r': expected a finite number, got 'x'"),
+    (["--designs", "short.csv"], 2, "short.csv, line 2: 1 cells, expected 2, column 'r' is missing"),
+    (["--designs", "low.csv"], 2, "l = -0.2 in line 2, -0.3 in line 4, out of its range [0, inf]"),
+    (["--grid", "l=0.2", "--xi", "0:2:3"], 2, "ratios xi/l must lie in [0, 1]"),
+    (["--grid", "l=0.2", "--t", "1:0:3"], 2, "t: STOP must be after START"),
+    (["--grid", "l=0.2", "--want", "torque"], 2, "unknown output 'torque'"),
+    (["--grid", "l=0.2", "--keep", "all"], 2, "'all' is not one of 'peaks', 'laws', 'histories'"),
+    (["--grid", "l=0.2", "--table", "128"], 2, "No such option '--table'"),
+    (["--grid", "l=0.2", "--workers", "0"], 2, "0 is not in the range x>=1"),
+    (["--grid", "l=0.2", "--out", "x.txt"], 2, "expected a name that ends in .h5"),
+    (["--grid", "l=0.2", "--out", "nowhere/x.h5"], 2, "folder nowhere does not exist"),
+    (["--grid", "l=0.2", "--out", "mine.h5"], 2, "mine.h5 exists: --force replaces it, --resume goes on"),
+    (["--grid", "l=0.2", "--out", "mine.h5", "--resume"], 1, "mine.h5: not a whole HDF5 file"),
+    (["--grid", "l=0.2", "--resume", "--force"], 2, "--resume and --force exclude each other"),
+    (["--grid", "l=0.2", "--dask", "tcp://127.0.0.1:1"], 1, "cannot reach a Dask scheduler at tcp://127.0.0.1:1: Timed out"),
+    (["--grid", "l=0.2", "--dask", "tcp://127.0.0.1:1", "--workers", "2"], 2, "--workers and --dask exclude each other"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "status", "says"), MISTAKES)
+def test_a_mistake_is_one_line_and_leaves_nothing(here, capfd, monkeypatch, arguments, status, says):
+    monkeypatch.setattr(cluster, "_PATIENCE", "0.5s")
+    files = {
+        "bad.csv": "l,r\n0.2,0.1\n0.3,x\n",
+        "short.csv": "l,r\n0.2\n",
+        "low.csv": "l\n-0.2\n0.1\n-0.3\n",
+        "mine.h5": "mine",
+    }
+    for name, text in files.items():
+        (here / name).write_text(text)
+    assert main([*ASKED, *arguments]) == status
+    out, err = capfd.readouterr()
+    assert err.startswith("error: ")
+    assert err.count("\n") == 1
+    assert says in err
+    assert out == ""
+    assert {path.name: path.read_text() for path in here.iterdir()} == files
+
+
+def test_best(file, capfd):
+    assert main(["best", "s.h5", "--minimise", BENDING, "--where", "l>0.2", "--count", "2", "--column", "rms:effort:O"]) == 0
+    head, *rows = capfd.readouterr().out.splitlines()
+    assert head.split() == ["design", "l", "[m]", "r", "[m]", BENDING, "[N", "m]", "rms:effort:O", "[N", "m]"]
+    found = Sweep.open("s.h5")
+    sizes = np.abs(found[BENDING])[found["l"] > 0.2]
+    shown = [float(row.split()[3]) for row in rows]
+    np.testing.assert_allclose(np.abs(shown), np.sort(sizes.ravel())[:2], rtol=1e-5)
+    assert main(["best", "s.h5", "--minimise", BENDING, "--minimise", "peak:effort:O", "--csv", "front.csv"]) == 0
+    assert capfd.readouterr().out.endswith("wrote front.csv\n")
+    assert Path("front.csv").read_text().startswith(f"l,r,{BENDING},peak:effort:O\n")
+    assert main(["best", "s.h5", "--minimise", BENDING, "--where", "l>1"]) == 0
+    assert capfd.readouterr().out == "no design has a result and meets the conditions\n"
+
+
+def test_table(file, capfd):
+    assert main(["table", "s.h5", "--rows", "3"]) == 0
+    out = capfd.readouterr().out.splitlines()
+    assert out[0].split()[:6] == ["design", "l", "[m]", "r", "[m]", "status"]
+    assert out[4] == "... of 8 designs; --rows N shows more, --csv OUT.csv writes all"
+    assert main(["table", "s.h5", "--column", "rms:effort:O", "--where", "status!=0"]) == 0
+    assert capfd.readouterr().out.splitlines()[1].split() == ["1", "0.06", "0.1", "nan"]
+
+
+def test_csv_has_every_digit_and_is_a_list_of_designs_again(file, capfd):
+    assert main(["table", "s.h5", "--csv", "all.csv"]) == 0
+    assert capfd.readouterr().out == "wrote all.csv: 8 designs\n"
+    with open("all.csv", newline="") as text:
+        rows = list(csv.DictReader(text))
+    found = Sweep.open("s.h5")
+    for name in ("status", BENDING, "peak_xi:section:rod:shear", "mean:effort:O"):
+        np.testing.assert_array_equal([float(row[name]) for row in rows], found[name].ravel())
+    assert main(["table", "s.h5", "--csv", "list.csv", "--column", "l", "--where", "status==0"]) == 0
+    assert Path("list.csv").read_text().startswith("l,r\n0.06,0.05\n")
+    assert main([*ASKED, "--designs", "list.csv", "--set", "m3=0.2", "--out", "again.h5"]) == 0
+    there = found["status"] == 0
+    np.testing.assert_array_equal(Sweep.open("again.h5")[BENDING], found[BENDING][there])
+
+
+def test_info_check_and_plot_know_sweeps(file, capfd):
+    assert main(["info", "s.h5"]) == 0
+    out = capfd.readouterr().out
+    assert "swept l: 0.06:0.36:4" in out
+    assert re.search(r"peak:section:rod:bending +N m +largest in size over time: bending moment", out)
+    assert main(["check", "s.h5"]) == 0
+    assert capfd.readouterr().out == "s.h5: whole and consistent\n"
+    assert main(["plot", "s.h5", "--out", "figures", "--over", "l", "--at", "r=0.05"]) == 0
+    assert {path.stem for path in Path("figures").iterdir()} >= {"peak_effort", "peak_section_rod", "along_rod"}
+    assert main(["run", str(CASE), "--t", "0:0.08:5", "--no-figures", "--out", "run.h5"]) == 0
+    capfd.readouterr()
+    assert main(["plot", "run.h5", "--out", "figures", "--over", "l"]) == 2
+    assert "--over, --at and --against go with a sweep's file" in capfd.readouterr().err
+    for command in ("best", "table"):
+        assert main([command, "run.h5", *(["--minimise", "l"] if command == "best" else [])]) == 1
+        assert "run.h5: not a sweep" in capfd.readouterr().err
+
+
+def program(*arguments):
+    return sweeps.process(sys.executable, "-m", "lagrange_casadi", *arguments)
+
+
+LONG = ["--grid", "l=0.11:0.4:4000", "--grid", "r=0.05:0.1:25"]
+SHORT = ["--grid", "l=0.11:0.4:25", "--grid", "r=0.05:0.1:6"]
+
+
+def test_killed_and_resumed_from_the_command_line(here):
+    """The real engine, in processes of its own."""
+    with program(*ASKED, *SHORT, "--out", "whole.h5") as whole:
+        assert whole.communicate(timeout=120)[1] == ""
+    with program(*ASKED, *SHORT, "--out", "x.h5") as killed:
+        sweeps.wait_for(lambda: killed.poll() is not None or list(here.glob("x.h5.parts/*.part")))
+        killed.send_signal(signal.SIGKILL)
+        killed.wait()
+    with program(*ASKED, *SHORT, "--out", "x.h5", "--resume") as resumed:
+        out, err = resumed.communicate(timeout=120)
+        assert resumed.returncode == 0
+    assert out.endswith("wrote x.h5\n")
+    assert err == "" or err.startswith("going on after ")
+    assert Path("x.h5").read_bytes() == Path("whole.h5").read_bytes()
+    assert sorted(os.listdir(here)) == ["whole.h5", "x.h5"]
+
+
+def test_ctrl_c_is_one_line_that_says_how_to_go_on(here):
+    with program(*ASKED, *LONG, "--out", "x.h5") as stopped:
+        sweeps.wait_for(lambda: list(here.glob("x.h5.parts/*.part")))
+        stopped.send_signal(signal.SIGINT)
+        out, err = stopped.communicate(timeout=60)
+        assert stopped.returncode == 130
+    assert out == ""
+    told = r"error: stopped; [\d ]+ of 100 000 designs are kept in x\.h5\.parts: go on with --resume\n"
+    assert re.fullmatch(told, err)
+    assert os.listdir(here) == ["x.h5.parts"]
+
+
+def test_ctrl_c_before_anything_is_done_leaves_nothing(here):
+    case = here / "slow.py"
+    case.write_text(f"from lagrange_casadi import load_case\nprint('ready', flush=True)\nscene = load_case({str(CASE)!r}).scene\n")
+    case.write_text(case.read_text().replace("scene = ", "import time; time.sleep(30)\nscene = "))
+    with program("sweep", str(case), "--grid", "l=0.2", "--out", "x.h5") as stopped:
+        assert stopped.stdout.readline() == "ready\n"
+        stopped.send_signal(signal.SIGINT)
+        assert stopped.communicate(timeout=60)[1] == "error: interrupted; nothing was left half-written\n"
+        assert stopped.returncode == 130
+    assert [name for name in os.listdir(here) if name != "__pycache__"] == ["slow.py"]
+
+
+def test_lines_tell_of_progress_now_and_then(capsys, monkeypatch):
+    clock = iter([100.0, 101.0, 115.0, 116.0, 130.0])
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
+    lines = progress.Lines()
+    for done in (1000, 1100, 2500, 2600, 4000):
+        lines("designs", done, 10_000)
+    lines.close()
+    assert capsys.readouterr().err.splitlines() == [
+        "going on after 1 000 of 10 000 designs",
+        "2 500 of 10 000 designs, 25 %, 100 a second, 01:15 left",
+        "4 000 of 10 000 designs, 40 %, 100 a second, 01:00 left",
+    ]
+
+
+def test_a_bar_is_shown_on_a_terminal_only(capsys, monkeypatch):
+    assert progress.shown(quiet=True) is None
+    assert isinstance(progress.shown(quiet=False), progress.Lines)
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+    bar = progress.shown(quiet=False)
+    for what, done, total in (("designs", 100, 1000), ("designs", 1000, 1000), ("file", 0.5, 1.0)):
+        bar(what, done, total)
+    bar.close()
+    err = capsys.readouterr().err
+    assert "designs:" in err
+    assert "/1.00k" in err

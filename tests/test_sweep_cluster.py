@@ -1,0 +1,177 @@
+"""A real scheduler and real worker processes: the same bytes, whatever dies."""
+
+import contextlib
+import json
+import logging
+import os
+import re
+import signal
+import sys
+
+import numpy as np
+import pytest
+import sweeps
+
+from lagrange_casadi import Case, load_case
+from lagrange_casadi.errors import ClusterError, DeclarationError, StoppedError
+from lagrange_casadi.rung import Rung
+from lagrange_casadi.sweep import blocks, cluster, sweep
+from lagrange_casadi.sweep.cluster import Cluster, Source
+from lagrange_casadi.sweep.plan import Task, signature
+
+distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install 'lagrange_casadi[cluster]'")
+
+ASKED = {"t": (0, 0.08, 41), "wanted": ["effort"]}
+GRID = {"l": (0.055, 0.4, 240), "r": [0.05, 0.1]}
+
+
+@contextlib.contextmanager
+def started(folder, workers):
+    """The address of a scheduler, its process, and those of its workers."""
+    told = folder / "scheduler.json"
+    dask = (sys.executable, "-m", "dask")
+    quiet = {"env": {**os.environ, "DASK_LOGGING__DISTRIBUTED": "critical"}}
+    with contextlib.ExitStack() as stack:
+        begun = ("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(told))
+        scheduler = stack.enter_context(sweeps.process(*dask, *begun, **quiet))
+        sweeps.wait_for(lambda: told.exists() and told.read_text().endswith("}"))
+        address = json.loads(told.read_text())["address"]
+        begin = ("worker", address, "--nworkers", "1", "--nthreads", "1", "--no-dashboard", "--no-nanny")
+        found = [stack.enter_context(sweeps.process(*dask, *begin, cwd=folder, **quiet)) for _ in range(workers)]
+        with distributed.Client(address, set_as_default=False) as client:
+            client.wait_for_workers(workers)
+        yield address, scheduler, found
+
+
+@pytest.fixture(scope="module")
+def whole(slider_crank, tmp_path_factory):
+    """The bytes of the sweep on this process's threads."""
+    out = tmp_path_factory.mktemp("whole") / "x.h5"
+    return sweep(slider_crank, GRID, **ASKED, out=out).path.read_bytes()
+
+
+@pytest.fixture(scope="module")
+def two_workers(tmp_path_factory):
+    with started(tmp_path_factory.mktemp("cluster"), 2) as (address, *_):
+        yield address
+
+
+def parts(path):
+    return len(list(path.parent.glob(f"{path.name}.parts/*.part")))
+
+
+def test_two_worker_processes_give_the_same_bytes(slider_crank, two_workers, whole, tmp_path):
+    level = logging.getLogger("distributed").disabled
+    found = sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=two_workers)
+    assert found.path.read_bytes() == whole
+    assert logging.getLogger("distributed").disabled == level
+
+
+def test_ctrl_c_commits_what_is_under_way(slider_crank, two_workers, whole, tmp_path, monkeypatch):
+    monkeypatch.setattr(blocks, "_SECONDS", 0.02)
+    path, asked = tmp_path / "x.h5", []
+
+    def progress(_what, done, _total):
+        if done and not asked:
+            asked.append(done)
+            os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(StoppedError, match=r"stopped; \d+ of 480 designs are kept"):
+        sweep(slider_crank, GRID, **ASKED, out=path, dask=two_workers, progress=progress)
+    assert 1 < parts(path) <= 6
+    assert sweep(slider_crank, GRID, **ASKED, out=path, dask=two_workers, resume=True).path.read_bytes() == whole
+
+
+def test_a_worker_that_is_killed_is_done_without(slider_crank, whole, tmp_path, monkeypatch):
+    monkeypatch.setattr(blocks, "_SECONDS", 0.05)
+    path, killed = tmp_path / "x.h5", []
+    with started(tmp_path, 2) as (address, _, workers):
+
+        def progress(_what, done, _total):
+            if done and not killed:
+                workers[0].send_signal(signal.SIGKILL)
+                killed.append(workers[0].wait())
+
+        assert sweep(slider_crank, GRID, **ASKED, out=path, dask=address, progress=progress).path.read_bytes() == whole
+    assert killed == [-signal.SIGKILL]
+
+
+def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, whole, tmp_path, monkeypatch, capfd):
+    monkeypatch.setattr(blocks, "_SECONDS", 0.05)
+    path = tmp_path / "x.h5"
+    with started(tmp_path, 1) as (address, scheduler, _):
+
+        def progress(_what, done, _total):
+            if done:
+                scheduler.send_signal(signal.SIGKILL)
+                scheduler.wait()
+
+        told = rf"the Dask scheduler at {re.escape(address)} was lost; \d+ of 480 designs are kept in .*: go on with --resume"
+        with pytest.raises(ClusterError, match=told):
+            sweep(slider_crank, GRID, **ASKED, out=path, dask=address, progress=progress)
+    assert capfd.readouterr().err == ""
+    assert parts(path) > 0
+    assert sweep(slider_crank, GRID, **ASKED, out=path, resume=True).path.read_bytes() == whole
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense", "foo://127.0.0.1:8786"])
+def test_what_cannot_be_reached_is_one_line(slider_crank, tmp_path, monkeypatch, address):
+    monkeypatch.setattr(cluster, "_PATIENCE", "1s")
+    with pytest.raises(ClusterError, match=f"cannot reach a Dask scheduler at {re.escape(address)}: ") as caught:
+        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_case_travels_without_its_file(tmp_path):
+    path = tmp_path / "here" / "case.py"
+    path.parent.mkdir()
+    path.write_text(
+        "from lagrange_casadi import Mechanism, Scene\n"
+        "from lagrange_casadi.motion import polynomial\n"
+        "def scene():\n"
+        "    m = Mechanism('arm')\n"
+        "    m.revolute('O', m.ground, m.link('a', length=m.parameter('l', 0.5, 'm'), mass=1.0))\n"
+        "    return Scene(m, {'O': polynomial(0, 1)})\n"
+    )
+    source = Source(str(path), path.read_text())
+    assert source.load().mechanism.name == "arm"
+    path.write_text("raise SystemExit\n")
+    assert source.load().mechanism.name == "arm"
+    path.unlink()
+    assert source.load().mechanism.name == "arm"
+
+
+def test_a_worker_that_would_give_other_numbers_is_refused(slider_crank):
+    """What runs on a worker, here with what another version would have told it."""
+    source = Source(str(slider_crank.path), slider_crank.path.read_text())
+    task = Task(("effort",), (0.0, 0.08, 9), None, "peaks", Rung())
+    harvest = task.harvest(slider_crank.scene)
+    told = signature(slider_crank.scene, task, harvest.engine.provenance)
+    p = np.array([[0.1, 0.2, 0.1, 0.1, 0.1]])
+    _, columns = cluster._evaluate(source, task, told, p)
+    for mine, expected in zip(columns, harvest.evaluate(p, 1), strict=True):
+        np.testing.assert_array_equal(mine, expected)
+    other = told | {"versions": told["versions"] | {"casadi": "3.7.0"}}
+    with pytest.raises(ClusterError, match=r"not give the same numbers: versions casadi was 3\.7\.0 and is .* there"):
+        cluster._evaluate(source, task, other, p)
+
+
+def test_what_fails_on_a_worker_is_one_line(slider_crank):
+    source = Source("/nowhere/case.py", "1 / 0\n")
+    with pytest.raises(ClusterError, match=r"a worker failed: case .*, line 1: ZeroDivisionError"):
+        cluster._evaluate(source, Task(("effort",), (0.0, 0.08, 9), None, "peaks", Rung()), {}, np.zeros((1, 5)))
+
+
+def test_a_cluster_needs_a_case(slider_crank, tmp_path):
+    with pytest.raises(DeclarationError, match="a cluster needs a case from load_case"):
+        sweep(slider_crank.scene, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1")
+    with pytest.raises(DeclarationError, match="--workers and --dask exclude each other"):
+        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1", workers=2)
+
+
+def test_without_dask_one_line_says_how_to_get_it(slider_crank, monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(ClusterError, match=r"--dask needs Dask; install it with: pip install 'lagrange_casadi\[cluster\]'"):
+        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1")
+    assert isinstance(load_case(slider_crank.path), Case)
+    assert Cluster("x", slider_crank).address == "x"

@@ -1,0 +1,165 @@
+"""What is kept of a design is what a plain evaluation of it gives."""
+
+import numpy as np
+import pytest
+import sweeps
+
+from lagrange_casadi import evaluate
+from lagrange_casadi.errors import DeclarationError, UnknownNameError
+from lagrange_casadi.peaks import forces, refine
+from lagrange_casadi.section_law import FORCES
+from lagrange_casadi.sweep import sweep
+
+SPAN = (0, 0.08, 129)
+LENGTHS, CRANKS = (0.13, 0.25), (0.06, 0.1)
+
+
+@pytest.fixture(scope="module")
+def swept(slider_crank):
+    grid = {"l": LENGTHS, "r": CRANKS}
+    return sweep(slider_crank, grid, t=SPAN, xi=(0, 1, 5), keep="histories", parameters={"m3": 0.3})
+
+
+@pytest.fixture(scope="module")
+def plain(slider_crank):
+    """Every design evaluated by itself."""
+    return {
+        (i, j): evaluate(slider_crank.scene, parameters={"l": l, "r": r, "m3": 0.3}, t=SPAN, xi=(0, 1, 5))
+        for i, l in enumerate(LENGTHS)
+        for j, r in enumerate(CRANKS)
+    }
+
+
+def test_peaks_are_those_between_the_instants(slider_crank, swept, plain):
+    compared = 0
+    for place, solution in plain.items():
+        for peak in refine(slider_crank.scene, solution, forces(solution)):
+            if solution.unit(peak.name) and abs(peak.value) > 1e-9:
+                np.testing.assert_allclose(swept[f"peak:{peak.name}"][place], peak.value, rtol=1e-8, err_msg=peak.name)
+                compared += 1
+            if peak.xi is not None:
+                assert 0.0 <= swept[f"peak_xi:{peak.name}"][place] <= 1.0
+    assert compared == 4 * 14
+
+
+def test_the_instant_and_the_ratio_of_a_peak_give_its_value(slider_crank, swept):
+    for i, l in enumerate(LENGTHS):
+        at, xi = (float(swept[f"{kind}:section:rod:bending"][i, 0]) for kind in ("peak_t", "peak_xi"))
+        there = evaluate(slider_crank.scene, parameters={"l": l, "r": CRANKS[0], "m3": 0.3}, t=(at, at, 1))
+        value = there.section("rod").law.at("bending", np.array([[xi]]))[0, 0]
+        np.testing.assert_allclose(value, swept["peak:section:rod:bending"][i, 0], rtol=1e-9)
+
+
+def test_resultants_are_no_less_than_their_members(swept, plain):
+    for place, solution in plain.items():
+        resultant = np.hypot(solution.reaction("A").fx, solution.reaction("A").fy).max()
+        assert swept["peak:reaction:A:resultant"][place] >= resultant * (1 - 1e-12)
+        np.testing.assert_allclose(swept["peak:reaction:A:resultant"][place], resultant, rtol=1e-2)
+
+
+def test_means_are_over_time(swept, plain):
+    for place, solution in plain.items():
+        effort = solution.effort("O")
+        np.testing.assert_allclose(swept["rms:effort:O"][place], np.sqrt(np.mean(effort**2)), rtol=0.05)
+        assert abs(swept["mean:effort:O"][place]) < swept["rms:effort:O"][place]
+
+
+def test_histories_are_those_of_a_plain_evaluation(swept, plain):
+    for name in ("effort:O", "reaction:guide:fy", "section:rod:law:f1"):
+        assert swept[f"history:{name}"].shape == (2, 2, 129)
+        for place, solution in plain.items():
+            size = np.abs(solution.series[name]).max()
+            np.testing.assert_allclose(swept[f"history:{name}"][place], solution.series[name], atol=1e-11 * size, err_msg=name)
+
+
+def test_section_forces_along_the_link(swept, plain):
+    for force in FORCES:
+        grid, largest = (swept[f"{kind}:section:rod:{force}"] for kind in ("history", "peak_at"))
+        assert grid.shape == (2, 2, 129, 5)
+        for place, solution in plain.items():
+            expected = getattr(solution.section("rod"), force)
+            np.testing.assert_allclose(grid[place], expected, atol=1e-11 * np.abs(expected).max())
+            np.testing.assert_allclose(np.abs(largest[place]), np.abs(expected).max(axis=0), atol=1e-11 * np.abs(expected).max())
+
+
+def test_a_tapered_link_and_what_acts_along_it(tmp_path):
+    """A density in parameters, and a station."""
+    from conftest import CASES
+
+    from lagrange_casadi import load_case
+
+    case = load_case(CASES / "quick_return")
+    name, parameter = next(iter(case.scene.mechanism.parameters.items()))
+    values = [parameter.default, parameter.default * 1.02]
+    found = sweep(case, {name: values}, t=(0, 0.1, 5), xi=(0, 1, 7), keep="histories", wanted=["section:rocker"])
+    for i, value in enumerate(values):
+        solution = evaluate(case.scene, parameters={name: value}, t=(0, 0.1, 5), xi=(0, 1, 7), wanted=["section:rocker"])
+        expected = solution.section("rocker").bending
+        np.testing.assert_allclose(found["history:section:rocker:bending"][i], expected, atol=1e-11 * np.abs(expected).max())
+
+
+def test_a_design_without_a_result_is_a_row_without_numbers(slider_crank):
+    found = sweep(slider_crank, {"l": [0.05, 0.2], "r": [0.1]}, t=SPAN, xi=(0, 1, 3), keep="histories")
+    word, sentence = found.statuses[int(found["status"][0, 0])]
+    assert word != "ok"
+    assert sentence
+    assert found["status"][1, 0] == 0
+    for name in found.columns:
+        if name != "status":
+            assert np.isnan(found[name][0]).all(), name
+            if "peak_xi" not in name:
+                assert np.isfinite(found[name][1]).all(), name
+
+
+def test_a_part_that_is_impossible_is_a_row_too(slider_crank):
+    found = sweep(slider_crank, {"l": [0.0, 0.2]}, t=SPAN, wanted=["effort"])
+    assert found["status"][0] != 0
+    assert found["status"][1] == 0
+
+
+def test_what_is_kept(slider_crank):
+    def kinds(**keywords):
+        found = sweep(slider_crank, {"l": [0.2, 0.3]}, t=(0, 0.08, 9), **keywords)
+        return {name.partition(":")[0] for name in found.columns}, found
+
+    peaks = {"status", "peak", "peak_t", "peak_xi", "mean", "rms"}
+    assert kinds()[0] == peaks
+    assert kinds(xi=(0, 1, 3))[0] == peaks | {"peak_at"}
+    assert kinds(wanted=["effort"])[0] == peaks - {"peak_xi"}
+    found, laws = kinds(keep="laws")
+    assert found == peaks | {"history"}
+    assert all(":law:" in name for name in laws.columns if name.startswith("history:"))
+    assert not any("motion" in name or "pose" in name for name in laws.columns)
+
+
+def test_units(swept):
+    units = {name: kept.unit for name, kept in swept.columns.items()}
+    assert units["peak:effort:O"] == units["rms:effort:O"] == units["peak:section:rod:bending"] == "N m"
+    assert units["peak:reaction:A:resultant"] == units["peak_at:section:rod:axial"] == "N"
+    assert units["peak_t:effort:O"] == "s"
+    assert units["peak_xi:section:rod:bending"] == units["status"] == "1"
+
+
+def test_what_cannot_be_kept_is_named(slider_crank):
+    grid = {"l": [0.2, 0.3]}
+    with pytest.raises(UnknownNameError, match="unknown choice of what to keep 'all'; valid: peaks, laws, histories"):
+        sweep(slider_crank, grid, keep="all")
+    with pytest.raises(DeclarationError, match="xi: ratios are kept of section forces, and none is wanted"):
+        sweep(slider_crank, grid, wanted=["effort"], xi=(0, 1, 3))
+    with pytest.raises(DeclarationError, match="keep laws: the laws are those of section forces"):
+        sweep(slider_crank, grid, wanted=["effort"], keep="laws")
+    with pytest.raises(DeclarationError, match=r"ratios xi/l must lie in \[0, 1\]"):
+        sweep(slider_crank, grid, xi=(0, 2, 3))
+
+
+def test_memory_of_a_design_counts_everything(monkeypatch):
+    engine = sweeps.use(monkeypatch, count=7)
+    from lagrange_casadi.rung import Rung
+    from lagrange_casadi.sweep.plan import Task
+
+    task = Task((), (0, 1, 7), (0, 1, 3), "histories", Rung())
+    harvest = task.harvest(sweeps.scene())
+    p = np.full((5, 5), 0.1)
+    outcome = engine.evaluate(p, histories=True)
+    held = sum(array.nbytes for array in (*harvest.evaluate(p), *vars(outcome).values())) - 5 + p.nbytes
+    assert 5 * harvest.bytes_per_design == held + 5 * 8 * 3 * 7 * 3

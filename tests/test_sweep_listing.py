@@ -1,0 +1,51 @@
+"""Lists of designs from CSV: what is wrong is named by line and column."""
+
+import re
+
+import numpy as np
+import pytest
+
+from lagrange_casadi.errors import DeclarationError, PathError
+from lagrange_casadi.sweep import read_designs
+
+
+def test_a_list_is_read(tmp_path):
+    path = tmp_path / "d.csv"
+    path.write_text("\ufeffl, r\n0.2,0.1\n\n 3e-1 , 0.05\n", encoding="utf-8")
+    listed = read_designs(path)
+    assert listed.names == ("l", "r")
+    np.testing.assert_array_equal(listed.rows, [[0.2, 0.1], [0.3, 0.05]])
+    assert listed.outside("l", 0.25, 1.0) == "0.2 in line 2"
+    assert listed.outside("r", 0.1, 1.0) == "0.05 in line 4"
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "empty; expected a first line of parameters' names"),
+        ("l,r\n", "no designs below its head l, r"),
+        ("l,r\n0.2\n", "line 2: 1 cells, expected 2, column 'r' is missing"),
+        ("l,r\n0.2,0.1\n0.2,0.1,0.3\n", "line 3: 3 cells, expected 2"),
+        ("l,r\n0.2,0.1\n0.2,abc\n", "line 3, column 'r': expected a finite number, got 'abc'"),
+        ("l,r\n0.2,\n", "line 2, column 'r': expected a finite number, got ''"),
+        ("l,r\nnan,0.1\n", "line 2, column 'l': expected a finite number, got 'nan'"),
+        ("l,,r\n1,2,3\n", "line 1, column 2: expected a parameter's name, got an empty cell"),
+        ("l,r,l\n1,2,3\n", "line 1, column 3: 'l' stands there already as column 1"),
+    ],
+)
+def test_what_is_wrong_is_named(tmp_path, text, says):
+    path = tmp_path / "d.csv"
+    path.write_text(text)
+    with pytest.raises(DeclarationError, match=re.escape(says)) as caught:
+        read_designs(path)
+    assert str(caught.value).startswith(str(path))
+
+
+def test_what_is_no_text_is_named(tmp_path):
+    (tmp_path / "d.csv").write_bytes(b"l,r\n\xff\xfe\n")
+    with pytest.raises(DeclarationError, match="not a table of text"):
+        read_designs(tmp_path / "d.csv")
+    with pytest.raises(PathError, match="no such file"):
+        read_designs(tmp_path / "e.csv")
+    with pytest.raises(PathError, match="is a folder"):
+        read_designs(tmp_path)

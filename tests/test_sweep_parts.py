@@ -1,0 +1,131 @@
+"""Parts: whole or not there; and the lock."""
+
+import os
+import signal
+import sys
+import textwrap
+
+import numpy as np
+import pytest
+import sweeps
+
+from lagrange_casadi.errors import BusyError, StoreError
+from lagrange_casadi.sweep.columns import Column
+from lagrange_casadi.sweep.parts import Folder, missing
+
+COLUMNS = (Column("status", "1", {}, dtype="|i1"), Column("peak:a", "N", {}), Column("history:b", "N", {}, ("t",), (3,)))
+
+
+def arrays(start, stop):
+    numbers = np.arange(start, stop)
+    return [numbers.astype(np.int8), numbers * 0.5, numbers[:, None] + np.array([0.0, 0.1, 0.2])]
+
+
+@pytest.fixture
+def folder(tmp_path):
+    folder = Folder(tmp_path / "x.h5")
+    with folder.locked():
+        folder.begin({"case": "x"})
+        yield folder
+
+
+def commit(folder, *blocks):
+    for start, stop in blocks:
+        folder.commit(start, stop, COLUMNS, arrays(start, stop))
+
+
+def test_what_is_committed_is_read(folder):
+    commit(folder, (4, 9), (0, 4))
+    parts = folder.parts()
+    assert [(part.start, part.stop) for part in parts] == [(0, 4), (4, 9)]
+    for part in parts:
+        for column, expected in zip(COLUMNS, arrays(part.start, part.stop), strict=True):
+            np.testing.assert_array_equal(part.read(column), expected)
+    assert folder.identity == {"case": "x"}
+
+
+def test_what_is_missing(folder):
+    assert missing(folder.parts(), 20) == [(0, 20)]
+    commit(folder, (4, 9), (12, 13))
+    assert missing(folder.parts(), 20) == [(0, 4), (9, 12), (13, 20)]
+    commit(folder, (0, 4), (9, 12), (13, 20))
+    assert missing(folder.parts(), 20) == []
+
+
+@pytest.mark.parametrize("keep", [0.0, 0.02, 0.5, 0.999])
+def test_a_part_cut_short_is_not_believed(folder, keep):
+    commit(folder, (0, 50), (50, 60))
+    path = folder.parts()[0].path
+    content = path.read_bytes()
+    path.write_bytes(content[: int(keep * len(content))])
+    assert [part.start for part in folder.parts()] == [50]
+    assert not path.exists()
+
+
+def test_every_flipped_byte_is_found(folder):
+    commit(folder, (0, 2))
+    path = folder.parts()[0].path
+    content = path.read_bytes()
+    for place in range(len(content)):
+        damaged = bytearray(content)
+        damaged[place] ^= 0x10
+        path.write_bytes(damaged)
+        found = folder.parts()
+        if found:
+            with pytest.raises(StoreError, match=r"was damaged, in column .*, and is deleted"):
+                [found[0].read(column) for column in COLUMNS]
+        assert not path.exists(), place
+
+
+def test_drafts_and_overlaps_are_cleared(folder):
+    commit(folder, (0, 4), (2, 6), (6, 8))
+    (folder.path / "000000000008-000000000009.part.draft").write_bytes(b"half")
+    assert [(part.start, part.stop) for part in folder.parts()] == [(0, 4), (6, 8)]
+    assert sorted(path.name for path in folder.path.iterdir() if path.suffix != ".part") == ["lock", "plan.json"]
+
+
+def test_to_begin_anew_removes_what_is_there(folder):
+    commit(folder, (0, 4))
+    folder.begin({"case": "y"})
+    assert folder.parts() == []
+    assert folder.identity == {"case": "y"}
+
+
+def test_a_damaged_plan_is_one_line(folder):
+    (folder.path / "plan.json").write_text("{")
+    with pytest.raises(StoreError, match=r"plan\.json: damaged: .*; start anew with --force"):
+        _ = folder.identity
+
+
+def test_a_lock_that_led_to_nothing_leaves_nothing(tmp_path):
+    with Folder(tmp_path / "x.h5").locked():
+        assert os.listdir(tmp_path) == ["x.h5.parts"]
+    assert os.listdir(tmp_path) == []
+
+
+def test_the_second_is_refused(folder):
+    with pytest.raises(BusyError, match=r"another sweep is writing .*x\.h5"), Folder(folder.target).locked():
+        pass
+    assert folder.begun
+
+
+def test_a_lock_dies_with_its_process(tmp_path):
+    target = tmp_path / "x.h5"
+    program = f"""
+        import time
+        from pathlib import Path
+        from lagrange_casadi.sweep.parts import Folder
+        folder = Folder(Path({str(target)!r}))
+        with folder.locked():
+            folder.begin({{}})
+            print("held", flush=True)
+            time.sleep(60)
+    """
+    with sweeps.process(sys.executable, "-c", textwrap.dedent(program)) as holder:
+        assert holder.stdout.readline() == "held\n"
+        with pytest.raises(BusyError), Folder(target).locked():
+            pass
+        holder.send_signal(signal.SIGKILL)
+        holder.wait()
+        with Folder(target).locked():
+            assert Folder(target).begun
