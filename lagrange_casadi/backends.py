@@ -6,9 +6,9 @@ import functools
 import math
 import shlex
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import casadi as ca
 import h5py
@@ -34,6 +34,7 @@ _NEEDS = {
 }
 _TRIED = "c++, g++, clang++, cc, gcc, clang, ziglang"
 _VM_BLOCK = 4096
+Built = TypeVar("Built")
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,13 +69,13 @@ def run(
     rung = rung or Rung()
     many = rung.precision == "single" or counts(graph, t, p)
     stages = compensated(graph, rung.precision) if many else plain(graph)
-    compiled = _compiled(graph, stages, rung)
+    found = _compiled(graph, stages, rung)
     table = into or empty_table(graph, stages, t.size)
     begin = _begin(graph, rung.newton is not None, t[0], tuple(p))
-    if compiled is None:
+    if found is None:
         _interpret(graph, t, p, table, begin, rung.newton)
-        return table, _provenance("vm", "", "", rung)
-    compiler, library = compiled
+        return table, provenance("vm", "", "", rung)
+    compiler, library = found
     dtype = DTYPES[rung.precision]
     guess = np.array(begin, dtype)
     if rung.precision == "single":
@@ -82,7 +83,7 @@ def run(
     library.follow(t, p, guess, table.iterated, table.status)
     library.evaluate(t, p, table.iterated, table.out, table.status, threads or codegen.cores())
     used = "lanes" if compiler.language == "c++" else "c"
-    return table, _provenance(used, compiler.version, " ".join(library.flags), rung)
+    return table, provenance(used, compiler.version, " ".join(library.flags), rung)
 
 
 @functools.lru_cache(maxsize=256)
@@ -107,23 +108,28 @@ def _paired(values: Array, out: Array) -> Array:
 
 def _compiled(graph: SceneGraph, stages: Stages, rung: Rung) -> tuple[codegen.Compiler, codegen.Library] | None:
     """The library that a backend takes, and what built it; None for the virtual machine."""
+    return compiled(rung, lambda compiler: _library(graph, stages, rung.newton, rung.flags, compiler))
+
+
+def compiled(rung: Rung, build: Callable[[codegen.Compiler], Built]) -> tuple[codegen.Compiler, Built] | None:
+    """What is built by the compiler that a rung's backend takes, and that; None for the virtual machine."""
     backend = rung.backend
     for language in _LANGUAGES[backend]:
         compiler = codegen.find_compiler(language)
         if compiler is None:
             continue
         try:
-            return compiler, _library(graph, stages, rung.newton, rung.flags, compiler)
+            return compiler, build(compiler)
         except CompilerError as error:
             if backend != "auto" or language == "c":
                 raise
-            warnings.warn(f"{error}; scalar C serves", stacklevel=4)
+            warnings.warn(f"{error}; scalar C serves", stacklevel=5)
     if backend in _NEEDS:
         raise CompilerError(_NEEDS[backend])
     if rung.precision == "single":
         raise CompilerError(f"precision 'single' needs a compiler: none of {_TRIED} is there")
     if backend == "auto":
-        warnings.warn(f"no C or C++ compiler found ({_TRIED}): CasADi's virtual machine serves, slowly", stacklevel=4)
+        warnings.warn(f"no C or C++ compiler found ({_TRIED}): CasADi's virtual machine serves, slowly", stacklevel=5)
     return None
 
 
@@ -146,7 +152,8 @@ def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
     return grids.empty("the outputs over time", (count, stride), dtype)[:, :size]
 
 
-def _provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenance:
+def provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenance:
+    """How numbers were made, with the versions of what made them."""
     versions = {
         "lagrange_casadi": __version__,
         "casadi": ca.CasadiMeta.version(),

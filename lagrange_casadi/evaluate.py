@@ -70,15 +70,8 @@ def evaluate(
         raise DeclarationError(f"threads: expected a whole number of at least 1, got {threads!r}")
     rung = Rung(backend, precision, newton, table, flags)
     values = scene.mechanism.values(parameters)
-    start, stop, count = checked("t", scene.t if t is None else t)
+    start, stop, count = checked_times(scene, t)
     ratios = checked_ratios(scene.xi if xi is None else xi)
-    for joint, law in scene.motion.items():
-        low, high = law.span
-        if start < low or stop > high:
-            raise DeclarationError(
-                f"the samples of the motion of joint '{joint}' cover t from {low:g} to {high:g} s, but t from "
-                f"{start:g} to {stop:g} s is asked for"
-            )
     graph = derive(scene, wanted, iterate=newton is not None)
     require("the outputs over time", (len(graph.columns) + _BESIDE, count))
     require("the grid of ratios", (ratios[2],))
@@ -87,14 +80,7 @@ def evaluate(
     found, provenance = columns(graph, times, p, rung, threads)
     refuse(graph, found, times, p, rung)
     out = np.asarray(found.out, float)
-    series = {name: out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
-    parts = {part: out[graph.columns.index(part)] for signs in graph.wrapped.values() for part in signs}
-    turns = {name: math.tau * (row - row[0]) if name.startswith("_turns:") else np.unwrap(row) - row for name, row in parts.items()}
-    for name, signs in graph.wrapped.items():
-        for part, sign in signs.items():
-            series[name] += sign * turns[part]
-        series[name] -= math.tau * math.ceil(series[name][0] / math.tau - 0.5)
-    series |= {name: np.full(times.size, np.nan) for name in graph.undetermined}
+    series = outputs_of(graph, out) | {name: np.full(times.size, np.nan) for name in graph.undetermined}
     description = describe(scene.mechanism, values, scene.motion)
     ordered = in_order(series, description)
     solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, graph.undetermined)
@@ -103,6 +89,33 @@ def evaluate(
     residuals = certify(solution, _held(graph, found))
     errors = explained(solution, residuals, estimate(graph, found, solution, p))
     return replace(solution, certificate=residuals | _condition(graph, found), errors=errors)
+
+
+def checked_times(scene: Scene, t: Grid | None) -> Grid:
+    """A grid of instants, or the scene's own, in numbers. Raises :class:`DeclarationError` where samples of a motion end before."""
+    start, stop, count = checked("t", scene.t if t is None else t)
+    for joint, law in scene.motion.items():
+        low, high = law.span
+        if start < low or stop > high:
+            raise DeclarationError(
+                f"the samples of the motion of joint '{joint}' cover t from {low:g} to {high:g} s, but t from "
+                f"{start:g} to {stop:g} s is asked for"
+            )
+    return start, stop, count
+
+
+def outputs_of(graph: SceneGraph, out: Array) -> dict[str, Array]:
+    """The outputs among the columns ``out`` (columns, ..., t) of a graph, by name; angles go on where they would jump by a turn."""
+    series = {name: out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
+    parts = {part: out[graph.columns.index(part)] for signs in graph.wrapped.values() for part in signs}
+    turns = {
+        name: math.tau * (row - row[..., :1]) if name.startswith("_turns:") else np.unwrap(row) - row for name, row in parts.items()
+    }
+    for name, signs in graph.wrapped.items():
+        for part, sign in signs.items():
+            series[name] += sign * turns[part]
+        series[name] -= math.tau * np.ceil(series[name][..., :1] / math.tau - 0.5)
+    return series
 
 
 def _held(graph: SceneGraph, table: Table) -> list[Held] | None:

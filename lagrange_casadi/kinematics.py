@@ -30,7 +30,7 @@ from .planar import misalignment
 _LARGEST_STEP = 0.3
 """Of an angle [rad], or of a slide over the length of all links: a full step from afar may land on another branch."""
 
-_NEAR = 0.3
+NEAR = 0.3
 """Sines of the transmission angle below which a loop may pass a dead centre."""
 
 
@@ -333,7 +333,7 @@ def passes_dead_centre(closure: Array, *, ends: bool = False) -> npt.NDArray[np.
     sine = np.sqrt(np.where((closure > 0.0) & (closure < np.inf), closure, 0.0))
     left, right = np.full((2, max(closure.size - 1, 0)), -1.0 if ends else 1.0)
     left[1:], right[:-1] = 2 * sine[1:-1] - sine[:-2], 2 * sine[1:-1] - sine[2:]
-    found[:-1] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[:-1], sine[1:]) < _NEAR)
+    found[:-1] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[:-1], sine[1:]) < NEAR)
     return found
 
 

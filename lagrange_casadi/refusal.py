@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import enum
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from .backends import Table, run
-from .codegen.emit import NOT_CONVERGED, OK, SLOW
+from .codegen.designs import INSIDE, ROUNDS
+from .codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW
 from .compensated import DTYPES, ROUNDING, Precision
 from .density import Array
 from .errors import AssemblyError
@@ -23,11 +26,62 @@ MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 _DEAD = 64.0
 """Roundings below which a closure says nothing but that it is zero."""
 
-_ROUNDS, _INSIDE = 7, 17
+
+class Status(enum.IntEnum):
+    """Whether there is a result, or why there is none."""
+
+    OK = OK
+    NOT_CONVERGED = NOT_CONVERGED
+    NOT_FINITE = NOT_FINITE
+    SLOW = SLOW
+    OUT_OF_REACH = 4
+    JUMPED = 5
+    DEAD_CENTRE = 6
+    PASSES_DEAD_CENTRE = 7
+    MISFIT = 8
+    ROW_VIOLATED = 9
+    IMPOSSIBLE = 10
+    INVALID = 11
+
+    @property
+    def meaning(self) -> str:
+        """The same in words."""
+        return _MEANINGS[self]
+
+
+_MEANINGS = {
+    Status.OK: "there is a result",
+    Status.NOT_CONVERGED: "the iterated loops did not converge",
+    Status.NOT_FINITE: "a value is not finite: the mechanism is singular, or its numbers overflow",
+    Status.SLOW: "the iterated loops converge slowly: they are near a dead centre",
+    Status.OUT_OF_REACH: "a loop cannot be closed: its links do not reach",
+    Status.JUMPED: "an iterated loop has jumped to another branch: more instants may help",
+    Status.DEAD_CENTRE: "a loop is at a dead centre, within rounding: its forces are not determined there",
+    Status.PASSES_DEAD_CENTRE: "a loop passes a dead centre between two instants, and how it goes on is open",
+    Status.MISFIT: "loops are over-constrained and do not fit",
+    Status.ROW_VIOLATED: "the motion violates a non-holonomic row",
+    Status.IMPOSSIBLE: "a length is not positive, a mass or density is negative, or a station is outside its link",
+    Status.INVALID: "a parameter is not finite",
+}
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Why there is no result: a status, and the same in words that name the joint, the instant and the driven coordinates."""
+
+    status: Status
+    message: str
 
 
 def refuse(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> None:
-    """Raise for the first instant that has no result, naming the joint and the driven coordinates."""
+    """Raise :class:`AssemblyError` for the first instant that has no result."""
+    found = refusal(graph, table, t, p, rung)
+    if found is not None:
+        raise AssemblyError(found.message)
+
+
+def refusal(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> Refusal | None:
+    """Why the first instant that has no result has none; None where all have."""
     precision = table.stages.precision
     bad, misfit = table.status != OK, MISFIT[precision]
     passed: dict[str, npt.NDArray[np.bool_]] = {}
@@ -46,13 +100,14 @@ def refuse(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> N
             found[after] = _dead_between(graph, name, t[after], t[after + 1], p, rung)
         bad |= found
     if not bad.any():
-        return
+        return None
     i = int(np.argmax(bad))
     joints = graph.scene.mechanism.joints
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
     at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
     at = f"at t = {t[i]:.6g} s{at}"
-    raise AssemblyError(_beyond(graph, p, precision, at) or _why(graph, table, i, at, [name for name in passed if passed[name][i]]))
+    status, why = _why(graph, table, i, at, [name for name in passed if passed[name][i]])
+    return Refusal(status, _beyond(graph, p, precision, at) or why)
 
 
 def dead_centre(graph: SceneGraph, precision: Precision, closure: str) -> float:
@@ -64,13 +119,13 @@ def dead_centre(graph: SceneGraph, precision: Precision, closure: str) -> float:
 def _dead_between(graph: SceneGraph, name: str, start: Array, stop: Array, p: Array, rung: Rung) -> npt.NDArray[np.bool_]:
     """Whether a closure is zero between instants, looked for where it is lowest, ever closer."""
     lowest = np.full(start.size, np.inf)
-    for _ in range(_ROUNDS):
-        inside = np.linspace(start, stop, _INSIDE)
+    for _ in range(ROUNDS):
+        inside = np.linspace(start, stop, INSIDE)
         table, _ = run(graph, inside.ravel(), p, Rung(rung.backend, rung.precision, flags=rung.flags))
         closure = table.out[graph.columns.index(name)].reshape(inside.shape)
         place = np.argmin(closure, axis=0)[None]
         lowest = np.fmin(lowest, np.take_along_axis(closure, place, 0)[0])
-        start, stop = (np.take_along_axis(inside, np.clip(place + k, 0, _INSIDE - 1), 0)[0] for k in (-1, 1))
+        start, stop = (np.take_along_axis(inside, np.clip(place + k, 0, INSIDE - 1), 0)[0] for k in (-1, 1))
     return ~(lowest > dead_centre(graph, rung.precision, name))
 
 
@@ -87,36 +142,35 @@ def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str |
     return None
 
 
-def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]) -> str:
+def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]) -> tuple[Status, str]:
     if table.status[i] == NOT_CONVERGED:
         assert graph.newton is not None
-        return f"the loops closed by {graph.newton.joints} did not converge {at}"
+        return Status.NOT_CONVERGED, f"the loops closed by {graph.newton.joints} did not converge {at}"
     precision = table.stages.precision
     values = dict(zip(graph.columns, table.out[:, i], strict=True))
     misfit = MISFIT[precision]
     for name, value in values.items():
         kind, _, joint = name.partition(":")
-        dead = dead_centre(graph, precision, name)
+        limit = dead_centre(graph, precision, name)
         closed = f"{'joint' if joint in graph.scene.mechanism.joints else 'constraint'} '{joint}'"
-        if kind == "_closure" and value < -dead:
+        if kind == "_closure" and value < -limit:
             if graph.newton is not None and f"'{joint}'" in graph.newton.joints:
-                return f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
-            return f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
-        if kind == "_closure" and not value > dead:
-            return f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces are not determined there"
+                return Status.JUMPED, f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
+            return Status.OUT_OF_REACH, f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
+        if kind == "_closure" and not value > limit:
+            why = f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces are not determined there"
+            return Status.DEAD_CENTRE, why
         if name in passed:
             near = "; if it only comes near one, take more instants" if graph.newton is not None else ""
-            return (
-                f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}, and how it goes on is open{near}"
-            )
+            passing = f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}"
+            return Status.PASSES_DEAD_CENTRE, f"{passing}, and how it goes on is open{near}"
         if kind == "_misfit" and not value <= misfit:
-            return (
-                f"the loops closed by {closed} are over-constrained and do not fit {at}: a gap of {value:.3g} of the links' length"
-            )
+            gap = f"a gap of {value:.3g} of the links' length"
+            return Status.MISFIT, f"the loops closed by {closed} are over-constrained and do not fit {at}: {gap}"
         if kind == "_row" and not abs(value) <= misfit * values[f"_rowsize:{joint}"]:
-            return f"the motion violates the non-holonomic row '{joint}' by {value:.6g} {at}"
+            return Status.ROW_VIOLATED, f"the motion violates the non-holonomic row '{joint}' by {value:.6g} {at}"
     if table.status[i] == SLOW:
         assert graph.newton is not None
-        return f"the loops closed by {graph.newton.joints} converge slowly {at}: they are near a dead centre"
+        return Status.SLOW, f"the loops closed by {graph.newton.joints} converge slowly {at}: they are near a dead centre"
     name = next(name for name, value in values.items() if not math.isfinite(value))
-    return f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"
+    return Status.NOT_FINITE, f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"

@@ -1,7 +1,19 @@
 """From a scene's graphs to C, and from C to a loaded library."""
 
 from .compiler import Compiler, Language, find_compiler
+from .designs import emit_designs
 from .emit import emit
-from .library import Library, cores, load
+from .library import DesignsLibrary, Library, cores, load, load_designs
 
-__all__ = ["Compiler", "Language", "Library", "cores", "emit", "find_compiler", "load"]
+__all__ = [
+    "Compiler",
+    "DesignsLibrary",
+    "Language",
+    "Library",
+    "cores",
+    "emit",
+    "emit_designs",
+    "find_compiler",
+    "load",
+    "load_designs",
+]

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
@@ -212,26 +213,47 @@ def emit(graph: SceneGraph, stages: Stages | None = None, newton: int | None = N
     instant, None for as many as they need.
     """
     stages = plain(graph) if stages is None else stages
-    smooth = bool(stages.drive.is_a("SXFunction"))
-    constants, instant = hoisted(stages.instant)
-    narrow = [] if smooth and stages.loops is None else [_lead(stages.drive), *([stages.loops] if stages.loops else [])]
-    wide = [*([stages.drive] if smooth else []), constants, instant]
-    sizes = _sizes(graph, stages) | _work("", *wide, *narrow)
-    text = _START
-    if narrow:
-        text += _dump("follow", narrow)
+    parts = Parts.of(graph, stages)
+    sizes, text = parts.sizes, _START
+    if parts.narrow:
+        text += dump("follow", parts.narrow)
     if stages.loops:
-        assert graph.newton is not None
-        rule = newton_rule(stages.precision, newton)
-        turns = ", ".join(str(int(turning)) for turning in graph.newton.turning)
-        slow = "size > {rate:.17g}*before && size > {rounding:.17g}".format(**rule) if newton is None else "0"
-        text += _FOLLOW.format(**sizes, **rule, told=_told(newton), turns=turns, slow=slow)
-    drive = _SMOOTH.format(**sizes) if smooth else _SPLINE.format(**sizes, **_work("lead_", *narrow))
+        text += following(graph, stages, newton, sizes)
     pairs = _IN_PAIRS.format(**sizes) if stages.precision == "single" else ""
-    inputs = sizes["nc"] + 2 * sizes["nd"] + sizes["nz"] + sizes["nt"] * (1 + sizes["np"]) + constants.size1_out(0)
-    text += _WIDE + _dump("scene", wide)
-    text += _EVALUATE.format(**sizes, drive=drive if sizes["nc"] + sizes["nd"] else "", single=pairs, inputs=inputs)
+    inputs = sizes["nc"] + 2 * sizes["nd"] + sizes["nz"] + sizes["nt"] * (1 + sizes["np"]) + sizes["constants"]
+    text += _WIDE + dump("scene", parts.wide)
+    text += _EVALUATE.format(**sizes, drive=parts.drive, single=pairs, inputs=inputs)
     return _START_SINGLE + in_single(text) if stages.precision == "single" else text
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What an emitted file is made of: functions of one instant at a time, functions of packs, sizes, and the text that drives."""
+
+    narrow: list[ca.Function]
+    wide: list[ca.Function]
+    sizes: dict[str, Any]
+    drive: str
+
+    @classmethod
+    def of(cls, graph: SceneGraph, stages: Stages) -> Parts:
+        """Those of a scene."""
+        smooth = bool(stages.drive.is_a("SXFunction"))
+        constants, instant = hoisted(stages.instant)
+        narrow = [] if smooth and stages.loops is None else [_lead(stages.drive), *([stages.loops] if stages.loops else [])]
+        wide = [*([stages.drive] if smooth else []), constants, instant]
+        sizes = _sizes(graph, stages) | work("", *wide, *narrow) | {"constants": constants.size1_out(0)}
+        drive = _SMOOTH.format(**sizes) if smooth else _SPLINE.format(**sizes, **work("lead_", *narrow))
+        return cls(narrow, wide, sizes, drive if sizes["nc"] + sizes["nd"] else "")
+
+
+def following(graph: SceneGraph, stages: Stages, newton: int | None, sizes: dict[str, Any]) -> str:
+    """The function that closes iterated loops, by so many steps an instant; its name is ``sizes["follow"]``."""
+    assert graph.newton is not None
+    rule = newton_rule(stages.precision, newton)
+    turns = ", ".join(str(int(turning)) for turning in graph.newton.turning)
+    slow = "size > {rate:.17g}*before && size > {rounding:.17g}".format(**rule) if newton is None else "0"
+    return _FOLLOW.format(**sizes, **rule, told=_told(newton), turns=turns, slow=slow)
 
 
 def _lead(drive: ca.Function) -> ca.Function:
@@ -294,7 +316,8 @@ def hoisted(instant: ca.Function, rows: Sequence[int] | None = None) -> tuple[ca
     return hoisted, ca.Function("instant", [*inputs[:-1], c], [ca.densify(rest)], {"cse": True})
 
 
-def _dump(name: str, functions: list[ca.Function]) -> str:
+def dump(name: str, functions: list[ca.Function]) -> str:
+    """CasADi's C of functions, fit for packs."""
     generator = ca.CodeGenerator(name, {"with_header": False})
     for function in functions:
         generator.add(function)
@@ -305,7 +328,7 @@ def _dump(name: str, functions: list[ca.Function]) -> str:
     return text.replace("return x<0 ? -1 : x>0 ? 1 : x;", "return lanes_sign(x);")
 
 
-def _work(prefix: str, *functions: ca.Function) -> dict[str, int]:
+def work(prefix: str, *functions: ca.Function) -> dict[str, int]:
     """The largest sizes of the working arrays of some functions."""
     sizes = {name: max(getattr(f, f"sz_{name}")() for f in functions) for name in ("arg", "res", "iw", "w")}
     return {f"{prefix}{name}": max(1, size) for name, size in sizes.items()}

@@ -99,6 +99,24 @@ LANES_INLINE lanes_pack lanes_sign(lanes_pack x) {
 LANES_INLINE lanes_real lanes_choose(lanes_real a, lanes_real b) { return a != 0 ? b : 0; }
 LANES_INLINE lanes_real lanes_sign(lanes_real x) { return x < 0 ? -1 : x > 0 ? 1 : x; }
 
+/* a where x < y, else b; and whether x < y in any lane. */
+LANES_INLINE lanes_pack lanes_less(lanes_pack x, lanes_pack y, lanes_pack a, lanes_pack b) { return lanes_pick(x.v < y.v, a, b); }
+LANES_INLINE int lanes_any_less(lanes_pack x, lanes_pack y) {
+  const lanes_mask where = x.v < y.v;
+#if LANES_BYTES == 64
+  typedef long long half __attribute__((vector_size(32)));
+  half halves[2];
+  memcpy(halves, &where, 64);
+  halves[0] |= halves[1];
+#else
+  const lanes_mask* halves = &where;
+#endif
+  long long words[LANES_BYTES > 32 ? 4 : LANES_BYTES / 8], any = 0;
+  memcpy(words, halves, sizeof words);
+  for (unsigned i = 0; i < sizeof words / 8; ++i) any |= words[i];
+  return any != 0;
+}
+
 LANES_INLINE lanes_pack LANES_OF(fmin)(lanes_pack a, lanes_pack b) { return lanes_pick((a.v < b.v) | (b.v != b.v), a, b); }
 LANES_INLINE lanes_pack LANES_OF(fmax)(lanes_pack a, lanes_pack b) { return lanes_pick((a.v > b.v) | (b.v != b.v), a, b); }
 LANES_INLINE lanes_pack LANES_OF(copysign)(lanes_pack a, lanes_pack b) {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from importlib import resources
@@ -14,6 +15,7 @@ import numpy.typing as npt
 
 from ..errors import CompilerError
 from .compiler import Compiler, built, statements
+from .designs import DESIGNS, Plan
 from .emit import EVALUATE, FOLLOW, LANES_PLACE
 
 Array = npt.NDArray[Any]
@@ -24,6 +26,9 @@ _WORTH_A_THREAD = 1 << 24
 """Statements, those of an instant times the instants: about a millisecond, some times what it takes to start a thread."""
 
 _LONGEST = 128
+_LINE, _SPREAD = 16, 8
+"""Values of a cache line of either precision; and into how many parts a thread's share of designs is cut, for they differ."""
+
 _CUT = 64
 """A multiple of any pack, so that no cut falls into one."""
 
@@ -83,6 +88,52 @@ class Library:
         entry(t.shape[-1], rows.strides[0] // rows.itemsize, t.ctypes.data, *(array.ctypes.data for array in rest))
 
 
+@dataclass(frozen=True, eq=False)
+class DesignsLibrary:
+    """The loaded code of many designs of one scene over instants ``t``. Its calls release the interpreter and allocate nothing.
+
+    ``share`` is how many designs are worth a thread of their own.
+    """
+
+    entry: Any
+    flags: tuple[str, ...]
+    share: int
+    plan: Plan
+    t: npt.NDArray[np.float64]
+    guess: npt.NDArray[np.float64]
+    dtype: Any
+
+    def evaluate(self, p: npt.NDArray[np.float64], results: Sequence[npt.NDArray[Any] | None], threads: int = 1) -> None:
+        """Fill ``results`` for designs ``p``, (n, parameters): as :data:`DESIGNS` wants them, None for no histories.
+
+        The bytes of a row do not depend on other rows, nor on ``threads``.
+        """
+        n = p.shape[0]
+        shares = max(1, min(threads, n // self.share))
+        size = max(1, min(_LONGEST * self.share, -(-n // (_SPREAD * shares)) if shares > 1 else n))
+        stride = (-(-self.t.size // _LINE) | 1) * _LINE + 2 * _LINE
+
+        def run(start: int) -> None:
+            room = np.zeros((self.plan.rows + self.guess.size + 2) * stride + _LINE, self.dtype)
+            room = room[-room.ctypes.data // room.itemsize % _LINE :]
+            status = np.zeros(stride, np.int32)
+            rows = [None if array is None else array[start : start + size] for array in results]
+            given = (self.t, p[start : start + size], self.guess, room, status, *rows)
+            pointers = (None if array is None else array.ctypes.data for array in given)
+            self.entry(min(size, n - start), self.t.size, stride, *pointers)
+
+        starts = range(0, n, size)
+        if shares == 1:
+            for start in starts:
+                run(start)
+            return
+        pool = ThreadPoolExecutor(shares)
+        try:
+            list(pool.map(run, starts))
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
 def cores() -> int:
     """How many cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -93,16 +144,46 @@ def load(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Librar
 
     ``extra`` flags come after the package's own. Raises :class:`CompilerError`.
     """
+    library = _loaded(source, compiler, extra)
+    entry, follow = _entry(library, compiler, EVALUATE, 2, 5), None
+    if hasattr(library, FOLLOW):
+        follow = _entry(library, compiler, FOLLOW, 2, 5)
+    return Library(entry, follow, (*compiler.flags(source), *extra), max(_CUT, _WORTH_A_THREAD // statements(source)))
+
+
+def load_designs(
+    source: str,
+    compiler: Compiler,
+    extra: tuple[str, ...],
+    plan: Plan,
+    t: npt.NDArray[np.float64],
+    guess: npt.NDArray[np.float64],
+    dtype: Any,
+) -> DesignsLibrary:
+    """The same of a file for many designs over instants ``t``, whose iterated loops begin from ``guess``."""
+    entry = _entry(_loaded(source, compiler, extra), compiler, DESIGNS, 3, 12)
+    share = max(1, _WORTH_A_THREAD // (statements(source) * t.size))
+    return DesignsLibrary(entry, (*compiler.flags(source), *extra), share, plan, t, guess, dtype)
+
+
+def _loaded(source: str, compiler: Compiler, extra: tuple[str, ...]) -> ctypes.CDLL:
     if compiler.language == "c++":
         source = source.replace(LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1)
     with built(source, compiler, extra) as path:
         try:
-            library = ctypes.CDLL(str(path))
-            entry = getattr(library, EVALUATE)
-        except (OSError, AttributeError) as error:
-            raise CompilerError(f"the library built by {' '.join(compiler.command)} does not load: {error}") from None
-        follow = getattr(library, FOLLOW, None)
-    entry.restype, entry.argtypes = None, [ctypes.c_longlong] * 2 + [ctypes.c_void_p] * 5
-    if follow is not None:
-        follow.restype, follow.argtypes = None, [ctypes.c_longlong] * 2 + [ctypes.c_void_p] * 5
-    return Library(entry, follow, (*compiler.flags(source), *extra), max(_CUT, _WORTH_A_THREAD // statements(source)))
+            return ctypes.CDLL(str(path))
+        except OSError as error:
+            raise _broken(compiler, error) from None
+
+
+def _entry(library: ctypes.CDLL, compiler: Compiler, name: str, numbers: int, arrays: int) -> Any:
+    try:
+        entry = getattr(library, name)
+    except AttributeError as error:
+        raise _broken(compiler, error) from None
+    entry.restype, entry.argtypes = None, [ctypes.c_longlong] * numbers + [ctypes.c_void_p] * arrays
+    return entry
+
+
+def _broken(compiler: Compiler, error: Exception) -> CompilerError:
+    return CompilerError(f"the library built by {' '.join(compiler.command)} does not load: {error}")

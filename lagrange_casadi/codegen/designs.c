@@ -1,0 +1,76 @@
+/* Many designs, one after another. */
+/* Everything of one design; a design without a result leaves nothing but why. */
+static int designs_one(designs_now* now, const double* p, const double* guess, double* value, double* t, double* xi, double* mean,
+                       double* rms, double* history) {
+  designs_real pairs[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], pair[DESIGNS_NT], z[DESIGNS_SOME(DESIGNS_NZ)], margin;
+  casadi_int i;
+  int j, k, why;
+  (void) z;
+  for (k = 0; k < DESIGNS_NP; ++k) {
+    if (!(p[k] - p[k] == 0)) return DESIGNS_INVALID;
+    designs_split(p[k], pair);
+    for (j = 0; j < DESIGNS_NT; ++j) pairs[j*DESIGNS_NP + k] = pair[j];
+  }
+  now->p = pairs;
+  for (k = 0; k < DESIGNS_NT*DESIGNS_NP; ++k) now->parameters[k] = pairs[k];
+  designs_fixed(now->parameters, now->constants, now->matter);
+  for (k = 0; k < DESIGNS_MARGINS; ++k) {
+    margin = designs_lane(now->matter + k, 0);
+    if (!(margin >= 0 && margin <= DESIGNS_LARGEST) || (k < DESIGNS_POSITIVE && margin == 0)) return DESIGNS_IMPOSSIBLE;
+  }
+  if (DESIGNS_NZ) {
+    for (k = 0; k < DESIGNS_NZ; ++k) z[k] = (designs_real) guess[k];
+    designs_split(now->t[0], pair);
+    DESIGNS_BEGIN(1, 1, pair, now->p, z, z, &why);
+    DESIGNS_FOLLOW(now->n, now->stride, now->times, now->p, z, now->z, now->status);
+    for (k = 0; k < DESIGNS_NZ; ++k) {
+      for (i = now->n; i < now->n + LANES; ++i) now->z[k*now->stride + i] = now->z[k*now->stride + now->n - 1];
+    }
+  }
+  designs_sample(now, history);
+  why = designs_refused(now);
+  if (why != DESIGNS_OK) return why;
+  designs_peaks(now, value, t, xi);
+  for (k = 0; k < DESIGNS_EFFORTS; ++k) {
+    mean[k] = designs_mean(now, designs_effort[k], 0);
+    rms[k] = sqrt(designs_mean(now, designs_effort[k], 1));
+  }
+  return DESIGNS_OK;
+}
+
+/* So many designs, rows of parameters p, over n instants t. value, t_peak and xi become rows of quantities, mean and rms of efforts,
+   and history, unless it is NULL, columns by instants; of a design without a result all is NaN. Of the room there are
+   DESIGNS_ROOM rows of stride values, of which the first is zero, and of the status stride integers that are zero. */
+LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(casadi_int designs, casadi_int n, casadi_int stride, const double* t,
+                                                    const double* p, const double* guess, DESIGNS_REAL* room, int* statuses,
+                                                    signed char* status, double* value, double* t_peak, double* xi, double* mean,
+                                                    double* rms, double* history) {
+  designs_now now;
+  designs_real moment[DESIGNS_NT];
+  casadi_int i, d;
+  int k;
+  now.n = n;
+  now.stride = stride;
+  now.t = t;
+  now.times = room;
+  now.z = room + DESIGNS_NT*stride;
+  now.rows = now.z + DESIGNS_NZ*stride;
+  now.status = statuses;
+  for (i = 0; i < stride; ++i) {
+    designs_split(t[i < n ? i : n - 1], moment);
+    for (k = 0; k < DESIGNS_NT; ++k) room[k*stride + i] = moment[k];
+  }
+  for (k = 0; k < DESIGNS_QUANTITIES; ++k) {
+    designs_row(&now, k)[-1] = designs_row(&now, k)[n + LANES - 1 - (n + LANES - 1) % LANES] = DESIGNS_LARGEST;
+  }
+  for (d = 0; d < designs; ++d) {
+    double *values = value + d*DESIGNS_QUANTITIES, *times = t_peak + d*DESIGNS_QUANTITIES, *places = xi + d*DESIGNS_QUANTITIES;
+    double *means = mean + d*DESIGNS_EFFORTS, *squares = rms + d*DESIGNS_EFFORTS;
+    double* whole = history ? history + d*DESIGNS_COLUMNS*n : 0;
+    status[d] = (signed char) designs_one(&now, p + d*DESIGNS_NP, guess, values, times, places, means, squares, whole);
+    if (status[d] == DESIGNS_OK) continue;
+    for (k = 0; k < DESIGNS_QUANTITIES; ++k) values[k] = times[k] = places[k] = NAN;
+    for (k = 0; k < DESIGNS_EFFORTS; ++k) means[k] = squares[k] = NAN;
+    for (i = 0; whole && i < DESIGNS_COLUMNS*n; ++i) whole[i] = NAN;
+  }
+}

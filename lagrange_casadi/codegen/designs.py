@@ -1,0 +1,261 @@
+"""The C of many designs: that of a scene, and with it what reduces the instants of a design to what is kept of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib import resources
+from typing import Any
+
+import numpy as np
+
+from ..compensated import DTYPES, Precision
+from ..scene_graph import SceneGraph
+from ..stages import Stages
+from .emit import FOLLOW, Parts, dump, emit, following, in_single, work
+
+DESIGNS, BEGIN = "lagrange_casadi_designs", "lagrange_casadi_begin"
+CHECKS = ("CLOSURE", "BRANCH", "MISFIT", "ROW", "ROWSIZE")
+"""What is checked at every instant: a closure, one whose branch iteration may leave, a misfit, a row's residual and its size."""
+
+INSIDE, ROUNDS = 17, 7
+"""Instants at which a dead centre between two others is looked for, and how often, ever closer."""
+
+POLE = 1e3
+"""How many times its instants a value must grow to be at a pole, and no noise."""
+
+NOTHING = 1e-12
+"""What is zero but for rounding, over the largest of its unit."""
+
+ROUNDING: dict[Precision, float] = {"double": 1e-13, "single": 1e-6}
+"""By how much of itself a peak may be off: less is not worth another look."""
+
+_BESIDE = 1e-2
+_CUTS: dict[Precision, int] = {"double": 20, "single": 8}
+_CLOSEST = 1e-13
+_FILES = ("instants.c", "fits.c", "summits.c", "designs.c")
+
+
+@dataclass(frozen=True)
+class Along:
+    """A link's part in the columns: its seven coefficients, station, n, f and m of each station; and how its mass lies."""
+
+    law: tuple[int, ...]
+    stations: tuple[tuple[int, ...], ...]
+    breaks: tuple[float, ...]
+    terms: int
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """What is kept of a design.
+
+    ``quantities`` off links are one column, or the size of a vector of two; then come three forces of each of ``links``. ``units``
+    numbers the units of all of them, ``efforts`` says which have means. ``checks`` are columns with a kind of :data:`CHECKS` and a
+    limit. ``matter(p)`` gives first ``margins`` numbers that must not be negative, ``positive`` of them not zero either, then what
+    ``sections.c`` takes for each link.
+    """
+
+    quantities: tuple[tuple[int, ...], ...]
+    links: tuple[Along, ...]
+    units: tuple[int, ...]
+    efforts: tuple[int, ...]
+    checks: tuple[tuple[int, str, float], ...]
+    matter: Any
+    positive: int
+    margins: int
+    near: float
+    statuses: Mapping[str, int]
+
+    @property
+    def rows(self) -> int:
+        """Rows of one design that are kept while it is evaluated, beside those of times and iterated coordinates."""
+        return len(self.quantities) + 6 * len(self.links) + len(self.checks) + 1
+
+
+def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan) -> str:
+    """The whole C file; as :func:`.emit`, with :data:`DESIGNS` in it."""
+    parts = Parts.of(graph, stages)
+    single = stages.precision == "single"
+    text = f"\n#undef CASADI_PREFIX\n{dump('matter', [plan.matter])}"
+    if stages.loops and newton is not None:
+        text += following(graph, stages, None, parts.sizes | {"follow": BEGIN})
+    text = emit(graph, stages, newton) + (in_single(text) if single else text)
+    text += _defined(_macros(graph, stages, newton, plan, parts)) + _tables(plan) + _source("sections.c")
+    text += _WORK.format(**parts.sizes | work("", *parts.wide, *parts.narrow, plan.matter), drive=parts.drive)
+    text += _quantities(plan)
+    return text + "".join(_source(name) for name in _FILES)
+
+
+def _macros(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan, parts: Parts) -> dict[str, object]:
+    sizes, precision = parts.sizes, stages.precision
+    plain, links, checks = len(plan.quantities), len(plan.links), len(plan.checks)
+    numbers = np.finfo(DTYPES[precision])
+    loops = "(n, stride, t, p, guess, z, status)"
+    return {
+        "REAL": sizes["real"],
+        "SOME(count)": "((count) > 0 ? (count) : 1)",
+        "ROOT": "sqrtf" if precision == "single" else "sqrt",
+        "HALF": "((DESIGNS_REAL) 0.5)",
+        "SIXTH": "((DESIGNS_REAL) 1/6)",
+        "CLOSE": f"((DESIGNS_REAL) {8 * float(numbers.eps):.17g})",
+        "LARGEST": f"((DESIGNS_REAL) {float(numbers.max):.17g})",
+        **{name.upper(): sizes[name] for name in ("nt", "np", "nz", "columns", "constants")},
+        "PLACE": sizes["nt"] + sizes["nc"] + 2 * sizes["nd"],
+        "INPUTS": sizes["nt"] + sizes["nc"] + 2 * sizes["nd"] + sizes["nz"],
+        "MATTER": max(1, plan.matter.size1_out(0)),
+        "MARGINS": plan.margins,
+        "POSITIVE": plan.positive,
+        "PLAIN": plain,
+        "QUANTITIES": plain + 3 * links,
+        "PLACES": 3 * links,
+        "CHECKED": plain + 6 * links,
+        "CHECKS": checks,
+        "UNITS": max(plan.units) + 1,
+        "EFFORTS": len(plan.efforts),
+        "NEAR": f"((DESIGNS_REAL) {plan.near:.17g})",
+        "INSIDE": INSIDE,
+        "ROUNDS": ROUNDS,
+        "ROUNDING": f"((DESIGNS_REAL) {ROUNDING[precision]:.17g})",
+        "BESIDE": f"((DESIGNS_REAL) {_BESIDE:.17g})",
+        "NOTHING": f"((DESIGNS_REAL) {NOTHING:.17g})",
+        "POLE": f"((DESIGNS_REAL) {POLE:.17g})",
+        "CUT_ROUNDS": _CUTS[precision],
+        "CLOSEST": f"{_CLOSEST:.17g}",
+        "SPACING": f"{4 * float(np.finfo(float).eps):.17g}",
+        f"FOLLOW{loops}": f"{FOLLOW}{loops}" if stages.loops else "((void) 0)",
+        f"BEGIN{loops}": f"{BEGIN}{loops}" if stages.loops and newton is not None else "((void) 0)",
+        **{f"IS_{kind}": k for k, kind in enumerate(CHECKS)},
+        **plan.statuses,
+    }
+
+
+def _defined(macros: Mapping[str, object]) -> str:
+    return "".join(f"#define DESIGNS_{name} {value}\n" for name, value in macros.items())
+
+
+def _tables(plan: Plan) -> str:
+    columns, kinds, limits = zip(*plan.checks, strict=True) if plan.checks else ((0,), ("CLOSURE",), (0.0,))
+    others = [(k, link.breaks) for k, link in enumerate(plan.links) if not _uniform(link)]
+    breaks = [_table("DESIGNS_REAL", f"designs_breaks{k}", map(_number, ratios)) for k, ratios in others]
+    return "".join(
+        (
+            _table("int", "designs_checked", columns),
+            _table("int", "designs_kind", (f"DESIGNS_IS_{kind}" for kind in kinds)),
+            _table("DESIGNS_REAL", "designs_limit", map(_number, limits)),
+            _table("int", "designs_unit", plan.units),
+            _table("int", "designs_effort", plan.efforts or (0,)),
+            *breaks,
+        )
+    )
+
+
+def _table(kind: str, name: str, values: Any) -> str:
+    return f"static const {kind} {name}[] = {{{', '.join(str(value) for value in values)}}};\n"
+
+
+def _number(value: float) -> str:
+    return f"(DESIGNS_REAL) {value:.17g}"
+
+
+def _quantities(plan: Plan) -> str:
+    """The function that makes quantities of columns."""
+    lines = []
+    for k, columns in enumerate(plan.quantities):
+        squares = " + ".join(f"y[{c}]*y[{c}]" for c in columns)
+        lines.append(f"  value[{k}] = {f'DESIGNS_ROOT({squares})' if len(columns) > 1 else f'y[{columns[0]}]'};\n")
+    first, offset = len(plan.quantities), plan.margins
+    for k, link in enumerate(plan.links):
+        lines.append(_along(k, link, f"value + {first + 3 * k}, place + {3 * k}", offset))
+        offset += 1 + (1 if _uniform(link) else (len(link.breaks) - 1) * (3 + link.terms))
+    return f"""
+static void designs_quantities(const casadi_real* y, const casadi_real* matter, unsigned long long need, casadi_real* value,
+                               casadi_real* place) {{
+  (void) matter; (void) need; (void) place;
+{"".join(lines)}}}
+"""
+
+
+def _along(number: int, link: Along, into: str, offset: int) -> str:
+    loads = [column for station in link.stations for column in station]
+    taken = "".join(f"    law[{i}] = y[{column}];\n" for i, column in enumerate(link.law))
+    taken += "".join(f"    loads[{i}] = y[{column}];\n" for i, column in enumerate(loads))
+    if _uniform(link):
+        inner = f"    casadi_real law[7];\n{taken}    designs_uniform(matter + {offset}, law, {into});\n"
+    else:
+        sizes = f"{len(link.breaks) - 1}, {link.terms}, {len(link.stations)}"
+        inner = f"""    casadi_real law[7], loads[{max(1, len(loads))}], marks[{len(link.stations) + 1}];
+    const designs_link link = {{{sizes}, designs_breaks{number}, matter + {offset}, law, loads}};
+{taken}    designs_along(&link, marks, {into});
+"""
+    return f"  if (need >> {min(number, 63)} & 1) {{\n{inner}  }}\n"
+
+
+def _uniform(link: Along) -> bool:
+    return not link.stations and len(link.breaks) == 2 and link.terms == 1
+
+
+def matter_of(link: Along, length: Any, cells: Sequence[Sequence[Any]]) -> list[Any]:
+    """What ``sections.c`` takes for a link, of its length [m] and its cells [kg], filled up to as many terms: see there."""
+    if _uniform(link):
+        return [length, cells[0][0]]
+    beyond: tuple[Any, Any, Any] = (0.0, 0.0, 0.0)
+    found: list[list[Any]] = []
+    for a, b, cell in reversed(list(zip(link.breaks, link.breaks[1:], cells, strict=False))):
+        turned = [
+            (-1) ** j * sum(c * math.comb(n, j) * b ** (n - j) for n, c in enumerate(cell) if n >= j) for j in range(len(cell))
+        ]
+        turned += [0.0] * (link.terms - len(turned))
+        found.append([*beyond, *turned])
+        x = b - a
+        own = [
+            sum(
+                c * x ** (j + k + 1) * (math.factorial(j) * math.factorial(k) / math.factorial(j + k + 1))
+                for j, c in enumerate(turned)
+            )
+            for k in range(3)
+        ]
+        beyond = (
+            beyond[0] + own[0],
+            beyond[1] + x * beyond[0] + own[1],
+            beyond[2] + 2 * x * beyond[1] + x * x * beyond[0] + own[2],
+        )
+    return [length, *(value for cell in reversed(found) for value in cell)]
+
+
+def _source(name: str) -> str:
+    return "\n" + resources.files(__package__).joinpath(name).read_text()
+
+
+_WORK = """
+/* The columns y of a pack of instants: of its times, at the start of at, and of its iterated coordinates, at DESIGNS_PLACE. */
+static void designs_columns(const casadi_real* parameters, const casadi_real* constants, const DESIGNS_REAL* p, casadi_real* at,
+                            casadi_real* y) {{
+  casadi_int iw[{iw}], j = 0, k = 0;
+  casadi_real w[{w}], *time = at, *counted = at + {nt}, *rates = counted + {nc}, *place = rates + 2*{nd};
+  const casadi_real* arg[{arg}];
+  casadi_real* res[{res}];
+  (void) j; (void) k; (void) p; (void) parameters; (void) time;
+{drive}    arg[0] = counted;
+  arg[1] = rates;
+  arg[2] = rates + {nd};
+  arg[3] = place;
+  arg[4] = constants;
+  res[0] = y;
+  instant(arg, res, iw, w, 0);
+}}
+
+/* What parameters alone decide. */
+static void designs_fixed(const casadi_real* parameters, casadi_real* constants, casadi_real* matter) {{
+  casadi_int iw[{iw}];
+  casadi_real w[{w}];
+  const casadi_real* arg[{arg}];
+  casadi_real* res[{res}];
+  arg[0] = parameters;
+  res[0] = constants;
+  constants_of(arg, res, iw, w, 0);
+  res[0] = matter;
+  matter_of(arg, res, iw, w, 0);
+}}
+"""

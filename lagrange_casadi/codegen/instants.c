@@ -1,0 +1,184 @@
+/* One design over all instants: its rows, whether it has a result, and means.
+
+   Instants are evaluated in packs. Nothing here depends on another design. What the scene is made of stands before this text:
+   designs_columns, designs_quantities, tables, and sizes as macros. */
+typedef DESIGNS_REAL designs_real;
+
+typedef struct {
+  casadi_int n, stride;
+  const double* t;
+  const designs_real* p;
+  designs_real *times, *rows, *z;
+  int* status;
+  casadi_real parameters[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], constants[DESIGNS_SOME(DESIGNS_CONSTANTS)], matter[DESIGNS_MATTER];
+} designs_now;
+
+static designs_real designs_lane(const casadi_real* pack, int lane) {
+  designs_real x;
+  memcpy(&x, (const char*) pack + (size_t) lane*sizeof x, sizeof x);
+  return x;
+}
+
+static designs_real* designs_row(const designs_now* now, int k) { return now->rows + k*now->stride + LANES; }
+
+static void designs_split(double t, designs_real* moment) {
+  moment[0] = (designs_real) t;
+  if (DESIGNS_NT > 1) moment[DESIGNS_NT - 1] = (designs_real) (t - moment[0]);
+}
+
+/* The columns at LANES times, each near an instant. */
+static void designs_at(const designs_now* now, const double* t, const casadi_int* near, casadi_real* y) {
+  designs_real lane[DESIGNS_NT][LANES], moment[DESIGNS_NT], place[DESIGNS_SOME(DESIGNS_NZ)][LANES], z[DESIGNS_SOME(DESIGNS_NZ)];
+  casadi_real at[DESIGNS_INPUTS];
+  int j, k, status = 0;
+  for (j = 0; j < LANES; ++j) {
+    designs_split(t[j], moment);
+    for (k = 0; k < DESIGNS_NT; ++k) lane[k][j] = moment[k];
+    if (DESIGNS_NZ == 0) continue;
+    for (k = 0; k < DESIGNS_NZ; ++k) z[k] = now->z[k*now->stride + near[j]];
+    DESIGNS_FOLLOW(1, 1, moment, now->p, z, z, &status);
+    for (k = 0; k < DESIGNS_NZ; ++k) place[k][j] = status == DESIGNS_NOT_CONVERGED ? (designs_real) NAN : z[k];
+  }
+  memcpy(at, lane, sizeof lane);
+  if (DESIGNS_NZ) memcpy(at + DESIGNS_PLACE, place, sizeof place);
+  designs_columns(now->parameters, now->constants, now->p, at, y);
+}
+
+/* All instants, as rows of quantities, of their places along links, of what is checked, and of a sum that is finite if all is. */
+static void designs_sample(const designs_now* now, double* history) {
+  casadi_real at[DESIGNS_INPUTS], y[DESIGNS_COLUMNS], value[DESIGNS_QUANTITIES], place[DESIGNS_SOME(DESIGNS_PLACES)], sum[4];
+  casadi_int i, j;
+  int k;
+  for (i = 0; i < now->n; i += LANES) {
+    for (k = 0; k < DESIGNS_NT; ++k) memcpy(at + k, now->times + k*now->stride + i, sizeof *at);
+    for (k = 0; k < DESIGNS_NZ; ++k) memcpy(at + DESIGNS_PLACE + k, now->z + k*now->stride + i, sizeof *at);
+    designs_columns(now->parameters, now->constants, now->p, at, y);
+    designs_quantities(y, now->matter, ~0, value, place);
+    for (k = 0; k < DESIGNS_QUANTITIES; ++k) memcpy(designs_row(now, k) + i, value + k, sizeof *value);
+    for (k = 0; k < DESIGNS_PLACES; ++k) memcpy(designs_row(now, DESIGNS_QUANTITIES + k) + i, place + k, sizeof *place);
+    for (k = 0; k < DESIGNS_CHECKS; ++k) memcpy(designs_row(now, DESIGNS_CHECKED + k) + i, y + designs_checked[k], sizeof *y);
+    for (k = 0; k < 4; ++k) sum[k] = 0;
+    for (k = 0; k + 4 <= DESIGNS_COLUMNS; k += 4) {
+      for (j = 0; j < 4; ++j) sum[j] = sum[j] + y[k + j];
+    }
+    for (; k < DESIGNS_COLUMNS; ++k) sum[0] = sum[0] + y[k];
+    sum[0] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    memcpy(designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS) + i, sum, sizeof *sum);
+    if (history) {
+      for (k = 0; k < DESIGNS_COLUMNS; ++k) {
+        for (j = 0; j < LANES && i + j < now->n; ++j) history[k*now->n + i + j] = designs_lane(y + k, (int) j);
+      }
+    }
+  }
+}
+
+/* Whether a closure comes to zero between an instant and the next, looked for where it is lowest, ever closer. */
+static int designs_dead_between(const designs_now* now, int check, casadi_int i) {
+  double start = now->t[i], stop = now->t[i + 1], t[DESIGNS_INSIDE + LANES], width;
+  casadi_int near[LANES];
+  casadi_real y[DESIGNS_COLUMNS];
+  designs_real lowest = DESIGNS_LARGEST, low, x;
+  int round, j, k, best;
+  for (j = 0; j < LANES; ++j) near[j] = i;
+  for (round = 0; round < DESIGNS_ROUNDS; ++round) {
+    width = (stop - start)/(DESIGNS_INSIDE - 1);
+    for (j = 0; j < DESIGNS_INSIDE + LANES; ++j) t[j] = j < DESIGNS_INSIDE - 1 ? start + j*width : stop;
+    low = DESIGNS_LARGEST;
+    best = 0;
+    for (k = 0; k < DESIGNS_INSIDE; k += LANES) {
+      designs_at(now, t + k, near, y);
+      for (j = 0; j < LANES; ++j) {
+        x = designs_lane(y + designs_checked[check], j);
+        if (k + j < DESIGNS_INSIDE && x < low) {
+          low = x;
+          best = k + j;
+        }
+      }
+    }
+    if (low < lowest) lowest = low;
+    start = t[best > 0 ? best - 1 : 0];
+    stop = t[best < DESIGNS_INSIDE - 1 ? best + 1 : best];
+  }
+  return !(lowest > designs_limit[check]);
+}
+
+static designs_real designs_sine(designs_real closure) { return closure > 0 && closure <= DESIGNS_LARGEST ? DESIGNS_ROOT(closure) : 0; }
+
+/* Whether, straight on from either side, the sine of a loop's transmission angle meets zero before the next instant. */
+static int designs_passes(const designs_now* now, int check, casadi_int i) {
+  const designs_real *row = designs_row(now, DESIGNS_CHECKED + check), open = DESIGNS_NZ ? 1 : -1;
+  designs_real here, next, left, right;
+  if (i + 1 >= now->n) return 0;
+  here = designs_sine(row[i]);
+  next = designs_sine(row[i + 1]);
+  left = i > 0 ? 2*here - designs_sine(row[i - 1]) : open;
+  right = i + 2 < now->n ? 2*next - designs_sine(row[i + 2]) : open;
+  if (!(left < 0 && right < 0 && here < DESIGNS_NEAR && next < DESIGNS_NEAR)) return 0;
+  return DESIGNS_NZ || designs_dead_between(now, check, i);
+}
+
+/* Why an instant has no result, or DESIGNS_OK. */
+static int designs_why(const designs_now* now, casadi_int i) {
+  designs_real x, limit;
+  int k;
+  if (now->status[i] == DESIGNS_NOT_CONVERGED) return DESIGNS_NOT_CONVERGED;
+  for (k = 0; k < DESIGNS_CHECKS; ++k) {
+    x = designs_row(now, DESIGNS_CHECKED + k)[i];
+    limit = designs_limit[k];
+    if (designs_kind[k] == DESIGNS_IS_CLOSURE || designs_kind[k] == DESIGNS_IS_BRANCH) {
+      if (x < -limit) return designs_kind[k] == DESIGNS_IS_BRANCH ? DESIGNS_JUMPED : DESIGNS_OUT_OF_REACH;
+      if (!(x > limit)) return DESIGNS_DEAD_CENTRE;
+      if (designs_passes(now, k, i)) return DESIGNS_PASSES_DEAD_CENTRE;
+    } else if (designs_kind[k] == DESIGNS_IS_MISFIT) {
+      if (!(x <= limit)) return DESIGNS_MISFIT;
+    } else if (designs_kind[k] == DESIGNS_IS_ROW) {
+      if (!((x < 0 ? -x : x) <= limit*designs_row(now, DESIGNS_CHECKED + k + 1)[i])) return DESIGNS_ROW_VIOLATED;
+    }
+  }
+  if (now->status[i] == DESIGNS_SLOW) return DESIGNS_SLOW;
+  x = designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS)[i];
+  return x - x == 0 ? DESIGNS_OK : DESIGNS_NOT_FINITE;
+}
+
+/* Why a design has no result: that of its first instant without one. */
+static int designs_refused(const designs_now* now) {
+  const designs_real* row = designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS);
+  casadi_int i;
+  int k, bad = 0, why;
+  for (i = 0; i < now->n; ++i) bad |= !(row[i] - row[i] == 0);
+  for (i = 0; i < now->n; ++i) bad |= now->status[i] != DESIGNS_OK;
+  for (k = 0; k < DESIGNS_CHECKS; ++k) {
+    row = designs_row(now, DESIGNS_CHECKED + k);
+    if (designs_kind[k] == DESIGNS_IS_CLOSURE || designs_kind[k] == DESIGNS_IS_BRANCH) {
+      for (i = 0; i < now->n; ++i) bad |= !(row[i] >= DESIGNS_NEAR*DESIGNS_NEAR);
+    } else if (designs_kind[k] != DESIGNS_IS_ROWSIZE) {
+      bad = 1;
+    }
+  }
+  if (!bad) return DESIGNS_OK;
+  for (i = 0; i < now->n; ++i) {
+    why = designs_why(now, i);
+    if (why != DESIGNS_OK) return why;
+  }
+  return DESIGNS_OK;
+}
+
+/* The time mean of a row, or of its square, by trapezia. */
+static double designs_mean(const designs_now* now, int k, int squared) {
+  const designs_real* row = designs_row(now, k);
+  const casadi_int n = now->n;
+  casadi_real part, sum = 0;
+  double whole = 0, first = row[0], last = row[n - 1];
+  casadi_int i;
+  if (squared) {
+    first = first*first;
+    last = last*last;
+  }
+  for (i = 0; i + LANES <= n; i += LANES) {
+    memcpy(&part, row + i, sizeof part);
+    sum = sum + (squared ? part*part : part);
+  }
+  for (k = 0; k < LANES; ++k) whole += designs_lane(&sum, k);
+  for (; i < n; ++i) whole += squared ? (double) row[i]*row[i] : row[i];
+  return n > 1 ? (whole - (first + last)/2)/(double) (n - 1) : first;
+}

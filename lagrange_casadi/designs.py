@@ -1,0 +1,154 @@
+"""Many designs of one scene at once: of each parameter set the peaks, means, and whether there is a result at all.
+
+Instants of a design are evaluated in packs, and reduced in C to what is kept; between instants peaks are sought by evaluating the
+same graph at a few more instants there. A design depends on nothing but its own parameters: its row has the same bytes whatever
+stands beside it.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import codegen
+from .backends import compiled, provenance
+from .compensated import DTYPES
+from .density import Array
+from .derive import derive
+from .designs_plain import outcome
+from .designs_plan import Kept, stages_of
+from .errors import DeclarationError
+from .evaluate import checked_times, outputs_of
+from .grids import require
+from .rung import Rung
+from .scene import Grid, Scene
+from .scene_graph import SceneGraph
+from .solution import Provenance
+from .stages import Stages
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What is kept of n designs, a row each; rows of designs without a result hold NaN.
+
+    ``status`` (n) is a :class:`.Status`. ``value``, ``t`` and ``xi``, (n, q), are the peak of each quantity with its sign, its time
+    [s] and its ratio xi/l, NaN off a link; ``mean`` and ``rms``, (n, e), those of each effort over time. ``series`` (n, columns, t)
+    are whole histories, where they were asked for.
+    """
+
+    status: npt.NDArray[np.int8]
+    value: Array
+    t: Array
+    xi: Array
+    mean: Array
+    rms: Array
+    series: Array | None
+
+
+@dataclass(frozen=True, eq=False)
+class Designs:
+    """A scene compiled for many designs.
+
+    ``parameters`` are the columns of what :meth:`evaluate` takes; ``quantities``, with ``units``, and ``efforts`` those of what it
+    gives; ``columns`` those of histories.
+    """
+
+    scene: Scene
+    rung: Rung
+    t: Array
+    kept: Kept
+    graph: SceneGraph
+    stages: Stages
+    library: codegen.DesignsLibrary | None
+    provenance: Provenance
+
+    @classmethod
+    def of(cls, scene: Scene, wanted: Sequence[str] | None = None, t: Grid | None = None, rung: Rung | None = None) -> Designs:
+        """Derive and compile: ``wanted`` outputs, instants ``t`` and ``rung`` as in :func:`.evaluate`."""
+        rung = rung or Rung()
+        if rung.table is not None:
+            raise DeclarationError("designs are not read from a table: each would need a table of its own")
+        graph = derive(scene, wanted, iterate=rung.newton is not None)
+        instants = np.linspace(*checked_times(scene, t))
+        stages = stages_of(graph, rung, instants)
+        kept = Kept.of(graph, rung.precision)
+        guess = np.array(graph.newton.guess if graph.newton else (), float)
+
+        def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:
+            source = codegen.emit_designs(graph, stages, rung.newton, kept.plan)
+            flags = tuple(shlex.split(rung.flags))
+            return codegen.load_designs(source, compiler, flags, kept.plan, instants, guess, DTYPES[rung.precision])
+
+        found = compiled(rung, build)
+        if found is None:
+            return cls(scene, rung, instants, kept, graph, stages, None, provenance("vm", "", "", rung))
+        compiler, library = found
+        backend = "lanes" if compiler.language == "c++" else "c"
+        made = provenance(backend, compiler.version, " ".join(library.flags), rung)
+        return cls(scene, rung, instants, kept, graph, stages, library, made)
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of the parameters."""
+        return tuple(self.scene.mechanism.parameters)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The names of the quantities that have peaks."""
+        return self.kept.quantities
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """Their units."""
+        return self.kept.units
+
+    @property
+    def efforts(self) -> tuple[str, ...]:
+        """The names of the efforts that have means."""
+        return self.kept.efforts
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The names of the outputs that histories have."""
+        return tuple(name for name in self.graph.columns if not name.startswith("_"))
+
+    def evaluate(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
+        """The outcome of designs ``p``, (n, parameters), in the order of :attr:`parameters`; with ``histories``, its series too.
+
+        Values are not checked against the parameters' ranges. ``threads`` share the designs, by default one a core; no byte depends
+        on them. Raises :class:`DeclarationError` for another shape, :class:`SizeError` where the outcome does not fit into memory.
+        """
+        p = np.ascontiguousarray(p, float)
+        if p.ndim != 2 or p.shape[1] != len(self.parameters):
+            raise DeclarationError(f"designs: expected an array of shape (n, {len(self.parameters)}), got {p.shape}")
+        n, q, e = p.shape[0], len(self.quantities), len(self.efforts)
+        history = (n, len(self.graph.columns), self.t.size)
+        require("the peaks of the designs", (n, 3 * q + 2 * e))
+        if histories:
+            require("the histories of the designs", history)
+        columns = np.empty(history) if histories else None
+        peaks, means = (np.empty((3, n, q)), np.empty((2, n, e)))
+        found = Outcome(np.zeros(n, np.int8), peaks[0], peaks[1], peaks[2], means[0], means[1], columns)
+        if self.library is not None:
+            self.library.evaluate(p, list(vars(found).values()), threads or codegen.cores())
+        else:
+            self._interpret(p, found)
+        if columns is None:
+            return found
+        with np.errstate(invalid="ignore"):
+            series = outputs_of(self.graph, np.moveaxis(columns, 1, 0))
+        return replace(found, series=np.stack([series[name] for name in self.columns], axis=1))
+
+    def _interpret(self, p: Array, found: Outcome) -> None:
+        kept = (found.value, found.t, found.xi, found.mean, found.rms)
+        for i, row in enumerate(p):
+            found.status[i], design = outcome(self.graph, self.kept, self.t, row, self.rung.newton)
+            for array, values in zip(kept, (*design.peaks, *design.means) if design else [np.nan] * 5, strict=True):
+                array[i] = values
+            if found.series is not None:
+                found.series[i] = design.columns if design else np.nan

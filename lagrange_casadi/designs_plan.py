@@ -1,0 +1,169 @@
+"""What is kept of a design of a scene, as numbers of columns: what the emitted C reduces its instants to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from .codegen.designs import Along, Plan, matter_of
+from .compensated import Precision
+from .density import Array, Density
+from .errors import DeclarationError
+from .kinematics import NEAR
+from .mechanism import Mechanism
+from .parts import Link, RigidMass
+from .quantities import FORCE, quantity_of
+from .refusal import MISFIT, Status, dead_centre
+from .rung import Rung
+from .scene_graph import SceneGraph
+from .section_law import FORCES
+from .stages import Stages, compensated, counts, plain
+
+LAW = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
+_STATION = ("station", "n", "f", "m")
+_BETWEEN = 9
+"""Places in a cell of density at which one of a higher degree than a line is asked for its sign."""
+
+
+def stages_of(graph: SceneGraph, rung: Rung, t: Array) -> Stages:
+    """In which arithmetic all designs are evaluated: in pairs where angles count many turns, or may, as parameters set them."""
+    if rung.precision == "single":
+        return compensated(graph, "single")
+    time, p = graph.laws.smooth.sx_in()
+    if p.numel() and ca.depends_on(ca.vertcat(*graph.laws.smooth(time, p)), p):
+        try:
+            return compensated(graph, "double")
+        except DeclarationError:
+            return plain(graph)
+    many = counts(graph, t, np.array(list(graph.scene.mechanism.values().values())))
+    return compensated(graph, "double") if many else plain(graph)
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """The names of what is kept, and the plan by which: peaks of ``quantities``, in ``units``, and means of ``efforts``.
+
+    Quantities are the wanted outputs by their full names, angles that loops set left out; ``reaction:JOINT`` is the size of a
+    joint's reaction; the section forces of ``links`` come last. What equilibrium does not determine is left out.
+    """
+
+    quantities: tuple[str, ...]
+    units: tuple[str, ...]
+    efforts: tuple[str, ...]
+    links: tuple[str, ...]
+    plan: Plan
+
+    @classmethod
+    def of(cls, graph: SceneGraph, precision: Precision) -> Kept:
+        """What is kept of a scene's designs."""
+        mechanism, at = graph.scene.mechanism, {name: k for k, name in enumerate(graph.columns)}
+        chosen: dict[str, tuple[int, ...]] = {}
+        for name, k in at.items():
+            if name.startswith(("_", "section:")) or name in graph.wrapped:
+                continue
+            kind, part, *rest = name.split(":")
+            if kind == "reaction" and rest == ["fx"] and f"reaction:{part}:fy" in at:
+                chosen[f"reaction:{part}"] = (k, at[f"reaction:{part}:fy"])
+            chosen[name] = (k,)
+        links = [link for link in mechanism.links.values() if f"section:{link.name}:law:n0" in at]
+        links = [link for link in links if not any(name.startswith(f"section:{link.name}:") for name in graph.undetermined)]
+        names = [*chosen, *(f"section:{link.name}:{force}" for link in links for force in FORCES)]
+        if not names:
+            raise DeclarationError("designs: nothing is wanted that has a peak")
+        units = tuple(_unit(mechanism, name) for name in names)
+        numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
+        efforts = tuple(name for name in names if name.startswith("effort:"))
+        along = tuple(_along(link, at) for link in links)
+        matter, positive, margins = _matter(mechanism, links, along)
+        plan = Plan(
+            quantities=tuple(chosen.values()),
+            links=along,
+            units=tuple(numbers[unit] for unit in units),
+            efforts=tuple(names.index(name) for name in efforts),
+            checks=tuple(_checks(graph, precision, at)),
+            matter=matter,
+            positive=positive,
+            margins=margins,
+            near=NEAR,
+            statuses={status.name: int(status) for status in Status},
+        )
+        return cls(tuple(names), units, efforts, tuple(link.name for link in links), plan)
+
+
+def _unit(mechanism: Mechanism, name: str) -> str:
+    kind, part, *rest = name.split(":")
+    if kind == "reaction" and not rest:
+        return FORCE
+    joint = mechanism.joints.get(part.removesuffix("_rate").removesuffix("_acceleration"))
+    return quantity_of(name).unit_for((joint.coordinate if joint else None) or "angle")
+
+
+def _along(link: Link, at: dict[str, int]) -> Along:
+    assert isinstance(link.mass, Density)
+    start = f"section:{link.name}"
+    stations = dict.fromkeys(
+        name.split(":")[2] for name in at if name.startswith(f"{start}:") and not name.startswith(f"{start}:law:")
+    )
+    return Along(
+        tuple(at[f"{start}:law:{member}"] for member in LAW),
+        tuple(tuple(at[f"{start}:{station}:{member}"] for member in _STATION) for station in stations),
+        link.mass.breaks,
+        max(len(cell) for cell in link.mass.cells),
+    )
+
+
+def _checks(graph: SceneGraph, precision: Precision, at: dict[str, int]) -> list[tuple[int, str, float]]:
+    found: list[tuple[int, str, float]] = []
+    for name, k in at.items():
+        kind, _, joint = name.partition(":")
+        if kind == "_closure":
+            jumps = graph.newton is not None and f"'{joint}'" in graph.newton.joints
+            found.append((k, "BRANCH" if jumps else "CLOSURE", dead_centre(graph, precision, name)))
+        elif kind == "_misfit":
+            found.append((k, "MISFIT", MISFIT[precision]))
+        elif kind == "_row":
+            found += [(k, "ROW", MISFIT[precision]), (at[f"_rowsize:{joint}"], "ROWSIZE", 0.0)]
+    return found
+
+
+def _matter(mechanism: Mechanism, links: list[Link], along: tuple[Along, ...]) -> tuple[ca.Function, int, int]:
+    """What the plan wants to know of the parts, and how many numbers must be positive, and not negative."""
+    lengths = {name: link.length for name, link in mechanism.links.items()}
+    masses = [_masses(body.mass, lengths.get(body.name, 0.0)) for body in mechanism.moving]
+    positive = [*lengths.values(), sum((mass for mass, _ in masses), ca.SX(0))]
+    others = [value for _, values in masses for value in values]
+    for point in (point for joint in mechanism.joints.values() for point in (joint.parent, joint.child)):
+        others += _margins(point)
+    for point in (point for load in mechanism.loads.values() for point in load.points):
+        others += _margins(point)
+    rest: list[Any] = []
+    for link, part in zip(links, along, strict=True):
+        assert isinstance(link.mass, Density)
+        scale = link.length if link.mass.per_length else 1.0
+        rest += matter_of(part, link.length, [[c * scale for c in cell] for cell in link.mass.cells])
+    out = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.SX(value) for value in (*positive, *others, *rest))))
+    return ca.Function("matter_of", [mechanism.symbols], [out], {"cse": True}), len(positive), len(positive) + len(others)
+
+
+def _masses(matter: Any, length: Any) -> tuple[Any, list[Any]]:
+    """A mass, and what of it must not be negative."""
+    if isinstance(matter, RigidMass):
+        return matter.mass, [matter.mass, matter.inertia]
+    if not isinstance(matter, Density):
+        return matter, [matter]
+    base, tip, _ = matter.ends(length)
+    values: list[Any] = []
+    for a, b, cell in zip(matter.breaks, matter.breaks[1:], matter.cells, strict=False):
+        for u in np.linspace(a, b, min(len(cell), 2) if len(cell) < 3 else _BETWEEN):
+            values.append(sum(c * float(u) ** j for j, c in enumerate(cell)))
+    return base + tip, values
+
+
+def _margins(point: Any) -> list[Any]:
+    """How far a station of a link with sections is from either end."""
+    if isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None:
+        return [point.x, point.body.length - point.x]
+    return []
