@@ -51,7 +51,7 @@ class Outcome:
 
 
 @dataclass(frozen=True, eq=False)
-class Designs:
+class DesignEngine:
     """A scene compiled for many designs.
 
     ``parameters`` are the columns of what :meth:`evaluate` takes; ``quantities``, with ``units``, and ``efforts`` those of what it
@@ -68,7 +68,7 @@ class Designs:
     provenance: Provenance
 
     @classmethod
-    def of(cls, scene: Scene, wanted: Sequence[str] | None = None, t: Grid | None = None, rung: Rung | None = None) -> Designs:
+    def of(cls, scene: Scene, wanted: Sequence[str] | None = None, t: Grid | None = None, rung: Rung | None = None) -> DesignEngine:
         """Derive and compile: ``wanted`` outputs, instants ``t`` and ``rung`` as in :func:`.evaluate`."""
         rung = rung or Rung()
         if rung.table is not None:

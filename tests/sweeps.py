@@ -13,9 +13,9 @@ import time
 import builders
 import numpy as np
 
+from lagrange_casadi.designs import Outcome
 from lagrange_casadi.solution import Provenance
 from lagrange_casadi.sweep import plan
-from lagrange_casadi.sweep.engine import Outcome
 from lagrange_casadi.version import __version__
 
 

@@ -18,7 +18,7 @@ from test_redundancy import parallelogram
 from lagrange_casadi import Mechanism, Scene, codegen, density, derive, evaluate, load_case, motion
 from lagrange_casadi.backends import run
 from lagrange_casadi.codegen import library
-from lagrange_casadi.designs import Designs
+from lagrange_casadi.designs import DesignEngine
 from lagrange_casadi.designs_plan import Kept, stages_of
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError
 from lagrange_casadi.motion import polynomial
@@ -85,7 +85,7 @@ def assert_refined(scene, designs, outcome, row, p, tolerance=1e-11, noise=1e-12
 def test_designs_are_their_own_evaluations(name):
     """Every number of a case a parameter."""
     scene = declared(CASES / name)
-    designs = Designs.of(scene, t=(*scene.t[:2], INSTANTS), rung=Rung("c"))
+    designs = DesignEngine.of(scene, t=(*scene.t[:2], INSTANTS), rung=Rung("c"))
     p = around(scene, 3)
     outcome = designs.evaluate(p)
     assert outcome.status.tolist() == [Status.OK] * 3
@@ -107,13 +107,13 @@ def test_all_rungs_agree(name):
     scene = declared(CASES / name)
     p, grid = around(scene, 9), (*scene.t[:2], INSTANTS)
     p[1, 0] = math.nan
-    exact = Designs.of(scene, t=grid, rung=Rung("c"))
+    exact = DesignEngine.of(scene, t=grid, rung=Rung("c"))
     expected = exact.evaluate(p)
     rungs = [(Rung("lanes"), 1e-12), (Rung("vm"), 1e-12), (Rung("lanes", newton=4), 1e-12)]
     rungs += [(Rung(backend, "single"), 2e-5) for backend in ("lanes", "c")]
     for rung, tolerance in rungs:
         some = 2 if rung.backend == "vm" else 9
-        designs = Designs.of(scene, t=grid, rung=rung)
+        designs = DesignEngine.of(scene, t=grid, rung=rung)
         assert (designs.quantities, designs.provenance.backend) == (exact.quantities, rung.backend)
         outcome = designs.evaluate(p[:some])
         assert np.array_equal(outcome.status, expected.status[:some])
@@ -130,17 +130,17 @@ def test_all_rungs_agree(name):
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "rrr3"])
 def test_a_row_has_the_same_bytes_whatever_stands_beside_it(name, rung, monkeypatch):
     scene = declared(CASES / name)
-    designs = Designs.of(scene, t=(*scene.t[:2], 61), rung=rung)
+    designs = DesignEngine.of(scene, t=(*scene.t[:2], 61), rung=rung)
     p = around(scene, 40, spread=0.7 if name == "slider_crank" else 0.3)
     whole = designs.evaluate(p, threads=1, histories=True)
     assert len(set(whole.status.tolist())) > 1
-    for fresh in (designs, Designs.of(scene, t=(*scene.t[:2], 61), rung=rung)):
+    for fresh in (designs, DesignEngine.of(scene, t=(*scene.t[:2], 61), rung=rung)):
         order = np.random.default_rng(1).permutation(40)
         other = fresh.evaluate(p[order], histories=True)
         assert all(getattr(other, f).tobytes() == getattr(whole, f)[order].tobytes() for f in (*FIELDS, "series"))
     monkeypatch.setattr(library, "_WORTH_A_THREAD", 0)
     monkeypatch.setattr(library, "_LONGEST", 3)
-    cut = Designs.of(scene, t=(*scene.t[:2], 61), rung=rung)
+    cut = DesignEngine.of(scene, t=(*scene.t[:2], 61), rung=rung)
     assert cut.library.share == 1
     for threads in (1, 2, 3, 7):
         other = cut.evaluate(p, threads=threads)
@@ -158,7 +158,7 @@ def bare(designs, p):
 @pytest.mark.parametrize("backend", ["lanes", "c"])
 def test_every_value_is_written_or_is_nan(backend):
     scene = slider_crank()
-    designs = Designs.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, rung=Rung(backend))
     p = around(scene, 5)
     p[2, 1] = 0.05
     status, value, t, xi, mean, rms = bare(designs, p)
@@ -177,7 +177,7 @@ def test_every_value_is_written_or_is_nan(backend):
 
 def statuses(scene, p, rung, instants=None):
     """The statuses of designs, as they are found and as their own evaluations are refused."""
-    designs = Designs.of(scene, t=instants, rung=rung)
+    designs = DesignEngine.of(scene, t=instants, rung=rung)
     found, expected = designs.evaluate(p).status, []
     for row in p:
         try:
@@ -288,7 +288,7 @@ def test_any_density_and_any_station(matter, backend):
     scene = crank_and_rod(DENSITIES[matter](), loads=loaded)
     grid = (0.3, 2.3, 61)
     p = np.array([[0.2], [0.1], [0.35], [0.0], [0.31], [0.36]])
-    designs = Designs.of(scene, t=grid, rung=Rung(backend))
+    designs = DesignEngine.of(scene, t=grid, rung=Rung(backend))
     outcome = designs.evaluate(p)
     assert outcome.status.tolist() == [Status.OK] * 5 + [Status.IMPOSSIBLE]
     for row in range(5):
@@ -308,7 +308,7 @@ def test_peaks_of_a_turning_pendulum_are_exact(backend):
     """The effort is m g l/2 cos theta; its mean over a whole turn is zero and its rms the peak over the root of two."""
     speed, start, turn = 3.0, 0.1, 2 * math.pi / 3.0
     scene = pendulum(polynomial(start, speed), t=(0, turn, 41))
-    designs = Designs.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, rung=Rung(backend))
     outcome = designs.evaluate(np.zeros((1, 0)))
     value, t, _ = peaks_of(designs, outcome, 0)["effort:pin"]
     peak = 1.2 * 9.81 * 0.5 / 2
@@ -321,7 +321,7 @@ def test_peaks_of_a_turning_pendulum_are_exact(backend):
 @both
 def test_of_peaks_as_large_the_first_is_told(backend):
     """Else rounding would choose between tops and troughs of many turns, and the sign with them."""
-    designs = Designs.of(pendulum(polynomial(0.1, 3.0), t=(0, 6.0, 91), wanted=["effort"]), rung=Rung(backend))
+    designs = DesignEngine.of(pendulum(polynomial(0.1, 3.0), t=(0, 6.0, 91), wanted=["effort"]), rung=Rung(backend))
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["effort:pin"]
     assert value == pytest.approx(-1.2 * 9.81 * 0.25, rel=1e-12)
     assert t == pytest.approx((math.pi - 0.1) / 3.0, abs=1e-6)
@@ -333,7 +333,7 @@ def test_any_number_of_instants(count, backend):
     """The peak of one instant is its own; of two and more the refined one where a rise between them can be told."""
     scene = pendulum(polynomial(0.1, 1.0))
     grid = (0.2, 0.2, 1) if count == 1 else (0.0, 4.0, count)
-    designs = Designs.of(scene, t=grid, rung=Rung(backend))
+    designs = DesignEngine.of(scene, t=grid, rung=Rung(backend))
     outcome = designs.evaluate(np.zeros((1, 0)))
     assert outcome.status.tolist() == [Status.OK]
     found = peaks_of(designs, outcome, 0)
@@ -347,7 +347,7 @@ def test_any_number_of_instants(count, backend):
 @both
 def test_the_higher_of_two_peaks_is_found_where_the_instants_tell_otherwise(backend):
     scene = pendulum(motion.expression(lobes), t=(0, 3.0, 31), wanted=["motion"])
-    designs = Designs.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, rung=Rung(backend))
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["motion:pin"]
     assert t == pytest.approx(2.05, abs=1e-7)
     assert value == pytest.approx(1 + 1e-5, rel=1e-11)
@@ -360,12 +360,12 @@ def test_a_kink_and_a_jump(backend):
     scene = pendulum(motion.samples(times, np.sin(2.3 * times)), gravity=0.0, t=(0.3, 1.9, 24))
     bends = np.array([float(derive(scene).motion(t, [])[2]) for t in times])
     k = 1 + int(np.argmax(np.abs(bends[1:-1])))
-    designs = Designs.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, rung=Rung(backend))
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["effort:pin"]
     assert value == pytest.approx(1.2 * 0.25 / 3 * bends[k], rel=1e-12)
     assert t == pytest.approx(times[k], abs=1e-11)
     scene = pendulum(polynomial(0.0, 2.0), load=lambda angle: 7 * angle * (angle < 1), t=(0, 1, 12))
-    designs = Designs.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, rung=Rung(backend))
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["load:push:fx"]
     assert 7 * (1 - 1e-11) < value < 7
     assert 0.5 * (1 - 1e-11) < t < 0.5
@@ -382,7 +382,7 @@ def test_two_summits_between_the_same_instants(backend):
 
     scene = pendulum(motion.expression(law), t=(0, 2.0, 21), wanted=["motion"])
     fine = evaluate(scene, t=(0.9, 1.1, 200_001), backend="vm", certificate=False).peak("motion:pin")
-    designs = Designs.of(scene, rung=Rung(backend))
+    designs = DesignEngine.of(scene, rung=Rung(backend))
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["motion:pin"]
     assert value == pytest.approx(fine.value, rel=1e-9)
     assert t == pytest.approx(fine.t, abs=1e-4)
@@ -391,7 +391,7 @@ def test_two_summits_between_the_same_instants(backend):
 @pytest.mark.parametrize("name", ["slider_crank", "four_bar", "rrr3", "quick_return"])
 def test_histories_are_the_series_of_an_evaluation(name):
     scene = declared(CASES / name)
-    designs = Designs.of(scene, t=(*scene.t[:2], 41), rung=Rung("c"))
+    designs = DesignEngine.of(scene, t=(*scene.t[:2], 41), rung=Rung("c"))
     p = around(scene, 2)
     outcome = designs.evaluate(p, histories=True)
     assert outcome.series.shape == (2, len(designs.columns), 41)
@@ -411,7 +411,7 @@ def test_a_speed_that_is_a_parameter_keeps_its_phase():
     speed = m.parameter("speed", 1.0, "rad/s")
     m.revolute("pin", m.ground, m.link("arm", length=0.5, mass=1.2))
     scene = Scene(m, {"pin": motion.expression(lambda t: speed * t)}, t=(1.0, 1.0 + 1e-7, 41))
-    designs = Designs.of(scene, rung=Rung("c"))
+    designs = DesignEngine.of(scene, rung=Rung("c"))
     p = np.array([[1.0], [1e8]])
     outcome = designs.evaluate(p, histories=True)
     k = designs.columns.index("effort:pin")
@@ -422,7 +422,7 @@ def test_a_speed_that_is_a_parameter_keeps_its_phase():
 
 def test_what_is_not_determined_is_left_out():
     scene = parallelogram(pendulum=True)
-    designs = Designs.of(scene, rung=Rung("c"))
+    designs = DesignEngine.of(scene, rung=Rung("c"))
     assert not [name for name in designs.quantities if name.startswith(("reaction:A", "section:bar"))]
     assert {"effort:hang", "reaction:hang", "section:bob:bending"} <= set(designs.quantities)
     outcome = designs.evaluate(np.zeros((1, 0)))
@@ -452,7 +452,7 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
 
 
 def test_names_and_units_go_together():
-    designs = Designs.of(slider_crank(), ["reaction:guide", "effort", "section:rod"])
+    designs = DesignEngine.of(slider_crank(), ["reaction:guide", "effort", "section:rod"])
     assert designs.quantities == (
         *("effort:O", "reaction:guide", "reaction:guide:fx", "reaction:guide:fy"),
         *("section:rod:axial", "section:rod:shear", "section:rod:bending"),
@@ -464,12 +464,12 @@ def test_names_and_units_go_together():
 def test_misuse_is_named():
     scene = four_bar()
     with pytest.raises(DeclarationError, match="not read from a table"):
-        Designs.of(scene, rung=Rung(table=64))
+        DesignEngine.of(scene, rung=Rung(table=64))
     with pytest.raises(DeclarationError, match=r"expected an array of shape \(n, 0\), got \(3,\)"):
-        Designs.of(scene).evaluate(np.zeros(3))
+        DesignEngine.of(scene).evaluate(np.zeros(3))
     with pytest.raises(DeclarationError, match="samples of the motion"):
-        Designs.of(pendulum(motion.samples([0, 1, 2, 3], [0, 1, 0, 2]), t=(0, 1, 3)), t=(0, 4, 3))
-    empty = Designs.of(scene).evaluate(np.zeros((0, 0)))
-    assert empty.value.shape == (0, len(Designs.of(scene).quantities))
+        DesignEngine.of(pendulum(motion.samples([0, 1, 2, 3], [0, 1, 0, 2]), t=(0, 1, 3)), t=(0, 4, 3))
+    empty = DesignEngine.of(scene).evaluate(np.zeros((0, 0)))
+    assert empty.value.shape == (0, len(DesignEngine.of(scene).quantities))
     with pytest.raises(AssemblyError):
         evaluate(slider_crank(), parameters={"l": 0.05})

@@ -17,11 +17,12 @@ import casadi as ca
 import numpy as np
 
 from ..density import Array, Density
+from ..designs import Outcome
 from ..errors import DeclarationError, UnknownNameError
 from ..mechanism import Mechanism
 from ..quantities import FORCE, quantity_of
 from ..section_law import FORCES, SectionLaw, StationLoad
-from .engine import STATUSES, Engine, Outcome
+from .engine import STATUSES, Engine
 
 Keep = Literal["peaks", "laws", "histories"]
 KEEPS: tuple[Keep, ...] = ("peaks", "laws", "histories")

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..density import Array
 from ..description import Description, describe
+from ..designs import DesignEngine
 from ..errors import DeclarationError, SizeError
 from ..fingerprint import fingerprint, sources
 from ..rung import Rung
@@ -22,7 +23,6 @@ from ..solution import Provenance
 from .axes import Designs, check_designs
 from .columns import Column, Harvest, Keep, check_keep
 from .engine import Engine
-from .loop import Loop
 
 SCHEMA = "lagrange-casadi-sweep"
 SCHEMA_VERSION = 1
@@ -50,7 +50,7 @@ class Task:
 
 def compiled(scene: Scene, wanted: Sequence[str], t: Span, rung: Rung) -> Engine:
     """The engine of a scene."""
-    return Loop(scene, wanted, t, rung)
+    return DesignEngine.of(scene, wanted, t, rung)
 
 
 @dataclass(frozen=True, eq=False)
