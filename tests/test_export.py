@@ -303,7 +303,7 @@ def test_the_folder_says_how_it_is_evaluated_and_how_exactly(options, low, high,
     export(slider_crank(), tmp_path, parameters={"l": 0.3125}, **options)
     content = json.loads((tmp_path / "export.json").read_text())
     assert low < content["error"]["largest"] < high
-    said = f"Exported by: {content['options']}. Its outputs are off by about {content['error']['largest']:.0e}"
+    said = f"options of the export: {content['options']}. Its outputs are off by about {content['error']['largest']:.0e}"
     for file in ("slider_crank.h", "README.md"):
         text = re.sub(r"\s+", " ", (tmp_path / file).read_text())
         assert said in text

@@ -85,7 +85,7 @@ class Source:
     def story(self) -> str:
         """How it is evaluated, how exactly, and for which fixed numbers."""
         error, output = self.golden.worst
-        told = f"Exported by: {self.rung}. "
+        told = f"In {self.contract.precision} precision; options of the export: {self.rung}. "
         told += f"Its outputs are off by about {error:.0e} of their largest values over the scene's motion at most ({output})."
         if self.fixed:
             told += " Fixed here: " + ", ".join(f"{name} = {value:.6g}" for name, value in self.fixed.items()) + "."
