@@ -36,6 +36,14 @@ def test_the_best_is_the_least_in_size(swept):
     assert most.number == int(np.nanargmax(sizes))
 
 
+def test_what_has_no_result_is_never_best(swept):
+    failed = np.flatnonzero(swept["status"].ravel())
+    assert failed.size
+    for objectives in ({"minimise": ["l"]}, {"maximise": ["r"]}, {"minimise": ["l"], "maximise": ["r"]}):
+        found = best(swept, **objectives, count=1000)
+        assert not {design.number for design in found} & set(failed.tolist())
+
+
 def test_conditions_hold(swept):
     found = best(swept, minimise=[BENDING], where=["l < 0.3", "r>=0.06", f"{EFFORT}<=0.5"], count=1000)
     sizes, efforts = (np.abs(swept[name]) for name in (BENDING, EFFORT))

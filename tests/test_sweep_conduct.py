@@ -171,6 +171,7 @@ def test_what_is_there_is_not_overwritten(whole, tmp_path):
     [
         ({"grid": {"l": (0.15, 0.4, 61), "r": (0.05, 0.1, 7)}}, "grid l was 0.15:0.4:60 and is 0.15:0.4:61"),
         ({"grid": {"l": (0.15, 0.4, 60)}}, "grid r was there, and is not"),
+        ({"grid": {"r": (0.05, 0.1, 7), "l": (0.15, 0.4, 60)}}, "the axes of the grid were l, r and are r, l"),
         ({"parameters": {"m3": 0.2}}, "mechanism parameters m3 value was 0.1 and is 0.2"),
         ({"wanted": ["effort"]}, "wanted reactions was "),
         ({"t": (0, 0.08, 9)}, "t was [0.0, 0.08, 7] and is [0.0, 0.08, 9]"),
@@ -207,6 +208,25 @@ def test_another_law_of_motion_is_refused(whole, tmp_path):
     other = Scene(scene.mechanism, {"O": polynomial(0, 1)}, t=scene.t, posture=scene.posture)
     with pytest.raises(StoreError, match="an expression or a law of motion of the scene has changed"):
         sweep(other, GRID, out=tmp_path / "whole.h5", resume=True)
+
+
+@pytest.mark.parametrize("keywords", [{}, {"resume": True}, {"force": True}])
+def test_what_no_sweep_put_into_the_folder_is_not_touched(engine, tmp_path, keywords):
+    folder = tmp_path / "x.h5.parts"
+    folder.mkdir()
+    (folder / "thesis.txt").write_text("mine")
+    with pytest.raises(PathError, match=r"x\.h5\.parts holds 'thesis\.txt', which is no sweep's"):
+        run(tmp_path / "x.h5", **keywords)
+    assert os.listdir(folder) == ["thesis.txt"]
+
+
+def test_an_interrupt_after_the_end_stops_nothing(whole, tmp_path):
+    def late(what, done, _total):
+        if what == "file" and done == 1.0:
+            signal.raise_signal(signal.SIGINT)
+
+    assert run(tmp_path / "x.h5", progress=late) == whole
+    assert not (tmp_path / "x.h5.parts").exists()
 
 
 def test_two_sweeps_into_one_file(whole, engine, tmp_path):

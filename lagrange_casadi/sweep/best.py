@@ -23,6 +23,7 @@ _RELATIONS: dict[str, Callable[[Any, Any, Any], Any]] = {
     ">": lambda values, number, same: (values > number) & ~same,
     "=": lambda values, number, same: same,
 }
+STATUS = "status"
 _CONDITION = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|!=|==|<|>|=)\s*([^<>=!]+?)\s*")
 
 
@@ -91,9 +92,9 @@ def best(
     names = tuple(dict.fromkeys(name for name, _ in objectives))
     kept: npt.NDArray[np.int64] = np.zeros(0, np.int64)
     costs = np.zeros((len(objectives), 0))
-    for numbers, values in chosen(sweep, names, where):
+    for numbers, values in chosen(sweep, (*names, STATUS), where):
         cost = np.stack([sign * size(name, values[name]) for name, sign in objectives])
-        there = ~np.isnan(cost).any(axis=0)
+        there = ~np.isnan(cost).any(axis=0) & (values[STATUS] == 0)
         kept, costs = np.concatenate([kept, numbers[there]]), np.concatenate([costs, cost[:, there]], axis=1)
         order = _front(costs) if len(objectives) == 2 else np.lexsort((kept, costs[0]))[:count]
         kept, costs = kept[order], costs[:, order]

@@ -34,10 +34,14 @@ def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: 
         if _settled(folder, plan, resume, force):
             folder.remove()
             return
+        finished = False
         try:
             with uninterrupted() as breathe:
                 _fill(folder, plan, workers, breathe, progress)
+                finished = True
         except KeyboardInterrupt:
+            if finished:  # it came when there was nothing left to interrupt
+                return
             raise StoppedError(f"stopped; {_kept(folder, plan)}") from None
         except (StoreError, ClusterError) as error:
             raise type(error)(f"{error}; {_kept(folder, plan)}") from None

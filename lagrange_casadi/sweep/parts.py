@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import BusyError, StoreError
+from ..errors import BusyError, PathError, StoreError
 from .columns import Column
 
 try:
@@ -74,6 +74,7 @@ class Folder:
         Raises :class:`BusyError` where another process holds it.
         """
         with telling(self.target):
+            self._refuse_foreign()
             number = self._lock()
         try:
             yield
@@ -82,6 +83,13 @@ class Folder:
             if self._is_held(number) and not list(self.path.glob(f"*{_PART}")):
                 self.remove()
             os.close(number)
+
+    def _refuse_foreign(self) -> None:
+        """Raise :class:`PathError` where the folder holds what no sweep put there."""
+        names = sorted(path.name for path in self.path.iterdir()) if self.path.is_dir() else []
+        for name in names:
+            if name not in (_PLAN, _LOCK, _FORCED, _JOINED) and not name.endswith((_PART, _DRAFT)):
+                raise PathError(f"{self.path} holds '{name}', which is no sweep's: move it, or choose another --out")
 
     def _lock(self) -> int:
         while True:

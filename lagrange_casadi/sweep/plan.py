@@ -169,6 +169,8 @@ def difference(before: Any, now: Any, where: str = "") -> str | None:
             found = difference(before[key], now[key], place)
             if found:
                 return found
+        if where == "grid" and list(before) != list(now):
+            return f"the axes of the grid were {', '.join(before)} and are {', '.join(now)}"
         return None
     if before == now:
         return None
