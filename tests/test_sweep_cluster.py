@@ -7,6 +7,7 @@ import os
 import re
 import signal
 import sys
+import threading
 
 import numpy as np
 import pytest
@@ -38,8 +39,9 @@ def started(folder, workers):
         address = json.loads(told.read_text())["address"]
         begin = ("worker", address, "--nworkers", "1", "--nthreads", "1", "--no-dashboard", "--no-nanny")
         found = [stack.enter_context(sweeps.process(*dask, *begin, cwd=folder, **quiet)) for _ in range(workers)]
-        with distributed.Client(address, set_as_default=False) as client:
-            client.wait_for_workers(workers)
+        if workers:
+            with distributed.Client(address, set_as_default=False) as client:
+                client.wait_for_workers(workers)
         yield address, scheduler, found
 
 
@@ -82,6 +84,18 @@ def test_ctrl_c_commits_what_is_under_way(slider_crank, two_workers, whole, tmp_
     assert sweep(slider_crank, GRID, **ASKED, out=path, dask=two_workers, resume=True).path.read_bytes() == whole
 
 
+def test_ctrl_c_comes_through_while_there_is_no_worker(slider_crank, tmp_path):
+    def asked(what, _done, _total):
+        if what == "designs":
+            threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+
+    told = pytest.warns(UserWarning, match="has no workers yet")
+    stopped = pytest.raises(StoppedError, match="stopped; nothing was done yet")
+    with started(tmp_path, 0) as (address, *_), told, stopped:
+        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address, progress=asked)
+    assert not (tmp_path / "x.h5").exists()
+
+
 def test_a_worker_that_is_killed_is_done_without(slider_crank, whole, tmp_path, monkeypatch):
     monkeypatch.setattr(blocks, "_SECONDS", 0.05)
     path, killed = tmp_path / "x.h5", []
@@ -114,7 +128,13 @@ def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, 
     assert sweep(slider_crank, GRID, **ASKED, out=path, resume=True).path.read_bytes() == whole
 
 
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense", "foo://127.0.0.1:8786"])
+@pytest.mark.parametrize("address", ["", "nonsense", "foo://127.0.0.1:8786", "tcp://127.0.0.1", "tcp://127.0.0.1:22x"])
+def test_what_is_no_address_is_one_line(slider_crank, tmp_path, address):
+    with pytest.raises(DeclarationError, match=f"--dask: expected an address like tcp://HOST:8786, got '{re.escape(address)}'"):
+        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1"])
 def test_what_cannot_be_reached_is_one_line(slider_crank, tmp_path, monkeypatch, address):
     monkeypatch.setattr(cluster, "_PATIENCE", "1s")
     with pytest.raises(ClusterError, match=f"cannot reach a Dask scheduler at {re.escape(address)}: ") as caught:
@@ -174,4 +194,4 @@ def test_without_dask_one_line_says_how_to_get_it(slider_crank, monkeypatch, tmp
     with pytest.raises(ClusterError, match=r"--dask needs Dask; install it with: pip install 'lagrange_casadi\[cluster\]'"):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1")
     assert isinstance(load_case(slider_crank.path), Case)
-    assert Cluster("x", slider_crank).address == "x"
+    assert Cluster("tcp://x:1", slider_crank).address == "tcp://x:1"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import importlib
 import logging
+import re
 import tempfile
 import threading
 import time
@@ -17,7 +18,7 @@ from typing import Any
 
 from ..case import Case, load_case
 from ..density import Array
-from ..errors import ClusterError, LagrangeCasadiError
+from ..errors import ClusterError, DeclarationError, LagrangeCasadiError
 from ..scene import Scene
 from .blocks import Cutter
 from .columns import Harvest
@@ -25,6 +26,10 @@ from .plan import Plan, Task, difference, signature
 from .workers import Block
 
 _PATIENCE = "10s"
+_ADDRESS = re.compile(r"(tcp|tls|ws|wss|ucx)://\S+:\d{1,5}/?")
+_PULSE, _GLANCE = 1.0, 2e-3
+"""Seconds after which whoever waits for a block hears that none came, and between looks."""
+
 _AHEAD = 2
 """Blocks sent out for each thread of the cluster."""
 
@@ -61,7 +66,11 @@ class Cluster:
     address: str
     case: Case
 
-    def results(self, plan: Plan, cutter: Cutter) -> Iterator[Block]:
+    def __post_init__(self) -> None:
+        if not _ADDRESS.fullmatch(self.address):
+            raise DeclarationError(f"--dask: expected an address like tcp://HOST:8786, got '{self.address}'")
+
+    def results(self, plan: Plan, cutter: Cutter) -> Iterator[Block | None]:
         """Evaluate what is cut, in the order in which workers are done."""
         source = Source(str(self.case.path), self.case.path.read_text())
         told = signature(plan.scene, plan.task, plan.harvest.engine.provenance)
@@ -80,7 +89,14 @@ class Cluster:
                 warnings.warn(f"the scheduler at {self.address} has no workers yet; waiting for some", stacklevel=2)
             send()
             while blocks:
-                future = next(waiting)
+                future = _first(waiting)
+                if future is None:
+                    yield None
+                    if client.status != "running":
+                        raise self._lost()
+                    if cutter.stopped and not self._threads(client):
+                        return
+                    continue
                 start, stop = blocks.pop(future)
                 seconds, columns = self._result(future, start, stop)
                 cutter.took(stop - start, seconds)
@@ -128,6 +144,16 @@ class Cluster:
 
     def _lost(self) -> ClusterError:
         return ClusterError(f"the Dask scheduler at {self.address} was lost")
+
+
+def _first(waiting: Any) -> Any | None:
+    """One that is done, or None where none is after a while."""
+    end = time.monotonic() + _PULSE
+    while not waiting.has_ready():
+        if time.monotonic() > end:
+            return None
+        time.sleep(_GLANCE)
+    return next(waiting)
 
 
 def _dask() -> Any:

@@ -92,10 +92,12 @@ def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], No
     _require_room(folder, plan, plan.size - done)
     progress("designs", done, plan.size)
     cutter = Cutter(gaps, plan.harvest.bytes_per_design)
-    for start, stop, arrays in workers.results(plan, cutter):
-        folder.commit(start, stop, plan.columns, arrays)
-        done += stop - start
-        progress("designs", done, plan.size)
+    for block in workers.results(plan, cutter):
+        if block is not None:
+            start, stop, arrays = block
+            folder.commit(start, stop, plan.columns, arrays)
+            done += stop - start
+            progress("designs", done, plan.size)
         try:
             breathe()
         except KeyboardInterrupt:

@@ -21,8 +21,11 @@ Block = tuple[int, int, list[Any]]
 class Workers(Protocol):
     """Whoever evaluates blocks."""
 
-    def results(self, plan: Plan, cutter: Cutter) -> Iterator[Block]:
-        """Evaluate what is cut, in any order; what was begun before the cutter was stopped is still given."""
+    def results(self, plan: Plan, cutter: Cutter) -> Iterator[Block | None]:
+        """Evaluate what is cut, in any order; what was begun before the cutter was stopped is still given.
+
+        None where nothing was done for a while, so that whoever waits may stop.
+        """
 
 
 @dataclass(frozen=True)
