@@ -71,6 +71,12 @@ class SizeError(LagrangeCasadiError):
     exit_status = 1
 
 
+class NoDesignError(LagrangeCasadiError):
+    """No design of a sweep is what is looked for."""
+
+    exit_status = 1
+
+
 class AccuracyError(LagrangeCasadiError):
     """No way to evaluate reaches a wanted accuracy."""
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from ..errors import NoDesignError
 from ..sweep import Sweep
 from ..sweep import best as find
 from .rows import show, write_csv
@@ -17,7 +18,7 @@ from .rows import show, write_csv
 @click.option("--minimise", multiple=True, metavar="COLUMN", help="The column to be least; with two objectives, their front.")
 @click.option("--maximise", multiple=True, metavar="COLUMN", help="The column to be largest.")
 @click.option("--where", multiple=True, metavar="NAME<NUMBER", help="Only designs like this: <, <=, >, >=, == or !=; repeatable.")
-@click.option("--count", type=click.IntRange(1), default=1, show_default=True, metavar="N", help="How many of the best.")
+@click.option("--count", type=click.IntRange(1), metavar="N", help="How many; default: the best one, or the whole front.")
 @click.option("--column", "columns", multiple=True, metavar="COLUMN", help="Show this column too; repeatable.")
 @click.option("--csv", type=click.Path(path_type=Path), metavar="OUT.csv", help="Write them as CSV too.")
 def best(
@@ -25,7 +26,7 @@ def best(
     minimise: Sequence[str],
     maximise: Sequence[str],
     where: Sequence[str],
-    count: int,
+    count: int | None,
     columns: Sequence[str],
     csv: Path | None,
 ) -> None:
@@ -33,8 +34,7 @@ def best(
     sweep = Sweep.open(file)
     found = find(sweep, minimise=minimise, maximise=maximise, where=where, count=count, columns=columns)
     if not found:
-        click.echo("no design has a result and meets the conditions")
-        return
+        raise NoDesignError(f"{file}: no design has a result and meets the conditions")
     names = list(found[0].values)
     rows = [(design.number, list(design.values.values())) for design in found]
     show(sweep, names, rows)

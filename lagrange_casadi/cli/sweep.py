@@ -36,7 +36,7 @@ from .progress import shown
 @click.option("--dask", metavar="ADDRESS", help="Evaluate on the workers of this Dask scheduler.")
 @click.option("--resume", is_flag=True, help="Go on with what is there of the same sweep; start where there is nothing.")
 @click.option("--force", is_flag=True, help="Start anew, whatever is there.")
-@click.option("--yes", is_flag=True, help="Mean it, with more than 10^9 designs.")
+@click.option("--yes", is_flag=True, help="Allow more than 10^9 designs.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 @click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>_sweep.h5 here.")
 def sweep(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -45,7 +46,10 @@ class Condition:
         try:
             if not found:
                 raise ValueError
-            return cls(found[1], found[2], float(found[3]))
+            value = float(found[3])
+            if math.isnan(value):
+                raise ValueError
+            return cls(found[1], found[2], value)
         except ValueError:
             raise DeclarationError(f"expected a condition like l<0.3 or peak:effort:O<=12, got '{text}'") from None
 
@@ -74,20 +78,21 @@ def best(
     minimise: Sequence[str] = (),
     maximise: Sequence[str] = (),
     where: Sequence[str | Condition] = (),
-    count: int = 1,
+    count: int | None = None,
     columns: Sequence[str] = (),
 ) -> list[Design]:
-    """The ``count`` best designs that have a result and meet all conditions, the best first.
+    """The ``count`` best designs that have a result and meet all conditions, the best first; by default one.
 
     With two objectives, all designs of which no other is better in both and none is as good in one and better in the other: the
-    front, in the order of the first. Each design comes with its parameters, the objectives and ``columns``. Peaks count by size.
+    front, in the order of the first, by default all of it. Each design comes with its parameters, the objectives and ``columns``.
+    Peaks count by size.
 
     Raises :class:`UnknownNameError` for a column that is not there, :class:`DeclarationError` for no objective or more than two.
     """
     objectives = [*((name, 1.0) for name in minimise), *((name, -1.0) for name in maximise)]
     if len(objectives) not in (1, 2):
         raise DeclarationError(f"expected one column to minimise or maximise, or two for their front, got {len(objectives)}")
-    if count < 1:
+    if count is not None and count < 1:
         raise DeclarationError(f"count: expected a whole number of at least 1, got {count}")
     names = tuple(dict.fromkeys(name for name, _ in objectives))
     kept: npt.NDArray[np.int64] = np.zeros(0, np.int64)
@@ -96,10 +101,10 @@ def best(
         cost = np.stack([sign * size(name, values[name]) for name, sign in objectives])
         there = ~np.isnan(cost).any(axis=0) & (values[STATUS] == 0)
         kept, costs = np.concatenate([kept, numbers[there]]), np.concatenate([costs, cost[:, there]], axis=1)
-        order = _front(costs) if len(objectives) == 2 else np.lexsort((kept, costs[0]))[:count]
+        order = _front(costs) if len(objectives) == 2 else np.lexsort((kept, costs[0]))[: count or 1]
         kept, costs = kept[order], costs[:, order]
     asked = tuple(dict.fromkeys([*sweep.parameters, *names, *columns]))
-    return [row(sweep, int(number), asked) for number in kept]
+    return [row(sweep, int(number), asked) for number in kept[:count]]
 
 
 def chosen(

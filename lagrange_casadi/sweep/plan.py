@@ -14,7 +14,7 @@ import numpy as np
 from ..density import Array
 from ..description import Description, describe
 from ..designs import DesignEngine
-from ..errors import DeclarationError, SizeError
+from ..errors import DeclarationError
 from ..fingerprint import fingerprint, sources
 from ..rung import Rung
 from ..scene import Grid as Span
@@ -85,7 +85,7 @@ class Plan:
         values = scene.mechanism.values(fixed)
         check_designs(designs, scene.mechanism, fixed)
         if designs.size > MANY and not many:
-            raise SizeError(
+            raise DeclarationError(
                 f"the grid has {designs.size:,} designs".replace(",", " ") + ", more than 10^9; if that is meant, say --yes"
             )
         names = _wanted(scene, wanted)
