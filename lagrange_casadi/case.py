@@ -14,7 +14,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from .errors import CaseError, LagrangeCasadiError
+from .errors import CaseError, LagrangeCasadiError, one_line
 from .figures import Spec
 from .scene import Scene
 
@@ -79,4 +79,4 @@ def _guard(given: Path, file: Path, action: Any) -> Any:
         if isinstance(error, SyntaxError):
             lines = [error.lineno]
         where = f", line {lines[-1]}" if lines and lines[-1] else ""
-        raise CaseError(f"case {given}{where}: {type(error).__name__}: {' '.join(str(error).split())}") from error
+        raise CaseError(f"case {given}{where}: {type(error).__name__}: {one_line(error)}") from error

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from .density import Array
 from .errors import DeclarationError
 from .kinematics import describe_coordinate, passes_dead_centre, where
-from .quantities import ANGLE, FORCE, LENGTH, MOMENT, quantity_of
+from .quantities import ANGLE, FORCE, LENGTH, MOMENT, unit_in
 from .scene_graph import SceneGraph
 
 TURNS = 4
@@ -299,13 +299,12 @@ def _sizes(graph: SceneGraph, peaks: Array) -> Array:
 
 def _kind(graph: SceneGraph, column: str) -> str:
     """What columns are compared by: their unit, or, where that says nothing, their name."""
-    group, part, *_ = column.split(":")
+    group = column.partition(":")[0]
     if group in ("_turns", "_held"):
         return ANGLE if group == "_turns" else _UNITS[column.rpartition(":")[2]]
     if group.startswith("_"):
         return column
-    joint = graph.scene.mechanism.joints.get(part.removesuffix("_rate").removesuffix("_acceleration"))
-    unit = quantity_of(column).unit_for((joint and joint.coordinate) or "angle")
+    unit = unit_in(graph.scene.mechanism.joints, column)
     return column if unit == "1" else unit
 
 

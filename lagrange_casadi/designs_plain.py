@@ -13,8 +13,9 @@ from .backends import follow, run
 from .codegen.designs import NOTHING, POLE, ROUNDING
 from .codegen.emit import NOT_CONVERGED
 from .density import Array, Density, NumericDensity
-from .designs_plan import LAW, Kept
+from .designs_plan import Kept
 from .mechanism import Mechanism
+from .mobility import LAW
 from .refusal import Status, refusal
 from .rung import Rung
 from .scene_graph import SceneGraph

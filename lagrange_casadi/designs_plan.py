@@ -14,16 +14,15 @@ from .density import Array, Density
 from .errors import DeclarationError
 from .kinematics import NEAR
 from .mechanism import Mechanism
+from .mobility import LAW, PLACE_FIRST, stations_of
 from .parts import Link, RigidMass
-from .quantities import FORCE, quantity_of
+from .quantities import FORCE, unit_in
 from .refusal import MISFIT, Status, dead_centre
 from .rung import Rung
 from .scene_graph import SceneGraph
 from .section_law import FORCES
 from .stages import Stages, compensated, counts, plain
 
-LAW = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
-_STATION = ("station", "n", "f", "m")
 _BETWEEN = 9
 """Places in a cell of density at which one of a higher degree than a line is asked for its sign."""
 
@@ -94,22 +93,17 @@ class Kept:
 
 
 def _unit(mechanism: Mechanism, name: str) -> str:
-    kind, part, *rest = name.split(":")
-    if kind == "reaction" and not rest:
+    if name.startswith("reaction:") and name.count(":") == 1:
         return FORCE
-    joint = mechanism.joints.get(part.removesuffix("_rate").removesuffix("_acceleration"))
-    return quantity_of(name).unit_for((joint.coordinate if joint else None) or "angle")
+    return unit_in(mechanism.joints, name)
 
 
 def _along(link: Link, at: dict[str, int]) -> Along:
     assert isinstance(link.mass, Density)
     start = f"section:{link.name}"
-    stations = dict.fromkeys(
-        name.split(":")[2] for name in at if name.startswith(f"{start}:") and not name.startswith(f"{start}:law:")
-    )
     return Along(
         tuple(at[f"{start}:law:{member}"] for member in LAW),
-        tuple(tuple(at[f"{start}:{station}:{member}"] for member in _STATION) for station in stations),
+        tuple(tuple(at[f"{start}:{station}:{member}"] for member in PLACE_FIRST) for station in stations_of(at, link.name)),
         link.mass.breaks,
         max(len(cell) for cell in link.mass.cells),
     )

@@ -16,7 +16,7 @@ between base and tip is seen by the sections on its base side.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -32,6 +32,8 @@ from .planar import Frame, Velocities, reaction, slide
 
 LAW = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
 STATION = ("n", "f", "m", "station")
+PLACE_FIRST = ("station", "n", "f", "m")
+"""The same in the order in which emitted C takes them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,3 +235,10 @@ def _reaction(multibody: Multibody, joint: Joint, actions: dict[str, Any]) -> di
             return reaction(joint, parent, child, closure.multipliers, closing=True)
     branch = next(branch for branch in multibody.tree.branches if branch.joint is joint)
     return reaction(joint, parent, child, branch.sign * actions[joint.name], closing=False)
+
+
+def stations_of(columns: Iterable[str], link: str) -> tuple[str, ...]:
+    """The stations that columns of a link's section law name, in their order."""
+    start = f"section:{link}:"
+    names = (name.removeprefix(start).partition(":")[0] for name in columns if name.startswith(start))
+    return tuple(dict.fromkeys(name for name in names if name != "law"))

@@ -14,7 +14,7 @@ from typing import Any
 import casadi as ca
 
 from .curves import rows
-from .errors import DeclarationError
+from .errors import DeclarationError, one_line
 from .expressions import scalar
 from .parts import Expression
 
@@ -131,7 +131,7 @@ def _scalar(joint: str, law: Motion, t: Any, parameters: Any) -> Any:
     try:
         value = law.graph(t)
     except Exception as error:
-        reason = f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
+        reason = f"{type(error).__name__}: {one_line(error)[:200]}"
         raise DeclarationError(f"the motion of joint '{joint}' is no casadi.SX expression of t: {reason}") from None
     if isinstance(value, float) and math.isnan(value):
         raise DeclarationError(

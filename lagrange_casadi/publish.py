@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from .errors import PathError, StoreError
+from .errors import PathError, StoreError, one_line
 
 
 def check_writable(target: Path, *, folder: bool = False) -> None:
@@ -129,5 +129,5 @@ def _failing(target: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        reason = os.strerror(error.errno) if error.errno else " ".join(str(error).split())
+        reason = os.strerror(error.errno) if error.errno else one_line(error)
         raise StoreError(f"cannot write {target}: {reason}") from None

@@ -6,7 +6,9 @@ with slashes is its place in the file. Nothing else in the package states a unit
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 CONVENTIONS = (
     "SI units; plane x-y; angles in rad, counter-clockwise; a link's axis e runs from its base (xi = 0) to its tip (xi = 1), "
@@ -88,6 +90,12 @@ QUANTITIES = (
 )  # fmt: skip
 
 _BY_KEY = {(q.group, q.member): q for q in QUANTITIES}
+
+
+def unit_in(joints: Mapping[str, Any], name: str) -> str:
+    """The unit of a full name in a mechanism of such joints, by name."""
+    joint = joints.get(name.split(":")[1].removesuffix("_rate").removesuffix("_acceleration"))
+    return quantity_of(name).unit_for((joint and joint.coordinate) or "angle")
 
 
 def quantity_of(name: str) -> Quantity:

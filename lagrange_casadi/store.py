@@ -20,7 +20,7 @@ import numpy as np
 
 from .certificate import certify, tolerance
 from .density import Array
-from .errors import DeclarationError, PathError, StoreError
+from .errors import DeclarationError, PathError, StoreError, one_line
 from .publish import PatientFile, replacing, uninterrupted
 from .quantities import CONVENTIONS, quantity_of
 from .section_law import FORCES
@@ -71,16 +71,16 @@ def _require_room(solution: Solution, target: Path) -> None:
 
 def load(path: str | os.PathLike[str]) -> Solution:
     """Read a solution. Raises :class:`StoreError` for what is not a whole file of this schema, :class:`PathError` for none."""
-    with _reading(path) as file:
+    with reading(path, SCHEMA, SCHEMA_VERSION, f"a file of {SCHEMA}") as file:
         try:
             return _read(file)
         except _DAMAGE as error:
-            raise StoreError(f"{path}: damaged: {_one_line(error)}") from None
+            raise StoreError(f"{path}: damaged: {one_line(error)}") from None
 
 
 def figure_specs(path: str | os.PathLike[str]) -> str:
     """How the case wants to be drawn, as it was given to :func:`save`."""
-    with _reading(path) as file:
+    with reading(path, SCHEMA, SCHEMA_VERSION, f"a file of {SCHEMA}") as file:
         return str(file.attrs.get("figures", ""))
 
 
@@ -90,7 +90,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
     Every dataset is read, so its checksum is verified; every value must be finite, every axis have its scale, every unit and sign
     be the schema's; and the section grids must be what the laws give, to 1e-12 of their peak.
     """
-    with _reading(path) as file:
+    with reading(path, SCHEMA, SCHEMA_VERSION, f"a file of {SCHEMA}") as file:
         try:
             solution = _read(file)
             names = dict.fromkeys([*solution.names(), *solution.series, *(f"certificate:{name}" for name in solution.certificate)])
@@ -99,7 +99,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
                 found += [finding for name in names for finding in _check_dataset(file, solution, name)]
                 found += _check_certificate(solution, float(file.attrs["certificate_tolerance"]))
         except _DAMAGE as error:
-            return [f"damaged: {_one_line(error)}"]
+            return [f"damaged: {one_line(error)}"]
     return found
 
 
@@ -244,24 +244,23 @@ def _read(file: h5py.File) -> Solution:
 
 
 @contextmanager
-def _reading(path: str | os.PathLike[str]) -> Iterator[h5py.File]:
+def reading(path: str | os.PathLike[str], schema: str, version: int, kind: str, of: str = "") -> Iterator[h5py.File]:
+    """A whole file of a schema, which messages call ``kind``, its versions those ``of`` it.
+
+    Raises :class:`PathError` for none, :class:`StoreError` for another file, another version, or one that was not finished.
+    """
     if not Path(path).is_file():
         raise PathError(f"{path}: {'is a folder, not a file' if Path(path).is_dir() else 'no such file'}")
     try:
         file = h5py.File(path, "r")
     except OSError as error:
-        raise StoreError(f"{path}: not a whole HDF5 file ({_one_line(error)})") from None
+        raise StoreError(f"{path}: not a whole HDF5 file ({one_line(error)})") from None
     with file:
-        if file.attrs.get("schema") != SCHEMA:
-            raise StoreError(f"{path}: not a file of {SCHEMA}, its attribute 'schema' is {file.attrs.get('schema')!r}")
-        if file.attrs.get("schema_version") != SCHEMA_VERSION:
-            raise StoreError(
-                f"{path}: schema version {file.attrs.get('schema_version')}, this program reads version {SCHEMA_VERSION}"
-            )
+        found, written = file.attrs.get("schema"), file.attrs.get("schema_version")
+        if found != schema:
+            raise StoreError(f"{path}: not {kind}, its attribute 'schema' is {found!r}")
+        if written != version:
+            raise StoreError(f"{path}: schema version {written}{of}, this program reads version {version}")
         if not file.attrs.get("complete", False):
             raise StoreError(f"{path}: was not written to its end")
         yield file
-
-
-def _one_line(error: BaseException) -> str:
-    return " ".join(str(error).split())

@@ -158,7 +158,6 @@ def _compile(source: str, compiler: Compiler, flags: tuple[str, ...], base: Path
     except OSError as error:
         raise CompilerError(f"cannot compile in {base.parent}: {error.strerror}") from None
     if run.returncode != 0 or not library.exists():
-        first = next((line for line in run.stderr.splitlines() if "error" in line.lower()), run.stderr.strip() or "no message")
         where = ""
         if folder is not None:
             log = base.with_suffix(".log")
@@ -166,9 +165,15 @@ def _compile(source: str, compiler: Compiler, flags: tuple[str, ...], base: Path
                 log.write_text(run.stderr)
                 cache.keep([code, log], folder)
                 where = f" (whole message in {folder / log.name})"
-        raise CompilerError(f"{' '.join(compiler.command)} failed with status {run.returncode}: {first.strip()}{where}")
+        raise CompilerError(f"{complaint(compiler, run)}{where}")
     library.with_suffix(".sha256").write_text(cache.digest(library.read_bytes()))
     return library
+
+
+def complaint(compiler: Compiler, run: subprocess.CompletedProcess[str]) -> str:
+    """The first of what a compiler that failed has to say."""
+    first = next((line for line in run.stderr.splitlines() if "error" in line.lower()), run.stderr.strip() or "no message")
+    return f"{' '.join(compiler.command)} failed with status {run.returncode}: {first.strip()}"
 
 
 def _machine() -> str:

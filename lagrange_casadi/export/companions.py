@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from .contract import REST, Contract, Member
-from .golden import RATIOS, Golden
+from .golden import RATIOS
 from .matlab import matlab
 from .program import literal
 from .source import Source
@@ -92,16 +94,16 @@ def _mapped(c: Contract) -> str:
 
 def _selftest(source: Source, words: dict[str, str]) -> str:
     g, c = source.golden, source.contract
-    number = literal(c.precision)
     coordinates = {m.source: k for k, m in enumerate(c.inputs)}
     times = [(t, _rest(t) if c.rests else 0.0) for t in g.times]
-    links = "\n".join(_link_check(c, k) for k in range(len(c.links)))
     wide = literal("double")
 
-    def rows(values: object) -> str:
-        return ",\n".join(f"  {{{', '.join(wide(float(x)) for x in row)}}}" for row in values)  # type: ignore[attr-defined]
+    def row(values: Iterable[float]) -> str:
+        return ", ".join(wide(float(x)) for x in values)
 
-    forces = g.forces.reshape(len(g.times), -1) if c.links else None
+    def rows(table: Iterable[Iterable[float]]) -> str:
+        return ",\n".join(f"  {{{row(values)}}}" for values in table)
+
     return template(
         "selftest.c",
         **words,
@@ -113,17 +115,17 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
         steps=g.steps,
         times=rows(times),
         inputs=rows(g.inputs),
-        inputs_off=", ".join(wide(float(x)) for x in g.inputs_off),
+        inputs_off=row(g.inputs_off),
         outputs=rows(g.outputs),
-        outputs_off=", ".join(wide(float(x)) for x in g.outputs_off),
-        forces=_forces(rows(forces), g, wide) if forces is not None else "",
+        outputs_off=row(g.outputs_off),
+        forces=_forces(rows(g.forces.reshape(len(g.times), -1)), row(g.forces_off.ravel())) if c.links else "",
         given="\n".join(f"  inputs->{m.name} = ({c.prefix}_real) row[{k}];" for k, m in enumerate(c.inputs)),
         taken_inputs="\n".join(_taken(c, m, coordinates) for m in c.inputs if not m.rest_of),
         taken_outputs="\n".join(
             f'  compare("{m.name}", row[{k}], (double) outputs->{m.name}, outputs_off[{k}], {int(m.wrapped)});'
             for k, m in enumerate(c.outputs)
         ),
-        sections=_sections(c, links) if c.links else "",
+        sections=_sections(c) if c.links else "",
         check_sections="  check_sections(&model, &outputs, k);\n" if c.links else "",
         first_input=next(m.name for m in c.inputs if m.source.startswith("motion:")),
         first_output=c.outputs[0].name,
@@ -131,7 +133,7 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
         time_rest=f", ({c.prefix}_real) times[k][1]" if c.rests else "",
         no_rest=", 0" if c.rests else "",
         bad_parameter=_bad_parameter(c),
-        bad_ratio=_bad_ratio(c, number),
+        bad_ratio=_bad_ratio(c),
     )
 
 
@@ -148,8 +150,7 @@ def _taken(c: Contract, m: Member, coordinates: dict[str, int]) -> str:
     return f'    compare("motion: {m.name}", {given}, {value}, inputs_off[{k}], 0);'
 
 
-def _forces(rows: str, g: Golden, wide: object) -> str:
-    off = ", ".join(wide(float(x)) for x in g.forces_off.ravel())  # type: ignore[operator]
+def _forces(rows: str, off: str) -> str:
     return (
         f"\n/* Axial force, shear force and bending moment, of each link, at each ratio. */\n"
         f"static const double forces_at[INSTANTS][LINKS*RATIOS*3] = {{\n{rows}\n}};\n"
@@ -158,12 +159,9 @@ def _forces(rows: str, g: Golden, wide: object) -> str:
     )
 
 
-def _link_check(c: Contract, k: int) -> str:
-    return f"  {c.links[k].constant}"
-
-
-def _sections(c: Contract, links: str) -> str:
-    return template("selftest_sections.c", p=c.prefix, P=c.prefix.upper(), links=",\n".join(links.split("\n")))
+def _sections(c: Contract) -> str:
+    links = ",\n".join(f"  {link.constant}" for link in c.links)
+    return template("selftest_sections.c", p=c.prefix, P=c.prefix.upper(), links=links)
 
 
 def _bad_parameter(c: Contract) -> str:
@@ -177,7 +175,7 @@ def _bad_parameter(c: Contract) -> str:
     )
 
 
-def _bad_ratio(c: Contract, number: object) -> str:
+def _bad_ratio(c: Contract) -> str:
     if not c.links:
         return ""
     p, P, link = c.prefix, c.prefix.upper(), c.links[0].constant

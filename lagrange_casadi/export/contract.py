@@ -5,19 +5,18 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
 
 from ..compensated import Precision
-from ..quantities import quantity_of
+from ..mobility import stations_of
+from ..quantities import quantity_of, unit_in
 from ..scene_graph import SceneGraph
 from ..solution import Solution
 from .naming import members, prefix
 
-LAW = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
-STATION = ("station", "n", "f", "m")
 REST = "rest:"
 """What the full name of a rest begins with."""
 
@@ -145,17 +144,17 @@ def contract(graph: SceneGraph, name: str, precision: Precision, solution: Solut
     called = members({key: _short(key) for key in columns})
     largest: dict[str, float] = {}
     for key in columns:
-        largest[_unit(graph, key)] = max(largest.get(_unit(graph, key), 0.0), float(np.abs(solution.series[key]).max()))
+        unit = unit_in(mechanism.joints, key)
+        largest[unit] = max(largest.get(unit, 0.0), float(np.abs(solution.series[key]).max()))
     links = []
     for link in graph.wanted.sections:
-        stations = dict.fromkeys(key.split(":")[2] for key in columns if key.startswith(f"section:{link}:") and ":law:" not in key)
-        links.append(LinkContract(link, f"{prefix(name)}_link_{link}".upper(), tuple(stations)))
+        links.append(LinkContract(link, f"{prefix(name)}_link_{link}".upper(), stations_of(columns, link)))
     return Contract(
         prefix(name),
         name,
         precision,
-        tuple(Setting(**(vars(s) | {"name": names[s.source]})) for s in settings),
-        tuple(Member(**(vars(m) | {"name": shown[key]})) for key, m in inputs.items()),
+        tuple(replace(s, name=names[s.source]) for s in settings),
+        tuple(replace(m, name=shown[key]) for key, m in inputs.items()),
         tuple(_output(graph, key, called[key], solution, largest) for key in columns),
         tuple(links),
         graph.driven,
@@ -166,14 +165,9 @@ def contract(graph: SceneGraph, name: str, precision: Precision, solution: Solut
 
 def _timed(graph: SceneGraph) -> bool:
     """Whether anything but the motion depends on the time."""
-    functions = [graph.instant] if graph.newton is None else [graph.instant, graph.newton.step]
-    index = {"instant": 0}
-    for function in functions:
-        symbols = function.sx_in()
-        t = symbols[index.get(function.name(), 1)]
-        if ca.depends_on(ca.veccat(*function.call(symbols)), t):
-            return True
-    return False
+    functions = [(graph.instant, 0), *([(graph.newton.step, 1)] if graph.newton else [])]
+    called = ((function.sx_in(), function, place) for function, place in functions)
+    return any(ca.depends_on(ca.veccat(*function.call(symbols)), symbols[place]) for symbols, function, place in called)
 
 
 def _setting(key: str, parameter: dict[str, float]) -> Setting:
@@ -214,7 +208,7 @@ def _inputs(graph: SceneGraph, precision: Precision, timed: bool) -> dict[str, M
             add(f"{REST}time", "s", rest.format("the time"))
     for joint in graph.driven:
         for key in (f"motion:{joint}", f"motion:{joint}_rate", f"motion:{joint}_acceleration"):
-            quantity, unit = quantity_of(key), _unit(graph, key)
+            quantity, unit = quantity_of(key), unit_in(graph.scene.mechanism.joints, key)
             sign = _sign(graph, key)
             add(key, unit, f"{_where(key, joint)}: {_brief(quantity.long_name)}", sign)
             if rests and not quantity.member:
@@ -228,12 +222,6 @@ def _joint(graph: SceneGraph, key: str) -> str:
     return part if part in graph.scene.mechanism.joints else part.removesuffix("_rate").removesuffix("_acceleration")
 
 
-def _unit(graph: SceneGraph, key: str) -> str:
-    joints, joint = graph.scene.mechanism.joints, _joint(graph, key)
-    kind = joints[joint].coordinate if joint in joints else None
-    return quantity_of(key).unit_for(kind or "slide")
-
-
 def _sign(graph: SceneGraph, key: str) -> str:
     quantity, joints, joint = quantity_of(key), graph.scene.mechanism.joints, _joint(graph, key)
     if quantity.group == "motion" and not quantity.member:
@@ -242,7 +230,7 @@ def _sign(graph: SceneGraph, key: str) -> str:
 
 
 def _output(graph: SceneGraph, key: str, member: str, solution: Solution, largest: Mapping[str, float]) -> Member:
-    quantity, unit, wrapped = quantity_of(key), _unit(graph, key), key in graph.wrapped
+    quantity, unit, wrapped = quantity_of(key), unit_in(graph.scene.mechanism.joints, key), key in graph.wrapped
     within = "in (-pi, pi]" if wrapped else _range(solution, key, largest[unit])
     meaning = f"{_where(key, _joint(graph, key))}: {_brief(quantity.long_name)}"
     return Member(member, key, unit, meaning, _sign(graph, key), within, wrapped)

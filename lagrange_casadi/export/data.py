@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from importlib import resources
 
 import numpy as np
@@ -37,7 +37,7 @@ def check_size(program: Program, limit: int) -> None:
             )
 
 
-def sampled(program: Program, common: Mapping[str, str], number: Format) -> str:
+def sampled(program: Program, number: Format) -> str:
     """The motions by samples: constants, and a function for each."""
     if not program.samples:
         return ""

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..codegen import find_compiler
-from ..codegen.compiler import Compiler
+from ..codegen.compiler import Compiler, complaint
 from ..density import Array
 from ..errors import CompilerError, LagrangeCasadiError, StoreError
 from .contract import REST
@@ -58,8 +58,7 @@ def wrapper(description: Description) -> str:
     """The C that makes a unit of the exported functions."""
     source, c, inputs = description.source, description.contract, description.inputs
     wide = literal("double")
-    loops = source.program.sizes["loops"] and source.program.cycle is None
-    carried = ["memcpy(model.loops, state->model.loops, sizeof model.loops);"] if loops else []
+    carried = ["memcpy(model.loops, state->model.loops, sizeof model.loops);"] if source.iterated else []
     carried += ["model.closed = state->model.closed;"] if source.program.newton is not None else []
     values = [(m.path, m.default) for m in c.settings] + [(m.path, description.start[m.source]) for m in inputs]
     return template(
@@ -142,8 +141,7 @@ def _built(sources: Mapping[str, str], units: Iterable[str], library: str, compi
                 return (Path(work) / library).read_bytes()
         except OSError as error:
             raise CompilerError(f"cannot compile in {work}: {error.strerror}") from None
-    first = next((line for line in run.stderr.splitlines() if "error" in line.lower()), run.stderr.strip() or "no message")
-    raise CompilerError(f"{' '.join(compiler.command)} failed with status {run.returncode}: {first.strip()}")
+    raise CompilerError(complaint(compiler, run))
 
 
 def _archive(files: Mapping[str, bytes]) -> bytes:

@@ -9,10 +9,12 @@ from functools import cached_property
 
 import casadi as ca
 
+from ..codegen.emit import newton_rule
 from ..density import Density
+from ..mobility import LAW, PLACE_FIRST
 from ..refusal import MISFIT, dead_centre
 from ..version import __version__
-from .contract import LAW, REST, STATION, Contract
+from .contract import REST, Contract
 from .data import sampled, table_call, table_text
 from .golden import Golden
 from .program import Format, Program, literal
@@ -146,7 +148,7 @@ class Source:
                 rounding=rule["rounding"],
                 p_values="model->parameters" if self.program.sizes["p"] else "0",
             )
-        found += sampled(self.program, self.words, number)
+        found += sampled(self.program, number)
         return found + table_text(self.program)
 
     def _defaults(self) -> str:
@@ -295,7 +297,7 @@ class Source:
         P, rule, number = self._upper, self.program.rule, self._number
         done, lost, most = number(rule["done"]), number(rule["lost"]), int(rule["steps"])
         if self.program.newton is not None:
-            full = Program(**(vars(self.program) | {"newton": None})).rule
+            full = newton_rule(self.contract.precision, None)
             limits = f"{int(full['steps'])}, {number(full['done'])}, {number(full['lost'])}"
             yield f"if (!model->closed && close_loops(model, counted, {limits}) == {P}_NOT_CONVERGED) {{"
             yield f"  return {P}_NOT_CONVERGED;"
@@ -344,7 +346,7 @@ class Source:
             rows = [f"  case {link.constant}:", f"    matter_of = model->matter + {place};"]
             rows.append(f"    stations = {len(link.stations)};")
             rows += [f"    law[{i}] = outputs->{names[f'section:{link.name}:law:{term}']};" for i, term in enumerate(LAW)]
-            acting = [f"section:{link.name}:{station}:{term}" for station in link.stations for term in STATION]
+            acting = [f"section:{link.name}:{station}:{term}" for station in link.stations for term in PLACE_FIRST]
             rows += [f"    acting[{i}] = outputs->{names[name]};" for i, name in enumerate(acting)]
             laws.append("\n".join([*rows, "    break;"]))
             place += 1 + sum(lengths)

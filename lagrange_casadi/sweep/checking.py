@@ -8,6 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from ..errors import one_line
 from .columns import STATUS
 from .file import slabs
 from .reading import Kept, Sweep
@@ -28,7 +29,7 @@ def check_sweep(path: str | Path) -> list[str]:
             try:
                 found += _check_column(file, sweep, kept)
             except (OSError, RuntimeError, KeyError) as error:
-                found.append(f"{kept.name}: damaged: {' '.join(str(error).split())}")
+                found.append(f"{kept.name}: damaged: {one_line(error)}")
     return found
 
 

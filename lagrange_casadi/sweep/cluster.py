@@ -18,7 +18,7 @@ from typing import Any
 
 from ..case import Case, load_case
 from ..density import Array
-from ..errors import ClusterError, DeclarationError, LagrangeCasadiError
+from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_line
 from ..scene import Scene
 from .blocks import Cutter
 from .columns import Harvest
@@ -114,7 +114,7 @@ class Cluster:
             try:
                 client = dask.Client(self.address, timeout=_PATIENCE, set_as_default=False)
             except (OSError, ValueError, RuntimeError) as error:
-                raise ClusterError(f"cannot reach a Dask scheduler at {self.address}: {' '.join(str(error).split())}") from None
+                raise ClusterError(f"cannot reach a Dask scheduler at {self.address}: {one_line(error)}") from None
             try:
                 yield client
             finally:
@@ -132,7 +132,7 @@ class Cluster:
         except (dask.CancelledError, OSError):
             raise self._lost() from None
         except Exception as error:
-            raise ClusterError(f"a worker failed: {type(error).__name__}: {' '.join(str(error).split())}") from None
+            raise ClusterError(f"a worker failed: {type(error).__name__}: {one_line(error)}") from None
         return seconds, columns
 
     def _threads(self, client: Any) -> int:

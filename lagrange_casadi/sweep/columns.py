@@ -20,7 +20,7 @@ from ..density import Array, Density
 from ..designs import Outcome
 from ..errors import DeclarationError, UnknownNameError
 from ..mechanism import Mechanism
-from ..quantities import FORCE, quantity_of
+from ..quantities import FORCE, quantity_of, unit_in
 from ..section_law import FORCES, SectionLaw, StationLoad
 from .engine import STATUSES, Engine
 
@@ -62,13 +62,6 @@ def check_keep(keep: str) -> None:
         raise UnknownNameError("choice of what to keep", str(keep), KEEPS)
 
 
-def unit_of(mechanism: Mechanism, name: str) -> str:
-    """The unit of a quantity of a mechanism by its full name."""
-    part = name.split(":")[1].removesuffix("_rate").removesuffix("_acceleration")
-    joint = mechanism.joints.get(part)
-    return quantity_of(name).unit_for((joint.coordinate if joint else None) or "angle")
-
-
 @dataclass(frozen=True, eq=False)
 class Harvest:
     """An engine, and what is kept of its outcomes: ``t`` [s] are the instants, ``xi`` the ratios kept, none where empty."""
@@ -94,7 +87,7 @@ class Harvest:
         for name in engine.quantities:
             found += self._peak(name)
         for name in engine.efforts:
-            unit, words = unit_of(self.mechanism, name), quantity_of(name).attributes
+            unit, words = unit_in(self.mechanism.joints, name), quantity_of(name).attributes
             found.append(Column(f"mean:{name}", unit, words | {"long_name": f"mean over time: {words['long_name']}"}))
             found.append(Column(f"rms:{name}", unit, {"long_name": f"root of the mean square over time: {words['long_name']}"}))
         found += [
@@ -105,7 +98,7 @@ class Harvest:
         ]
         for name in self._series:
             words = quantity_of(name).attributes
-            found.append(Column(f"history:{name}", unit_of(self.mechanism, name), words, ("t",), (self.t.size,)))
+            found.append(Column(f"history:{name}", unit_in(self.mechanism.joints, name), words, ("t",), (self.t.size,)))
         if self.keep == "histories" and self.xi.size:
             found += [self._along(f"history:section:{link}:{force}", "", ("t", "xi")) for link in self._links for force in FORCES]
         return tuple(found)
@@ -168,7 +161,7 @@ class Harvest:
         if kind == "reaction" and not member:
             name, unit, words = f"{name}:resultant", FORCE, {"long_name": "resultant of the joint's reaction"}
         else:
-            unit, words = unit_of(self.mechanism, name), quantity_of(name).attributes
+            unit, words = unit_in(self.mechanism.joints, name), quantity_of(name).attributes
         what = words["long_name"]
         found = [
             Column(f"peak:{name}", unit, words | {"long_name": f"largest in size over time: {what}"}),

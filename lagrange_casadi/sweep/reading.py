@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -15,7 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..density import Array
-from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError
+from ..errors import DeclarationError, LagrangeCasadiError, StoreError, UnknownNameError, one_line
+from ..store import reading
 from .axes import DESIGN
 from .columns import KINDS, STATUS
 from .file import WORDS, chunk_of, slabs
@@ -67,7 +68,7 @@ class Sweep:
             try:
                 return _described(Path(path), file, keeper)
             except _DAMAGE as error:
-                raise StoreError(f"{path}: damaged: {' '.join(str(error).split())}") from None
+                raise StoreError(f"{path}: damaged: {one_line(error)}") from None
 
     def __repr__(self) -> str:
         return f"<Sweep of {self.case}: {self.size} designs over {', '.join(self.parameters)}; {', '.join(self.columns)}>"
@@ -223,7 +224,7 @@ class Sweep:
             try:
                 yield file
             except (OSError, RuntimeError) as error:
-                raise StoreError(f"{self.path}: damaged: {' '.join(str(error).split())}") from None
+                raise StoreError(f"{self.path}: damaged: {one_line(error)}") from None
 
 
 def is_sweep(path: str | Path) -> bool:
@@ -305,22 +306,5 @@ def _along(dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], wher
     return np.broadcast_to(np.reshape(dataset[where[axis]], shape), kept).ravel()
 
 
-@contextmanager
-def _reading(path: str | Path) -> Iterator[h5py.File]:
-    if not Path(path).is_file():
-        raise PathError(f"{path}: {'is a folder, not a file' if Path(path).is_dir() else 'no such file'}")
-    try:
-        file = h5py.File(path, "r")
-    except OSError as error:
-        raise StoreError(f"{path}: not a whole HDF5 file ({' '.join(str(error).split())})") from None
-    with file:
-        attributes = file.attrs
-        if attributes.get("schema") != SCHEMA:
-            raise StoreError(f"{path}: not a sweep, its attribute 'schema' is {attributes.get('schema')!r}")
-        if attributes.get("schema_version") != SCHEMA_VERSION:
-            raise StoreError(
-                f"{path}: schema version {attributes.get('schema_version')} of sweeps, this program reads version {SCHEMA_VERSION}"
-            )
-        if not attributes.get("complete", False):
-            raise StoreError(f"{path}: was not written to its end")
-        yield file
+def _reading(path: str | Path) -> AbstractContextManager[h5py.File]:
+    return reading(path, SCHEMA, SCHEMA_VERSION, "a sweep", " of sweeps")
