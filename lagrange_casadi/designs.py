@@ -31,6 +31,12 @@ from .scene_graph import SceneGraph
 from .solution import Provenance
 from .stages import Stages
 
+_LOOKS = 32
+"""At about so many more instants is the peak of a quantity sought."""
+
+_RATE, _RATE_INTERPRETED = 3e9, 3e6
+"""Instructions a second of a core."""
+
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
@@ -116,6 +122,13 @@ class DesignEngine:
     def columns(self) -> tuple[str, ...]:
         """The names of the outputs that histories have."""
         return tuple(name for name in self.graph.columns if not name.startswith("_"))
+
+    @property
+    def cost(self) -> float:
+        """Seconds that a core takes for a design, within a factor of three or so: counted, not measured, the same everywhere."""
+        instants = self.t.size + _LOOKS * len(self.quantities)
+        rate = _RATE if self.library is not None else _RATE_INTERPRETED
+        return sum(self.graph.instructions.values()) * instants / rate
 
     def evaluate(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of designs ``p``, (n, parameters), in the order of :attr:`parameters`; with ``histories``, its series too.

@@ -7,8 +7,10 @@ import sweeps
 from lagrange_casadi import evaluate
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.peaks import forces, refine
+from lagrange_casadi.rung import Rung
 from lagrange_casadi.section_law import FORCES
-from lagrange_casadi.sweep import sweep
+from lagrange_casadi.sweep import columns, sweep
+from lagrange_casadi.sweep.plan import Task
 
 SPAN = (0, 0.08, 129)
 LENGTHS, CRANKS = (0.13, 0.25), (0.06, 0.1)
@@ -152,14 +154,33 @@ def test_what_cannot_be_kept_is_named(slider_crank):
         sweep(slider_crank, grid, xi=(0, 2, 3))
 
 
-def test_memory_of_a_design_counts_everything(monkeypatch):
-    engine = sweeps.use(monkeypatch, count=7)
-    from lagrange_casadi.rung import Rung
-    from lagrange_casadi.sweep.plan import Task
+@pytest.fixture
+def harvest(monkeypatch):
+    """What is kept of formulas: histories of 7 instants, at 3 ratios."""
+    sweeps.use(monkeypatch, count=7)
+    return Task((), (0, 1, 7), (0, 1, 3), "histories", Rung()).harvest(sweeps.scene())
 
-    task = Task((), (0, 1, 7), (0, 1, 3), "histories", Rung())
-    harvest = task.harvest(sweeps.scene())
-    p = np.full((5, 5), 0.1)
-    outcome = engine.evaluate(p, histories=True)
-    held = sum(array.nbytes for array in (*harvest.evaluate(p), *vars(outcome).values())) - 5 + p.nbytes
-    assert 5 * harvest.bytes_per_design == held + 5 * 8 * 3 * 7 * 3
+
+def test_a_block_is_what_takes_a_second_and_fits_into_memory(harvest, monkeypatch):
+    width = sum(array[:1].nbytes for array in harvest.evaluate(np.full((5, 5), 0.1)))
+    assert harvest.block == 14
+    monkeypatch.setattr(harvest.engine, "cost", 1e-9)
+    monkeypatch.setattr(columns, "_BYTES", 100 * width + 1)
+    assert harvest.block == 100
+    monkeypatch.setattr(columns, "_BYTES", 1)
+    assert harvest.block == 1
+    monkeypatch.setattr(columns, "_BYTES", 1 << 40)
+    assert harvest.block == columns._MOST
+    monkeypatch.setattr(harvest.engine, "cost", 1e9)
+    assert harvest.block == 1
+
+
+@pytest.mark.parametrize("room", [1, 5_000, 1 << 20])
+def test_chunks_do_not_know_how_many_designs_were_evaluated_at_once(harvest, monkeypatch, room):
+    p = np.random.default_rng(2).uniform(0.1, 0.3, (23, 5))
+    whole = harvest.chunks(p, 30)
+    harvest.engine.calls.clear()
+    monkeypatch.setattr(columns, "_AT_HAND", room)
+    assert harvest.chunks(p, 30) == whole
+    assert len(harvest.engine.calls) == {1: 23, 5_000: 8, 1 << 20: 1}[room]
+    assert sum(count for count, _ in harvest.engine.calls) == 23

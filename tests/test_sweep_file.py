@@ -1,20 +1,16 @@
-"""The file: chunks that are runs of designs, scales that every reader finds, and the same bytes whatever the blocks were."""
+"""The file: scales that every reader finds, and every number at its design."""
 
 import json
-import math
 
 import h5py
 import numpy as np
 import pytest
 import sweeps
 import xarray
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.quantities import CONVENTIONS
 from lagrange_casadi.sweep import Listed, sweep
-from lagrange_casadi.sweep.file import chunk_of, recut, slabs
 
 GRID = {"l": (0.15, 0.4, 6), "r": [0.05, 0.1, 0.07]}
 
@@ -23,40 +19,6 @@ GRID = {"l": (0.15, 0.4, 6), "r": [0.05, 0.1, 0.07]}
 def file(monkeypatch, tmp_path):
     sweeps.use(monkeypatch)
     return sweep(sweeps.scene(), GRID, out=tmp_path / "x.h5", xi=(0, 1, 4), keep="histories").path
-
-
-@settings(deadline=None)
-@given(st.lists(st.integers(1, 7), min_size=1, max_size=4), st.integers(1, 200))
-def test_slabs_are_chunks_and_runs_of_designs(dims, target):
-    chunk = chunk_of(dims, target)
-    assert math.prod(chunk) <= target
-    numbers = np.arange(math.prod(dims)).reshape(dims)
-    after, places = 0, set()
-    for start, stop, where in slabs(dims, chunk):
-        assert start == after
-        np.testing.assert_array_equal(numbers[where].ravel(), np.arange(start, stop))
-        corners = np.stack(np.unravel_index([start, stop - 1], dims)) // np.array(chunk)[:, None]
-        assert (corners[:, 0] == corners[:, 1]).all(), "a slab crosses chunks"
-        places.add(tuple(corners[:, 0]))
-        after = stop
-    assert after == numbers.size
-    assert len(places) == sum(1 for _ in slabs(dims, chunk))
-
-
-@given(st.integers(1, 10**7), st.integers(1, 10**5))
-def test_the_last_chunk_is_hardly_empty(length, target):
-    (chunk,) = chunk_of([length], target)
-    assert -(-length // chunk) * chunk < length + -(-length // chunk)
-
-
-@given(st.lists(st.integers(1, 9), min_size=1), st.lists(st.integers(1, 9), min_size=1))
-def test_arrays_are_cut_anew(lengths, others):
-    total = sum(lengths)
-    stops = [stop for stop in np.cumsum(others).tolist() if stop < total] + [total]
-    pieces = np.split(np.arange(total), np.cumsum(lengths)[:-1])
-    found = list(recut(iter(pieces), stops))
-    assert [piece[-1] + 1 for piece in found] == stops
-    np.testing.assert_array_equal(np.concatenate(found), np.arange(total))
 
 
 def test_layout(file):

@@ -1,49 +1,51 @@
-"""Blocks of designs: as many as memory allows and as are done in about a second, from what is still to be done."""
+"""Blocks: runs of design numbers that are evaluated, committed and kept in the file as one; the plan alone sets them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
-_BYTES = 1 << 24
-"""What a block may take in memory."""
+import numpy as np
 
-_SECONDS = 1.0
-_FIRST = 64
+Slab = tuple[int, int, tuple[Any, ...]]
+"""Designs from and to before, and the selection of the designs' axes that is them."""
 
 
-@dataclass
-class Cutter:
-    """Cuts gaps into blocks one by one, each as large as the last ones were fast.
+def chunk_of(dims: Sequence[int], target: int) -> tuple[int, ...]:
+    """The shape of chunks of about ``target`` designs that are runs of design numbers, each axis cut into equal lengths."""
+    chunk: list[int] = []
+    room = max(target, 1)
+    for length in reversed(dims):
+        here = length if length <= room else math.ceil(length / math.ceil(length / room))
+        room = room // length if length <= room else 1
+        chunk.append(here)
+    return tuple(chunk[::-1])
 
-    The result does not depend on how it cuts; what a kill loses and how long Ctrl-C waits does.
-    """
 
-    gaps: Sequence[tuple[int, int]]
-    bytes_per_design: int
-    stopped: bool = field(default=False, init=False)
+def slabs(dims: Sequence[int], chunk: Sequence[int]) -> Iterator[Slab]:
+    """The runs of design numbers that chunks hold, in order."""
+    cut = next((axis for axis, length in enumerate(chunk) if length != 1), len(dims) - 1)
+    inner = math.prod(dims[cut + 1 :])
+    whole = (slice(None),) * (len(dims) - cut - 1)
+    for count, outer in enumerate(np.ndindex(*dims[:cut])):
+        for start in range(0, dims[cut], chunk[cut]):
+            stop = min(start + chunk[cut], dims[cut])
+            before = count * dims[cut]
+            yield (before + start) * inner, (before + stop) * inner, (*outer, slice(start, stop), *whole)
 
-    def __post_init__(self) -> None:
-        self._length = _FIRST
-        self._rest = list(self.gaps)[::-1]
-        self._most = max(1, _BYTES // self.bytes_per_design)
 
-    def cut(self) -> tuple[int, int] | None:
+class Queue:
+    """Blocks that are still to be done, handed out one by one until it is stopped."""
+
+    def __init__(self, blocks: Iterable[tuple[int, int]]) -> None:
+        self._blocks = iter(blocks)
+        self.stopped = False
+
+    def take(self) -> tuple[int, int] | None:
         """The next block, from and to before; None where nothing is left."""
-        if not self._rest:
-            return None
-        start, stop = self._rest.pop()
-        end = min(stop, start + min(self._length, self._most))
-        if end < stop:
-            self._rest.append((end, stop))
-        return start, end
-
-    def took(self, designs: int, seconds: float) -> None:
-        """Say how long a block took."""
-        fast = designs / max(seconds, 1e-9) * _SECONDS
-        self._length = max(1, int(min(fast, 8.0 * self._length, self._most)))
+        return None if self.stopped else next(self._blocks, None)
 
     def stop(self) -> None:
-        """Cut no more."""
+        """Hand out no more."""
         self.stopped = True
-        self._rest.clear()

@@ -9,8 +9,8 @@ import h5py
 import numpy as np
 
 from ..errors import one_line
+from .blocks import slabs
 from .columns import STATUS
-from .file import slabs
 from .reading import Kept, Sweep
 
 

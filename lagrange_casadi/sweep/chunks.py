@@ -17,26 +17,27 @@ import numpy as np
 FILTERS = {"shuffle": True, "compression": "gzip", "compression_opts": 1, "fletcher32": True}
 """What tells HDF5 how such chunks are read."""
 
-_SAMPLE = 1 << 12
+_NEIGHBOURS, _SAMPLE, _ROW = 1 << 11, 1 << 9, 1 << 8
 _REPEATS, _OFTEN = 0.1, 4.0
 _STORED = 0xFFFF
 _HEAD, _LAST = b"\x78\x01", b"\x03\x00"
 
 
-def encoded(values: Any, size: int) -> bytes:
-    """A chunk of ``size`` numbers, the first of which are ``values``: shuffle, deflate and Fletcher-32, as :data:`FILTERS` say."""
-    whole = np.zeros(size, values.dtype)
-    whole[: values.size] = values.ravel()
-    content = deflated(np.ascontiguousarray(whole.view(np.uint8).reshape(size, -1).T))
+def encoded(values: Any) -> bytes:
+    """A chunk's numbers shuffled, deflated, and with a Fletcher-32 after them, as :data:`FILTERS` say."""
+    content = deflated(np.ascontiguousarray(values.view(np.uint8).reshape(values.size, -1).T))
     return content + struct.pack("<I", fletcher32(content))
 
 
 def deflated(planes: Any) -> bytes:
     """A zlib stream of the rows of an array of bytes, one after another."""
-    pieces = [_HEAD]
-    for worth, rows in groupby(planes, _shrinks):
-        content = np.concatenate(list(rows)).tobytes()
-        if worth:
+    pieces: list[Any] = [_HEAD]
+    first = 0
+    for shrinks, rows in groupby(_shrink(planes)):
+        count = len(list(rows))
+        content = planes[first : first + count].reshape(-1).data
+        first += count
+        if shrinks:
             compressor = zlib.compressobj(1, zlib.DEFLATED, -zlib.MAX_WBITS)
             # A full flush ends on a whole byte, with nothing that a later block would look back to.
             pieces += [compressor.compress(content), compressor.flush(zlib.Z_FULL_FLUSH)]
@@ -50,24 +51,32 @@ def fletcher32(content: bytes) -> int:
 
     A sum that is not zero is one of 1 to 65535, as repeated folding leaves it.
     """
-    words = np.frombuffer(content + b"\0" * (len(content) % 2), ">u2").astype(np.int64)
-    first, second = int(words.sum()), int(words @ np.arange(words.size, 0, -1))
-    return _folded(second) << 16 | _folded(first)
+    words = np.frombuffer(content + b"\0" * (-len(content) % (2 * _ROW)), "<u2").reshape(-1, _ROW)
+    total, before = 0, 0
+    for axis, width in ((1, _ROW), (0, 1)):
+        sums = words.sum(axis=axis, dtype=np.int64)
+        total, before = int(sums.sum()), before + width * int(np.arange(sums.size) @ sums)
+    running = -(-len(content) // 2) * total - before
+    # Modulo 65535 the bytes of a word change places when it is multiplied by 256.
+    return _folded(256 * running) << 16 | _folded(256 * total)
 
 
 def _folded(total: int) -> int:
     return (total - 1) % 0xFFFF + 1 if total else 0
 
 
-def _shrinks(row: Any) -> bool:
-    """Whether neighbours repeat, or some bytes come much more often than others; to ask zlib itself takes as long as to deflate."""
-    sample = row[:_SAMPLE]
-    if np.count_nonzero(sample[1:] == sample[:-1]) > _REPEATS * sample.size:
-        return True
-    return bool(np.bincount(sample).max() > _OFTEN * (1.0 + sample.size / 256))
+def _shrink(planes: Any) -> list[bool]:
+    """In which rows neighbours repeat, or some bytes come much more often than others; to ask zlib takes as long as to deflate."""
+    some = planes[:, :_NEIGHBOURS]
+    repeats = np.count_nonzero(some[:, 1:] == some[:, :-1], axis=1)
+    some = planes[:, :: max(1, planes.shape[1] // _SAMPLE)]
+    count, size = some.shape
+    often = np.bincount((some + (np.arange(count) << 8)[:, None]).ravel(), minlength=count << 8).reshape(count, -1).max(axis=1)
+    worth: list[bool] = ((repeats > _REPEATS * _NEIGHBOURS) | (often > _OFTEN * (1.0 + size / 256))).tolist()
+    return worth
 
 
-def _stored(content: bytes) -> Iterator[bytes]:
+def _stored(content: memoryview) -> Iterator[Any]:
     for start in range(0, len(content), _STORED):
         piece = content[start : start + _STORED]
         yield struct.pack("<BHH", 0, len(piece), len(piece) ^ 0xFFFF)

@@ -20,7 +20,7 @@ from ..case import Case, load_case
 from ..density import Array
 from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_line
 from ..scene import Scene
-from .blocks import Cutter
+from .blocks import Queue
 from .columns import Harvest
 from .plan import Plan, Task, difference, signature
 from .workers import Block
@@ -70,8 +70,8 @@ class Cluster:
         if not _ADDRESS.fullmatch(self.address):
             raise DeclarationError(f"--dask: expected an address like tcp://HOST:8786, got '{self.address}'")
 
-    def results(self, plan: Plan, cutter: Cutter) -> Iterator[Block | None]:
-        """Evaluate what is cut, in the order in which workers are done."""
+    def results(self, plan: Plan, queue: Queue) -> Iterator[Block | None]:
+        """Evaluate what is in the queue, in the order in which workers are done."""
         source = Source(str(self.case.path), self.case.path.read_text())
         told = signature(plan.scene, plan.task, plan.harvest.engine.provenance)
         with self._connected() as client:
@@ -80,8 +80,8 @@ class Cluster:
 
             def send() -> None:
                 most = max(1, _AHEAD * self._threads(client))
-                while len(blocks) < most and (block := cutter.cut()):
-                    future = client.submit(_evaluate, source, plan.task, told, plan.block(*block), pure=False)
+                while len(blocks) < most and (block := queue.take()):
+                    future = client.submit(_evaluate, source, plan.task, told, plan.block(*block), plan.room, pure=False)
                     blocks[future] = block
                     waiting.add(future)
 
@@ -94,12 +94,11 @@ class Cluster:
                     yield None
                     if client.status != "running":
                         raise self._lost()
-                    if cutter.stopped and not self._threads(client):
+                    if queue.stopped and not self._threads(client):
                         return
                     continue
                 start, stop = blocks.pop(future)
-                seconds, columns = self._result(future, start, stop)
-                cutter.took(stop - start, seconds)
+                columns = self._result(future, start, stop)
                 yield start, stop, columns
                 del future, columns
                 if client.status != "running":
@@ -121,10 +120,10 @@ class Cluster:
                 with suppress(Exception):
                     client.close(timeout=2)
 
-    def _result(self, future: Any, start: int, stop: int) -> tuple[float, list[Any]]:
+    def _result(self, future: Any, start: int, stop: int) -> list[bytes]:
         dask = _dask()
         try:
-            seconds, columns = future.result()
+            columns: list[bytes] = future.result()
         except ClusterError:
             raise
         except dask.KilledWorker:
@@ -133,7 +132,7 @@ class Cluster:
             raise self._lost() from None
         except Exception as error:
             raise ClusterError(f"a worker failed: {type(error).__name__}: {one_line(error)}") from None
-        return seconds, columns
+        return columns
 
     def _threads(self, client: Any) -> int:
         """How many threads the workers have; workers come and go."""
@@ -177,17 +176,15 @@ def _silenced() -> Iterator[None]:
             logger.disabled = disabled
 
 
-def _evaluate(source: Source, task: Task, told: Mapping[str, Any], p: Array) -> tuple[float, list[Any]]:
-    """On a worker: how long a block of designs took, and its columns."""
+def _evaluate(source: Source, task: Task, told: Mapping[str, Any], p: Array, room: int) -> list[bytes]:
+    """On a worker: the columns of a block of designs."""
     try:
         with _building:
             scene, harvest = _built(source, task)
         found = difference(told, signature(scene, task, harvest.engine.provenance))
         if found:
             raise ClusterError(f"a worker would not give the same numbers: {found} there")
-        begun = time.perf_counter()
-        columns = harvest.evaluate(p, 1)
-        return time.perf_counter() - begun, columns
+        return harvest.chunks(p, room)
     except ClusterError:
         raise
     except LagrangeCasadiError as error:

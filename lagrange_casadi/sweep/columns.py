@@ -22,6 +22,7 @@ from ..errors import DeclarationError, UnknownNameError
 from ..mechanism import Mechanism
 from ..quantities import FORCE, quantity_of, unit_in
 from ..section_law import FORCES, SectionLaw, StationLoad
+from .chunks import encoded
 from .engine import STATUSES, Engine
 
 Keep = Literal["peaks", "laws", "histories"]
@@ -32,6 +33,11 @@ STATUS = "status"
 
 KINDS = (STATUS, "peak", "peak_t", "peak_xi", "mean", "rms", "peak_at", "history")
 """What columns are of, in the order in which they are listed."""
+
+_MOST, _BYTES, _SECONDS = 1 << 14, 1 << 24, 1.0
+_AT_HAND = 1 << 20
+_GRID_COST = 5e-9
+"""Seconds of a section force at an instant and a ratio."""
 
 
 @dataclass(frozen=True)
@@ -104,37 +110,49 @@ class Harvest:
         return tuple(found)
 
     @property
-    def bytes_per_design(self) -> int:
-        """What a design takes in memory, of columns, of the engine's outcome, and of section forces over time and ratio."""
-        outcome = 8 * (3 * len(self.engine.quantities) + 2 * len(self.engine.efforts) + len(self.mechanism.parameters))
-        series = 8 * len(self.engine.columns) * self.t.size if self._histories else 0
-        grids = 8 * len(FORCES) * len(self._links) * self.t.size * self.xi.size
-        return outcome + series + grids + sum(column.width for column in self.columns)
+    def block(self) -> int:
+        """How many designs make a block: what a core does in about a second, no more than memory and a reader's chunk allow."""
+        grids = len(FORCES) * len(self._links) * self.t.size * self.xi.size
+        seconds = self.engine.cost + grids * _GRID_COST
+        return max(1, min(_MOST, int(_SECONDS / seconds), _BYTES // sum(column.width for column in self.columns)))
 
-    @property
-    def _histories(self) -> bool:
-        """Whether whole histories must be evaluated."""
-        return self.keep != "peaks" or bool(self.xi.size)
+    def chunks(self, p: Array, room: int) -> list[bytes]:
+        """The columns of designs ``p`` (designs, parameters) as chunks of the file that have room for so many."""
+        whole = [np.zeros((room, *column.lengths), column.dtype) for column in self.columns]
+        for start in range(0, len(p), self._piece):
+            some = slice(start, min(start + self._piece, len(p)))
+            for into, values in zip(whole, self.evaluate(p[some]), strict=True):
+                into[some] = values
+        return [encoded(values) for values in whole]
 
-    def evaluate(self, p: Array, threads: int | None = None) -> list[Any]:
+    def evaluate(self, p: Array) -> list[Any]:
         """The columns of designs ``p`` (designs, parameters), each of shape (designs, its own axes)."""
-        outcome = self.engine.evaluate(p, threads=threads, histories=self._histories)
-        found: list[Any] = [outcome.status.astype(np.int8)]
+        outcome = self.engine.evaluate(p, threads=1, histories=self._histories)
+        found: list[Any] = [outcome.status.astype(np.int8, copy=False)]
         for k, name in enumerate(self.engine.quantities):
             found += [outcome.value[:, k], outcome.t[:, k]]
             if name.startswith("section:"):
                 found.append(outcome.xi[:, k])
         for k in range(len(self.engine.efforts)):
             found += [outcome.mean[:, k], outcome.rms[:, k]]
-        grids = self._grids(outcome, p) if self.xi.size else {}
-        found += [_largest(grids[link, force]) for link in self._links for force in FORCES if self.xi.size]
+        largest, whole = self._along_links(outcome, p)
+        found += largest
         if self._series:
             assert outcome.series is not None
             rows = {name: k for k, name in enumerate(self.engine.columns)}
             found += [outcome.series[:, rows[name]] for name in self._series]
-        if self.keep == "histories":
-            found += list(grids.values())
-        return [np.ascontiguousarray(values, np.dtype(column.dtype)) for column, values in zip(self.columns, found, strict=True)]
+        return found + whole
+
+    @property
+    def _histories(self) -> bool:
+        """Whether whole histories must be evaluated."""
+        return self.keep != "peaks" or bool(self.xi.size)
+
+    @property
+    def _piece(self) -> int:
+        """How many designs are evaluated at once: so few that their outcome is still at hand when it is taken apart."""
+        series = 8 * len(self.engine.columns) * self.t.size if self._histories else 0
+        return max(1, _AT_HAND // (series + sum(column.width for column in self.columns)))
 
     @cached_property
     def _links(self) -> tuple[str, ...]:
@@ -177,11 +195,14 @@ class Harvest:
         lengths = tuple({"t": self.t.size, "xi": self.xi.size}[axis] for axis in axes)
         return Column(name, quantity.unit, words, axes, lengths)
 
-    def _grids(self, outcome: Outcome, p: Array) -> dict[tuple[str, str], Array]:
-        """Section forces (designs, t, xi) by link and force; NaN where a design has no result."""
-        series = outcome.series
+    def _along_links(self, outcome: Outcome, p: Array) -> tuple[list[Array], list[Array]]:
+        """Of each link and force what is largest over the instants, (designs, xi), and, where it is kept, all, (designs, t, xi)."""
+        if not self.xi.size:
+            return [], []
+        n, series, names = len(p), outcome.series, [(link, force) for link in self._links for force in FORCES]
         assert series is not None
-        found = {(link, force): np.full((len(p), self.t.size, self.xi.size), np.nan) for link in self._links for force in FORCES}
+        largest = {name: np.full((n, self.xi.size), np.nan) for name in names}
+        whole = {name: np.full((n, self.t.size, self.xi.size), np.nan) for name in names if self.keep == "histories"}
         for link in self._links:
             matter = _Matter.of(self.mechanism, link)
             rows = {name: k for k, name in enumerate(self.engine.columns) if name.startswith(f"section:{link}:")}
@@ -189,8 +210,9 @@ class Harvest:
                 law = matter.law({name.split(":", 2)[2]: series[i, k] for name, k in rows.items()}, p[i])
                 basis = law.basis(self.xi)
                 for force in FORCES:
-                    law.on_grid(force, basis, found[link, force][i], threads=1)
-        return found
+                    out = whole[link, force][i] if whole else None
+                    largest[link, force][i] = _largest(law.on_grid(force, basis, out, threads=1))
+        return list(largest.values()), list(whole.values())
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,6 +243,7 @@ class _Matter:
 
 
 def _largest(grid: Array) -> Array:
-    """Over the instants (axis 1), the value largest in size with its sign."""
-    best = np.argmax(np.abs(grid), axis=1)[:, None]
-    return np.take_along_axis(grid, best, axis=1)[:, 0]
+    """Over the instants (axis 0), the value largest in size with its sign."""
+    best = np.argmax(np.abs(grid), axis=0)[None]
+    found: Array = np.take_along_axis(grid, best, axis=0)[0]
+    return found

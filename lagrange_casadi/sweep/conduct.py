@@ -8,9 +8,9 @@ from pathlib import Path
 
 from ..errors import ClusterError, DeclarationError, PathError, StoppedError, StoreError
 from ..publish import check_writable, uninterrupted
-from .blocks import Cutter
+from .blocks import Queue
 from .file import check_names, join
-from .parts import Folder, missing, telling
+from .parts import Folder, telling
 from .plan import Plan, difference
 from .reading import identity_of
 from .workers import Workers
@@ -87,33 +87,31 @@ def _refuse_other(place: Path, found: str | None) -> None:
 
 def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], None], progress: Progress) -> None:
     parts = folder.parts()
-    gaps = missing(parts, plan.size)
-    done = plan.size - sum(stop - start for start, stop in gaps)
-    _require_room(folder, plan, plan.size - done)
+    there = {(part.start, part.stop) for part in parts}
+    done, size = sum(part.stop - part.start for part in parts), sum(part.size for part in parts)
     progress("designs", done, plan.size)
-    cutter = Cutter(gaps, plan.harvest.bytes_per_design)
-    for block in workers.results(plan, cutter):
+    queue = Queue((start, stop) for start, stop, _ in plan.slabs() if (start, stop) not in there)
+    for block in workers.results(plan, queue):
         if block is not None:
-            start, stop, arrays = block
-            folder.commit(start, stop, plan.columns, arrays)
-            done += stop - start
+            part = folder.commit(*block[:2], plan.columns, block[2])
+            done, size = done + part.stop - part.start, size + part.size
             progress("designs", done, plan.size)
+            _require_room(folder, size / done * (2 * plan.size - done))
         try:
             breathe()
         except KeyboardInterrupt:
-            cutter.stop()
+            queue.stop()
     breathe()
     with telling(folder.target):
         join(plan, folder.parts(), folder.joined, breathe, lambda share: progress("file", share, 1.0))
     folder.publish()
 
 
-def _require_room(folder: Folder, plan: Plan, designs: int) -> None:
-    """Raise :class:`StoreError` where the disk has less room than the parts take that are still to come."""
-    size = designs * sum(column.width for column in plan.columns)
+def _require_room(folder: Folder, size: float) -> None:
+    """Raise :class:`StoreError` where the disk has less room than the parts to come and the file will take, as parts are so far."""
     free = shutil.disk_usage(folder.target.parent).free
     if size > free:
         raise StoreError(
-            f"cannot write {folder.target}: its designs take {size / 1e9:.4g} GB before they are joined, and the disk has "
+            f"cannot write {folder.target}: the parts to come and the file take about {size / 1e9:.3g} GB, and the disk has "
             f"{free / 1e9:.3g} GB left"
         )

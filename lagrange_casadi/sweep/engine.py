@@ -30,6 +30,10 @@ class Engine(Protocol):
         """Full names of what histories hold."""
 
     @property
+    def cost(self) -> float:
+        """Seconds that a core takes for a design, about: counted, not measured, so that it is the same everywhere."""
+
+    @property
     def provenance(self) -> Provenance:
         """How the numbers are made."""
 

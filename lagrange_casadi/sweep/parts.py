@@ -1,7 +1,7 @@
 """What a sweep has committed so far: a folder of parts, each whole or not there, and a lock on it that dies with its process.
 
 A part holds the columns of the designs from ``start`` to before ``stop``: a line of JSON that tells what is in it, a line that
-is the SHA-256 of that line, and then the columns one after another, raw, each with a CRC-32 of its own.
+is the SHA-256 of that line, and then the columns one after another, as chunks of the file, each with a CRC-32 of its own.
 """
 
 from __future__ import annotations
@@ -16,8 +16,6 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from ..errors import BusyError, PathError, StoreError
 from .columns import Column
@@ -39,16 +37,20 @@ class Part:
     stop: int
     columns: Mapping[str, tuple[int, int, int]]
 
-    def read(self, column: Column) -> Any:
-        """A column (designs, its own axes). Where it is not what was committed the part is deleted: raises :class:`StoreError`."""
-        place, size, checksum = self.columns[column.name]
-        with self.path.open("rb") as file:
-            file.seek(place)
-            content = file.read(size)
-        if zlib.crc32(content) != checksum:
-            self.path.unlink()
-            raise StoreError(f"{self.path} was damaged, in column {column.name}, and is deleted")
-        return np.frombuffer(content, column.dtype).reshape(self.stop - self.start, *column.lengths)
+    @property
+    def size(self) -> int:
+        """Bytes of its columns."""
+        return sum(length for _, length, _ in self.columns.values())
+
+    def read(self) -> list[bytes]:
+        """Its columns. Where one is not what was committed the part is deleted: raises :class:`StoreError`."""
+        content, found = self.path.read_bytes(), []
+        for name, (place, length, checksum) in self.columns.items():
+            found.append(content[place : place + length])
+            if zlib.crc32(found[-1]) != checksum:
+                self.path.unlink()
+                raise StoreError(f"{self.path} was damaged, in column {name}, and is deleted")
+        return found
 
 
 @dataclass(frozen=True)
@@ -142,14 +144,13 @@ class Folder:
                 (self.path / _FORCED).touch()
             self._publish(_PLAN, [json.dumps(identity, indent=1).encode()])
 
-    def commit(self, start: int, stop: int, columns: Sequence[Column], arrays: Sequence[Any]) -> Part:
+    def commit(self, start: int, stop: int, columns: Sequence[Column], contents: Sequence[bytes]) -> Part:
         """Commit a block: on return it outlives a kill and a loss of power. Raises :class:`StoreError` where that fails."""
         name = f"{start:012d}-{stop:012d}{_PART}"
-        contents = [np.ascontiguousarray(array).data.cast("B") for array in arrays]
         table, place = {}, 0
         for column, content in zip(columns, contents, strict=True):
-            table[column.name] = (place, content.nbytes, zlib.crc32(content))
-            place += content.nbytes
+            table[column.name] = (place, len(content), zlib.crc32(content))
+            place += len(content)
         head = json.dumps({"start": start, "stop": stop, "columns": table}).encode()
         lines = head + b"\n" + hashlib.sha256(head).hexdigest().encode() + b"\n"
         with telling(self.target):
@@ -203,16 +204,6 @@ class Folder:
                 draft.unlink()
             raise
         _flush(self.path)
-
-
-def missing(parts: Sequence[Part], size: int) -> list[tuple[int, int]]:
-    """The designs that no part covers, from and to before, in order."""
-    gaps, after = [], 0
-    for part in parts:
-        if part.start > after:
-            gaps.append((after, part.start))
-        after = part.stop
-    return [*gaps, (after, size)] if after < size else gaps
 
 
 def _whole(path: Path) -> Part | None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Mapping, Sequence
+import math
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -21,6 +23,7 @@ from ..scene import Grid as Span
 from ..scene import Scene, Wanted, checked, checked_ratios, outputs
 from ..solution import Provenance
 from .axes import Designs, check_designs
+from .blocks import Slab, chunk_of, slabs
 from .columns import Column, Harvest, Keep, check_keep
 from .engine import Engine
 
@@ -103,6 +106,25 @@ class Plan:
         """What is kept of each."""
         return self.harvest.columns
 
+    @property
+    def dims(self) -> tuple[int, ...]:
+        """The lengths of the designs' axes."""
+        return tuple(self.designs.dimensions.values())
+
+    @cached_property
+    def chunk(self) -> tuple[int, ...]:
+        """The lengths of a chunk of the file along these axes: a block."""
+        return chunk_of(self.dims, self.harvest.block)
+
+    @property
+    def room(self) -> int:
+        """How many designs a chunk has room for."""
+        return math.prod(self.chunk)
+
+    def slabs(self) -> Iterator[Slab]:
+        """All blocks, in order."""
+        return slabs(self.dims, self.chunk)
+
     def block(self, start: int, stop: int) -> Array:
         """Designs by number, of shape (designs, parameters): all parameters in the order of declaration."""
         names = list(self.values)
@@ -142,7 +164,7 @@ def signature(scene: Scene, task: Task, provenance: Provenance) -> dict[str, Any
     """What the numbers of a design follow from beside its parameters, wherever it is evaluated."""
     wanted = Wanted.of(scene.mechanism, task.wanted)
     words = {
-        "versions": dict(provenance.versions),
+        "versions": {**provenance.versions, "zlib": zlib.ZLIB_RUNTIME_VERSION},
         "sources": sources(),
         "backend": provenance.backend,
         "precision": provenance.precision,

@@ -18,8 +18,9 @@ from ..density import Array
 from ..errors import DeclarationError, LagrangeCasadiError, StoreError, UnknownNameError, one_line
 from ..store import reading
 from .axes import DESIGN
+from .blocks import chunk_of, slabs
 from .columns import KINDS, STATUS
-from .file import WORDS, chunk_of, slabs
+from .file import WORDS
 from .plan import SCHEMA, SCHEMA_VERSION
 
 if TYPE_CHECKING:

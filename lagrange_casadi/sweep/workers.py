@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-import time
 from collections import deque
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from .blocks import Cutter
+from ..codegen import cores
+from .blocks import Queue
 from .plan import Plan
 
-_AHEAD = 2
-
-Block = tuple[int, int, list[Any]]
-"""Designs from and to before, and their columns."""
+Block = tuple[int, int, list[bytes]]
+"""Designs from and to before, and their columns as the file keeps them."""
 
 
 class Workers(Protocol):
     """Whoever evaluates blocks."""
 
-    def results(self, plan: Plan, cutter: Cutter) -> Iterator[Block | None]:
-        """Evaluate what is cut, in any order; what was begun before the cutter was stopped is still given.
+    def results(self, plan: Plan, queue: Queue) -> Iterator[Block | None]:
+        """Evaluate what is in the queue, in any order; what was begun before it was stopped is still given.
 
         None where nothing was done for a while, so that whoever waits may stop.
         """
@@ -30,28 +28,24 @@ class Workers(Protocol):
 
 @dataclass(frozen=True)
 class Threads:
-    """Threads of this process, by default one a core; one block is committed while the next is evaluated."""
+    """Threads of this process, by default one a core, each at a block of its own."""
 
     count: int | None = None
 
-    def results(self, plan: Plan, cutter: Cutter) -> Iterator[Block]:
-        """Evaluate what is cut, one block after another."""
+    def results(self, plan: Plan, queue: Queue) -> Iterator[Block]:
+        """Evaluate what is in the queue."""
+        count = self.count or cores()
 
-        def evaluate(start: int, stop: int) -> tuple[float, list[Any]]:
-            begun = time.perf_counter()
-            columns = plan.harvest.evaluate(plan.block(start, stop), self.count)
-            return time.perf_counter() - begun, columns
+        def evaluated(start: int, stop: int) -> list[bytes]:
+            return plan.harvest.chunks(plan.block(start, stop), plan.room)
 
-        with ThreadPoolExecutor(1) as pool:
+        with ThreadPoolExecutor(count) as pool:
             pending: deque[tuple[int, int, Any]] = deque()
             while True:
-                while len(pending) < _AHEAD and (block := cutter.cut()):
-                    pending.append((*block, pool.submit(evaluate, *block)))
+                while len(pending) <= count and (block := queue.take()):
+                    pending.append((*block, pool.submit(evaluated, *block)))
                 if not pending:
                     return
                 start, stop, future = pending.popleft()
-                if cutter.stopped and future.cancel():
-                    continue
-                seconds, columns = future.result()
-                cutter.took(stop - start, seconds)
-                yield start, stop, columns
+                if not (queue.stopped and future.cancel()):
+                    yield start, stop, future.result()
