@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
+from itertools import islice
 from pathlib import Path
 
 from ..errors import ClusterError, DeclarationError, PathError, StoppedError, StoreError
 from ..publish import check_writable, uninterrupted
 from .blocks import Queue
-from .file import check_names, join
-from .parts import Folder, telling
+from .file import check_names, joining
+from .parts import Folder, Part, telling
 from .plan import Plan, difference
 from .reading import identity_of
 from .workers import Workers
 
 Progress = Callable[[str, float, float], None]
 """Hears what is being done (``designs``, ``file``), how much of it is done, and of how much."""
+
+_CATCHING_UP = 4
+"""Parts joined for each that is committed, where there are more."""
 
 
 def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: bool, progress: Progress) -> None:
@@ -86,32 +90,47 @@ def _refuse_other(place: Path, found: str | None) -> None:
 
 
 def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], None], progress: Progress) -> None:
-    parts = folder.parts()
-    there = {(part.start, part.stop) for part in parts}
-    done, size = sum(part.stop - part.start for part in parts), sum(part.size for part in parts)
-    progress("designs", done, plan.size)
-    queue = Queue((start, stop) for start, stop, _ in plan.slabs() if (start, stop) not in there)
-    for block in workers.results(plan, queue):
-        if block is not None:
-            part = folder.commit(*block[:2], plan.columns, block[2])
-            done, size = done + part.stop - part.start, size + part.size
-            progress("designs", done, plan.size)
-            _require_room(folder, size / done * (2 * plan.size - done))
-        try:
+    """Commit what is missing, and meanwhile join what is there."""
+    parts = {part.start: part for part in folder.parts()}
+    done, size = sum(part.stop - part.start for part in parts.values()), sum(part.size for part in parts.values())
+    queue = Queue((start, stop) for start, stop, _ in plan.slabs() if start not in parts)
+    with telling(folder.target), joining(plan, folder.joined) as append:
+        joined = 0
+        progress("designs", done, plan.size)
+        for block in workers.results(plan, queue):
+            if block is not None:
+                start, stop, contents = block
+                parts[start] = folder.commit(start, stop, plan.columns, contents)
+                done, size = done + stop - start, size + parts[start].size
+                progress("designs", done, plan.size)
+                _require_room(folder, size / done * (2 * plan.size - done - joined))
+            for part in islice(_following(parts, joined), _CATCHING_UP):
+                append(part.read())
+                joined = part.stop
+            try:
+                breathe()
+            except KeyboardInterrupt:
+                queue.stop()
+        breathe()
+        for part in _following(parts, joined):
+            append(part.read())
             breathe()
-        except KeyboardInterrupt:
-            queue.stop()
-    breathe()
-    with telling(folder.target):
-        join(plan, folder.parts(), folder.joined, breathe, lambda share: progress("file", share, 1.0))
+            progress("file", part.stop, plan.size)
     folder.publish()
 
 
+def _following(parts: Mapping[int, Part], after: int) -> Iterator[Part]:
+    """The parts that follow one another."""
+    while part := parts.get(after):
+        after = part.stop
+        yield part
+
+
 def _require_room(folder: Folder, size: float) -> None:
-    """Raise :class:`StoreError` where the disk has less room than the parts to come and the file will take, as parts are so far."""
+    """Raise :class:`StoreError` where the disk has less room than is still to be written, as parts are so far."""
     free = shutil.disk_usage(folder.target.parent).free
     if size > free:
         raise StoreError(
-            f"cannot write {folder.target}: the parts to come and the file take about {size / 1e9:.3g} GB, and the disk has "
+            f"cannot write {folder.target}: what is still to be written takes about {size / 1e9:.3g} GB, and the disk has "
             f"{free / 1e9:.3g} GB left"
         )

@@ -6,7 +6,8 @@ Every dimension's scale is in the root, where netCDF looks for it, and those of 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,6 @@ from .axes import DESIGN, Designs, Grid
 from .blocks import chunk_of, slabs
 from .chunks import FILTERS
 from .columns import KINDS, Column
-from .parts import Part
 from .plan import SCHEMA, Plan
 
 WORDS = ("versions", "mechanism", "wanted", "t", "xi", "grid")
@@ -41,22 +41,32 @@ def check_names(designs: Designs) -> None:
             )
 
 
-def join(plan: Plan, parts: Sequence[Part], path: Path, breathe: Callable[[], None], told: Callable[[float], None]) -> None:
-    """Write the file of a plan from all its parts. ``breathe`` lets interrupts through; ``told`` hears which share is done.
+@contextmanager
+def joining(plan: Plan, path: Path) -> Iterator[Callable[[Sequence[bytes]], None]]:
+    """The file of a plan at ``path``, to which its blocks are given one by one, in their order; removed on any failure.
 
-    Raises :class:`StoreError` for a damaged part, and ``OSError`` where the file cannot be written.
+    Raises ``OSError`` where it cannot be written.
     """
-    with PatientFile(path, "w+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
-        _begin(file, plan)
-        datasets = [_created(file, plan, column) for column in plan.columns]
-        for part, (_, stop, where) in zip(parts, plan.slabs(), strict=True):
-            corner = tuple(place.start or 0 if isinstance(place, slice) else place for place in where)
-            for dataset, column, content in zip(datasets, plan.columns, part.read(), strict=True):
-                dataset.id.write_direct_chunk((*corner, *(0 for _ in column.lengths)), content)
-            breathe()
-            told(stop / plan.size)
-        file.flush()
-        file.attrs["complete"] = True
+    try:
+        with PatientFile(path, "w+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
+            _begin(file, plan)
+            datasets = [(_created(file, plan, column), (0,) * len(column.axes)) for column in plan.columns]
+            slabs = plan.slabs()
+
+            def append(contents: Sequence[bytes]) -> None:
+                _, _, where = next(slabs)
+                corner = tuple(place.start or 0 if isinstance(place, slice) else place for place in where)
+                for (dataset, rest), content in zip(datasets, contents, strict=True):
+                    dataset.id.write_direct_chunk((*corner, *rest), content)
+                if bytes_.failure:
+                    raise bytes_.failure
+
+            yield append
+            file.flush()
+            file.attrs["complete"] = True
+    except BaseException:
+        path.unlink(missing_ok=True)
+        raise
 
 
 def _begin(file: h5py.File, plan: Plan) -> None:
