@@ -244,6 +244,6 @@ class _Matter:
 
 def _largest(grid: Array) -> Array:
     """Over the instants (axis 0), the value largest in size with its sign."""
-    best = np.argmax(np.abs(grid), axis=0)[None]
-    found: Array = np.take_along_axis(grid, best, axis=0)[0]
+    high, low = grid.max(axis=0), grid.min(axis=0)
+    found: Array = np.where(high >= -low, high, low)
     return found
