@@ -60,6 +60,13 @@ def test_the_checksum_of_any_bytes(content):
     assert fletcher32(content) == second << 16 | first
 
 
+def test_the_checksum_of_many_bytes():
+    """Where sums of words of 16 bits would not fit into 32: there a word counts as often as words follow it."""
+    count = 1 << 25
+    assert fletcher32(b"\xff" * count + b"\0\1") == 1 << 16 | 1
+    assert fletcher32(b"\0\1" + bytes(2 * count)) == (count + 1) % 0xFFFF << 16 | 1
+
+
 @settings(deadline=None)
 @given(st.integers(1, 8), st.integers(1, 200_000), st.integers(0, 255))
 def test_zlib_reads_what_is_partly_stored(rows, size, value):

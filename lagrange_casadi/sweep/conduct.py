@@ -104,6 +104,9 @@ def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], No
                 done, size = done + stop - start, size + parts[start].size
                 progress("designs", done, plan.size)
                 _require_room(folder, size / done * (2 * plan.size - done - joined))
+                if start == joined:
+                    append(contents)
+                    joined = stop
             for part in islice(_following(parts, joined), _CATCHING_UP):
                 append(part.read())
                 joined = part.stop

@@ -33,6 +33,8 @@ SCHEMA_VERSION = 1
 MANY = 10**9
 """Designs from which on a sweep must be meant."""
 
+_FEW, _SHARES = 1 << 11, 16
+
 
 @dataclass(frozen=True)
 class Task:
@@ -114,7 +116,8 @@ class Plan:
     @cached_property
     def chunk(self) -> tuple[int, ...]:
         """The lengths of a chunk of the file along these axes: a block."""
-        return chunk_of(self.dims, self.harvest.block)
+        # Some blocks more, where there are few, let workers end together.
+        return chunk_of(self.dims, min(self.harvest.block, max(_FEW, self.size // _SHARES)))
 
     @property
     def room(self) -> int:
