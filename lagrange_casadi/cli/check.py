@@ -12,7 +12,7 @@ from ..sweep.checking import check_sweep, progress, unfinished
 
 
 @click.command()
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", metavar="FILE.h5|FILE.h5.parts", type=click.Path(path_type=Path))
 def check(file: Path) -> int:
     """Read all of FILE.h5 and verify it: exit status 0 if nothing is wrong with it, else 1."""
     findings = _findings(file)
