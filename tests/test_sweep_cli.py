@@ -320,6 +320,9 @@ def test_info_and_check_tell_how_far_an_unfinished_sweep_is(here, capfd, monkeyp
             assert out.splitlines()[-1] == told
             assert main(["check", target]) == 1
             assert capfd.readouterr() == ("", f"{target}: {told}\n")
+        assert main(["table", "x.h5"]) == 2
+        told = "x.h5: its sweep is not finished: `lagrange-casadi info` tells how far it is, --resume goes on"
+        assert capfd.readouterr() == ("", f"error: {told}\n")
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
     (folder / "plan.json").write_text('{"grid": 3}')
     assert main(["check", "x.h5.parts"]) == 1

@@ -9,8 +9,10 @@ import click
 
 from ..errors import NoDesignError
 from ..publish import check_writable
-from ..sweep import DESIGN, Sweep, counted, grouped, tally
+from ..sweep import Sweep
 from ..sweep import best as find
+from ..sweep.axes import DESIGN, counted, grouped
+from ..sweep.best import tally
 from .rows import show, write_csv
 
 

@@ -15,7 +15,8 @@ from ..derive import derive
 from ..description import Description, describe
 from ..scene import Scene, outputs
 from ..solution import Solution
-from ..sweep import Sweep, counted, is_sweep
+from ..sweep import Sweep, is_sweep
+from ..sweep.axes import counted
 from ..sweep.checking import progress, unfinished
 from .report import peak_line
 

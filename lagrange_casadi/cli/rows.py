@@ -9,7 +9,8 @@ from pathlib import Path
 import click
 
 from ..publish import replacing
-from ..sweep import STATUS, Sweep
+from ..sweep import Sweep
+from ..sweep.columns import STATUS
 
 _WIDTH = 10
 
@@ -45,4 +46,4 @@ def _head(sweep: Sweep, name: str) -> str:
 
 
 def _cell(sweep: Sweep, name: str, value: float) -> str:
-    return sweep.statuses[int(value)][0] if name == STATUS else f"{value:.6g}"
+    return sweep.statuses.get(int(value), (str(value), ""))[0] if name == STATUS else f"{value:.6g}"

@@ -9,7 +9,10 @@ from pathlib import Path
 import click
 
 from ..publish import check_writable
-from ..sweep import STATUS, Sweep, chosen, conditions_in, counted, grouped, tally
+from ..sweep import Sweep, chosen
+from ..sweep.axes import counted, grouped
+from ..sweep.best import conditions_in, tally
+from ..sweep.columns import STATUS
 from .rows import show, write_csv
 
 _WIDE = 6

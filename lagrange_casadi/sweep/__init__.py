@@ -1,16 +1,14 @@
 """Sweeps: one scene over many designs, in blocks that survive, into one file; ``docs/sweeps.md`` says how."""
 
-from .axes import DESIGN, Axis, Grid, Listed, Range, Values, counted, grouped
-from .best import Condition, Design, best, chosen, conditions_in, tally
-from .columns import KEEPS, STATUS, Keep
+from .axes import Axis, Grid, Listed, Range, Values
+from .best import Condition, Design, best, chosen
+from .columns import KEEPS, Keep
 from .listing import read_designs
 from .reading import Sweep, is_sweep
 from .sweeping import sweep
 
 __all__ = [
-    "DESIGN",
     "KEEPS",
-    "STATUS",
     "Axis",
     "Condition",
     "Design",
@@ -22,11 +20,7 @@ __all__ = [
     "Values",
     "best",
     "chosen",
-    "conditions_in",
-    "counted",
-    "grouped",
     "is_sweep",
     "read_designs",
     "sweep",
-    "tally",
 ]

@@ -16,11 +16,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ..density import Array
-from ..errors import DeclarationError, LagrangeCasadiError, StoreError, UnknownNameError, one_line
+from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, one_line
 from ..store import reading
 from .axes import DESIGN, counted
 from .columns import KINDS, STATUS
 from .file import WORDS, chunk_of, slabs
+from .parts import Folder
 from .plan import SCHEMA, SCHEMA_VERSION
 
 if TYPE_CHECKING:
@@ -375,4 +376,6 @@ def _along(dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], wher
 
 
 def _reading(path: str | Path) -> AbstractContextManager[h5py.File]:
+    if not Path(path).exists() and Folder(Path(path)).begun:
+        raise PathError(f"{path}: its sweep is not finished: `lagrange-casadi info` tells how far it is, --resume goes on")
     return reading(path, SCHEMA, SCHEMA_VERSION, "the file of a sweep", " of sweeps")
