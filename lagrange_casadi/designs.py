@@ -26,7 +26,7 @@ from .errors import DeclarationError
 from .evaluate import checked_times, outputs_of
 from .grids import require
 from .rung import Rung
-from .scene import Grid, Scene
+from .scene import Grid, Scene, points
 from .scene_graph import SceneGraph
 from .solution import Provenance
 from .stages import Stages
@@ -80,7 +80,7 @@ class DesignEngine:
         if rung.table is not None:
             raise DeclarationError("designs are not read from a table: each would need a table of its own")
         graph = derive(scene, wanted, iterate=rung.newton is not None)
-        instants = np.linspace(*checked_times(scene, t))
+        instants = points(checked_times(scene, t))
         stages = stages_of(graph, rung, instants)
         kept = Kept.of(graph, rung.precision)
         guess = np.array(graph.newton.guess if graph.newton else (), float)

@@ -9,6 +9,9 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
+_LONG = 300
+"""Characters of names that a message takes at most."""
+
 
 def one_line(error: BaseException) -> str:
     """What an error says, in one line."""
@@ -26,14 +29,20 @@ class DeclarationError(LagrangeCasadiError):
 
 
 class UnknownNameError(DeclarationError):
-    """A name that nothing bears; the message lists the names that exist."""
+    """A name that nothing bears; the message lists the names that exist, or the nearest of many and what lists them all."""
 
-    def __init__(self, kind: str, name: str, valid: Iterable[str]) -> None:
+    def __init__(self, kind: str, name: str, valid: Iterable[str], listed_by: str = "") -> None:
         names = list(valid)
         close = difflib.get_close_matches(name, names, n=1)
+        listed = f"valid: {', '.join(names) or 'none are declared'}"
+        if len(listed) > _LONG:
+            close = close or [other for other in names if name and name in other][:1]
+            most = listed[:_LONG].count(", ")
+            listed = f"valid: {', '.join(names[:most])} and {len(names) - most} more"
+            if listed_by:
+                listed = f"{listed_by} lists the {len(names)} there are"
         hint = f" (did you mean '{close[0]}'?)" if close else ""
-        listed = ", ".join(names) if names else "none are declared"
-        super().__init__(f"unknown {kind} '{name}'{hint}; valid: {listed}")
+        super().__init__(f"unknown {kind} '{name}'{hint}; {listed}")
 
 
 class ParameterError(LagrangeCasadiError):

@@ -20,7 +20,7 @@ from .grids import require
 from .reading import columns
 from .refusal import refuse
 from .rung import Backend, Rung
-from .scene import Grid, Scene, checked, checked_ratios
+from .scene import Grid, Scene, checked, checked_ratios, points
 from .scene_graph import SceneGraph
 from .solution import Solution, in_order
 
@@ -75,7 +75,7 @@ def evaluate(
     graph = derive(scene, wanted, iterate=newton is not None)
     require("the outputs over time", (len(graph.columns) + _BESIDE, count))
     require("the grid of ratios", (ratios[2],))
-    times, places = np.linspace(start, stop, count), np.linspace(*ratios)
+    times, places = points((start, stop, count)), points(ratios)
     p = np.array(list(values.values()))
     found, provenance = columns(graph, times, p, rung, threads)
     refuse(graph, found, times, p, rung)

@@ -5,9 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from types import MappingProxyType
 
-from .density import Density
+import numpy as np
+import numpy.typing as npt
+
+from .density import Array, Density
 from .errors import DeclarationError, UnknownNameError
 from .mechanism import Mechanism
 from .motion import Motion
@@ -15,9 +19,12 @@ from .motion import Motion
 Grid = tuple[float, float, int]
 """Start, stop and count; both ends are included."""
 
+_EXACT = 2**53
+"""Up to which doubles hold all whole numbers, so that a quotient of two is rounded once."""
+
 
 def checked(what: str, grid: Grid) -> Grid:
-    """A grid in numbers. Raises :class:`DeclarationError` for a count below 1 or ends that are not finite or fall."""
+    """A grid in numbers. Raises :class:`DeclarationError` for a count below 1, ends that are not finite, fall, or are one."""
     try:
         start, stop, count = float(grid[0]), float(grid[1]), int(grid[2])
         if len(grid) != 3:
@@ -30,7 +37,27 @@ def checked(what: str, grid: Grid) -> Grid:
         raise DeclarationError(f"{what}: START and STOP must be finite, got {start:g} and {stop:g}")
     if stop < start or (count > 1 and stop == start):
         raise DeclarationError(f"{what}: STOP must be after START, got {start:g} and {stop:g}")
+    if count == 1 and stop > start:
+        raise DeclarationError(f"{what}: COUNT must be 2 or more to reach from {start:g} to {stop:g}, got 1")
     return start, stop, count
+
+
+def points(grid: Grid, numbers: npt.NDArray[np.int64] | None = None) -> Array:
+    """All points of a grid, or those of given numbers, evenly spaced.
+
+    Each is rounded once from what the decimals of the ends say, so that 0.2:0.4:3 has 0.3, not 0.30000000000000004; where
+    these take more than the digits of a double, they are those of ``numpy.linspace``.
+    """
+    start, stop, count = grid
+    numbers = np.arange(count) if numbers is None else numbers
+    first, last = (Fraction(repr(float(end))) for end in (start, stop))
+    step = (last - first) / max(count - 1, 1)
+    whole = math.lcm(first.denominator, step.denominator)
+    base, by = int(first * whole), int(step * whole)
+    if max(abs(base), abs(int(last * whole)), whole) <= _EXACT:
+        return np.asarray((base + by * numbers) / whole)
+    values = numbers * ((stop - start) / max(count - 1, 1)) + start
+    return np.asarray(np.where(numbers == count - 1, float(stop), values))
 
 
 def checked_ratios(grid: Grid) -> Grid:

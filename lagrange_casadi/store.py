@@ -35,6 +35,8 @@ _AXES = {"t": ("s", "time"), "xi": ("1", "place along a link, ratio xi/l")}
 _PROVENANCE = ("backend", "precision", "compiler", "flags", "rung")
 _DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError)
 _GRID_TOLERANCE = 1e-12
+_KIND = "the file of a run"
+_KNOWN = {SCHEMA: "that of a run, which `load` reads", f"{SCHEMA}-sweep": "that of a sweep, which `Sweep.open` reads"}
 
 
 def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") -> None:
@@ -71,7 +73,7 @@ def _require_room(solution: Solution, target: Path) -> None:
 
 def load(path: str | os.PathLike[str]) -> Solution:
     """Read a solution. Raises :class:`StoreError` for what is not a whole file of this schema, :class:`PathError` for none."""
-    with reading(path, SCHEMA, SCHEMA_VERSION, f"a file of {SCHEMA}") as file:
+    with reading(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
         try:
             return _read(file)
         except _DAMAGE as error:
@@ -80,7 +82,7 @@ def load(path: str | os.PathLike[str]) -> Solution:
 
 def figure_specs(path: str | os.PathLike[str]) -> str:
     """How the case wants to be drawn, as it was given to :func:`save`."""
-    with reading(path, SCHEMA, SCHEMA_VERSION, f"a file of {SCHEMA}") as file:
+    with reading(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
         return str(file.attrs.get("figures", ""))
 
 
@@ -90,7 +92,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
     Every dataset is read, so its checksum is verified; every value must be finite, every axis have its scale, every unit and sign
     be the schema's; and the section grids must be what the laws give, to 1e-12 of their peak.
     """
-    with reading(path, SCHEMA, SCHEMA_VERSION, f"a file of {SCHEMA}") as file:
+    with reading(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
         try:
             solution = _read(file)
             names = dict.fromkeys([*solution.names(), *solution.series, *(f"certificate:{name}" for name in solution.certificate)])
@@ -258,7 +260,8 @@ def reading(path: str | os.PathLike[str], schema: str, version: int, kind: str, 
     with file:
         found, written = file.attrs.get("schema"), file.attrs.get("schema_version")
         if found != schema:
-            raise StoreError(f"{path}: not {kind}, its attribute 'schema' is {found!r}")
+            what = f"but {_KNOWN[found]}" if found in _KNOWN else f"its attribute 'schema' is {found!r}"
+            raise StoreError(f"{path}: not {kind}, {what}")
         if written != version:
             raise StoreError(f"{path}: schema version {written}{of}, this program reads version {version}")
         if not file.attrs.get("complete", False):

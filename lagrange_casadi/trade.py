@@ -25,7 +25,7 @@ from .quantities import quantity_of
 from .reading import columns
 from .reference import reference
 from .rung import Rung
-from .scene import Grid, Scene, checked
+from .scene import Grid, Scene, checked, points
 from .scene_graph import SceneGraph
 
 INSTANTS = 10_000
@@ -127,7 +127,7 @@ def trade(
     their own, and what :func:`.evaluate` raises where the scene has no result.
     """
     values = np.array(list(scene.mechanism.values(parameters).values()))
-    times = np.linspace(*checked("t", scene.t if t is None else t))
+    times = points(checked("t", scene.t if t is None else t))
     graphs = {iterate: derive(scene, wanted, iterate=iterate) for iterate in (False, True)}
     compared = np.unique(np.linspace(0, times.size - 1, min(times.size, COMPARED)).astype(int))
     truth = _Truth(graphs[False], times, compared, values)

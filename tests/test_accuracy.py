@@ -22,6 +22,7 @@ from lagrange_casadi.compensated import DTYPES, ROUNDING
 from lagrange_casadi.errors import AssemblyError
 from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.parts import Link
+from lagrange_casadi.scene import points
 
 FACTOR = 10.0
 MOST = 0.8
@@ -66,7 +67,7 @@ def assert_near(found):
 
 def exactly(scene, parameters=None):
     """What a scene has at the instants of its grid."""
-    return truth(scene, np.linspace(*scene.t), parameters)
+    return truth(scene, points(scene.t), parameters)
 
 
 @functools.cache

@@ -8,6 +8,7 @@ import pytest
 
 import lagrange_casadi
 from lagrange_casadi import export, load_case
+from lagrange_casadi.cli import program
 from lagrange_casadi.codegen import find_compiler
 from lagrange_casadi.quantities import QUANTITIES
 from lagrange_casadi.store import SCHEMA_VERSION
@@ -43,6 +44,36 @@ def test_the_exported_c_is_called_as_shown(tmp_path):
 def test_links_lead_somewhere(page):
     for target in re.findall(r"\]\(([^)#]+)\)", (ROOT / page).read_text()):
         assert ((ROOT / page).parent / target).exists(), f"{page}: {target}"
+
+
+def synopses(page):
+    """The options that a page's synopses give every command."""
+    found = {}
+    for line in (ROOT / page).read_text().partition("## From the command line")[2].split("\n\n")[1].splitlines():
+        if line.startswith("    lagrange-casadi "):
+            name = line.split()[1]
+        found.setdefault(name, set()).update(re.findall(r"--[a-z-]+", line))
+    return found
+
+
+def options(name):
+    return {option for parameter in program.commands[name].params for option in parameter.opts if option.startswith("--")}
+
+
+def test_the_synopses_of_sweeps_are_whole():
+    found = synopses("docs/sweeps.md")
+    assert set(found) == {"sweep", "best", "table", "plot", "info", "check"}
+    for name, named in found.items():
+        assert named == options(name) - ({"--want"} if name == "info" else set()), name
+
+
+def test_synopses_name_options_that_there_are():
+    found = synopses("README.md")
+    assert set(found) == set(program.commands)
+    for name, named in found.items():
+        assert named <= options(name), name
+    for name in ("run", "best", "table", "plot", "info", "check"):
+        assert found[name] == options(name), name
 
 
 def rows():

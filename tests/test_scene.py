@@ -123,6 +123,8 @@ def test_a_link_known_by_its_inertia_has_no_section():
         ({"motion": {"O": 3.0}}, "motion of joint 'O': expected a law"),
         ({"posture": {"stick": 1.0}}, "unknown link or sliding joint in posture 'stick'; valid: crank, rod, guide"),
         ({"t": (0, 1, 0)}, "t: COUNT must be a whole number of at least 1, got 0"),
+        ({"t": (0, 1, 1)}, "t: COUNT must be 2 or more to reach from 0 to 1, got 1"),
+        ({"xi": (0, 1, 1)}, "xi: COUNT must be 2 or more to reach from 0 to 1, got 1"),
         ({"t": (0, 1, 1.5)}, "t: COUNT must be a whole number"),
         ({"t": (1, 0, 5)}, "t: STOP must be after START"),
         ({"t": (0, float("nan"), 5)}, "t: START and STOP must be finite"),
@@ -142,6 +144,12 @@ def test_grids_include_both_ends():
     assert solution.t.tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
     assert solution.xi.tolist() == [0.0, 0.5, 1.0]
     assert evaluate(slider_crank(), t=(0.3, 0.3, 1)).t.tolist() == [0.3]
+
+
+def test_grids_are_what_their_decimals_say():
+    solution = evaluate(slider_crank(), t=(0.0, 0.7, 8), xi=(0.0, 1.0, 101))
+    assert solution.t.tolist() == [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]
+    assert solution.xi.tolist() == [float(f"{k}e-2") for k in range(101)]
 
 
 @pytest.mark.parametrize(

@@ -146,7 +146,7 @@ def test_an_unfinished_file_is_refused(file):
 def test_other_files_are_refused(tmp_path, file):
     with h5py.File(tmp_path / "other.h5", "w") as h:
         h["x"] = 1.0
-    with pytest.raises(StoreError, match="not a file of lagrange-casadi"):
+    with pytest.raises(StoreError, match="not the file of a run, its attribute 'schema' is None"):
         load(tmp_path / "other.h5")
     edit(file, lambda h: h.attrs.__setitem__("schema_version", 99))
     with pytest.raises(StoreError, match="schema version 99, this program reads version 1"):

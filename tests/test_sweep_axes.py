@@ -1,6 +1,7 @@
 """Grids and lists: a design is a number."""
 
 import itertools
+from decimal import Decimal
 
 import numpy as np
 import pytest
@@ -10,15 +11,55 @@ from hypothesis import strategies as st
 
 from lagrange_casadi.errors import DeclarationError, ParameterError, UnknownNameError
 from lagrange_casadi.sweep import Grid, Listed, Range, Values
-from lagrange_casadi.sweep.axes import check_designs
+from lagrange_casadi.sweep.axes import check_designs, counted, size_of
 
 numbers = st.floats(-1e6, 1e6)
 
 
 @given(numbers, st.floats(1e-3, 1e6), st.integers(2, 300))
-def test_a_range_is_that_of_numpy(start, width, count):
-    axis = Range(start, start + width, count)
-    np.testing.assert_array_equal(axis.at(np.arange(count)), np.linspace(start, start + width, count))
+def test_a_range_is_that_of_numpy_but_for_rounding(start, width, count):
+    values = Range(start, start + width, count).at(np.arange(count))
+    scale = max(abs(start), abs(start + width))
+    np.testing.assert_allclose(values, np.linspace(start, start + width, count), rtol=0, atol=4e-16 * scale)
+    assert values[0] == start
+    assert values[-1] == start + width
+
+
+@given(st.integers(-(10**6), 10**6), st.integers(1, 10**6), st.integers(2, 300), st.integers(0, 6))
+def test_decimals_are_rounded_once(first, step, count, digits):
+    """Against the decimals themselves, read one by one."""
+    texts = [str(Decimal(first + k * step).scaleb(-digits)) for k in range(count)]
+    found = Range(float(texts[0]), float(texts[-1]), count).at(np.arange(count))
+    assert found.tolist() == [float(text) for text in texts]
+
+
+def test_what_is_written_is_what_there_is():
+    assert Range(0.2, 0.4, 3).at(np.arange(3)).tolist() == [0.2, 0.3, 0.4]
+    assert Range(0.1, 0.7, 7).at(np.array([2, 5])).tolist() == [0.3, 0.6]
+    assert Range(0, 1, 10**7).at(np.array([3, 10**7 - 1])).tolist() == [3 / (10**7 - 1), 1.0]
+
+
+def test_equal_values_are_one_sweep_however_they_are_written():
+    assert Grid({"l": (0.2, 0.4, 3)}).describe() == Grid({"l": [0.2, 0.3, 0.4]}).describe() == {"l": "0.2:0.4:3"}
+    assert Grid({"l": [0.2, 0.4]}).describe() == {"l": "0.2:0.4:2"}
+    for other in ([0.2, 0.31, 0.4], [0.4, 0.3, 0.2], [0.2, 0.30000000000000004, 0.4], [0.2]):
+        assert Grid({"l": other}).describe() == {"l": ",".join(map(repr, other))}
+
+
+@pytest.mark.parametrize(
+    "designs",
+    [
+        Grid({"l": (0.1, 0.4, 31), "r": [1.0, 2.0, 4.0], "m": np.arange(50.0) ** 2, "n": (1.0, 9.0, 7, True), "o": [2.0]}),
+        Listed(("l", "r"), np.zeros((12345, 2))),
+        Listed(("l",), np.zeros((1, 1))),
+    ],
+)
+def test_the_words_tell_how_many(designs):
+    assert size_of(designs.describe()) == designs.size
+
+
+def test_counts_in_words():
+    assert [counted(n) for n in (0, 1, 2, 12345)] == ["0 designs", "1 design", "2 designs", "12 345 designs"]
 
 
 @given(st.floats(1e-6, 1e3), st.floats(1.5, 1e6), st.integers(2, 300))
@@ -47,14 +88,23 @@ def test_a_grid_too_large_to_hold_is_no_matter():
 
 
 def test_what_python_gives_becomes_axes():
-    grid = Grid({"a": (0.0, 1.0, 3), "b": [1.0, 2.0], "c": np.array([3.0]), "d": 4.0, "e": (1.0, 2.0), "f": (1.0, 100.0, 3, True)})
-    assert grid.describe() == {"a": "0.0:1.0:3", "b": "1.0,2.0", "c": "3.0", "d": "4.0", "e": "1.0,2.0", "f": "1.0:100.0:3:log"}
+    grid = Grid(
+        {"a": (0.0, 1.0, 3), "b": [1.0, 2.0, 4.0], "c": np.array([3.0]), "d": 4.0, "e": (1.0, 2.0), "f": (1.0, 100.0, 3, True)}
+    )
+    assert grid.describe() == {
+        "a": "0.0:1.0:3",
+        "b": "1.0,2.0,4.0",
+        "c": "3.0",
+        "d": "4.0",
+        "e": "1.0:2.0:2",
+        "f": "1.0:100.0:3:log",
+    }
 
 
 def test_long_lists_are_told_apart_by_their_digest():
-    one, two = (Values(tuple(np.arange(100.0) + shift)) for shift in (0.0, 1e-12))
+    one, two = (Values(tuple(np.arange(100.0) ** 2 + shift)) for shift in (0.0, 1e-12))
     assert str(one) != str(two)
-    assert str(one) == str(Values(tuple(np.arange(100.0))))
+    assert str(one) == str(Values(tuple(np.arange(100.0) ** 2)))
     assert str(one).startswith("100 values, SHA-256 ")
 
 
@@ -132,3 +182,5 @@ def test_names_are_checked():
         check_designs(Grid({"q": [1.0]}), mechanism, {})
     with pytest.raises(DeclarationError, match=r"parameter 'l' is swept and set to 0\.3 as well"):
         check_designs(Grid({"l": [1.0]}), mechanism, {"l": 0.3})
+    with pytest.raises(DeclarationError, match=r"'design' is a result of a sweep, not a parameter: .* --column l` writes"):
+        check_designs(Listed(("design", "l"), [[0.0, 1.0]]), mechanism, {})

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.sweep import Condition, best, chosen, reading, sweep
-from lagrange_casadi.sweep.best import _front
+from lagrange_casadi.sweep.best import _front, tally
 
 BENDING, EFFORT = "peak:section:rod:bending", "peak:effort:O"
 
@@ -52,6 +52,25 @@ def test_conditions_hold(swept):
     assert best(swept, minimise=[BENDING], where=["l<0.1"]) == []
 
 
+def test_one_name_may_stand_alone(swept):
+    assert best(swept, minimise=BENDING, columns=EFFORT) == best(swept, minimise=[BENDING], columns=[EFFORT])
+    assert best(swept, maximise=BENDING, where="l<0.3") == best(swept, maximise=[BENDING], where=["l<0.3"])
+    condition = Condition("l", "<", 0.3)
+    assert best(swept, maximise=BENDING, where=condition) == best(swept, maximise=[BENDING], where=[condition])
+    assert sum(numbers.size for numbers, _ in chosen(swept, "l", "l<0.3")) == 6 * (swept["l"] < 0.3).sum()
+
+
+def test_how_many_meet_conditions(swept):
+    there = (swept["l"] < 0.3).repeat(6)
+    assert tally(swept) == (120, (swept["status"] == 0).sum())
+    assert tally(swept, "l<0.3") == (there.sum(), (there & (swept["status"].ravel() == 0)).sum())
+
+
+def test_a_status_is_a_whole_number(swept):
+    (design,) = best(swept, minimise=BENDING, columns=["status"])
+    assert type(design.values["status"]) is int
+
+
 def test_the_front_of_two(swept):
     front = [design.number for design in best(swept, minimise=[BENDING, EFFORT])]
     pairs = np.stack([np.abs(swept[name]).ravel() for name in (BENDING, EFFORT)], axis=1)
@@ -87,10 +106,12 @@ def test_peaks_are_compared_by_size():
 
 
 def test_what_a_grid_rounds_is_what_was_meant():
-    values = np.linspace(0.1, 0.4, 4)
+    values = np.array([0.1, 0.2, 0.30000000000000004, 0.4])
     assert values[2] > 0.3
     assert Condition.parse("l<=0.3").holds(values).tolist() == [True, True, True, False]
     assert Condition.parse("l<0.3").holds(values).tolist() == [True, True, False, False]
+    assert Condition.parse("l<inf").holds(values).all()
+    assert not Condition.parse("l>=inf").holds(values).any()
     assert Condition.parse("l==0.3").holds(values).tolist() == [False, False, True, False]
 
 
@@ -111,6 +132,8 @@ def test_what_cannot_be_asked_is_named(swept):
         best(swept, minimise=[EFFORT], where=["q<1"])
     with pytest.raises(UnknownNameError, match="unknown column 'q'"):
         best(swept, minimise=[EFFORT], columns=["q"])
+    with pytest.raises(DeclarationError, match="expected a condition like"):
+        best(swept, minimise=EFFORT, where="l")
     with pytest.raises(DeclarationError, match="at least 1, got 0"):
         best(swept, minimise=[EFFORT], count=0)
 

@@ -30,6 +30,14 @@ def test_a_list_is_read(tmp_path):
         ("l,r\n0.2,\n", "line 2, column 'r': expected a finite number, got ''"),
         ("l,r\nnan,0.1\n", "line 2, column 'l': expected a finite number, got 'nan'"),
         ("l,,r\n1,2,3\n", "line 1, column 2: expected a parameter's name, got an empty cell"),
+        ("0.2,0.1\n0.3,0.1\n", "line 1, column 1: expected a parameter's name, got '0.2': put a line of names above the numbers"),
+        ("l;r\n0,2;0,1\n", "line 1: cells are separated by ';', expected ',' (and '.' in numbers)"),
+        ("l\tr\n0.2\t0.1\n", "line 1: cells are separated by a tab, expected ','"),
+        (
+            "l,peak:effort:O\n0.2,nan\n",
+            "line 1, column 2: 'peak:effort:O' is a result of a sweep, not a parameter: `lagrange-casadi ",
+        ),
+        ("l,peak:effort:O\n0.2,nan\n", "table FILE.h5 --csv OUT.csv --column l` writes parameters alone"),
         ("l,r,l\n1,2,3\n", "line 1, column 3: 'l' stands there already as column 1"),
     ],
 )
@@ -44,6 +52,9 @@ def test_what_is_wrong_is_named(tmp_path, text, says):
 def test_what_is_no_text_is_named(tmp_path):
     (tmp_path / "d.csv").write_bytes(b"l,r\n\xff\xfe\n")
     with pytest.raises(DeclarationError, match="not a table of text"):
+        read_designs(tmp_path / "d.csv")
+    (tmp_path / "d.csv").write_text("l,r\n0.2,0.1\n", encoding="utf-16")
+    with pytest.raises(DeclarationError, match="not a table of text in UTF-8"):
         read_designs(tmp_path / "d.csv")
     with pytest.raises(PathError, match="no such file"):
         read_designs(tmp_path / "e.csv")

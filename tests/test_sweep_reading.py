@@ -1,6 +1,7 @@
 """Reading: by value, by design, by xarray; and what is no sweep is refused."""
 
 import gc
+from dataclasses import replace
 
 import h5py
 import numpy as np
@@ -13,13 +14,20 @@ from lagrange_casadi.sweep import Listed, Sweep, is_sweep, reading, sweep
 from lagrange_casadi.sweep.checking import check_sweep
 
 GRID = {"l": (0.15, 0.4, 6), "r": [0.05, 0.1, 0.07], "m1": [0.1, 0.2]}
-LENGTHS = np.linspace(0.15, 0.4, 6)
+LENGTHS = [0.15, 0.2, 0.25, 0.3, 0.35, 0.4]
 
 
 @pytest.fixture
 def swept(monkeypatch, tmp_path):
     sweeps.use(monkeypatch)
     return sweep(sweeps.scene(), GRID, out=tmp_path / "x.h5", xi=(0, 1, 4))
+
+
+@pytest.fixture
+def histories(monkeypatch, tmp_path):
+    sweeps.use(monkeypatch)
+    grid = {"l": (0.15, 0.4, 6), "r": [0.05, 0.1, 0.07]}
+    return sweep(sweeps.scene(), grid, out=tmp_path / "z.h5", xi=(0, 1, 18), keep="histories")
 
 
 @pytest.fixture
@@ -59,6 +67,10 @@ def test_selection_by_value(swept):
     np.testing.assert_array_equal(scattered["peak:effort:O"], whole[:, [0, 2]])
     np.testing.assert_array_equal(scattered.select(r=0.07)["peak:effort:O"], whole[:, 2:3])
     assert scattered.shape == (6, 2, 2)
+    for listed in ([0.07, 0.05], np.array([0.05, 0.07])):
+        np.testing.assert_array_equal(swept.select(r=listed)["r"], [0.05, 0.07])
+    np.testing.assert_array_equal(swept.select(l=(0.3, np.inf))["l"], [0.3, 0.35, 0.4])
+    np.testing.assert_array_equal(swept.select(l=(-np.inf, 0.2))["l"], [0.15, 0.2])
     np.testing.assert_array_equal(swept.select(l=0.4)["peak_at:section:rod:axial"], swept["peak_at:section:rod:axial"][5:])
 
 
@@ -75,10 +87,35 @@ def test_selection_of_a_list(listed):
 def test_what_cannot_be_selected_is_named(swept):
     with pytest.raises(UnknownNameError, match="unknown swept parameter 'm3'; valid: l, r, m1"):
         swept.select(m3=0.1)
-    with pytest.raises(DeclarationError, match=r"no design has l = 0\.21; nearest: 0\.2, 0\.25"):
-        swept.select(l=0.21)
+    for none in (0.21, [0.3, 0.21]):
+        with pytest.raises(DeclarationError, match=r"no design has l = 0\.21; nearest: 0\.2, 0\.25"):
+            swept.select(l=none)
+    with pytest.raises(DeclarationError, match=r"no design has l up to 0\.24 and from 0\.21; nearest: 0\.2, 0\.25"):
+        swept.select(l=(0.21, 0.24))
+    with pytest.raises(DeclarationError, match="no design has l = inf"):
+        swept.select(l=np.inf)
+    with pytest.raises(DeclarationError, match=r"select: l: expected \(low, high\), got \(0\.3, 0\.2\): the range is reversed"):
+        swept.select(l=(0.3, 0.2))
     with pytest.raises(UnknownNameError, match=r"unknown column 'peak:effort:Q' \(did you mean 'peak:effort:O'\?\)"):
         swept["peak:effort:Q"]
+
+
+@pytest.mark.parametrize(
+    "wrong", [slice(0.2, 0.3), "0.2", None, np.nan, (0.1, 0.2, 0.3), (0.2,), [], [0.2, np.nan], {"a": 1}, [[0.2]]]
+)
+def test_what_selects_nothing_is_named(swept, wrong):
+    with pytest.raises(DeclarationError, match=r"select: l: expected a number, a list of numbers, or a tuple \(low, high\), got "):
+        swept.select(l=wrong)
+
+
+def test_an_unknown_one_of_many_columns_is_answered_by_the_nearest(swept):
+    many = replace(swept, columns={f"peak:effort:J{k}": None for k in range(30)} | swept.columns)
+    with pytest.raises(UnknownNameError) as caught:
+        many.column("peak:effort:P")
+    hint = f"`lagrange-casadi info {swept.path}` lists the {len(many.columns) + 3} there are"
+    assert str(caught.value) == f"unknown column 'peak:effort:P' (did you mean 'peak:effort:O'?); {hint}"
+    with pytest.raises(UnknownNameError, match=r"unknown column 'bending' \(did you mean 'peak:section:rod:bending'\?\)"):
+        many.column("bending")
 
 
 @pytest.mark.parametrize("size", [1, 5, 1 << 15])
@@ -103,6 +140,46 @@ def test_blocks_of_what_is_selected(swept):
     assert [swept.design(int(n))["r"] for n in numbers] == [0.07] * 6
     with pytest.raises(DeclarationError, match="column 'peak_at:section:rod:axial' has a value for every xi, not one a design"):
         list(swept.blocks(["peak_at:section:rod:axial"]))
+
+
+@pytest.mark.parametrize("size", [1, 9, 40, 1 << 15])
+@pytest.mark.parametrize("along", [("t",), ("xi",), ("t", "xi")])
+def test_blocks_of_rows_along_axes(histories, monkeypatch, size, along):
+    """Against arrays broadcast here; a selection of designs, and as many of them as there are ratios."""
+    monkeypatch.setattr(reading, "_BLOCK", size)
+    own = {"t": "history:effort:O", "xi": "peak_at:section:rod:axial", "t xi": "history:section:rod:shear"}[" ".join(along)]
+    for cut in (histories, histories.select(r=0.07, l=(0.2, 0.35))):
+        blocks = list(cut.blocks(["r", "status", own, *along], along))
+        numbers = np.concatenate([places for places, _ in blocks])
+        shape = (*cut.shape, *(histories[axis].size for axis in along))
+        everywhere = np.arange(18).reshape(6, 3)[
+            np.ix_(*(cut.chosen.get(name, np.arange(n)) for name, n in cut.dimensions.items()))
+        ]
+        spare = (1,) * len(along)
+        expected = {
+            "r": cut["r"].reshape(1, -1, *spare),
+            "status": cut["status"].reshape(*cut.shape, *spare),
+            own: cut[own],
+            **dict(zip(along, np.meshgrid(*(cut[axis] for axis in along), indexing="ij"), strict=True)),
+        }
+        np.testing.assert_array_equal(numbers, np.broadcast_to(everywhere.reshape(*cut.shape, *spare), shape).ravel())
+        for name, values in expected.items():
+            found = np.concatenate([block[name] for _, block in blocks])
+            np.testing.assert_array_equal(found, np.broadcast_to(values, shape).ravel())
+        assert max(places.size for places, _ in blocks) <= max(size, np.prod(shape[2:]))
+
+
+def test_rows_along_axes_that_are_none_are_refused(histories, monkeypatch, tmp_path):
+    with pytest.raises(DeclarationError, match="column 'history:effort:O' has a value for every t, not one a design"):
+        histories.blocks(["history:effort:O"], ["xi"])
+    with pytest.raises(UnknownNameError, match="unknown axis 'x'"):
+        histories.blocks(["status"], ["x"])
+    with pytest.raises(DeclarationError, match="for every t, 'history:section:rod:axial' for every t and xi: each needs a table"):
+        histories.axes_of(["l", "status", "history:effort:O", "history:section:rod:axial"])
+    assert histories.axes_of(["l", "status", "history:section:rod:axial"]) == ("t", "xi")
+    assert histories.axes_of("status") == ()
+    with pytest.raises(DeclarationError, match="column 'history:effort:O' has a value for every t"):
+        histories.values(3, ["history:effort:O"])
 
 
 def test_xarray(swept, listed):
@@ -134,9 +211,9 @@ def test_what_is_no_sweep_is_refused(swept, solution, tmp_path):
     assert is_sweep(swept.path)
     assert not is_sweep(tmp_path / "run.h5")
     assert not is_sweep(tmp_path / "nothing.h5")
-    with pytest.raises(StoreError, match="not a sweep, its attribute 'schema' is 'lagrange-casadi'"):
+    with pytest.raises(StoreError, match=r"run\.h5: not the file of a sweep, but that of a run, which `load` reads"):
         Sweep.open(tmp_path / "run.h5")
-    with pytest.raises(StoreError, match="its attribute 'schema' is 'lagrange-casadi-sweep'"):
+    with pytest.raises(StoreError, match=r"x\.h5: not the file of a run, but that of a sweep, which `Sweep\.open` reads"):
         load(swept.path)
     with pytest.raises(StoreError):
         store.check(swept.path)
@@ -179,9 +256,15 @@ def _first(h, status):
 @pytest.mark.parametrize(
     ("change", "finding"),
     [
-        (lambda h: h["peak/effort/O"].__setitem__(_first(h, 0), np.nan), "peak:effort:O: 1 designs that have a result lack it"),
-        (lambda h: h["peak/effort/O"].__setitem__(_first(h, 1), 3.0), "peak:effort:O: 1 designs that have no result have a number"),
-        (lambda h: h["status"].__setitem__(_first(h, 1), 99), "status: 1 designs have a status that is none"),
+        (
+            lambda h: h["peak/effort/O"].__setitem__(_first(h, 0), np.nan),
+            "peak:effort:O: 1 of the designs that have a result lack it",
+        ),
+        (
+            lambda h: h["peak/effort/O"].__setitem__(_first(h, 1), 3.0),
+            "peak:effort:O: 1 of the designs that have no result have a number",
+        ),
+        (lambda h: h["status"].__setitem__(_first(h, 1), 99), "status: 1 of the designs have a status that is none"),
         (lambda h: h["peak/effort/O"].dims[1].detach_scale(h["r"]), "peak:effort:O: axis 1 has no scale r"),
     ],
 )

@@ -8,8 +8,11 @@ from pathlib import Path
 import click
 
 from ..errors import NoDesignError
+from ..publish import check_writable
 from ..sweep import Sweep
 from ..sweep import best as find
+from ..sweep.axes import DESIGN, counted, grouped
+from ..sweep.best import tally
 from .rows import show, write_csv
 
 
@@ -31,13 +34,18 @@ def best(
     csv: Path | None,
 ) -> None:
     """Name the best designs of the sweep FILE.h5; peaks count by their size, whatever their sign."""
+    if csv:
+        check_writable(csv)
     sweep = Sweep.open(file)
     found = find(sweep, minimise=minimise, maximise=maximise, where=where, count=count, columns=columns)
     if not found:
-        raise NoDesignError(f"{file}: no design has a result and meets the conditions")
+        met, with_result = (grouped(count) for count in tally(sweep, where))
+        raise NoDesignError(
+            f"{file}: no design has a result and meets the conditions: of {counted(sweep.size)}, {met} meet them, {with_result} of "
+            "these with a result"
+        )
     names = list(found[0].values)
-    rows = [(design.number, list(design.values.values())) for design in found]
-    show(sweep, names, rows)
+    show(sweep, names, [(design.number, list(design.values.values())) for design in found])
     if csv:
-        write_csv(names, rows, csv)
-        click.echo(f"wrote {csv}")
+        write_csv([DESIGN, *names], ([design.number, *design.values.values()] for design in found), csv)
+        click.echo(f"wrote {csv}: {counted(len(found))}")

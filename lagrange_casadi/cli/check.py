@@ -8,16 +8,23 @@ import click
 
 from .. import store
 from ..sweep import is_sweep
-from ..sweep.checking import check_sweep
+from ..sweep.checking import check_sweep, progress, unfinished
 
 
 @click.command()
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", metavar="FILE.h5|FILE.h5.parts", type=click.Path(path_type=Path))
 def check(file: Path) -> int:
     """Read all of FILE.h5 and verify it: exit status 0 if nothing is wrong with it, else 1."""
-    findings = check_sweep(file) if is_sweep(file) else store.check(file)
+    findings = _findings(file)
     for finding in findings:
         click.echo(f"{file}: {finding}", err=True)
     if not findings:
         click.echo(f"{file}: whole and consistent")
     return 1 if findings else 0
+
+
+def _findings(file: Path) -> list[str]:
+    folder = unfinished(file)
+    if folder:
+        return [progress(folder)]
+    return check_sweep(file) if is_sweep(file) else store.check(file)

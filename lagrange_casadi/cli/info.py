@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -14,19 +16,25 @@ from ..description import Description, describe
 from ..scene import Scene, outputs
 from ..solution import Solution
 from ..sweep import Sweep, is_sweep
+from ..sweep.axes import counted
+from ..sweep.checking import progress, unfinished
 from .report import peak_line
 
 
 @click.command()
-@click.argument("target", metavar="CASE|FILE.h5", type=click.Path(path_type=Path))
+@click.argument("target", metavar="CASE|FILE.h5|FILE.h5.parts", type=click.Path(path_type=Path))
 @click.option("--want", multiple=True, metavar="OUTPUT", help="Count the instructions of these outputs; default: the case's.")
 def info(target: Path, want: tuple[str, ...]) -> None:
-    """Describe a case (with its instruction count), or a file of a run or a sweep."""
-    if target.suffix in (".h5", ".hdf5"):
+    """Describe a case (with its instruction count), or a file of a run or a sweep, finished or not."""
+    folder = unfinished(target)
+    if folder or target.suffix in (".h5", ".hdf5"):
         if want:
             raise click.UsageError("--want goes with a case, not with a file")
-        if is_sweep(target):
-            _describe_sweep(Sweep.open(target))
+        if folder:
+            _describe_sweep(folder.identity)
+            click.echo(progress(folder))
+        elif is_sweep(target):
+            _describe_whole(Sweep.open(target))
         else:
             _describe_file(store.load(target))
     else:
@@ -61,9 +69,8 @@ def _describe_file(solution: Solution) -> None:
         click.echo(peak_line(solution, solution.peak(name)))
 
 
-def _describe_sweep(sweep: Sweep) -> None:
-    identity = sweep.identity
-    _describe_mechanism(sweep.description)
+def _describe_sweep(identity: Mapping[str, Any]) -> None:
+    _describe_mechanism(identity["mechanism"])
     for name, words in identity["grid"].items():
         click.echo(f"swept {name}: {words}")
     (start, stop, count), xi = identity["t"], identity["xi"]
@@ -73,8 +80,13 @@ def _describe_sweep(sweep: Sweep) -> None:
     click.echo(f"backend: {identity['backend']}, {identity['precision']} {identity['compiler']} {identity['flags']}".rstrip())
     click.echo(f"rung: {identity['rung']}")
     click.echo(f"versions: {', '.join(f'{name} {version}' for name, version in identity['versions'].items())}")
+
+
+def _describe_whole(sweep: Sweep) -> None:
+    _describe_sweep(sweep.identity)
     for status, count in sweep.counts().items():
-        click.echo(f"{count} designs: {sweep.statuses[status][1]}")
+        if count:
+            click.echo(f"{counted(count)}: {sweep.statuses[status][1]}")
     click.echo("columns:")
     for kept in sweep.columns.values():
         axes = f" over {', '.join(kept.axes)}" if kept.axes else ""

@@ -10,33 +10,40 @@ import click
 
 from ..publish import replacing
 from ..sweep import Sweep
+from ..sweep.columns import STATUS
+
+_WIDTH = 10
 
 
 def show(sweep: Sweep, names: Sequence[str], rows: Iterable[tuple[int, Sequence[float]]]) -> int:
-    """Print designs below a head of names and units; how many there were."""
+    """Print rows below a head of names and units, each with its design's number; how many there were."""
     heads = ["design", *(_head(sweep, name) for name in names)]
-    widths = [max(len(head), 10) for head in heads]
+    widths = [max(len(head), _WIDTH) for head in heads]
     click.echo("  ".join(head.rjust(width) for head, width in zip(heads, widths, strict=True)))
     count = 0
     for number, values in rows:
-        cells = [str(number), *(f"{value:.6g}" for value in values)]
+        cells = [str(number), *(_cell(sweep, name, value) for name, value in zip(names, values, strict=True))]
         click.echo("  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
         count += 1
     return count
 
 
-def write_csv(names: Sequence[str], rows: Iterable[tuple[int, Sequence[float]]], path: Path) -> int:
-    """Write designs with every digit they have; how many there were."""
+def write_csv(names: Sequence[str], rows: Iterable[Sequence[float]], path: Path) -> int:
+    """Write rows with every digit they have; how many there were."""
     count = 0
     with replacing(path) as draft, draft.open("w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(names)
-        for _, values in rows:
+        for values in rows:
             writer.writerow([repr(value) for value in values])
             count += 1
     return count
 
 
 def _head(sweep: Sweep, name: str) -> str:
-    unit = sweep.parameters.get(name) or sweep.column(name).unit
+    unit = sweep.unit(name)
     return name if unit == "1" else f"{name} [{unit}]"
+
+
+def _cell(sweep: Sweep, name: str, value: float) -> str:
+    return sweep.statuses.get(int(value), (str(value), ""))[0] if name == STATUS else f"{value:.6g}"

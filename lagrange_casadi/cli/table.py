@@ -8,35 +8,63 @@ from pathlib import Path
 
 import click
 
+from ..publish import check_writable
 from ..sweep import Sweep, chosen
+from ..sweep.axes import counted, grouped
+from ..sweep.best import conditions_in, tally
+from ..sweep.columns import STATUS
 from .rows import show, write_csv
 
 _WIDE = 6
+_TOLD = 6
 
 
 @click.command()
 @click.argument("file", metavar="FILE.h5", type=click.Path(path_type=Path))
-@click.option("--where", multiple=True, metavar="NAME<NUMBER", help="Only designs like this: <, <=, >, >=, == or !=; repeatable.")
+@click.option("--where", multiple=True, metavar="NAME<NUMBER", help="Only rows like this: <, <=, >, >=, == or !=; repeatable.")
 @click.option("--column", "columns", multiple=True, metavar="COLUMN", help="This column; repeatable. Default: the main peaks.")
-@click.option("--rows", type=click.IntRange(1), default=20, show_default=True, metavar="N", help="How many designs to show.")
-@click.option("--csv", type=click.Path(path_type=Path), metavar="OUT.csv", help="Write all designs, by default with all columns.")
+@click.option("--rows", type=click.IntRange(1), default=20, show_default=True, metavar="N", help="How many rows to show.")
+@click.option(
+    "--csv", type=click.Path(path_type=Path), metavar="OUT.csv", help="Write all rows; default: all columns without axes."
+)
 def table(file: Path, where: Sequence[str], columns: Sequence[str], rows: int, csv: Path | None) -> None:
-    """Show the designs of the sweep FILE.h5, or write them as CSV."""
-    sweep = Sweep.open(file)
-    single = [name for name, kept in sweep.columns.items() if not kept.axes]
+    """Show the designs of the sweep FILE.h5, or write them as CSV. A row is a design, or where columns have a value for every
+    xi or t, a design at one of them."""
     if csv:
-        names = list(dict.fromkeys([*sweep.parameters, *(columns or single)]))
-        click.echo(f"wrote {csv}: {write_csv(names, _designs(sweep, names, where), csv)} designs")
-        return
-    main = ["status", *(name for name in single if name.startswith("peak:") and name.split(":")[1] in ("effort", "section"))]
-    names = list(dict.fromkeys([*sweep.parameters, *(columns or main[:_WIDE])]))
-    shown = show(sweep, names, islice(_designs(sweep, names, where), rows))
-    if shown == rows < sweep.size:
-        click.echo(f"... of {sweep.size} designs; --rows N shows more, --csv OUT.csv writes all")
-    if len(names) < len(sweep.parameters) + len(single) and not columns:
-        click.echo(f"--column NAME shows others: {', '.join(name for name in single if name not in names)}")
+        check_writable(csv)
+    sweep = Sweep.open(file)
+    along = sweep.axes_of([*columns, *(c.name for c in conditions_in(where) if c.name in sweep.columns)])
+    single = [name for name, kept in sweep.columns.items() if not kept.axes]
+    peaks = [name for name in single if name.startswith("peak:")]
+    main = [STATUS, *sorted(peaks, key=lambda name: name.split(":")[1] not in ("effort", "section"))]
+    names = list(dict.fromkeys([*sweep.parameters, *along, *(columns or (single if csv else main[:_WIDE]))]))
+    if csv:
+        count = write_csv(names, (values for _, values in _rows(sweep, names, where, along)), csv)
+        click.echo(f"wrote {csv}: {counted(count, 'row' if along else 'design')}")
+    elif show(sweep, names, islice(_rows(sweep, names, where, along), rows)) == rows:
+        met, with_result = tally(sweep, where, along)
+        if met > rows:
+            what = counted(met, "row" if along else "design") + (" that meet the conditions" if where else "")
+            click.echo(f"... of {what}, {grouped(with_result)} with a result; --rows N shows more, --csv OUT.csv writes all")
+    if not columns:
+        _tell_of_others(sweep, names)
 
 
-def _designs(sweep: Sweep, names: Sequence[str], where: Sequence[str]) -> Iterator[tuple[int, list[float]]]:
-    for numbers, values in chosen(sweep, names, where):
-        yield from zip(numbers.tolist(), map(list, zip(*(values[name].tolist() for name in names), strict=True)), strict=True)
+def _rows(sweep: Sweep, names: Sequence[str], where: Sequence[str], along: Sequence[str]) -> Iterator[tuple[int, list[float]]]:
+    return (
+        row
+        for numbers, values in chosen(sweep, names, where, along)
+        for row in zip(numbers.tolist(), map(list, zip(*(values[name].tolist() for name in names), strict=True)), strict=True)
+    )
+
+
+def _tell_of_others(sweep: Sweep, shown: Sequence[str]) -> None:
+    """Which columns are not shown, by their axes, and how to have them."""
+    others: dict[tuple[str, ...], list[str]] = {}
+    for kept in sweep.columns.values():
+        if kept.name not in shown:
+            others.setdefault(kept.axes, []).append(kept.name)
+    for axes, names in others.items():
+        more = f" and {len(names) - _TOLD} more (`lagrange-casadi info {sweep.path}` lists them)" if len(names) > _TOLD else ""
+        over, rows = (f" over {' and '.join(axes)}", f", a row for every {' and '.join(axes)}") if axes else ("", "")
+        click.echo(f"note: --column NAME shows other columns{over}{rows}: {', '.join(names[:_TOLD])}{more}", err=True)

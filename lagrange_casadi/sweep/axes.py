@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,11 +17,15 @@ import numpy.typing as npt
 from ..density import Array
 from ..errors import DeclarationError, ParameterError, UnknownNameError
 from ..mechanism import Mechanism
+from ..scene import points
 
 Numbers = npt.NDArray[np.int64]
 
 DESIGN = "design"
 """The axis of a list."""
+
+RESULTS = (DESIGN, "status", "t", "xi")
+"""Heads of a table's columns that are no parameters, beside those with a colon."""
 
 _SHOWN = 20
 
@@ -57,10 +62,10 @@ class Range:
         return f"{float(self.start)!r}:{float(self.stop)!r}:{self.count}" + (":log" if self.log else "")
 
     def at(self, numbers: Numbers) -> Array:
-        """Values by number: those of ``numpy.linspace``, or start (stop/start)^(i/(count - 1))."""
-        steps = max(self.count - 1, 1)
-        ratio = self.stop / self.start if self.log else 1.0
-        values = self.start * ratio ** (numbers / steps) if self.log else numbers * ((self.stop - self.start) / steps) + self.start
+        """Values by number: those of :func:`.points`, or start (stop/start)^(i/(count - 1))."""
+        if not self.log:
+            return points((self.start, self.stop, self.count), numbers)
+        values = self.start * (self.stop / self.start) ** (numbers / max(self.count - 1, 1))
         return np.asarray(np.where(numbers == self.count - 1, float(self.stop), values), float)
 
     def outside(self, low: float, high: float) -> str:
@@ -90,6 +95,11 @@ class Values:
             raise DeclarationError(f"the value {twice:g} is given twice")
 
     def __str__(self) -> str:
+        # Values that are those of a range are told as it is, for they make the same sweep.
+        if self.count > 1 and self.values[0] < self.values[-1]:
+            same = Range(self.values[0], self.values[-1], self.count)
+            if np.array_equal(same.at(np.arange(self.count)), self._array):
+                return str(same)
         if len(self.values) <= _SHOWN:
             return ",".join(map(repr, self.values))
         return f"{len(self.values)} values, SHA-256 {hashlib.sha256(self._array.tobytes()).hexdigest()}"
@@ -206,7 +216,7 @@ class Listed:
     def describe(self) -> dict[str, str]:
         """The list in words, which tell one from another."""
         digest = hashlib.sha256(self.rows.tobytes()).hexdigest()
-        return {DESIGN: f"{self.size} designs of {', '.join(self.names)}, SHA-256 {digest}"}
+        return {DESIGN: f"{counted(self.size)} of {', '.join(self.names)}, SHA-256 {digest}"}
 
     def outside(self, name: str, low: float, high: float) -> str:
         """The values of a parameter that leave a range, in words, each with its place."""
@@ -229,6 +239,8 @@ def designs_of(given: Any) -> Designs:
 def check_designs(designs: Designs, mechanism: Mechanism, fixed: Mapping[str, float]) -> None:
     """Raise for parameters that are none or set twice, and for values out of their ranges, all of them at once."""
     for name in designs.names:
+        if name not in mechanism.parameters and name in RESULTS:
+            raise DeclarationError(not_parameter(name, designs.names))
         if name not in mechanism.parameters:
             raise UnknownNameError("parameter", name, mechanism.parameters)
         if name in fixed:
@@ -240,6 +252,36 @@ def check_designs(designs: Designs, mechanism: Mechanism, fixed: Mapping[str, fl
             wrong.append(f"{name} = {found}, out of its range [{parameter.low:g}, {parameter.high:g}]")
     if wrong:
         raise ParameterError("; ".join(wrong))
+
+
+def size_of(described: Mapping[str, str]) -> int:
+    """How many designs there are, from what ``describe`` said of them. Raises ``ValueError`` for other words."""
+    return math.prod(_length(words) for words in described.values())
+
+
+def counted(count: int, what: str = "design") -> str:
+    """A count in words: 1 design, 12 000 designs."""
+    return f"{grouped(count)} {what}{'s' if count != 1 else ''}"
+
+
+def grouped(count: int) -> str:
+    """A count in groups of three digits."""
+    return f"{count:,}".replace(",", " ")
+
+
+def not_parameter(name: str, others: Sequence[str]) -> str:
+    """Say of a column's name that it is no parameter's."""
+    first = next((other for other in others if ":" not in other and other not in RESULTS), "NAME")
+    return (
+        f"'{name}' is a result of a sweep, not a parameter: `lagrange-casadi table FILE.h5 --csv OUT.csv --column {first}` writes "
+        "parameters alone"
+    )
+
+
+def _length(words: str) -> int:
+    if found := re.match(r"([\d ]+) (designs?|values)\b", words):
+        return int(found[1].replace(" ", ""))
+    return int(words.split(":")[2]) if ":" in words else words.count(",") + 1
 
 
 def _named(words: Sequence[str]) -> str:

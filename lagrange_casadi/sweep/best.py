@@ -13,7 +13,8 @@ import numpy.typing as npt
 
 from ..density import Array
 from ..errors import DeclarationError
-from .reading import Sweep, near
+from .columns import STATUS
+from .reading import Sweep, names_in, near
 
 _RELATIONS: dict[str, Callable[[Any, Any, Any], Any]] = {
     "<=": lambda values, number, same: (values < number) | same,
@@ -24,7 +25,6 @@ _RELATIONS: dict[str, Callable[[Any, Any, Any], Any]] = {
     ">": lambda values, number, same: (values > number) & ~same,
     "=": lambda values, number, same: same,
 }
-STATUS = "status"
 _CONDITION = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|!=|==|<|>|=)\s*([^<>=!]+?)\s*")
 
 
@@ -75,21 +75,21 @@ def size(name: str, values: Array) -> Array:
 def best(
     sweep: Sweep,
     *,
-    minimise: Sequence[str] = (),
-    maximise: Sequence[str] = (),
-    where: Sequence[str | Condition] = (),
+    minimise: str | Sequence[str] = (),
+    maximise: str | Sequence[str] = (),
+    where: str | Condition | Sequence[str | Condition] = (),
     count: int | None = None,
-    columns: Sequence[str] = (),
+    columns: str | Sequence[str] = (),
 ) -> list[Design]:
     """The ``count`` best designs that have a result and meet all conditions, the best first; by default one.
 
     With two objectives, all designs of which no other is better in both and none is as good in one and better in the other: the
     front, in the order of the first, by default all of it. Each design comes with its parameters, the objectives and ``columns``.
-    Peaks count by size.
+    Peaks count by size. A single name or condition may stand without a list around it.
 
     Raises :class:`UnknownNameError` for a column that is not there, :class:`DeclarationError` for no objective or more than two.
     """
-    objectives = [*((name, 1.0) for name in minimise), *((name, -1.0) for name in maximise)]
+    objectives = [*((name, 1.0) for name in names_in(minimise)), *((name, -1.0) for name in names_in(maximise))]
     if len(objectives) not in (1, 2):
         raise DeclarationError(f"expected one column to minimise or maximise, or two for their front, got {len(objectives)}")
     if count is not None and count < 1:
@@ -103,20 +103,39 @@ def best(
         kept, costs = np.concatenate([kept, numbers[there]]), np.concatenate([costs, cost[:, there]], axis=1)
         order = _front(costs) if len(objectives) == 2 else np.lexsort((kept, costs[0]))[: count or 1]
         kept, costs = kept[order], costs[:, order]
-    asked = tuple(dict.fromkeys([*sweep.parameters, *names, *columns]))
+    asked = tuple(dict.fromkeys([*sweep.parameters, *names, *names_in(columns)]))
     return [row(sweep, int(number), asked) for number in kept[:count]]
 
 
 def chosen(
-    sweep: Sweep, names: Sequence[str], where: Sequence[str | Condition] = ()
+    sweep: Sweep, names: str | Sequence[str], where: str | Condition | Sequence[str | Condition] = (), along: Sequence[str] = ()
 ) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Any]]]:
-    """The designs that meet all conditions, in blocks, as :meth:`.Sweep.blocks` gives them."""
-    conditions = [Condition.parse(text) if isinstance(text, str) else text for text in where]
-    for numbers, values in sweep.blocks(list(dict.fromkeys([*names, *(condition.name for condition in conditions)]))):
-        met = np.ones(numbers.size, bool)
+    """The designs, or rows ``along`` axes, that meet all conditions, in blocks, as :meth:`.Sweep.blocks` gives them."""
+    names, conditions = names_in(names), conditions_in(where)
+    asked = list(dict.fromkeys([*names, *(condition.name for condition in conditions)]))
+
+    def met(numbers: npt.NDArray[np.int64], values: dict[str, Any]) -> tuple[npt.NDArray[np.int64], dict[str, Any]]:
+        there = np.ones(numbers.size, bool)
         for condition in conditions:
-            met &= condition.holds(values[condition.name])
-        yield numbers[met], {name: values[name][met] for name in names}
+            there &= condition.holds(values[condition.name])
+        return numbers[there], {name: values[name][there] for name in names}
+
+    return (met(*block) for block in sweep.blocks(asked, along))
+
+
+def conditions_in(where: str | Condition | Sequence[str | Condition]) -> list[Condition]:
+    """Conditions, of which one may stand alone. Raises :class:`DeclarationError` for what is none."""
+    given = [where] if isinstance(where, (str, Condition)) else where
+    return [Condition.parse(text) if isinstance(text, str) else text for text in given]
+
+
+def tally(sweep: Sweep, where: str | Condition | Sequence[str | Condition] = (), along: Sequence[str] = ()) -> tuple[int, int]:
+    """How many designs, or rows ``along`` axes, meet all conditions, and how many of these have a result."""
+    met = with_result = 0
+    for numbers, values in chosen(sweep, [STATUS], where, along):
+        met += numbers.size
+        with_result += int(np.sum(values[STATUS] == 0))
+    return met, with_result
 
 
 def row(sweep: Sweep, number: int, names: Sequence[str]) -> Design:

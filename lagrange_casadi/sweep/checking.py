@@ -8,9 +8,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from ..errors import one_line
+from ..errors import StoreError, one_line
+from .axes import counted, grouped, size_of
 from .blocks import slabs
 from .columns import STATUS
+from .parts import Folder
 from .reading import Kept, Sweep
 
 
@@ -31,6 +33,24 @@ def check_sweep(path: str | Path) -> list[str]:
             except (OSError, RuntimeError, KeyError) as error:
                 found.append(f"{kept.name}: damaged: {one_line(error)}")
     return found
+
+
+def unfinished(path: Path) -> Folder | None:
+    """The folder of an unfinished sweep, by its own path, or by that of the file that is not there yet; else None."""
+    folder = Folder(path.with_name(path.name.removesuffix(".parts"))) if path.name else None
+    return folder if folder and folder.begun and (path == folder.path or not path.exists()) else None
+
+
+def progress(folder: Folder) -> str:
+    """How far an unfinished sweep is, and how it goes on; it may be at work meanwhile, for nothing is touched.
+
+    Raises :class:`StoreError` where its plan cannot be read.
+    """
+    try:
+        size = size_of(folder.identity["grid"])
+    except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
+        raise StoreError(f"{folder.path}: damaged: {one_line(error)}") from None
+    return f"unfinished: {grouped(folder.done())} of {counted(size)} done; `sweep` with --resume goes on"
 
 
 def _check_column(file: h5py.File, sweep: Sweep, kept: Kept) -> Iterator[str]:
@@ -54,11 +74,11 @@ def _check_column(file: h5py.File, sweep: Sweep, kept: Kept) -> Iterator[str]:
         missing += int(np.sum(~there & (states == 0)))
         surplus += int(np.sum(there & (states != 0)))
     if unknown:
-        yield f"{kept.name}: {unknown} designs have a status that is none"
+        yield f"{kept.name}: {unknown} of the designs have a status that is none"
     if missing and not _open(sweep, kept.name):
-        yield f"{kept.name}: {missing} designs that have a result lack it"
+        yield f"{kept.name}: {missing} of the designs that have a result lack it"
     if surplus:
-        yield f"{kept.name}: {surplus} designs that have no result have a number"
+        yield f"{kept.name}: {surplus} of the designs that have no result have a number"
 
 
 def _open(sweep: Sweep, name: str) -> bool:

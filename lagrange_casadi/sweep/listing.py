@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import DeclarationError, PathError
-from .axes import Listed
+from .axes import Listed, not_parameter
 
 
 def read_designs(path: str | os.PathLike[str]) -> Listed:
@@ -36,7 +36,7 @@ def read_designs(path: str | os.PathLike[str]) -> Listed:
                 values.extend(_number(path, reader.line_num, name, cell) for name, cell in zip(names, row, strict=True))
                 lines.append(reader.line_num)
     except (UnicodeDecodeError, csv.Error) as error:
-        raise DeclarationError(f"{path}: not a table of text: {error}") from None
+        raise DeclarationError(f"{path}: not a table of text in UTF-8: {error}") from None
     except OSError as error:
         raise PathError(f"{path}: {error.strerror}") from None
     if not lines:
@@ -47,13 +47,27 @@ def read_designs(path: str | os.PathLike[str]) -> Listed:
 def _check_head(path: str | os.PathLike[str], names: list[str]) -> None:
     if not any(names):
         raise DeclarationError(f"{path}: empty; expected a first line of parameters' names")
+    if len(names) == 1 and (found := next((sign for sign in ";\t|" if sign in names[0]), "")):
+        what = "a tab" if found == "\t" else f"'{found}'"
+        raise DeclarationError(f"{path}, line 1: cells are separated by {what}, expected ',' (and '.' in numbers)")
     for column, name in enumerate(names, 1):
+        place = f"{path}, line 1, column {column}"
         if not name:
-            raise DeclarationError(f"{path}, line 1, column {column}: expected a parameter's name, got an empty cell")
+            raise DeclarationError(f"{place}: expected a parameter's name, got an empty cell")
+        if _is_number(name):
+            raise DeclarationError(f"{place}: expected a parameter's name, got '{name}': put a line of names above the numbers")
+        if ":" in name:
+            raise DeclarationError(f"{place}: {not_parameter(name, names)}")
         if names.index(name) != column - 1:
-            raise DeclarationError(
-                f"{path}, line 1, column {column}: '{name}' stands there already as column {names.index(name) + 1}"
-            )
+            raise DeclarationError(f"{place}: '{name}' stands there already as column {names.index(name) + 1}")
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _number(path: str | os.PathLike[str], line: int, name: str, cell: str) -> float:

@@ -170,6 +170,15 @@ class Folder:
             draft.unlink()
         return found
 
+    def done(self) -> int:
+        """How many designs the parts that are whole cover; it only looks, so a sweep may be at work meanwhile."""
+        after = count = 0
+        for path in sorted(self.path.glob(f"*{_PART}")):
+            part = _whole(path)
+            if part is not None and part.start >= after:
+                count, after = count + part.stop - part.start, part.stop
+        return count
+
     def publish(self) -> None:
         """Put the joined file into its place, and remove the folder."""
         with telling(self.target):

@@ -20,7 +20,7 @@ from ..errors import DeclarationError
 from ..fingerprint import fingerprint, sources
 from ..rung import Rung
 from ..scene import Grid as Span
-from ..scene import Scene, Wanted, checked, checked_ratios, outputs
+from ..scene import Scene, Wanted, checked, checked_ratios, outputs, points
 from ..solution import Provenance
 from .axes import Designs, check_designs
 from .blocks import Slab, chunk_of, slabs
@@ -48,9 +48,9 @@ class Task:
 
     def harvest(self, scene: Scene) -> Harvest:
         """The scene compiled, and what is kept of its outcomes."""
-        xi = np.zeros(0) if self.xi is None else np.linspace(*self.xi)
+        xi = np.zeros(0) if self.xi is None else points(self.xi)
         engine = compiled(scene, self.wanted, self.t, self.rung)
-        return Harvest(engine, scene.mechanism, self.keep, np.linspace(*self.t), xi)
+        return Harvest(engine, scene.mechanism, self.keep, points(self.t), xi)
 
 
 def compiled(scene: Scene, wanted: Sequence[str], t: Span, rung: Rung) -> Engine:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -15,12 +16,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ..density import Array
-from ..errors import DeclarationError, LagrangeCasadiError, StoreError, UnknownNameError, one_line
+from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, one_line
 from ..store import reading
-from .axes import DESIGN
+from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
 from .columns import KINDS, STATUS
 from .file import WORDS
+from .parts import Folder
 from .plan import SCHEMA, SCHEMA_VERSION
 
 if TYPE_CHECKING:
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 
 _BLOCK = 1 << 15
 _NEAR = 1e-9
+_UNITS = {"t": "s", "xi": "1"}
 _DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError)
 _NAMED = ("backend", "precision", "compiler", "flags", "rung", "sources", "keep", "scene", "case", "schema_version")
 
@@ -72,7 +75,7 @@ class Sweep:
                 raise StoreError(f"{path}: damaged: {one_line(error)}") from None
 
     def __repr__(self) -> str:
-        return f"<Sweep of {self.case}: {self.size} designs over {', '.join(self.parameters)}; {', '.join(self.columns)}>"
+        return f"<Sweep of {self.case}: {counted(self.size)} over {', '.join(self.parameters)}; {', '.join(self.columns)}>"
 
     @property
     def case(self) -> str:
@@ -102,14 +105,15 @@ class Sweep:
     def column(self, name: str) -> Kept:
         """What a column is. Raises :class:`UnknownNameError`."""
         if name not in self.columns:
-            raise UnknownNameError("column", name, [*self.parameters, *self.columns])
+            raise UnknownNameError("column", name, [*self.parameters, *self.columns], f"`lagrange-casadi info {self.path}`")
         return self.columns[name]
 
     def select(self, **values: Any) -> Sweep:
-        """The designs with given values of parameters: a number that is on the grid, or a pair (low, high), both included.
+        """The designs with given values of parameters: a number that is on the grid, a list of such numbers, or a tuple
+        (low, high), both included.
 
         An axis stays where one number is selected, of length one. Raises :class:`UnknownNameError` for what was not swept,
-        :class:`DeclarationError` where no design has such a value, with the nearest one that has.
+        :class:`DeclarationError` for what is none of these, and where no design has such a value, with the nearest one that has.
         """
         chosen = dict(self.chosen)
         for name, wanted in values.items():
@@ -132,28 +136,35 @@ class Sweep:
         numbers = self.chosen.get(axis, np.arange(self.dimensions[axis]))
         return replace(self, chosen={**self.chosen, axis: numbers[number : number + 1]})
 
-    def blocks(self, names: Sequence[str]) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
-        """The selected designs in turn, in blocks: their numbers, and values of parameters and columns by name, each (designs,).
+    def axes_of(self, names: Sequence[str]) -> tuple[str, ...]:
+        """The axes beyond those of the designs that columns share; those without any go with all.
 
-        Raises :class:`DeclarationError` for a column with axes of its own.
+        Raises :class:`DeclarationError` where two columns have different ones.
         """
-        for name in names:
-            if name not in self.parameters and self.column(name).axes:
-                raise DeclarationError(
-                    f"column '{name}' has a value for every {' and '.join(self.columns[name].axes)}, not one a design"
-                )
-        dims = tuple(self.dimensions.values())
-        with self._opened() as file:
-            for start, stop, where in slabs(dims, chunk_of(dims, _BLOCK)):
-                found = {}
-                for name in names:
-                    if name in self.parameters:
-                        found[name] = _along(file["grid"][name], name, list(self.dimensions), dims, where)
-                    else:
-                        found[name] = np.asarray(file[name.replace(":", "/")][where]).ravel()
-                numbers = np.arange(start, stop)
-                left = self._left(numbers)
-                yield numbers[left], {name: values[left] for name, values in found.items()}
+        found = {self.column(name).axes: name for name in names_in(names) if name not in self.parameters}
+        (axes, first), *others = [item for item in found.items() if item[0]] or [((), "")]
+        for other, name in others:
+            every, else_every = (" and ".join(words) for words in (axes, other))
+            raise DeclarationError(
+                f"column '{first}' has a value for every {every}, '{name}' for every {else_every}: each needs a table of its own"
+            )
+        return axes
+
+    def unit(self, name: str) -> str:
+        """The unit of a parameter, of ``t`` or ``xi``, or of a column."""
+        return self.parameters.get(name) or _UNITS.get(name) or self.column(name).unit
+
+    def blocks(self, names: Sequence[str], along: Sequence[str] = ()) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
+        """The selected designs in turn, in blocks of rows: their numbers, and values of parameters and columns by name.
+
+        A row is a design; or with ``along``, as in ``("t", "xi")``, a design at one place of these axes: they are names too, and a
+        design's number and what has no axes come again in each of its rows.
+
+        Raises :class:`DeclarationError` for a column with other axes.
+        """
+        names, along = names_in(names), names_in(along)
+        self._check(names, along)
+        return self._blocks(names, along)
 
     def design(self, number: int) -> dict[str, float]:
         """The values of the swept parameters of a design, by its number."""
@@ -162,10 +173,11 @@ class Sweep:
             return {name: float(file["grid"][name][places.get(name, number)]) for name in self.parameters}
 
     def values(self, number: int, names: Sequence[str]) -> dict[str, float]:
-        """Columns of a design, by its number."""
+        """Columns of a design, by its number. Raises :class:`DeclarationError` for a column with axes of its own."""
+        self._check(names, ())
         place = tuple(int(i) for i in np.unravel_index(number, tuple(self.dimensions.values())))
         with self._opened() as file:
-            return {self.column(name).name: float(file[name.replace(":", "/")][place]) for name in names}
+            return {name: file[name.replace(":", "/")][place].item() for name in names}
 
     def counts(self) -> dict[int, int]:
         """How many designs have each status."""
@@ -181,7 +193,7 @@ class Sweep:
             import xarray
         except ImportError:
             raise LagrangeCasadiError("to_xarray needs xarray; install it with: pip install xarray") from None
-        kept = [self.column(name) for name in (self.columns if names is None else names)]
+        kept = [self.column(name) for name in (self.columns if names is None else names_in(names))]
         data = {k.name: ((*self.dimensions, *k.axes), self[k.name], {"units": k.unit, "long_name": k.long_name}) for k in kept}
         coordinates = {
             name: (name if name in self.dimensions else DESIGN, self[name], {"units": unit})
@@ -189,7 +201,7 @@ class Sweep:
         }
         if DESIGN in self.dimensions:
             coordinates[DESIGN] = (DESIGN, self.chosen.get(DESIGN, np.arange(self.dimensions[DESIGN])), {"units": "1"})
-        for axis, unit in (("t", "s"), ("xi", "1")):
+        for axis, unit in _UNITS.items():
             if any(axis in k.axes for k in kept):
                 coordinates[axis] = (axis, self[axis], {"units": unit})
         return xarray.Dataset(data, coordinates, {"case": self.case})
@@ -198,6 +210,44 @@ class Sweep:
     def description(self) -> dict[str, Any]:
         """The mechanism as a file describes it, swept parameters at their defaults."""
         return dict(self.identity["mechanism"])
+
+    def _check(self, names: Sequence[str], along: Sequence[str]) -> None:
+        """Raise for columns with other axes than these, and for axes that are none or bear a parameter's name."""
+        there = {axis for kept in self.columns.values() for axis in kept.axes}
+        for axis in along:
+            if axis not in there:
+                raise UnknownNameError("axis", axis, there)
+            if axis in self.parameters:
+                raise DeclarationError(f"parameter '{axis}' bears the name of an axis: its columns cannot be rows")
+        for name in names:
+            if name in self.parameters or name in along:
+                continue
+            axes = self.column(name).axes
+            if axes and axes != tuple(along):
+                raise DeclarationError(f"column '{name}' has a value for every {' and '.join(axes)}, not one a design")
+
+    def _blocks(self, names: Sequence[str], along: Sequence[str]) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
+        dims = tuple(self.dimensions.values())
+        with self._opened() as file:
+            places = dict(zip(along, np.meshgrid(*(file[axis][()] for axis in along), indexing="ij"), strict=True)) if along else {}
+            lengths = next((place.shape for place in places.values()), ())
+            rows = math.prod(lengths)
+            for start, stop, where in slabs(dims, chunk_of(dims, _BLOCK // rows)):
+                numbers = np.arange(start, stop)
+                left = self._left(numbers)
+                shape = (numbers[left].size, *lengths)
+                found = {}
+                for name in names:
+                    if name in places:
+                        values = places[name][None]
+                    elif name in self.parameters:
+                        values = _along(file["grid"][name], name, list(self.dimensions), dims, where)[left]
+                    else:
+                        values = np.asarray(file[name.replace(":", "/")][where])
+                        values = values.reshape(numbers.size, *(lengths if self.columns[name].axes else ()))[left]
+                    values = values.reshape(*values.shape, *(1,) * (len(shape) - values.ndim))
+                    found[name] = np.broadcast_to(values, shape).reshape(-1)
+                yield np.repeat(numbers[left], rows), found
 
     def _left(self, numbers: npt.NDArray[np.int64]) -> Any:
         """Which designs are selected."""
@@ -279,19 +329,38 @@ def _plain(value: Any) -> Any:
 
 def near(values: Array, number: float) -> npt.NDArray[np.bool_]:
     """Where values are a number, but for the rounding of a grid."""
+    if math.isinf(number):
+        return np.asarray(values == number)
     return np.asarray(np.abs(values - number) <= _NEAR * np.maximum(np.abs(values), abs(number)))
 
 
+def names_in(given: str | Sequence[str]) -> list[str]:
+    """Names, of which one may stand alone."""
+    return [given] if isinstance(given, str) else list(given)
+
+
 def _matches(name: str, there: Array, wanted: Any) -> npt.NDArray[np.bool_]:
-    if isinstance(wanted, (tuple, list)):
-        low, high = wanted
-        found = ((there > low) | near(there, low)) & ((there < high) | near(there, high))
-    else:
-        found = near(there, wanted)
-    if not found.any():
-        close = there[np.argsort(np.abs(there - np.mean(wanted)))[:2]]
-        raise DeclarationError(f"no design has {name} = {wanted}; nearest: {', '.join(f'{value:.10g}' for value in close)}")
-    return np.asarray(found)
+    try:
+        numbers = np.array([float(number) for number in (wanted if isinstance(wanted, Iterable) else [wanted])])
+    except (TypeError, ValueError):
+        numbers = np.array([np.nan])
+    pair = isinstance(wanted, tuple)
+    if isinstance(wanted, str) or not numbers.size or np.isnan(numbers).any() or (pair and numbers.size != 2):
+        raise DeclarationError(f"select: {name}: expected a number, a list of numbers, or a tuple (low, high), got {wanted!r}")
+    if not pair:
+        return np.asarray(np.any([_found(name, there, near(there, number), number, "=") for number in numbers], axis=0))
+    low, high = numbers
+    if high < low:
+        raise DeclarationError(f"select: {name}: expected (low, high), got {wanted!r}: the range is reversed")
+    within = ((there > low) | near(there, low)) & ((there < high) | near(there, high))
+    return _found(name, there, within, low, f"up to {high:.10g} and from")
+
+
+def _found(name: str, there: Array, met: npt.NDArray[np.bool_], number: float, words: str) -> npt.NDArray[np.bool_]:
+    if not met.any():
+        close = ", ".join(f"{value:.10g}" for value in there[np.argsort(np.abs(there - number))[:2]])
+        raise DeclarationError(f"no design has {name} {words} {number:.10g}; nearest: {close}")
+    return met
 
 
 def _along(dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], where: tuple[Any, ...]) -> Array:
@@ -308,4 +377,6 @@ def _along(dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], wher
 
 
 def _reading(path: str | Path) -> AbstractContextManager[h5py.File]:
-    return reading(path, SCHEMA, SCHEMA_VERSION, "a sweep", " of sweeps")
+    if not Path(path).exists() and Folder(Path(path)).begun:
+        raise PathError(f"{path}: its sweep is not finished: `lagrange-casadi info` tells how far it is, --resume goes on")
+    return reading(path, SCHEMA, SCHEMA_VERSION, "the file of a sweep", " of sweeps")
