@@ -44,7 +44,7 @@ def test_sweep_writes_one_file_and_says_what_is_in_it(here, capfd):
     assert os.listdir(here) == ["slider_crank_sweep.h5"]
 
 
-def test_sweep_takes_options(here):
+def test_sweep_takes_options(here, capfd):
     options = ["--grid", "m3=0.1:10:3:log", "--set", "l=0.3", "--xi", "0:1:3", "--keep", "histories", "--backend", "vm"]
     assert main([*ASKED, *options, "--workers", "1", "--quiet", "--out", "x.h5"]) == 0
     found = Sweep.open("x.h5")
@@ -52,7 +52,9 @@ def test_sweep_takes_options(here):
     assert found["history:section:rod:bending"].shape == (3, 21, 3)
     assert found.identity["backend"] == "vm"
     assert found.identity["mechanism"]["parameters"]["l"]["value"] == 0.3
+    capfd.readouterr()
     assert main([*ASKED, *options, "--workers", "1", "--resume", "--out", "x.h5"]) == 0
+    assert capfd.readouterr().out.splitlines()[1:] == ["x.h5 was complete already: nothing was done"]
 
 
 def test_sweep_of_a_list(here):
@@ -244,7 +246,7 @@ def test_lines_tell_of_progress_now_and_then(capsys, monkeypatch):
 
 
 def test_a_bar_is_shown_on_a_terminal_only(capsys, monkeypatch):
-    assert progress.shown(quiet=True) is None
+    assert type(progress.shown(quiet=True)) is progress.Silent
     assert isinstance(progress.shown(quiet=False), progress.Lines)
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     bar = progress.shown(quiet=False)

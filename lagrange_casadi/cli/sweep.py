@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import closing, nullcontext
+from contextlib import closing
 from pathlib import Path
 
 import click
@@ -15,6 +15,7 @@ from ..scene import Grid
 from ..sweep import KEEPS, Axis, Keep, Sweep, read_designs
 from ..sweep import sweep as carry_out
 from .options import AXIS, GRID, axis, grid, parameters, setting, untabled_rung
+from .progress import designs as counted
 from .progress import shown
 
 
@@ -69,8 +70,7 @@ def sweep(
     if out and out.suffix not in (".h5", ".hdf5"):
         raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
     loaded = load_case(case)
-    progress = shown(quiet)
-    with closing(progress) if progress else nullcontext():
+    with closing(shown(quiet)) as progress:
         found = carry_out(
             loaded,
             read_designs(designs) if designs else dict(axes),
@@ -92,15 +92,13 @@ def sweep(
             progress=progress,
         )
     _report(found)
+    click.echo(f"wrote {found.path}" if progress.begun else f"{found.path} was complete already: nothing was done")
 
 
 def _report(found: Sweep) -> None:
     shape = " x ".join(str(length) for length in found.dimensions.values())
-    count = f"{found.size:,}".replace(",", " ")
-    click.echo(
-        f"{found.case}: {f'{shape} = ' if len(found.dimensions) > 1 else ''}{count} designs over {', '.join(found.parameters)}"
-    )
+    product = f"{shape} = " if len(found.dimensions) > 1 else ""
+    click.echo(f"{found.case}: {product}{counted(found.size)} over {', '.join(found.parameters)}")
     for status, many in found.counts().items():
         if status and many:
             click.echo(f"  {many} without a result: {found.statuses[status][1]}")
-    click.echo(f"wrote {found.path}")
