@@ -10,6 +10,7 @@ import lagrange_casadi
 
 PACKAGE = Path(lagrange_casadi.__file__).parent
 ORDER = (
+    "interrupts",
     "version",
     "errors",
     "interpret",
