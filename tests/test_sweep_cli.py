@@ -100,14 +100,14 @@ MISTAKES = [
     (["--grid", "l=0.2", "--out", "mine.h5"], 2, "mine.h5 exists: --force replaces it, --resume goes on"),
     (["--grid", "l=0.2", "--out", "mine.h5", "--resume"], 1, "mine.h5: not a whole HDF5 file"),
     (["--grid", "l=0.2", "--resume", "--force"], 2, "--resume and --force exclude each other"),
-    (["--grid", "l=0.2", "--dask", "tcp://127.0.0.1:1"], 1, "cannot reach a Dask scheduler at tcp://127.0.0.1:1: Timed out"),
+    (["--grid", "l=0.2", "--dask", "tcp://127.0.0.1:1"], 1, "no Dask scheduler answers at tcp://127.0.0.1:1: Timed out"),
     (["--grid", "l=0.2", "--dask", "tcp://127.0.0.1:1", "--workers", "2"], 2, "--workers and --dask exclude each other"),
 ]
 
 
 @pytest.mark.parametrize(("arguments", "status", "says"), MISTAKES)
 def test_a_mistake_is_one_line_and_leaves_nothing(here, capfd, monkeypatch, arguments, status, says):
-    monkeypatch.setattr(cluster, "_PATIENCE", "0.5s")
+    monkeypatch.setattr(cluster, "_PATIENCE", 0.5)
     files = {
         "bad.csv": "l,r\n0.2,0.1\n0.3,x\n",
         "short.csv": "l,r\n0.2\n",
