@@ -80,7 +80,7 @@ MISTAKES = [
     (
         ["--grid", "l=0.1:0.4:40000", "--grid", "r=0.1:0.4:40000"],
         2,
-        "the grid has 1 600 000 000 designs, more than 10^9; if that is",
+        "the grid has 1 600 000 000 designs, more than 10^9; if that is meant, say --yes",
     ),
     (["--grid", "l=-0.1:0.4:6", "--grid", "m1=-1,1,-2"], 2, "l = -0.1 to 0.4, out of its range [0, inf]; m1 = -1, -2, out of its"),
     ([], 2, "expected either --grid, as in --grid l=0.1:0.4:31, or --designs FILE.csv"),
@@ -99,9 +99,9 @@ MISTAKES = [
     (["--grid", "l=0.2", "--out", "nowhere/x.h5"], 2, "folder nowhere does not exist"),
     (["--grid", "l=0.2", "--out", "mine.h5"], 2, "mine.h5 exists: --force replaces it, --resume goes on"),
     (["--grid", "l=0.2", "--out", "mine.h5", "--resume"], 1, "mine.h5: not a whole HDF5 file"),
-    (["--grid", "l=0.2", "--resume", "--force"], 2, "--resume and --force exclude each other"),
+    (["--grid", "l=0.2", "--resume", "--force"], 2, "resume and force exclude each other"),
     (["--grid", "l=0.2", "--dask", "tcp://127.0.0.1:1"], 1, "no Dask scheduler answers at tcp://127.0.0.1:1: Timed out"),
-    (["--grid", "l=0.2", "--dask", "tcp://127.0.0.1:1", "--workers", "2"], 2, "--workers and --dask exclude each other"),
+    (["--grid", "l=0.2", "--dask", "tcp://127.0.0.1:1", "--workers", "2"], 2, "workers and dask exclude each other"),
 ]
 
 

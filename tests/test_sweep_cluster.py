@@ -121,7 +121,7 @@ def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, 
                 scheduler.send_signal(signal.SIGKILL)
                 scheduler.wait()
 
-        told = rf"the Dask scheduler at {re.escape(address)} was lost; \d+ of 480 designs are kept in .*: go on with --resume"
+        told = rf"the Dask scheduler at {re.escape(address)} was lost; \d+ of 480 designs are kept in .*: go on with resume=True"
         with pytest.raises(ClusterError, match=told):
             sweep(slider_crank, GRID, **ASKED, out=path, dask=address, progress=progress)
     assert capfd.readouterr().err == ""
@@ -259,7 +259,7 @@ def test_what_fails_on_a_worker_is_one_line(slider_crank):
 def test_a_cluster_needs_a_case(slider_crank, tmp_path):
     with pytest.raises(DeclarationError, match="a cluster needs a case from load_case"):
         sweep(slider_crank.scene, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1")
-    with pytest.raises(DeclarationError, match="--workers and --dask exclude each other"):
+    with pytest.raises(DeclarationError, match="workers and dask exclude each other"):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1", workers=2)
 
 

@@ -25,6 +25,9 @@ from .sweep import sweep
 from .table import table
 from .trade import trade
 
+_OPTIONS = {"resume=True": "--resume", "force=True": "--force", "many=True": "--yes"}
+"""What errors call in Python's words, in the command line's."""
+
 
 class _Interrupted(Exception):  # noqa: N818 - it is no error
     """Ctrl-C, taken before click turns it into a line of its own."""
@@ -105,6 +108,8 @@ def _insistent() -> Iterator[None]:
 
 
 def _fail(message: str, status: int) -> int:
+    for keyword, option in _OPTIONS.items():
+        message = message.replace(keyword, option)
     with suppress(OSError):  # the terminal may be gone
         click.echo(f"error: {' '.join(message.split())}", err=True)
     return status
