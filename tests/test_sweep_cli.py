@@ -256,3 +256,25 @@ def test_a_bar_is_shown_on_a_terminal_only(capsys, monkeypatch):
     err = capsys.readouterr().err
     assert "designs:" in err
     assert "/1.00k" in err
+
+
+def test_one_design_is_no_more_than_one(here, capfd):
+    assert main([*ASKED, "--grid", "l=0.2", "--out", "x.h5"]) == 0
+    assert capfd.readouterr().out == "slider_crank: 1 design over l\nwrote x.h5\n"
+
+
+def test_the_examples_of_the_help_run(here, capfd):
+    Path("cases").symlink_to(CASE.parent)
+    assert main(["sweep", "--help"]) == 0
+    examples = re.findall(r"^ *lagrange-casadi (.*)$", capfd.readouterr().out, re.MULTILINE)
+    assert [example.split()[0] for example in examples] == ["sweep", "best"]
+    for example in examples:
+        assert main(example.split()) == 0
+
+
+def test_of_all_the_motion_is_left_out_and_alone_it_is_kept(here, capfd):
+    """As the help says."""
+    for wanted in ("all", "motion"):
+        assert main(["sweep", str(CASE), "--t", "0:0.08:9", "--grid", "l=0.2", "--want", wanted, "--out", f"{wanted}.h5"]) == 0
+        moving = {name.split(":")[1] for name in Sweep.open(f"{wanted}.h5").columns if name != "status"} & {"motion", "pose"}
+        assert moving == (set() if wanted == "all" else {"motion", "pose"})

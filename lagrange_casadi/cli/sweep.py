@@ -22,21 +22,26 @@ from .progress import shown
 @click.command()
 @click.argument("case", type=click.Path(path_type=Path))
 @click.option("--grid", "axes", type=axis, metavar=AXIS, multiple=True, help="Sweep a parameter; repeatable, the last is fastest.")
+@click.option("--designs", type=click.Path(path_type=Path), metavar="FILE.csv", help="Sweep a list: names, then a line a design.")
 @click.option(
-    "--designs", type=click.Path(path_type=Path), metavar="FILE.csv", help="Sweep a list: a line of names, a line a design."
-)
-@click.option(
-    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
+    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give one that is not swept a value; repeatable."
 )
 @click.option("--t", type=grid, metavar=GRID, help="Instants [s]; default: the case's.")
-@click.option("--xi", type=grid, metavar=GRID, help="Keep section forces at these ratios xi/l too.")
-@click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK or all; repeatable.")
-@click.option("--keep", type=click.Choice(KEEPS), default="peaks", show_default=True, help="Peaks; with section laws; with all.")
+@click.option("--xi", type=grid, metavar=GRID, help="Keep section forces at these ratios xi/l too, each the largest over time.")
+@click.option(
+    "--want",
+    multiple=True,
+    metavar="OUTPUT",
+    help="effort or what else info CASE lists, but all leaves out the motion; repeatable.",
+)
+@click.option(
+    "--keep", type=click.Choice(KEEPS), default="peaks", show_default=True, help="Peaks; also section laws; also all over time."
+)
 @untabled_rung
-@click.option("--workers", type=click.IntRange(1), metavar="N", help="Threads; default: one a core.")
-@click.option("--dask", metavar="ADDRESS", help="Evaluate on the workers of this Dask scheduler.")
+@click.option("--workers", type=click.IntRange(1), metavar="N", help="Threads of this machine; default: one a core.")
+@click.option("--dask", metavar="ADDRESS", help="Evaluate on a cluster: its Dask scheduler, as tcp://HOST:8786.")
 @click.option("--resume", is_flag=True, help="Go on with what is there of the same sweep; start where there is nothing.")
-@click.option("--force", is_flag=True, help="Start anew, whatever is there.")
+@click.option("--force", is_flag=True, help="Start anew, and replace what is there.")
 @click.option("--yes", is_flag=True, help="Allow more than 10^9 designs.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 @click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>_sweep.h5 here.")
@@ -61,7 +66,15 @@ def sweep(
     quiet: bool,
     out: Path | None,
 ) -> None:
-    """Evaluate CASE for every design of a grid or a list, and write one HDF5 file."""
+    """Evaluate CASE for every design of a grid or a list, and write one HDF5 file.
+
+    CASE is a folder with a case.py, or a Python file. Of each design the peaks of what is wanted are kept, with their instants and
+    places, and means of efforts. What was stopped goes on with --resume. best, table and plot read the file.
+
+    \b
+    lagrange-casadi sweep cases/slider_crank --grid l=0.12:0.4:57 --grid m3=0.1,0.5
+    lagrange-casadi best slider_crank_sweep.h5 --minimise peak:section:rod:bending
+    """
     if bool(axes) == bool(designs):
         raise click.UsageError("expected either --grid, as in --grid l=0.1:0.4:31, or --designs FILE.csv")
     if len({name for name, _ in axes}) < len(axes):
