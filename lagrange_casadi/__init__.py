@@ -1,5 +1,8 @@
 """Forces inside a mechanism that must make a given motion: efforts, reactions, and the section forces of every link."""
 
+from . import interrupts  # noqa: F401 - before all that takes long
+
+# isort: split
 from . import density, figures, motion
 from .case import Case, load_case
 from .curves import table

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from .errors import PathError, StoreError, one_line
+from .interrupts import interrupts
 
 
 def check_writable(target: Path, *, folder: bool = False) -> None:
@@ -57,9 +58,9 @@ def uninterrupted() -> Iterator[Callable[[], None]]:
         if seen.is_set():
             raise KeyboardInterrupt
 
-    numbers = [getattr(signal, name) for name in ("SIGINT", "SIGALRM", "SIGTERM") if hasattr(signal, name)]
+    repeated = [signal.SIGALRM] if hasattr(signal, "SIGALRM") else []
     able = threading.current_thread() is threading.main_thread()
-    before = [(number, signal.signal(number, lambda *_: seen.set())) for number in numbers] if able else []
+    before = [(number, signal.signal(number, lambda *_: seen.set())) for number in (*interrupts(), *repeated)] if able else []
     try:
         yield breathe
     finally:

@@ -10,6 +10,7 @@ import lagrange_casadi
 
 PACKAGE = Path(lagrange_casadi.__file__).parent
 ORDER = (
+    "interrupts",
     "version",
     "errors",
     "interpret",
@@ -127,6 +128,14 @@ def test_the_engine_knows_no_mechanism():
         ):
             for number, line in enumerate(path.read_text().splitlines(), 1):
                 assert not words.search(line), f"{path.name}:{number}: {line}"
+
+
+def test_only_the_command_line_speaks_of_its_options():
+    """Words that are an option and nothing else are no message: a rung's, a compiler's."""
+    for name, path in modules():
+        for node in ast.walk(ast.parse(path.read_text())) if name != "cli" else ():
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and not re.fullmatch(r"--\w+", node.value):
+                assert not re.search(r"(^|[\s'(])--[a-z]", node.value), f"{path.name}:{node.lineno}: {node.value}"
 
 
 def test_matplotlib_waits_until_a_figure_is_drawn():

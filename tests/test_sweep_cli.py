@@ -46,7 +46,7 @@ def test_sweep_writes_one_file_and_says_what_is_in_it(here, capfd):
     assert os.listdir(here) == ["slider_crank_sweep.h5"]
 
 
-def test_sweep_takes_options(here):
+def test_sweep_takes_options(here, capfd):
     options = ["--grid", "m3=0.1:10:3:log", "--set", "l=0.3", "--xi", "0:1:3", "--keep", "histories", "--backend", "vm"]
     assert main([*ASKED, *options, "--workers", "1", "--quiet", "--out", "x.h5"]) == 0
     found = Sweep.open("x.h5")
@@ -54,7 +54,9 @@ def test_sweep_takes_options(here):
     assert found["history:section:rod:bending"].shape == (3, 21, 3)
     assert found.identity["backend"] == "vm"
     assert found.identity["mechanism"]["parameters"]["l"]["value"] == 0.3
+    capfd.readouterr()
     assert main([*ASKED, *options, "--workers", "1", "--resume", "--out", "x.h5"]) == 0
+    assert capfd.readouterr().out.splitlines()[1:] == ["x.h5 was complete already: nothing was done"]
 
 
 def test_sweep_of_a_list(here):
@@ -80,7 +82,7 @@ MISTAKES = [
     (
         ["--grid", "l=0.1:0.4:40000", "--grid", "r=0.1:0.4:40000"],
         2,
-        "the grid has 1 600 000 000 designs, more than 10^9; if that is",
+        "the grid has 1 600 000 000 designs, more than 10^9; if that is meant, say --yes",
     ),
     (["--grid", "l=-0.1:0.4:6", "--grid", "m1=-1,1,-2"], 2, "l = -0.1 to 0.4, out of its range [0, inf]; m1 = -1, -2, out of its"),
     ([], 2, "expected either --grid, as in --grid l=0.1:0.4:31, or --designs FILE.csv"),
@@ -100,15 +102,15 @@ MISTAKES = [
     (["--grid", "l=0.2", "--out", "nowhere/x.h5"], 2, "folder nowhere does not exist"),
     (["--grid", "l=0.2", "--out", "mine.h5"], 2, "mine.h5 exists: --force replaces it, --resume goes on"),
     (["--grid", "l=0.2", "--out", "mine.h5", "--resume"], 1, "mine.h5: not a whole HDF5 file"),
-    (["--grid", "l=0.2", "--resume", "--force"], 2, "--resume and --force exclude each other"),
-    (["--grid", "l=0.2", "--dask", "tcp://127.0.0.1:1"], 1, "cannot reach a Dask scheduler at tcp://127.0.0.1:1: Timed out"),
-    (["--grid", "l=0.2", "--dask", "tcp://127.0.0.1:1", "--workers", "2"], 2, "--workers and --dask exclude each other"),
+    (["--grid", "l=0.2", "--resume", "--force"], 2, "resume and force exclude each other"),
+    (["--grid", "l=0.2", "--dask", "tcp://127.0.0.1:1"], 1, "no Dask scheduler answers at tcp://127.0.0.1:1: Timed out"),
+    (["--grid", "l=0.2", "--dask", "tcp://127.0.0.1:1", "--workers", "2"], 2, "workers and dask exclude each other"),
 ]
 
 
 @pytest.mark.parametrize(("arguments", "status", "says"), MISTAKES)
 def test_a_mistake_is_one_line_and_leaves_nothing(here, capfd, monkeypatch, arguments, status, says):
-    monkeypatch.setattr(cluster, "_PATIENCE", "0.5s")
+    monkeypatch.setattr(cluster, "_PATIENCE", 0.5)
     files = {
         "bad.csv": "l,r\n0.2,0.1\n0.3,x\n",
         "short.csv": "l,r\n0.2\n",
@@ -393,7 +395,7 @@ def test_lines_tell_of_progress_now_and_then(capsys, monkeypatch):
 
 
 def test_a_bar_is_shown_on_a_terminal_only(capsys, monkeypatch):
-    assert progress.shown(quiet=True) is None
+    assert type(progress.shown(quiet=True)) is progress.Silent
     assert isinstance(progress.shown(quiet=False), progress.Lines)
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     bar = progress.shown(quiet=False)
@@ -403,3 +405,25 @@ def test_a_bar_is_shown_on_a_terminal_only(capsys, monkeypatch):
     err = capsys.readouterr().err
     assert "designs:" in err
     assert "/1.00k" in err
+
+
+def test_one_design_is_no_more_than_one(here, capfd):
+    assert main([*ASKED, "--grid", "l=0.2", "--out", "x.h5"]) == 0
+    assert capfd.readouterr().out == "slider_crank: 1 design over l\nwrote x.h5\n"
+
+
+def test_the_examples_of_the_help_run(here, capfd):
+    Path("cases").symlink_to(CASE.parent)
+    assert main(["sweep", "--help"]) == 0
+    examples = re.findall(r"^ *lagrange-casadi (.*)$", capfd.readouterr().out, re.MULTILINE)
+    assert [example.split()[0] for example in examples] == ["sweep", "best"]
+    for example in examples:
+        assert main(example.split()) == 0
+
+
+def test_of_all_the_motion_is_left_out_and_alone_it_is_kept(here, capfd):
+    """As the help says."""
+    for wanted in ("all", "motion"):
+        assert main(["sweep", str(CASE), "--t", "0:0.08:9", "--grid", "l=0.2", "--want", wanted, "--out", f"{wanted}.h5"]) == 0
+        moving = {name.split(":")[1] for name in Sweep.open(f"{wanted}.h5").columns if name != "status"} & {"motion", "pose"}
+        assert moving == (set() if wanted == "all" else {"motion", "pose"})

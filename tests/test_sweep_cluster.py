@@ -6,6 +6,7 @@ import logging
 import os
 import re
 import signal
+import socket
 import sys
 import threading
 
@@ -125,7 +126,7 @@ def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, 
                 scheduler.send_signal(signal.SIGKILL)
                 scheduler.wait()
 
-        told = rf"the Dask scheduler at {re.escape(address)} was lost; \d+ of 480 designs are kept in .*: go on with --resume"
+        told = rf"the Dask scheduler at {re.escape(address)} was lost; \d+ of 480 designs are kept in .*: go on with resume=True"
         with pytest.raises(ClusterError, match=told):
             sweep(slider_crank, GRID, **ASKED, out=path, dask=address, progress=progress)
     assert capfd.readouterr().err == ""
@@ -135,16 +136,89 @@ def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, 
 
 @pytest.mark.parametrize("address", ["", "nonsense", "foo://127.0.0.1:8786", "tcp://127.0.0.1", "tcp://127.0.0.1:22x"])
 def test_what_is_no_address_is_one_line(slider_crank, tmp_path, address):
-    with pytest.raises(DeclarationError, match=f"--dask: expected an address like tcp://HOST:8786, got '{re.escape(address)}'"):
+    with pytest.raises(DeclarationError, match=f"dask: expected an address like tcp://HOST:8786, got '{re.escape(address)}'"):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1"])
 def test_what_cannot_be_reached_is_one_line(slider_crank, tmp_path, monkeypatch, address):
-    monkeypatch.setattr(cluster, "_PATIENCE", "1s")
-    with pytest.raises(ClusterError, match=f"cannot reach a Dask scheduler at {re.escape(address)}: ") as caught:
+    monkeypatch.setattr(cluster, "_PATIENCE", 1.0)
+    with pytest.raises(ClusterError, match=f"no Dask scheduler answers at {re.escape(address)}: ") as caught:
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
     assert "\n" not in str(caught.value)
+
+
+@contextlib.contextmanager
+def answering(says):
+    """The address of what accepts connections and says this, or goodbye at once, and the connections it has accepted."""
+
+    def serve():
+        with contextlib.suppress(OSError):
+            while True:
+                line = server.accept()[0]
+                lines.append(line)
+                if says is None:
+                    line.close()
+                else:
+                    line.sendall(says)
+
+    lines = []
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        thread = threading.Thread(target=serve)
+        thread.start()
+        try:
+            yield f"tcp://127.0.0.1:{server.getsockname()[1]}", lines
+        finally:
+            server.shutdown(socket.SHUT_RDWR)
+            thread.join()
+            for line in lines:
+                line.close()
+
+
+OTHERS = {
+    "silent": (b"", "nothing came from there within 1 s"),
+    "http": (
+        b"HTTP/1.0 400 Bad request\r\n" + 1000 * b"x",
+        r"(nothing came from there within 1 s|what is there says nothing that)",
+    ),
+    "ssh": (b"SSH-2.0-OpenSSH_9.2p1\r\n", "what is there says nothing that a scheduler says"),
+    "zeros": (bytes(1000), ""),
+    "closed": (None, ""),
+}
+
+
+@pytest.mark.parametrize(("says", "told"), OTHERS.values(), ids=OTHERS)
+def test_what_is_no_scheduler_is_one_line(slider_crank, tmp_path, monkeypatch, capfd, says, told):
+    monkeypatch.setattr(cluster, "_PATIENCE", 1.0)
+    with (
+        answering(says) as (address, _),
+        pytest.raises(ClusterError, match=f"no Dask scheduler answers at {address}: {told}") as caught,
+    ):
+        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
+    assert "\n" not in str(caught.value)
+    assert capfd.readouterr().err == ""
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_worker_is_no_scheduler(slider_crank, two_workers, tmp_path):
+    with distributed.Client(two_workers, set_as_default=False) as client:
+        address = next(iter(client.nthreads()))
+    with pytest.raises(ClusterError, match=f"no Dask scheduler answers at {address}: it is a worker"):
+        sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
+def test_an_interrupt_comes_through_while_nothing_answers(slider_crank, tmp_path, number):
+    asked = ["sweep", str(slider_crank.path), "--grid", "l=0.2,0.3", "--out", "x.h5"]
+    with (
+        answering(b"") as (address, accepted),
+        sweeps.process(sys.executable, "-m", "lagrange_casadi", *asked, "--dask", address, cwd=tmp_path) as stopped,
+    ):
+        sweeps.wait_for(lambda: accepted)
+        stopped.send_signal(number)
+        assert stopped.communicate(timeout=60) == ("", "error: stopped; nothing was done yet\n")
+    assert stopped.returncode == 130
+    assert os.listdir(tmp_path) == []
 
 
 def test_a_case_travels_without_its_file(tmp_path):
@@ -188,13 +262,13 @@ def test_what_fails_on_a_worker_is_one_line(slider_crank):
 def test_a_cluster_needs_a_case(slider_crank, tmp_path):
     with pytest.raises(DeclarationError, match="a cluster needs a case from load_case"):
         sweep(slider_crank.scene, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1")
-    with pytest.raises(DeclarationError, match="--workers and --dask exclude each other"):
+    with pytest.raises(DeclarationError, match="workers and dask exclude each other"):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1", workers=2)
 
 
 def test_without_dask_one_line_says_how_to_get_it(slider_crank, monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(ClusterError, match=r"--dask needs Dask; install it with: pip install 'lagrange_casadi\[cluster\]'"):
+    with pytest.raises(ClusterError, match=r"a cluster needs Dask; install it with: pip install 'lagrange_casadi\[cluster\]'"):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask="tcp://127.0.0.1:1")
     assert isinstance(load_case(slider_crank.path), Case)
     assert Cluster("tcp://x:1", slider_crank).address == "tcp://x:1"

@@ -108,7 +108,9 @@ def test_a_part_lost_or_damaged_is_done_again(whole, tmp_path):
     content = bytearray(second.read_bytes())
     content[-3] ^= 1
     second.write_bytes(content)
-    with pytest.raises(StoreError, match=r"was damaged, in column .*, and is deleted; \d+ of 420 designs are kept in .*--resume"):
+    with pytest.raises(
+        StoreError, match=r"was damaged, in column .*, and is deleted; \d+ of 420 designs are kept in .*resume=True"
+    ):
         run(path, resume=True)
     assert run(path, resume=True) == whole
 
@@ -136,17 +138,17 @@ def test_resume_starts_where_there_is_nothing(whole, tmp_path):
 
 def test_what_is_there_is_not_overwritten(whole, tmp_path):
     path = tmp_path / "whole.h5"
-    with pytest.raises(PathError, match=r"whole\.h5 exists: --force replaces it, --resume goes on"):
+    with pytest.raises(PathError, match=r"whole\.h5 exists: force=True replaces it, resume=True goes on"):
         run(path)
     assert path.read_bytes() == whole
     with pytest.raises(_StopError):
         run(path, force=True, progress=stop_after(2))
     assert path.read_bytes() == whole
-    with pytest.raises(PathError, match=r"whole\.h5\.parts holds an unfinished sweep: go on with --resume, or start anew"):
+    with pytest.raises(PathError, match=r"whole\.h5\.parts holds an unfinished sweep: go on with resume=True, or start anew"):
         run(path)
     assert run(path, resume=True) == whole
     assert run(path, force=True) == whole
-    with pytest.raises(DeclarationError, match="--resume and --force exclude each other"):
+    with pytest.raises(DeclarationError, match="resume and force exclude each other"):
         run(path, force=True, resume=True)
     with pytest.raises(_StopError):
         run(tmp_path / "notes.h5", progress=stop_after(2))
@@ -184,7 +186,7 @@ def test_another_sweep_is_refused_with_the_difference(whole, tmp_path, change, s
     with pytest.raises(StoreError) as caught:
         run(path, resume=True, **change)
     assert f"is of another sweep: {says}" in str(caught.value)
-    assert str(caught.value).endswith("; start anew with --force, or choose another --out")
+    assert str(caught.value).endswith("; start anew with force=True, or write another file")
 
 
 def test_another_version_is_refused(whole, engine, tmp_path, monkeypatch):
@@ -258,7 +260,7 @@ def test_ctrl_c_finishes_the_block_and_says_how_to_go_on(whole, engine, tmp_path
     path = tmp_path / "x.h5"
     sweeps.interrupt_after(0.3)
     with pytest.raises(
-        StoppedError, match=r"stopped; \d+ of 420 designs are kept in .*x\.h5\.parts: go on with --resume"
+        StoppedError, match=r"stopped; \d+ of 420 designs are kept in .*x\.h5\.parts: go on with resume=True"
     ) as caught:
         run(path)
     kept = int(str(caught.value).split()[1])

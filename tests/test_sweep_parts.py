@@ -83,7 +83,7 @@ def test_to_begin_anew_removes_what_is_there(folder):
 
 def test_a_damaged_plan_is_one_line(folder):
     (folder.path / "plan.json").write_text("{")
-    with pytest.raises(StoreError, match=r"plan\.json: damaged: .*; start anew with --force"):
+    with pytest.raises(StoreError, match=r"plan\.json: damaged: .*; start anew with force=True"):
         _ = folder.identity
 
 

@@ -6,13 +6,14 @@ import signal
 import threading
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
 
 import click
 
-from ..errors import LagrangeCasadiError, UnknownNameError
+from ..errors import LagrangeCasadiError, UnknownNameError, one_line
+from ..interrupts import SENTENCE, STATUS, interrupts
 from ..version import __version__
 from .best import best
 from .check import check
@@ -24,7 +25,8 @@ from .sweep import sweep
 from .table import table
 from .trade import trade
 
-INTERRUPTED = 130
+_OPTIONS = {"resume=True": "--resume", "force=True": "--force", "many=True": "--yes"}
+"""What errors call in Python's words, in the command line's."""
 
 
 class _Interrupted(Exception):  # noqa: N818 - it is no error
@@ -66,9 +68,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except click.ClickException as error:
             return _fail(error.format_message(), error.exit_code)
         except _Interrupted:
-            return _fail("interrupted; nothing was left half-written", INTERRUPTED)
+            return _fail(SENTENCE, STATUS)
         except MemoryError as error:
             return _fail(f"out of memory: {error or 'fewer instants or ratios fit'}", 1)
+        except OSError as error:  # of standard output, for files fail with an error of ours
+            return _fail(one_line(error), 1)
     return result if isinstance(result, int) else 0
 
 
@@ -87,9 +91,7 @@ def _insistent() -> Iterator[None]:
         raise KeyboardInterrupt
 
     able = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")
-    before = (
-        [(number, signal.signal(number, interrupt)) for number in (signal.SIGINT, signal.SIGALRM, signal.SIGTERM)] if able else []
-    )
+    before = [(number, signal.signal(number, interrupt)) for number in (*interrupts(), signal.SIGALRM)] if able else []
     try:
         yield
     except KeyboardInterrupt:
@@ -106,5 +108,8 @@ def _insistent() -> Iterator[None]:
 
 
 def _fail(message: str, status: int) -> int:
-    click.echo(f"error: {' '.join(message.split())}", err=True)
+    for keyword, option in _OPTIONS.items():
+        message = message.replace(keyword, option)
+    with suppress(OSError):  # the terminal may be gone
+        click.echo(f"error: {' '.join(message.split())}", err=True)
     return status

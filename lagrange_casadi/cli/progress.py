@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,44 +15,60 @@ _SECONDS = 10.0
 
 
 @dataclass
-class Lines:
+class Silent:
+    """Shows nothing, and knows whether there was anything to do. Where others show it, a terminal that is gone stops nothing."""
+
+    begun: bool = field(default=False, init=False)
+
+    def __call__(self, what: str, done: float, total: float) -> None:
+        """Hear of progress."""
+        self.begun = True
+        with suppress(OSError):
+            self.show(what, done, total)
+
+    def show(self, what: str, done: float, total: float) -> None:
+        """Show progress."""
+
+    def close(self) -> None:
+        """Leave nothing behind."""
+
+
+@dataclass
+class Lines(Silent):
     """A line on standard error every ten seconds, with designs a second and the time left."""
 
     _began: float = field(default=0.0, init=False)
     _last: float = field(default=0.0, init=False)
     _first: float = field(default=0.0, init=False)
 
-    def __call__(self, what: str, done: float, total: float) -> None:
-        """Hear of progress."""
+    def show(self, what: str, done: float, total: float) -> None:
+        """Say where it goes on, and then a line now and then."""
         now = time.monotonic()
         if what != "designs":
             return
         if not self._began:
             self._began, self._last, self._first = now, now, done
             if done:
-                click.echo(f"going on after {_designs(done)} of {_designs(total)} designs", err=True)
+                click.echo(f"going on after {_grouped(done)} of {designs(total)}", err=True)
         elif now - self._last >= _SECONDS:
             self._last = now
             rate = (done - self._first) / (now - self._began)
             left = tqdm.format_interval((total - done) / rate) if rate else "?"
             click.echo(
-                f"{_designs(done)} of {_designs(total)} designs, {100 * done / total:.3g} %, {rate:.4g} a second, {left} left",
+                f"{_grouped(done)} of {designs(total)}, {100 * done / total:.3g} %, {rate:.4g} a second, {left} left",
                 err=True,
             )
 
-    def close(self) -> None:
-        """Nothing is left behind."""
-
 
 @dataclass
-class Bar:
+class Bar(Silent):
     """A bar of designs, and then one of the file."""
 
     _bar: Any = field(default=None, init=False)
     _what: str = field(default="", init=False)
 
-    def __call__(self, what: str, done: float, total: float) -> None:
-        """Hear of progress."""
+    def show(self, what: str, done: float, total: float) -> None:
+        """Move the bar."""
         if what != self._what:
             self.close()
             unit = {"designs": " designs"}.get(what, "")
@@ -63,15 +80,21 @@ class Bar:
     def close(self) -> None:
         """Take the bar away."""
         if self._bar is not None:
-            self._bar.close()
+            with suppress(OSError):
+                self._bar.close()
 
 
-def shown(quiet: bool) -> Lines | Bar | None:
+def shown(quiet: bool) -> Silent:
     """What shows progress: a bar on a terminal, lines elsewhere, nothing where it is to be quiet."""
     if quiet:
-        return None
+        return Silent()
     return Bar() if sys.stderr.isatty() else Lines()
 
 
-def _designs(count: float) -> str:
+def designs(count: float) -> str:
+    """So many designs, in words."""
+    return f"{_grouped(count)} design{'' if count == 1 else 's'}"
+
+
+def _grouped(count: float) -> str:
     return f"{int(count):,}".replace(",", " ")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import closing, nullcontext
+from contextlib import closing
 from pathlib import Path
 
 import click
@@ -15,27 +15,33 @@ from ..scene import Grid
 from ..sweep import KEEPS, Axis, Keep, Sweep, read_designs
 from ..sweep import sweep as carry_out
 from .options import AXIS, GRID, axis, grid, parameters, setting, untabled_rung
+from .progress import designs as counted
 from .progress import shown
 
 
 @click.command()
 @click.argument("case", type=click.Path(path_type=Path))
 @click.option("--grid", "axes", type=axis, metavar=AXIS, multiple=True, help="Sweep a parameter; repeatable, the last is fastest.")
+@click.option("--designs", type=click.Path(path_type=Path), metavar="FILE.csv", help="Sweep a list: names, then a line a design.")
 @click.option(
-    "--designs", type=click.Path(path_type=Path), metavar="FILE.csv", help="Sweep a list: a line of names, a line a design."
-)
-@click.option(
-    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
+    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give one that is not swept a value; repeatable."
 )
 @click.option("--t", type=grid, metavar=GRID, help="Instants [s]; default: the case's.")
-@click.option("--xi", type=grid, metavar=GRID, help="Keep section forces at these ratios xi/l too.")
-@click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK or all; repeatable.")
-@click.option("--keep", type=click.Choice(KEEPS), default="peaks", show_default=True, help="Peaks; with section laws; with all.")
+@click.option("--xi", type=grid, metavar=GRID, help="Keep section forces at these ratios xi/l too, each the largest over time.")
+@click.option(
+    "--want",
+    multiple=True,
+    metavar="OUTPUT",
+    help="effort or what else info CASE lists, but all leaves out the motion; repeatable.",
+)
+@click.option(
+    "--keep", type=click.Choice(KEEPS), default="peaks", show_default=True, help="Peaks; also section laws; also all over time."
+)
 @untabled_rung
-@click.option("--workers", type=click.IntRange(1), metavar="N", help="Threads; default: one a core.")
-@click.option("--dask", metavar="ADDRESS", help="Evaluate on the workers of this Dask scheduler.")
+@click.option("--workers", type=click.IntRange(1), metavar="N", help="Threads of this machine; default: one a core.")
+@click.option("--dask", metavar="ADDRESS", help="Evaluate on a cluster: its Dask scheduler, as tcp://HOST:8786.")
 @click.option("--resume", is_flag=True, help="Go on with what is there of the same sweep; start where there is nothing.")
-@click.option("--force", is_flag=True, help="Start anew, whatever is there.")
+@click.option("--force", is_flag=True, help="Start anew, and replace what is there.")
 @click.option("--yes", is_flag=True, help="Allow more than 10^9 designs.")
 @click.option("--quiet", is_flag=True, help="Show no progress.")
 @click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>_sweep.h5 here.")
@@ -60,7 +66,15 @@ def sweep(
     quiet: bool,
     out: Path | None,
 ) -> None:
-    """Evaluate CASE for every design of a grid or a list, and write one HDF5 file."""
+    """Evaluate CASE for every design of a grid or a list, and write one HDF5 file.
+
+    CASE is a folder with a case.py, or a Python file. Of each design the peaks of what is wanted are kept, with their instants and
+    places, and means of efforts. What was stopped goes on with --resume. best, table and plot read the file.
+
+    \b
+    lagrange-casadi sweep cases/slider_crank --grid l=0.12:0.4:57 --grid m3=0.1,0.5
+    lagrange-casadi best slider_crank_sweep.h5 --minimise peak:section:rod:bending
+    """
     if bool(axes) == bool(designs):
         raise click.UsageError("expected either --grid, as in --grid l=0.1:0.4:31, or --designs FILE.csv")
     if len({name for name, _ in axes}) < len(axes):
@@ -69,8 +83,7 @@ def sweep(
     if out and out.suffix not in (".h5", ".hdf5"):
         raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
     loaded = load_case(case)
-    progress = shown(quiet)
-    with closing(progress) if progress else nullcontext():
+    with closing(shown(quiet)) as progress:
         found = carry_out(
             loaded,
             read_designs(designs) if designs else dict(axes),
@@ -92,15 +105,13 @@ def sweep(
             progress=progress,
         )
     _report(found)
+    click.echo(f"wrote {found.path}" if progress.begun else f"{found.path} was complete already: nothing was done")
 
 
 def _report(found: Sweep) -> None:
     shape = " x ".join(str(length) for length in found.dimensions.values())
-    count = f"{found.size:,}".replace(",", " ")
-    click.echo(
-        f"{found.case}: {f'{shape} = ' if len(found.dimensions) > 1 else ''}{count} designs over {', '.join(found.parameters)}"
-    )
+    product = f"{shape} = " if len(found.dimensions) > 1 else ""
+    click.echo(f"{found.case}: {product}{counted(found.size)} over {', '.join(found.parameters)}")
     for status, many in found.counts().items():
         if status and many:
             click.echo(f"  {many} without a result: {found.statuses[status][1]}")
-    click.echo(f"wrote {found.path}")

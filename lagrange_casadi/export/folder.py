@@ -168,7 +168,7 @@ def _check_free(folder: Path, prefix: str, files: Collection[str], *, force: boo
     what = what or ("holds an export of another name" if known and f"{prefix}.h" not in known else "")
     if what and not force:
         raise PathError(
-            f"cannot export into {folder}: it {what}; choose another folder, or give --force, which touches no other file"
+            f"cannot export into {folder}: it {what}; choose another folder, or say force=True, which touches no other file"
         )
     return same
 

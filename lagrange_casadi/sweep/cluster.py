@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import functools
 import importlib
 import logging
@@ -11,6 +12,7 @@ import threading
 import time
 import warnings
 from collections.abc import Iterator, Mapping
+from concurrent.futures import Future, wait
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,7 +27,9 @@ from .columns import Harvest
 from .plan import Plan, Task, difference, signature
 from .workers import Block
 
-_PATIENCE = "10s"
+_PATIENCE = 10.0
+"""Seconds in which a scheduler must answer."""
+
 _ADDRESS = re.compile(r"(tcp|tls|ws|wss|ucx)://\S+:\d{1,5}/?")
 _PULSE, _GLANCE = 1.0, 2e-3
 """Seconds after which whoever waits for a block hears that none came, and between looks."""
@@ -68,57 +72,65 @@ class Cluster:
 
     def __post_init__(self) -> None:
         if not _ADDRESS.fullmatch(self.address):
-            raise DeclarationError(f"--dask: expected an address like tcp://HOST:8786, got '{self.address}'")
+            raise DeclarationError(f"dask: expected an address like tcp://HOST:8786, got '{self.address}'")
 
     def results(self, plan: Plan, queue: Queue) -> Iterator[Block | None]:
         """Evaluate what is in the queue, in the order in which workers are done."""
         source = Source(str(self.case.path), self.case.path.read_text())
         told = signature(plan.scene, plan.task, plan.harvest.engine.provenance)
-        with self._connected() as client:
-            waiting = _dask().as_completed(loop=client.loop)
-            blocks: dict[Any, tuple[int, int]] = {}
-
-            def send() -> None:
-                most = max(1, _AHEAD * self._threads(client))
-                while len(blocks) < most and (block := queue.take()):
-                    future = client.submit(_evaluate, source, plan.task, told, plan.block(*block), plan.room, pure=False)
-                    blocks[future] = block
-                    waiting.add(future)
-
-            if not self._threads(client):
-                warnings.warn(f"the scheduler at {self.address} has no workers yet; waiting for some", stacklevel=2)
-            send()
-            while blocks:
-                future = _first(waiting)
-                if future is None:
+        _dask()
+        with _silenced():
+            connecting = _connecting(self.address)
+            try:
+                while not wait([connecting], _PULSE).done:
                     yield None
-                    if client.status != "running":
-                        raise self._lost()
-                    if queue.stopped and not self._threads(client):
+                    if queue.stopped:
                         return
-                    continue
-                start, stop = blocks.pop(future)
-                columns = self._result(future, start, stop)
-                yield start, stop, columns
-                del future, columns
+                yield from self._served(self._connected(connecting), plan, queue, source, told)
+            finally:
+                connecting.add_done_callback(_let_go)
+
+    def _served(self, client: Any, plan: Plan, queue: Queue, source: Source, told: Mapping[str, Any]) -> Iterator[Block | None]:
+        waiting = _dask().as_completed(loop=client.loop)
+        blocks: dict[Any, tuple[int, int]] = {}
+
+        def send() -> None:
+            most = max(1, _AHEAD * self._threads(client))
+            while len(blocks) < most and (block := queue.take()):
+                future = client.submit(_evaluate, source, plan.task, told, plan.block(*block), plan.room, pure=False)
+                blocks[future] = block
+                waiting.add(future)
+
+        if not self._threads(client):
+            warnings.warn(f"the scheduler at {self.address} has no workers yet; waiting for some", stacklevel=2)
+        send()
+        while blocks:
+            future = _first(waiting)
+            if future is None:
+                yield None
                 if client.status != "running":
                     raise self._lost()
-                send()
+                if queue.stopped and not self._threads(client):
+                    return
+                continue
+            start, stop = blocks.pop(future)
+            columns = self._result(future, start, stop)
+            yield start, stop, columns
+            del future, columns
+            if client.status != "running":
+                raise self._lost()
+            send()
 
-    @contextmanager
-    def _connected(self) -> Iterator[Any]:
-        """A client, while it is needed."""
-        dask = _dask()
-        with _silenced():
-            try:
-                client = dask.Client(self.address, timeout=_PATIENCE, set_as_default=False)
-            except (OSError, ValueError, RuntimeError) as error:
-                raise ClusterError(f"cannot reach a Dask scheduler at {self.address}: {one_line(error)}") from None
-            try:
-                yield client
-            finally:
-                with suppress(Exception):
-                    client.close(timeout=2)
+    def _connected(self, connecting: Future[Any]) -> Any:
+        error = connecting.exception()
+        if error is None:
+            return connecting.result()
+        if isinstance(error, (TimeoutError, asyncio.TimeoutError)):
+            why = f"nothing came from there within {_PATIENCE:g} s"
+        else:
+            known = isinstance(error, (OSError, TypeError, ValueError, RuntimeError))
+            why = one_line(error) if known else "what is there says nothing that a scheduler says"
+        raise ClusterError(f"no Dask scheduler answers at {self.address}: {why}")
 
     def _result(self, future: Any, start: int, stop: int) -> list[bytes]:
         dask = _dask()
@@ -145,6 +157,42 @@ class Cluster:
         return ClusterError(f"the Dask scheduler at {self.address} was lost")
 
 
+def _connecting(address: str) -> Future[Any]:
+    """A client, made in a thread of its own: what takes its time to answer, or never does, holds nobody up."""
+    client: Future[Any] = Future()
+
+    def connect() -> None:
+        try:
+            # A client of Dask's waits without end for what accepts a connection and then says nothing of Dask's. It gives up by
+            # itself, and says why, where nothing accepts one: that comes first.
+            asyncio.run(asyncio.wait_for(_greet(address), _PATIENCE + 1.0))
+            client.set_result(_dask().Client(address, timeout=_PATIENCE, set_as_default=False))
+        except Exception as error:
+            client.set_exception(error)
+
+    threading.Thread(target=connect, daemon=True).start()
+    return client
+
+
+async def _greet(address: str) -> None:
+    """Ask what is at an address who it is. Raises ``OSError`` where that is no scheduler."""
+    security = _dask().Security().get_connection_args("client")
+    line = await importlib.import_module("distributed.comm").connect(address, timeout=_PATIENCE, **security)
+    try:
+        await line.write({"op": "identity", "reply": True})
+        kind = (await line.read())["type"]
+    finally:
+        line.abort()
+    if kind != "Scheduler":
+        raise OSError(f"it is a {kind.lower()}")
+
+
+def _let_go(client: Future[Any]) -> None:
+    if client.exception() is None:
+        with suppress(Exception):
+            client.result().close(timeout=2)
+
+
 def _first(waiting: Any) -> Any | None:
     """One that is done, or None where none is after a while."""
     end = time.monotonic() + _PULSE
@@ -159,7 +207,7 @@ def _dask() -> Any:
     try:
         return importlib.import_module("distributed")
     except ImportError:
-        raise ClusterError("--dask needs Dask; install it with: pip install 'lagrange_casadi[cluster]'") from None
+        raise ClusterError("a cluster needs Dask; install it with: pip install 'lagrange_casadi[cluster]'") from None
 
 
 @contextmanager

@@ -30,7 +30,7 @@ def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: 
     :class:`PathError` or :class:`StoreError` where the file is another sweep's, :class:`StoppedError` after an interrupt.
     """
     if resume and force:
-        raise DeclarationError("--resume and --force exclude each other: go on with what is there, or start anew")
+        raise DeclarationError("resume and force exclude each other: go on with what is there, or start anew")
     check_names(plan.designs)
     check_writable(target)
     folder = Folder(target)
@@ -54,23 +54,23 @@ def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: 
 def _kept(folder: Folder, plan: Plan) -> str:
     kept = sum(part.stop - part.start for part in folder.parts())
     count = f"{kept:,} of {plan.size:,} designs".replace(",", " ")
-    return f"{count} are kept in {folder.path}: go on with --resume" if kept else "nothing was done yet"
+    return f"{count} are kept in {folder.path}: go on with resume=True" if kept else "nothing was done yet"
 
 
 def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
     """Whether the file is there already; else the folder is ready to be filled, and what is another sweep's was refused."""
     there = folder.target.exists()
     if folder.begun and not (resume or force):
-        raise PathError(f"{folder.path} holds an unfinished sweep: go on with --resume, or start anew with --force")
+        raise PathError(f"{folder.path} holds an unfinished sweep: go on with resume=True, or start anew with force=True")
     if there and not (resume or force):
-        raise PathError(f"{folder.target} exists: --force replaces it, --resume goes on with a sweep that was not finished")
+        raise PathError(f"{folder.target} exists: force=True replaces it, resume=True goes on with a sweep that was not finished")
     if force or not (folder.begun or there):
         folder.begin(plan.identity, forced=force)
         return False
     if folder.begun:
         _refuse_other(folder.path, difference(folder.identity, plan.identity))
         if there and not folder.forced and not _is_whole(folder.target, plan):
-            raise PathError(f"{folder.target} is there now, which was not when the sweep began: move it, or --force starts anew")
+            raise PathError(f"{folder.target} is there now, which was not when the sweep began: move it, or force=True starts anew")
         return there and _is_whole(folder.target, plan)
     _refuse_other(folder.target, difference(identity_of(folder.target), plan.identity))
     return True
@@ -86,7 +86,7 @@ def _is_whole(target: Path, plan: Plan) -> bool:
 
 def _refuse_other(place: Path, found: str | None) -> None:
     if found:
-        raise StoreError(f"{place} is of another sweep: {found}; start anew with --force, or choose another --out")
+        raise StoreError(f"{place} is of another sweep: {found}; start anew with force=True, or write another file")
 
 
 def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], None], progress: Progress) -> None:

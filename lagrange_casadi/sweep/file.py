@@ -37,7 +37,7 @@ def check_names(designs: Designs) -> None:
     for name in designs.dimensions:
         if name in _TAKEN and isinstance(designs, Grid):
             raise DeclarationError(
-                f"parameter '{name}' cannot be an axis: the file keeps that name for its own; give its values by --designs"
+                f"parameter '{name}' cannot be an axis: the file keeps that name for its own; sweep a list of designs instead"
             )
 
 

@@ -91,7 +91,7 @@ class Folder:
         names = sorted(path.name for path in self.path.iterdir()) if self.path.is_dir() else []
         for name in names:
             if name not in (_PLAN, _LOCK, _FORCED, _JOINED) and not name.endswith((_PART, _DRAFT)):
-                raise PathError(f"{self.path} holds '{name}', which is no sweep's: move it, or choose another --out")
+                raise PathError(f"{self.path} holds '{name}', which is no sweep's: move it, or write another file")
 
     def _lock(self) -> int:
         while True:
@@ -108,7 +108,7 @@ class Folder:
                     return number
             except BlockingIOError:
                 os.close(number)
-                raise BusyError(f"another sweep is writing {self.target}: wait for it, or choose another --out") from None
+                raise BusyError(f"another sweep is writing {self.target}: wait for it, or write another file") from None
             os.close(number)
 
     def _is_held(self, number: int) -> bool:
@@ -129,7 +129,7 @@ class Folder:
         try:
             return json.loads((self.path / _PLAN).read_text())
         except (OSError, ValueError) as error:
-            raise StoreError(f"{self.path / _PLAN}: damaged: {error}; start anew with --force") from None
+            raise StoreError(f"{self.path / _PLAN}: damaged: {error}; start anew with force=True") from None
 
     @property
     def forced(self) -> bool:

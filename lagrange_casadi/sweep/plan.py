@@ -91,7 +91,7 @@ class Plan:
         check_designs(designs, scene.mechanism, fixed)
         if designs.size > MANY and not many:
             raise DeclarationError(
-                f"the grid has {designs.size:,} designs".replace(",", " ") + ", more than 10^9; if that is meant, say --yes"
+                f"the grid has {designs.size:,} designs".replace(",", " ") + ", more than 10^9; if that is meant, say many=True"
             )
         names = _wanted(scene, wanted)
         ratios = None if xi is None else checked_ratios(xi)

@@ -117,7 +117,7 @@ def hired(workers: int | None, dask: str | None, case: Case | None) -> Workers:
     if dask is None:
         return Threads(workers)
     if workers is not None:
-        raise DeclarationError("--workers and --dask exclude each other: a cluster has workers of its own")
+        raise DeclarationError("workers and dask exclude each other: a cluster has workers of its own")
     if case is None:
         raise DeclarationError("a cluster needs a case from load_case: its workers load the case themselves")
     from .cluster import Cluster
