@@ -13,7 +13,8 @@ import sweeps
 
 from lagrange_casadi.cli import main, progress
 from lagrange_casadi.errors import StoreError
-from lagrange_casadi.sweep import Sweep, cluster, conduct
+from lagrange_casadi.sweep import Sweep, cluster
+from lagrange_casadi.sweep import columns as kept
 from lagrange_casadi.sweep.parts import Folder
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
@@ -301,7 +302,8 @@ def test_info_and_check_tell_how_far_an_unfinished_sweep_is(here, capfd, monkeyp
         raise StoreError("no more")
 
     with monkeypatch.context() as patch:
-        patch.setattr(conduct, "join", fail)
+        patch.setattr(Folder, "publish", fail)
+        patch.setattr(kept, "_MOST", 20)
         assert main([*ASKED, "--grid", "l=0.2:0.4:70", "--workers", "1", "--quiet", "--out", "x.h5"]) == 1
     folder = here / "x.h5.parts"
     first, *_ = sorted(folder.glob("*.part"))
@@ -313,7 +315,7 @@ def test_info_and_check_tell_how_far_an_unfinished_sweep_is(here, capfd, monkeyp
     (folder / "000000000000-000000000001.part").write_bytes(first.read_bytes())
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     capfd.readouterr()
-    told = f"unfinished: {done} of 70 designs done; `sweep` with --resume goes on"
+    told = f"unfinished: {done} of 70 designs done; the same sweep goes on when it is resumed"
     with Folder(here / "x.h5").locked():
         for target in ("x.h5.parts", "x.h5"):
             assert main(["info", target]) == 0
@@ -323,7 +325,7 @@ def test_info_and_check_tell_how_far_an_unfinished_sweep_is(here, capfd, monkeyp
             assert main(["check", target]) == 1
             assert capfd.readouterr() == ("", f"{target}: {told}\n")
         assert main(["table", "x.h5"]) == 2
-        told = "x.h5: its sweep is not finished: `lagrange-casadi info` tells how far it is, --resume goes on"
+        told = "x.h5: its sweep is not finished: `lagrange-casadi info` tells how far it is"
         assert capfd.readouterr() == ("", f"error: {told}\n")
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
     (folder / "plan.json").write_text('{"grid": 3}')

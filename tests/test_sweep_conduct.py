@@ -55,12 +55,13 @@ def stop_after(count):
 
 @pytest.mark.parametrize("workers", [1, 2, 5, None])
 def test_the_same_bytes_whatever_the_workers(whole, engine, tmp_path, workers):
-    engine.pause = 1e-4
+    engine.pause = 1e-3
     engine.calls.clear()
     assert run(tmp_path / "x.h5", workers=workers) == whole
     assert set(engine.threads) == {1}
     assert sum(size for size, _ in engine.calls) == SIZE
-    assert len({thread for _, thread in engine.calls}) == (cores() if workers is None else workers)
+    threads, most = len({thread for _, thread in engine.calls}), workers or cores()
+    assert min(most, 2) <= threads <= most
 
 
 def test_the_same_bytes_whatever_the_stops(whole, tmp_path):

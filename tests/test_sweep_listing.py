@@ -35,9 +35,9 @@ def test_a_list_is_read(tmp_path):
         ("l\tr\n0.2\t0.1\n", "line 1: cells are separated by a tab, expected ','"),
         (
             "l,peak:effort:O\n0.2,nan\n",
-            "line 1, column 2: 'peak:effort:O' is a result of a sweep, not a parameter: `lagrange-casadi ",
+            "line 1, column 2: 'peak:effort:O' is a result of a sweep, not a parameter: take the results out",
         ),
-        ("l,peak:effort:O\n0.2,nan\n", "table FILE.h5 --csv OUT.csv --column l` writes parameters alone"),
+        ("l,peak:effort:O\n0.2,nan\n", "`lagrange-casadi table` writes what it is told"),
         ("l,r,l\n1,2,3\n", "line 1, column 3: 'l' stands there already as column 1"),
     ],
 )

@@ -240,7 +240,7 @@ def check_designs(designs: Designs, mechanism: Mechanism, fixed: Mapping[str, fl
     """Raise for parameters that are none or set twice, and for values out of their ranges, all of them at once."""
     for name in designs.names:
         if name not in mechanism.parameters and name in RESULTS:
-            raise DeclarationError(not_parameter(name, designs.names))
+            raise DeclarationError(not_parameter(name))
         if name not in mechanism.parameters:
             raise UnknownNameError("parameter", name, mechanism.parameters)
         if name in fixed:
@@ -269,13 +269,9 @@ def grouped(count: int) -> str:
     return f"{count:,}".replace(",", " ")
 
 
-def not_parameter(name: str, others: Sequence[str]) -> str:
+def not_parameter(name: str) -> str:
     """Say of a column's name that it is no parameter's."""
-    first = next((other for other in others if ":" not in other and other not in RESULTS), "NAME")
-    return (
-        f"'{name}' is a result of a sweep, not a parameter: `lagrange-casadi table FILE.h5 --csv OUT.csv --column {first}` writes "
-        "parameters alone"
-    )
+    return f"'{name}' is a result of a sweep, not a parameter: take the results out; `lagrange-casadi table` writes what it is told"
 
 
 def _length(words: str) -> int:

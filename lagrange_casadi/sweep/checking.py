@@ -50,7 +50,7 @@ def progress(folder: Folder) -> str:
         size = size_of(folder.identity["grid"])
     except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
         raise StoreError(f"{folder.path}: damaged: {one_line(error)}") from None
-    return f"unfinished: {grouped(folder.done())} of {counted(size)} done; `sweep` with --resume goes on"
+    return f"unfinished: {grouped(folder.done())} of {counted(size)} done; the same sweep goes on when it is resumed"
 
 
 def _check_column(file: h5py.File, sweep: Sweep, kept: Kept) -> Iterator[str]:

@@ -57,7 +57,7 @@ def _check_head(path: str | os.PathLike[str], names: list[str]) -> None:
         if _is_number(name):
             raise DeclarationError(f"{place}: expected a parameter's name, got '{name}': put a line of names above the numbers")
         if ":" in name:
-            raise DeclarationError(f"{place}: {not_parameter(name, names)}")
+            raise DeclarationError(f"{place}: {not_parameter(name)}")
         if names.index(name) != column - 1:
             raise DeclarationError(f"{place}: '{name}' stands there already as column {names.index(name) + 1}")
 

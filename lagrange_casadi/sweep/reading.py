@@ -378,5 +378,5 @@ def _along(dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], wher
 
 def _reading(path: str | Path) -> AbstractContextManager[h5py.File]:
     if not Path(path).exists() and Folder(Path(path)).begun:
-        raise PathError(f"{path}: its sweep is not finished: `lagrange-casadi info` tells how far it is, --resume goes on")
+        raise PathError(f"{path}: its sweep is not finished: `lagrange-casadi info` tells how far it is")
     return reading(path, SCHEMA, SCHEMA_VERSION, "the file of a sweep", " of sweeps")
