@@ -1,6 +1,5 @@
 """The exported folder: what it holds, that it is clean C, that it fails loudly, and that it is the same bytes each time."""
 
-import json
 import re
 import subprocess
 import sys
@@ -13,7 +12,6 @@ from test_codegen import spline_arm
 from test_mobility import truss_platform
 
 from lagrange_casadi import Mechanism, Scene, export, load_case, motion
-from lagrange_casadi.errors import DeclarationError, PathError, SizeError, UnknownNameError
 
 ARITHMETIC = [
     {},
@@ -276,153 +274,3 @@ def test_names_that_c_keeps_for_itself(tmp_path):
             assert result.returncode == 0, result.stderr
     assert cc(["cc", "-std=c99"], tmp_path, "double_mechanism.c", "selftest.c").returncode == 0
     subprocess.run([tmp_path / "program"], check=True, capture_output=True)
-
-
-def test_the_manifest_knows_all_files(tmp_path):
-    made = export(slider_crank(), tmp_path)
-    content = json.loads((tmp_path / "export.json").read_text())
-    assert set(content["files"]) | {"export.json"} == {path.name for path in tmp_path.iterdir()}
-    assert [row["path"] for row in content["outputs"]] == [member.path for member in made.outputs]
-    assert content["scene"] in (tmp_path / "slider_crank.h").read_text()
-
-
-def test_the_scene_hash_tells_scenes_apart(tmp_path):
-    hashes = set()
-    for number, (options, change) in enumerate(
-        (({}, {}), ({"wanted": ["effort"]}, {}), ({}, {"l": 0.3}), ({"precision": "single"}, {}))
-    ):
-        export(slider_crank(), tmp_path / str(number), parameters=change, **options)
-        hashes.add(json.loads((tmp_path / str(number) / "export.json").read_text())["scene"])
-    assert len(hashes) == 3, "the precision is not the scene's affair"
-
-
-@pytest.mark.parametrize(
-    ("options", "low", "high"), [({}, 0, 1e-12), ({"precision": "single"}, 1e-9, 1e-4), ({"table": 8}, 1e-3, 1)]
-)
-def test_the_folder_says_how_it_is_evaluated_and_how_exactly(options, low, high, tmp_path):
-    export(slider_crank(), tmp_path, parameters={"l": 0.3125}, **options)
-    content = json.loads((tmp_path / "export.json").read_text())
-    assert low < content["error"]["largest"] < high
-    said = f"options of the export: {content['options']}. Its outputs are off by about {content['error']['largest']:.0e}"
-    for file in ("slider_crank.h", "README.md"):
-        text = re.sub(r"\s+", " ", (tmp_path / file).read_text())
-        assert said in text
-        assert ("l = 0.3125" in text) is ("table" in options)
-    assert content["fixed"] == ({"r": 0.1, "l": 0.3125, "m1": 0.1, "m2": 0.1, "m3": 0.1} if "table" in options else {})
-
-
-def test_a_coarse_table_is_compared_with_the_mechanism_itself(tmp_path):
-    export(slider_crank(), tmp_path / "exact")
-    export(slider_crank(), tmp_path / "table", table=8)
-    rows = [
-        (tmp_path / kind / "selftest.c").read_text().partition("outputs_at[INSTANTS]")[2].partition("};")[0]
-        for kind in ("exact", "table")
-    ]
-    assert rows[0] == rows[1]
-
-
-def test_examples_of_iterated_loops_go_in_steps_they_can_follow(tmp_path):
-    for number, (scene, options) in enumerate(((slider_crank(), {"newton": 1}), (truss_platform(), {}))):
-        folder = tmp_path / str(number)
-        made = export(scene, folder, **options)
-        assert cc(["cc", "-std=c99"], folder, f"{made.prefix}.c", "example.c").returncode == 0
-        ran = subprocess.run([folder / "program"], capture_output=True, text=True, check=False)
-        assert ran.returncode == 0, ran.stderr
-        assert ran.stdout.count("\n") == 13
-        (folder / "shown.c").write_text(shown((folder / f"{made.prefix}.h").read_text(), made.prefix))
-        assert cc(["cc", "-std=c99"], folder, f"{made.prefix}.c", "shown.c").returncode == 0
-        assert subprocess.run([folder / "program"], check=False).returncode == 0
-
-
-def shown(header, prefix):
-    """The header's own example as a program that answers with its last status."""
-    lines = re.search(rf"     {prefix}_model model;\n.*?puts\([^\n]*\n", header, re.DOTALL).group()
-    return f'#include "{prefix}.h"\n#include <stdio.h>\nint main(void) {{\n{lines}return (int) status;\n}}\n'
-
-
-def test_a_joint_may_be_called_as_a_rest_is(tmp_path):
-    m = Mechanism("two")
-    first, second = m.link("first", length=1, mass=1), m.link("second", length=1, mass=1)
-    m.revolute("O", m.ground, first)
-    m.revolute("O_rest", first.tip, second)
-    scene = Scene(m, {"O": motion.polynomial(0, 1), "O_rest": motion.polynomial(0, 2)}, t=(0, 1, 11))
-    made = export(scene, tmp_path, precision="single")
-    assert len({member.name for member in made.inputs}) == len(made.inputs) == 8
-    assert {"O_rest", "O_rest_2"} < {member.name for member in made.inputs}
-    assert list(made.mapped.values()) == ["O_rest_2"]
-    assert cc(["cc", "-std=c99"], tmp_path, "two.c", "selftest.c").returncode == 0
-    assert subprocess.run([tmp_path / "program"], check=False, capture_output=True).returncode == 0
-
-
-@pytest.mark.parametrize("flag", ["-ffast-math", "-ffinite-math-only"])
-def test_arithmetic_without_nan_is_refused(flag, tmp_path):
-    export(slider_crank(), tmp_path)
-    result = cc(["cc", "-std=c99", "-O2", flag, "-c"], tmp_path, "slider_crank.c", output="x.o")
-    assert "compile without -ffast-math" in result.stderr
-
-
-def test_parameters_become_defaults(tmp_path):
-    export(slider_crank(), tmp_path, parameters={"l": 0.3125})
-    assert "0.3125 /* l */" in (tmp_path / "slider_crank.c").read_text()
-
-
-def test_an_export_goes_over_its_own_files_only(tmp_path):
-    out = tmp_path / "out"
-    export(slider_crank(), out)
-    export(slider_crank(), out, precision="single")
-    assert "float" in (out / "slider_crank.h").read_text()
-    (out / "notes.txt").write_text("mine")
-    with pytest.raises(PathError, match=r"holds other files, 'notes\.txt' among them"):
-        export(slider_crank(), out)
-    export(slider_crank(), out, force=True)
-    assert (out / "notes.txt").read_text() == "mine"
-    (out / "notes.txt").unlink()
-    (out / "example.c").write_text("int main(void) { return 0; }\n")
-    with pytest.raises(PathError, match=r"an export whose 'example\.c' was changed since"):
-        export(slider_crank(), out)
-    export(slider_crank(), out, force=True)
-    assert "slider_crank" in (out / "example.c").read_text()
-
-
-def test_what_an_earlier_export_alone_had_goes(tmp_path):
-    export(slider_crank(), tmp_path, name="press")
-    (tmp_path / "build").mkdir()
-    with pytest.raises(PathError, match="holds an export of another name"):
-        export(slider_crank(), tmp_path, name="pump")
-    export(slider_crank(), tmp_path, name="pump", force=True)
-    assert {path.stem for path in tmp_path.glob("*.[ch]")} == {"pump", "pump_mex", "example", "selftest"}
-    assert (tmp_path / "build").is_dir()
-
-
-def test_nothing_of_others_is_touched_even_by_force(tmp_path):
-    (tmp_path / "README.md").write_text("mine")
-    with pytest.raises(PathError, match=r"'README\.md' there is no file of an export"):
-        export(slider_crank(), tmp_path, force=True)
-    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"README.md": "mine"}
-
-
-def test_a_table_too_large_for_its_target(tmp_path):
-    with pytest.raises(SizeError, match=r"the table of the cycle takes \d+ bytes of constants, and the limit is 64000"):
-        export(slider_crank(), tmp_path / "out", table=4096, precision="single")
-    assert not (tmp_path / "out").exists()
-    t = np.linspace(0, 1, 4001)
-    m = Mechanism("arm")
-    m.revolute("J", m.ground, m.link("a", length=1, mass=1))
-    scene = Scene(m, {"J": motion.samples(t, t**2)}, t=(0, 1, 11))
-    with pytest.raises(SizeError, match=r"the motion of joint 'J' takes 112008 bytes"):
-        export(scene, tmp_path / "out", precision="single")
-    export(scene, tmp_path / "out", precision="single", largest=120_000)
-
-
-def test_mistakes(tmp_path):
-    with pytest.raises(UnknownNameError, match="unknown output 'effrot'"):
-        export(slider_crank(), tmp_path / "out", wanted=["effrot"])
-    with pytest.raises(UnknownNameError, match="unknown parameter 'q'"):
-        export(slider_crank(), tmp_path / "out", parameters={"q": 1.0})
-    with pytest.raises(DeclarationError, match="expected a Scene"):
-        export("slider_crank", tmp_path / "out")
-    with pytest.raises(DeclarationError, match="newton and table exclude each other"):
-        export(slider_crank(), tmp_path / "out", newton=2, table=64)
-    with pytest.raises(PathError, match="does not exist"):
-        export(slider_crank(), tmp_path / "none" / "out")
-    assert not list(tmp_path.iterdir())
