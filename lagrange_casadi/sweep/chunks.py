@@ -17,7 +17,7 @@ import numpy as np
 FILTERS = {"shuffle": True, "compression": "gzip", "compression_opts": 1, "fletcher32": True}
 """What tells HDF5 how such chunks are read."""
 
-_NEIGHBOURS, _SAMPLE = 1 << 11, 1 << 9
+_NEIGHBOURS, _SAMPLE = 1 << 9, 1 << 8
 _ROW, _ROWS = 1 << 8, 1 << 15
 _REPEATS, _OFTEN = 0.1, 4.0
 _STORED = 0xFFFF
@@ -40,8 +40,8 @@ def deflated(planes: Any) -> bytes:
         first += count
         if shrinks:
             compressor = zlib.compressobj(1, zlib.DEFLATED, -zlib.MAX_WBITS)
-            # A full flush ends on a whole byte, with nothing that a later block would look back to.
-            pieces += [compressor.compress(content), compressor.flush(zlib.Z_FULL_FLUSH)]
+            # It ends on a whole byte; what follows is another compressor's, which looks back to nothing.
+            pieces += [compressor.compress(content), compressor.flush(zlib.Z_SYNC_FLUSH)]
         else:
             pieces += _stored(content)
     return b"".join([*pieces, _LAST, struct.pack(">I", zlib.adler32(planes))])
