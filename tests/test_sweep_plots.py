@@ -132,11 +132,9 @@ def test_a_few_far_values_do_not_set_the_colours(swept):
     found = rewritten(swept, BENDING, far)
     figure = Peaks("x", (BENDING,), ("l", "r")).draw(found)
     cells = figure.axes[0].collections[0]
-    others = np.abs(found[BENDING][:, :, 0])
-    others = others[others < 1e4]
     assert cells.norm.vmax < 1e4
     assert figure.axes[1].get_xlabel().endswith("\nbeyond: up to 10000")
-    assert cells.cmap(cells.norm(1e4)) not in [cells.cmap(cells.norm(value)) for value in others]
+    assert cells.cmap(cells.norm(1e4)) != cells.cmap(1.0), "the arrow's colour is not that of the scale's end"
     curve = Peaks("x", (BENDING,), ("l",), at={"r": found["r"][first[1]]}).draw(found).axes[0]
     assert curve.get_ylim()[1] < 1e4
     assert curve.get_ylabel().endswith("beyond: up to 10000")
@@ -169,7 +167,8 @@ def test_limits(values, expected):
 
 def test_signed_limits_keep_zero_in_the_middle():
     for sizes in (np.linspace(1.0, 2.0, 50), np.geomspace(1.0, 1e4, 50)):
-        norm = Scale.of(sizes, signed=True).norm()
+        assert Scale.of(sizes, sides=1).norm()(np.array([0.0, sizes.max()])).tolist() == pytest.approx([0.0, 1.0])
+        norm = Scale.of(sizes, sides=2).norm()
         assert norm(0.0) == pytest.approx(0.5)
         assert norm(sizes.max()) == pytest.approx(1.0)
         assert norm(-sizes.max()) == pytest.approx(0.0)
@@ -191,32 +190,52 @@ def test_words():
         "0", "0.123", "146", "22619", "4.51·10⁵", "10⁵", "\N{MINUS SIGN}10⁻⁴"
     ]  # fmt: skip
     text = fitted(1.0, "effort of_a_bearing, |peak| [N m]", "", "beyond: up to 3")
-    assert max(map(len, text.split("\n"))) <= 15
+    assert max(map(len, text.split("\n"))) <= 16
     assert "[N\N{NO-BREAK SPACE}m]" in text
     assert "\n\n" not in text
     assert text.replace("\n", "").replace("\N{NO-BREAK SPACE}", "").replace(" ", "") == "effortof_a_bearing,|peak|[Nm]beyond:upto3"
 
 
-def test_section_forces_along_the_link(swept):
-    figure = Along("x", "rod", "l", {"r": 0.1, "m1": 0.2}).draw(swept)
-    values = swept["peak_at:section:rod:bending"][:, 1, 1].T
+@pytest.mark.parametrize("sized", [False, True])
+def test_section_forces_along_the_link(swept, sized):
+    """With their sign, unless it alternates from cell to cell, where it is that of rounding."""
+
+    def signed(values):
+        steady = np.where(np.arange(5) < 2, -1.0, 1.0)
+        alternating = np.where((np.arange(9)[:, None] + np.arange(5)) % 2, -1.0, 1.0)[:, None, None]
+        return np.abs(values) * (alternating if sized else steady)
+
+    found = rewritten(swept, "peak_at:section:rod:bending", signed)
+    figure = Along("x", "rod", "l", {"r": 0.1, "m1": 0.2}).draw(found)
+    values = found["peak_at:section:rod:bending"][:, 1, 1].T
+    assert np.nanmin(values) < 0.0 < np.nanmax(values)
     cells, shade = figure.axes[2].collections
-    np.testing.assert_array_equal(np.ma.filled(cells.get_array(), np.nan), values)
+    np.testing.assert_array_equal(np.ma.filled(cells.get_array(), np.nan), np.abs(values) if sized else values)
     np.testing.assert_array_equal(np.ma.getmaskarray(shade.get_array()), ~np.isnan(values))
-    assert cells.norm.vmin == -cells.norm.vmax
+    assert cells.norm.vmin == (0.0 if sized else -cells.norm.vmax)
+    assert plain(cells.colorbar.ax.get_xlabel()) == f"rod bending, {'|peak|' if sized else 'peak'} [N m]"
 
 
 def test_a_few_designs_are_curves_along_the_link(swept):
-    """A jump to a value of the other sign is no line; a design without a result is in the legend, with the reason."""
-    figure = Along("x", "rod", "r", {"l": 0.4}).draw(swept)
-    values = swept["peak_at:section:rod:bending"][-1, [0, 2, 1], 0]
+    """A jump to the other sign is no line, but rounding is no jump; a design without a result is named with the reason."""
+
+    def jumping(values):
+        values[-1, 1, 0], values[-1, 2, 0] = np.nan, [-1e-20, 1.0, 2.0, -2.0, -1.0]
+        return values
+
+    found = rewritten(swept, "peak_at:section:rod:bending", jumping)
+    figure = Along("x", "rod", "r", {"l": 0.4}).draw(rewritten(found, "status", lambda values: np.where(values, 4, values)))
     drawn = lines(figure.axes[2], "None")[:3]
-    for line, row, r in zip(drawn, values, (0.05, 0.07, 0.1), strict=True):
+    values = found["peak_at:section:rod:bending"][-1, [0, 2, 1], 0]
+    for line, row in zip(drawn, values, strict=True):
         y = line.get_ydata()
         np.testing.assert_array_equal(y[~np.isnan(y)], row[~np.isnan(row)])
-        assert not np.any(y[1:] * y[:-1] < 0.0)
-        reason = f", {REACH}" if np.isnan(row).all() else ""
-        assert f"r = {r} m{reason}" in list(legend(figure))
+    np.testing.assert_array_equal(drawn[1].get_ydata(), [-1e-20, 1.0, 2.0, np.nan, -2.0, -1.0])
+    assert plain(figure.axes[2].get_ylabel()) == "rod bending, peak [N m]"
+    status = found["status"][-1, [0, 2, 1], 0]
+    assert status.any()
+    reasons = ["" if not kind else ", no result: a loop cannot be closed" for kind in status]
+    assert legend(figure) == [f"r = {r} m{why}" for r, why in zip((0.05, 0.07, 0.1), reasons, strict=True)]
 
 
 def test_the_front_and_all_designs(swept):

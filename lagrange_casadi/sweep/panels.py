@@ -20,6 +20,7 @@ STYLE: dict[Any, Any] = {"font.size": 8, "axes.titlesize": 7, "axes.labelsize": 
 """For matplotlib's ``rc_context``: sizes that are read in a report's column, where figures stand at their own size."""
 
 _COLUMN, _PAGE, _HEIGHT, _ALONE, _LINE, _TITLE = 3.5, 7.0, 2.3, 2.9, 0.17, 8.5
+_STEPS = (1, 2, 2.5, 5, 10)
 _NAMED = 3
 _FOOT = 0.03
 _TIED = re.compile(r" (?=[^\[\]]*\])| (?==)|(?<==) |(?<=\d) (?=[a-zA-Z])")
@@ -99,6 +100,7 @@ class Sheet:
     def of(cls, count: int, *, columns: int = 0, share: Any = (False, False)) -> Sheet:
         """Panels row by row, one in a report's column, more over a page's width."""
         from matplotlib.figure import Figure
+        from matplotlib.ticker import MaxNLocator
 
         columns = columns or (count if count <= 3 else 2 if count == 4 else 3)
         rows = -(-count // columns)
@@ -107,12 +109,16 @@ class Sheet:
         grid = figure.subplots(rows, columns, squeeze=False, sharex=share[0], sharey=share[1]).ravel()
         for axes in grid[count:]:
             axes.set_axis_off()
+        for axes in grid[:count]:
+            # Not as many ticks as there is room for: that depends on the layout, which depends on the ticks.
+            axes.xaxis.set_major_locator(MaxNLocator(6 if columns < 3 else 4, steps=_STEPS))
+            axes.yaxis.set_major_locator(MaxNLocator(5, steps=_STEPS))
         return cls(figure, list(grid[:count]), width, columns)
 
     @property
     def across(self) -> float:
         """How wide text of a panel may be, in inches."""
-        return 0.86 * self.width / self.columns
+        return 0.83 * self.width / self.columns
 
     @property
     def up(self) -> float:
@@ -151,7 +157,7 @@ class Sheet:
 
 def fitted(inches: float, *lines: str, points: float = 8.0) -> str:
     """Lines broken to a width, between words or at underscores, not before a unit; empty ones are left out."""
-    most = max(10, int(inches * 120.0 / points))
+    most = max(10, int(inches * 132.0 / points))
     found = []
     for line in filter(None, lines):
         found.append("")
@@ -167,14 +173,14 @@ def value(sweep: Sweep, name: str, there: float, pattern: str = " {}") -> str:
     return f"{name} = {there:.4g}".replace("-", "\N{MINUS SIGN}") + _unit(sweep.parameters[name], pattern)
 
 
-def label(sweep: Sweep, name: str) -> str:
-    """A parameter or a column with its unit, as axes say it."""
+def label(sweep: Sweep, name: str, sized: bool = False) -> str:
+    """A parameter or a column with its unit, as axes say it; ``sized`` where the size is drawn of what has a sign."""
     if name in sweep.parameters:
         return name + _unit(sweep.parameters[name], " [{}]")
     kind, group, *parts = name.split(":")
     words = " ".join(part for part in parts if part != "resultant")
     words = words if group == "section" else f"{group} {words}"
-    return f"{words}, {_KINDS.get(kind, kind)}" + _unit(sweep.column(name).unit, " [{}]")
+    return f"{words}, {'|peak|' if sized else _KINDS.get(kind, kind)}" + _unit(sweep.column(name).unit, " [{}]")
 
 
 def _unit(unit: str, pattern: str) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ..density import Array
 from ..errors import NoDesignError
@@ -22,7 +23,7 @@ from .scale import Scale, edges, even_in_ratios, logarithmic, number
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_KEYED, _NAMED = 5, 3
+_KEYED, _NAMED, _OFTEN = 5, 3, 3
 _BLUE, _RED = "#1f4e79", "#c1272d"
 _OUTSIDE = {"viridis": {"over": "#fffbd0", "under": "#1a0022"}, "RdBu_r": {"over": "#3d0010", "under": "#021a33"}}
 _STAR: dict[str, Any] = {
@@ -111,7 +112,8 @@ class Scatter:
 class Along:
     """The section forces of a link over xi/l and a parameter: at each ratio the largest in size over the instants, signed.
 
-    A few values of the parameter are curves, more are a map.
+    A few values of the parameter are curves, more are a map. Where the sign alternates, as where the largest and the least of a
+    force are alike, the size is drawn.
     """
 
     name: str
@@ -122,30 +124,32 @@ class Along:
     def draw(self, sweep: Sweep) -> Figure:
         """The figure. Raises :class:`NoDesignError` where no design that it shows has a result."""
         cut = Cut.of(sweep, (self.over,), self.at)
-        mapped = cut.axes[0].size > LINES
-        gaps, xi = Gaps.of(sweep, np.repeat(cut[STATUS][:, None], sweep["xi"].size, axis=1)), sweep["xi"]
+        (there,), xi = cut.axes, sweep["xi"]
+        mapped = there.size > LINES
+        gaps = Gaps.of(sweep, np.repeat(cut[STATUS][:, None], xi.size, axis=1))
         sheet = Sheet.of(len(FORCES), share=("all", mapped))
         for axes, force in zip(sheet.panels, FORCES, strict=True):
             column = f"peak_at:section:{self.link}:{force}"
             values = cut[column]
             if np.isnan(values).all():
                 raise NoDesignError(_none(cut.notes))
-            scale = Scale.of(np.fmax.reduce(np.abs(values), axis=1), signed=True)
+            sized = _alternates(values)
+            values, words = np.abs(values) if sized else values, label(sweep, column, sized)
             if mapped:
-                cells = _cells(axes, (cut.axes[0], xi), values, scale, gaps, sheet.legend, "RdBu_r")
-                sheet.bar(axes, cells, scale, label(sweep, column))
+                scale = Scale.of(np.fmax.reduce(np.abs(values), axis=1), sides=1 if sized else 2)
+                colours = "viridis" if sized else "RdBu_r"
+                sheet.bar(axes, _cells(axes, (there, xi), values, scale, gaps, sheet.legend, colours), scale, words)
             else:
-                for k, (there, row) in enumerate(zip(cut.axes[0], values, strict=True)):
+                for k, row in enumerate(values):
                     # Where the largest changes its sign, it jumps from one instant to another.
-                    jumps = np.flatnonzero(row[1:] * row[:-1] < 0.0) + 1
-                    (line,) = axes.plot(
-                        np.insert(xi, jumps, np.nan), np.insert(row, jumps, np.nan), color=_colour(k, values.shape[0])
-                    )
+                    jumps = np.flatnonzero(_flips(row)) + 1
+                    x, y = (np.insert(w, jumps, np.nan) for w in (xi, row))
+                    (line,) = axes.plot(x, y, color=_colour(k, there.size), linewidth=1.1)
                     why = "" if np.isfinite(row).any() else f", {gaps.words[gaps.codes[k, 0] - 1]}"
-                    sheet.legend[value(sweep, self.over, there) + why] = line
+                    sheet.legend[value(sweep, self.over, there[k]) + why] = line
                 axes.axhline(0.0, color="0.6", linewidth=0.8, zorder=0)
                 axes.grid(True, color="0.9")
-                axes.set_ylabel(fitted(sheet.up, label(sweep, column)))
+                axes.set_ylabel(fitted(sheet.up, words))
         ratio = r"$\xi/l$"
         sheet.name_axes(*((label(sweep, self.over), ratio) if mapped else (ratio, "")))
         return sheet.finish(f"{sweep.case}: section forces of {self.link}, at each ratio the largest in size over time", *cut.notes)
@@ -268,6 +272,18 @@ def _curves(axes: Any, cut: Cut, values: Array, gaps: Gaps, legend: dict[str, An
         axes.set_xscale("log")
         even_in_ratios(axes.xaxis)
     axes.grid(True, color="0.9")
+
+
+def _flips(values: Array) -> npt.NDArray[np.bool_]:
+    """Where the next value has the other sign, and both are more than rounding."""
+    small = 1e-6 * np.nanmax(np.abs(values), initial=0.0)
+    seen = np.where(np.abs(values) > small, values, 0.0)
+    return np.asarray(seen[1:] * seen[:-1] < 0.0)
+
+
+def _alternates(values: Array) -> bool:
+    """Whether the sign changes more than three times along rows or columns, on average."""
+    return any(float(_flips(each).sum(axis=0).mean()) > _OFTEN for each in (values, values.T))
 
 
 def _star(axes: Any, x: Any, y: Any, legend: dict[str, Any]) -> None:

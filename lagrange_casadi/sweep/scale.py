@@ -19,9 +19,9 @@ class Scale:
     """Limits of colours or of an axis, which a few designs near a dead centre do not set.
 
     They are those of the values; but where some are further from the middle 90 % than twice what it spans, half its span away from
-    it. A scale is logarithmic where the middle spans more than 20 times, and there once its span is far. One of ``signed`` values
-    has zero in its middle, and ``low`` and ``high`` are sizes; a logarithmic one is linear up to ``low``. ``below`` and ``above``
-    say that values lie outside, ``most`` is the largest.
+    it. A scale is logarithmic where the middle spans more than 20 times, and there once its span is far. One with ``sides`` begins
+    with zero (1) or has zero in its middle (2); up to ``low`` it is linear. ``below`` and ``above`` say that values lie outside,
+    ``most`` is the largest.
     """
 
     low: float
@@ -30,11 +30,11 @@ class Scale:
     below: bool
     above: bool
     most: float
-    signed: bool = False
+    sides: int = 0
 
     @classmethod
-    def of(cls, values: Array, signed: bool = False) -> Scale:
-        """The scale of sizes of which at least one is finite, or of signed values that do not exceed them."""
+    def of(cls, values: Array, sides: int = 0) -> Scale:
+        """The scale of sizes of which at least one is finite, or with ``sides`` of what does not exceed them."""
         found = values[np.isfinite(values)]
         least, most = float(found.min()), float(found.max())
         # Of a few values, the least and the largest are never in the middle.
@@ -50,39 +50,43 @@ class Scale:
         if high - low <= _SAME * max(abs(high), abs(low)):
             pad = 0.05 * abs(high) or 1.0
             low, high = low - pad, high + pad
-        return cls(float(low), float(high), log, least < low, most > high, most, signed)
+        return cls(float(low), float(high), log, least < low, most > high, most, sides)
 
     @property
     def extend(self) -> str:
         """Where a colour bar has arrows."""
-        outside = (self.above, self.above) if self.signed else (self.below, self.above)
+        outside = (self.above and self.sides == 2 if self.sides else self.below, self.above)
         return {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[outside]
 
     @property
     def note(self) -> str:
         """How far values go that lie above, in words."""
-        return f"beyond: up to {number(self.most)}{' in size' if self.signed else ''}" if self.above else ""
+        return f"beyond: up to {number(self.most)}{' in size' if self.sides == 2 else ''}" if self.above else ""
 
     def norm(self) -> Any:
         """For colours."""
         from matplotlib.colors import AsinhNorm, LogNorm, Normalize
 
-        if self.signed:
-            return AsinhNorm(self.low, -self.high, self.high) if self.log else Normalize(-self.high, self.high)
+        if self.sides:
+            least = -self.high if self.sides == 2 else 0.0
+            return AsinhNorm(self.low, least, self.high) if self.log else Normalize(least, self.high)
         return (LogNorm if self.log else Normalize)(self.low, self.high)
 
     def mark(self, bar: Any) -> None:
         """Ticks of a short horizontal colour bar."""
         from matplotlib.ticker import MaxNLocator
 
-        if self.signed and self.log:
+        if self.sides and self.log:
             powers: list[int] = []
             for power in range(int(np.floor(np.log10(self.high))), int(np.floor(np.log10(self.low))), -1):
                 if 10.0**power > 2.0 * self.low and (not powers or powers[-1] - power >= np.log10(self.high / self.low) / 3):
                     powers.append(power)
             words = [f"10{_raised(power)}" for power in powers]
-            ticks = [*(-(10.0**power) for power in powers), 0.0, *(10.0**power for power in powers)]
-            bar.set_ticks(ticks, labels=[*(f"\N{MINUS SIGN}{word}" for word in words), "0", *words])
+            ticks, labels = [0.0, *(10.0**power for power in powers)], ["0", *words]
+            if self.sides == 2:
+                ticks = [*(-tick for tick in ticks[1:]), *ticks]
+                labels = [*(f"\N{MINUS SIGN}{word}" for word in words), *labels]
+            bar.set_ticks(ticks, labels=labels)
             bar.minorticks_off()
         elif self.log:
             even_in_ratios(bar.ax.xaxis)
@@ -97,7 +101,9 @@ class Scale:
             limits = low / (high / low) ** foot, high * (high / low) ** 0.05
         else:
             limits = low - foot * (high - low), high + 0.05 * (high - low)
-        axes.set(**{f"{axis}scale": "log" if self.log else "linear", f"{axis}lim": limits})
+        if self.log:
+            axes.set(**{f"{axis}scale": "log"})
+        axes.set(**{f"{axis}lim": limits})
         if self.log:
             even_in_ratios(getattr(axes, f"{axis}axis"))
 
