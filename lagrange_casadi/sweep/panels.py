@@ -20,7 +20,7 @@ STYLE: dict[Any, Any] = {"font.size": 8, "axes.titlesize": 7, "axes.labelsize": 
 """For matplotlib's ``rc_context``: sizes that are read in a report's column, where figures stand at their own size."""
 
 _COLUMN, _PAGE, _HEIGHT, _ALONE, _LINE, _TITLE = 3.5, 7.0, 2.3, 2.9, 0.17, 8.5
-_STEPS = (1, 2, 2.5, 5, 10)
+_STEPS = (1, 2, 5, 10)
 _NAMED = 3
 _FOOT = 0.03
 _TIED = re.compile(r" (?=[^\[\]]*\])| (?==)|(?<==) |(?<=\d) (?=[a-zA-Z])")
@@ -111,8 +111,8 @@ class Sheet:
             axes.set_axis_off()
         for axes in grid[:count]:
             # Not as many ticks as there is room for: that depends on the layout, which depends on the ticks.
-            axes.xaxis.set_major_locator(MaxNLocator(6 if columns < 3 else 4, steps=_STEPS))
-            axes.yaxis.set_major_locator(MaxNLocator(5, steps=_STEPS))
+            axes.xaxis.set_major_locator(MaxNLocator(8 if columns < 3 else 6, steps=_STEPS))
+            axes.yaxis.set_major_locator(MaxNLocator(6, steps=_STEPS))
         return cls(figure, list(grid[:count]), width, columns)
 
     @property
@@ -129,7 +129,7 @@ class Sheet:
         """A bar of colours above a panel."""
         bar = self.figure.colorbar(cells, ax=axes, location="top", extend=scale.extend, aspect=25, pad=0.02)
         scale.mark(bar)
-        bar.set_label(fitted(0.92 * self.across, text, scale.note))
+        bar.set_label(fitted(0.97 * self.across, text, scale.note))
 
     def name_axes(self, x: str, y: str = "") -> None:
         """Say below the lowest panels, and left of the leftmost ones, what is along their axes."""
@@ -141,7 +141,7 @@ class Sheet:
                 axes.set_ylabel(fitted(self.up, y))
 
     def finish(self, title: str, *notes: str) -> Figure:
-        """The title, notes below it, and the legend, for which the figure grows."""
+        """The title, notes below it, and the legend; for these, and for long labels, the figure grows."""
         words = fitted(0.93 * self.width, title, "; ".join(filter(None, notes)), points=_TITLE)
         self.figure.suptitle(words, fontsize=_TITLE)
         lines = words.count("\n") + 1
@@ -151,6 +151,9 @@ class Sheet:
             columns = max(1, min(len(entries), int(17.0 * self.width / longest)))
             lines += -(-sum(text.count("\n") + 1 for text in entries) // columns)
             self.figure.legend(list(self.legend.values()), entries, loc="outside lower center", ncols=columns, frameon=False)
+        bars = [axes.get_xlabel() for axes in self.figure.axes if axes not in self.panels]
+        for texts in (bars, [axes.get_title(loc="left") for axes in self.panels]):
+            lines += -(-len(self.panels) // self.columns) * max((text.count("\n") for text in texts), default=0)
         self.figure.set_figheight(self.figure.get_figheight() + _LINE * lines)
         return self.figure
 
