@@ -22,9 +22,19 @@ from .options import setting
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="The figures' folder.")
-@click.option("--over", multiple=True, metavar="NAME", help="Of a sweep: the parameter along the axis, or two for maps.")
-@click.option("--at", type=setting, multiple=True, metavar="NAME=VALUE", help="Of a sweep: where another parameter stays.")
-@click.option("--against", nargs=2, multiple=True, metavar="COLUMN COLUMN", help="Of a sweep: the front of these two.")
+@click.option(
+    "--over", multiple=True, metavar="NAME", help="Of a sweep: the parameter along the axis, two for maps; of a list, any."
+)
+@click.option(
+    "--at",
+    type=setting,
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Of a sweep: where another parameter stays, or which designs of a list.",
+)
+@click.option(
+    "--against", nargs=2, multiple=True, metavar="COLUMN COLUMN", help="Of a sweep: the front of these two columns or parameters."
+)
 def plot(file: Path, out: Path, over: Sequence[str], at: Sequence[tuple[str, float]], against: Sequence[tuple[str, str]]) -> None:
     """Draw the figures of FILE.h5, as its case wants them, or peaks over parameters where it is a sweep."""
     check_writable(out, folder=True)
