@@ -1,14 +1,19 @@
-"""Figures of a sweep: each draws what it says, from the file's arrays."""
+"""Figures of a sweep: each draws what it says, from the file's arrays, and says what it leaves out."""
 
+import h5py
 import numpy as np
 import pytest
 import sweeps
 
-from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.sweep import Listed, best, plots, sweep
-from lagrange_casadi.sweep.plots import Along, Front, Peaks, default_plots, draw_sweep
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import DeclarationError, NoDesignError, UnknownNameError
+from lagrange_casadi.sweep import Listed, Sweep, best, cut, plots, sweep
+from lagrange_casadi.sweep.plots import Along, Front, Peaks, Scatter, draw_sweep
+from lagrange_casadi.sweep.scale import number
+from lagrange_casadi.sweep.usual import default_plots
 
 BENDING, EFFORT = "peak:section:rod:bending", "peak:effort:O"
+CLOSED, REACH = "the iterated loops did not converge", "no result: the iterated loops did not converge"
 
 
 @pytest.fixture
@@ -18,46 +23,198 @@ def swept(monkeypatch, tmp_path):
     return sweep(sweeps.scene(), grid, out=tmp_path / "x.h5", xi=(0, 1, 5))
 
 
+@pytest.fixture
+def listed(monkeypatch, tmp_path):
+    sweeps.use(monkeypatch)
+    rows = np.column_stack([np.random.default_rng(3).uniform(0.1, 0.3, (50, 2)), np.repeat([0.1, 0.2], 25)])
+    return sweep(sweeps.scene(), Listed(("l", "r", "m1"), rows), out=tmp_path / "y.h5")
+
+
+def rewritten(found, name, change):
+    """The sweep with a column that is changed in its file."""
+    with h5py.File(found.path, "r+") as file:
+        file[name.replace(":", "/")][...] = change(file[name.replace(":", "/")][()])
+    return Sweep.open(found.path)
+
+
+def plain(text):
+    """Words without what keeps or breaks their lines."""
+    return text.replace("\N{NO-BREAK SPACE}", " ").replace("\n", " ")
+
+
+def lines(axes, marker):
+    return [line for line in axes.get_lines() if line.get_marker() == marker]
+
+
+def legend(figure):
+    return [plain(text.get_text()) for text in figure.legends[0].get_texts()]
+
+
 def test_curves_over_a_parameter(swept):
-    figure = Peaks("x", (EFFORT, BENDING), ("l",), {"r": 0.07}).draw(swept)
+    figure = Peaks("x", (EFFORT, BENDING), ("l",), at={"r": 0.1}).draw(swept)
     assert len(figure.axes) == 2
     for axes, name in zip(figure.axes, (EFFORT, BENDING), strict=True):
-        (line,) = axes.get_lines()
+        values = np.abs(swept[name][:, 1, 0])
+        (line,), (star,), (crosses,) = (lines(axes, marker) for marker in (".", "*", "x"))
         np.testing.assert_array_equal(line.get_xdata(), np.linspace(0.15, 0.4, 9))
-        np.testing.assert_array_equal(line.get_ydata(), np.abs(swept[name][:, 2, 0]))
+        np.testing.assert_array_equal(line.get_ydata(), values)
+        k = np.nanargmin(values)
+        assert (star.get_xdata()[0], star.get_ydata()[0]) == (swept["l"][k], values[k])
+        np.testing.assert_array_equal(crosses.get_xdata(), swept["l"][np.isnan(values)])
+        assert plain(axes.get_title(loc="left")) == f"★ {number(values[k])} at l = {swept['l'][k]:.4g}"
     assert figure.axes[1].get_xlabel() == "l [m]"
-    assert figure.axes[1].get_ylabel() == "section rod bending [N m]"
-    assert figure.get_suptitle() == "slider_crank: peaks, by size at r = 0.07 m, m1 = 0.1 kg"
+    assert plain(figure.axes[1].get_ylabel()) == "rod bending, |peak| [N m]"
+    assert plain(figure.get_suptitle()) == "slider_crank: peak over time of each design at r = 0.1 m, m1 = 0.1 kg"
+    assert legend(figure) == [REACH, "smallest of those drawn"]
+
+
+def test_a_family_of_curves_in_the_order_of_its_values(swept):
+    figure = Peaks("x", (BENDING,), ("l",), "r").draw(swept)
+    assert [text for text in legend(figure) if "=" in text] == [f"r = {value} m" for value in (0.05, 0.07, 0.1)]
+    for line, crosses, k in zip(lines(figure.axes[0], "."), lines(figure.axes[0], "x"), (0, 2, 1), strict=True):
+        values = np.abs(swept[BENDING][:, k, 0])
+        np.testing.assert_array_equal(line.get_ydata(), values)
+        np.testing.assert_array_equal(crosses.get_xdata(), swept["l"][np.isnan(values)])
 
 
 def test_maps_over_two_parameters_in_either_order(swept):
-    """Values that are not in order on the grid are in order on the map."""
+    """Values that are not in order on the grid are in order on the map; what has no result is masked, and shaded instead."""
     sizes = np.abs(swept[BENDING][:, [0, 2, 1], 1])
+    assert 0 < np.isnan(sizes).sum() < sizes.size
+    l, r = np.unravel_index(np.nanargmin(sizes), sizes.shape)
     for over, expected in ((("l", "r"), sizes.T), (("r", "l"), sizes)):
-        figure = Peaks("x", (BENDING,), over, {"m1": 0.2}).draw(swept)
-        np.testing.assert_array_equal(np.ma.filled(figure.axes[0].collections[0].get_array(), np.nan), expected)
+        figure = Peaks("x", (BENDING,), over, at={"m1": 0.2}).draw(swept)
+        axes, bar = figure.axes
+        cells, shade = axes.collections
+        np.testing.assert_array_equal(np.ma.filled(cells.get_array(), np.nan), expected)
+        np.testing.assert_array_equal(np.ma.getmaskarray(shade.get_array()), ~np.isnan(expected))
+        (star,) = lines(axes, "*")
+        place = {"l": swept["l"][l], "r": np.sort(swept["r"])[r]}
+        assert (star.get_xdata()[0], star.get_ydata()[0]) == tuple(place[name] for name in over)
+        assert legend(figure) == [REACH, "smallest of those drawn"]
+        assert plain(bar.get_xlabel()) == "rod bending, |peak| [N m]"
 
 
-def test_section_forces_along_the_link(swept):
-    figure = Along("x", "rod", "l", {"r": 0.1, "m1": 0.2}).draw(swept)
-    drawn = np.ma.filled(figure.axes[2].collections[0].get_array(), np.nan)
-    np.testing.assert_array_equal(drawn, swept["peak_at:section:rod:bending"][:, 1, 1].T)
+@pytest.mark.parametrize(
+    ("kinds", "last"), [([4, 1], CLOSED), ([4, 1, 2, 3], "converge slowly"), ([4, 1, 2, 3, 5], "other reasons")]
+)
+def test_reasons_are_told_apart_as_far_as_they_are_few(swept, kinds, last):
+    """Each has a shade of its own, the most frequent one the first; cells in it are those of its status."""
+
+    def several(values):
+        values[:, :, 0] = np.resize([kinds[0], *kinds, 0, 0], 27).reshape(9, 3)
+        return values
+
+    found = rewritten(swept, "status", several)
+    figure = Peaks("x", (BENDING,), ("l", "r")).draw(found)
+    status = found["status"][:, [0, 2, 1], 0].T
+    shade = np.ma.filled(figure.axes[0].collections[1].get_array(), 0)
+    texts = [text for text in legend(figure) if text.startswith("no result")]
+    assert texts[0] == "no result: a loop cannot be closed"
+    assert last in texts[-1]
+    assert len(texts) == min(len(kinds), 4)
+    np.testing.assert_array_equal(shade == 1, status == 4)
+    np.testing.assert_array_equal(shade == 0, status == 0)
+    colours = [tuple(patch.get_facecolor()) for patch in figure.legends[0].get_patches()]
+    assert len(set(colours)) == len(texts)
+
+
+def test_a_few_far_values_do_not_set_the_colours(swept):
+    """One near-singular design gets the arrow's colour, and the label says how far it goes; smaller ones keep theirs."""
+    first = tuple(np.argwhere(np.isfinite(swept[BENDING][:, :, 0]))[0])
+
+    def far(values):
+        values[(*first, 0)] = 1e4
+        return values
+
+    found = rewritten(swept, BENDING, far)
+    figure = Peaks("x", (BENDING,), ("l", "r")).draw(found)
+    cells = figure.axes[0].collections[0]
+    assert cells.norm.vmax < 1e4
+    assert figure.axes[1].get_xlabel().endswith("\nbeyond: up to 10000")
+    assert cells.cmap(cells.norm(1e4)) != cells.cmap(1.0), "the arrow's colour is not that of the scale's end"
+    curve = Peaks("x", (BENDING,), ("l",), at={"r": found["r"][first[1]]}).draw(found).axes[0]
+    assert curve.get_ylim()[1] < 1e4
+    assert curve.get_ylabel().endswith("beyond: up to 10000")
+
+
+@pytest.mark.parametrize("sized", [False, True])
+def test_section_forces_along_the_link(swept, sized):
+    """With their sign, unless it alternates from cell to cell, where it is that of rounding."""
+
+    def signed(values):
+        steady = np.where(np.arange(5) < 2, -1.0, 1.0)
+        alternating = np.where((np.arange(9)[:, None] + np.arange(5)) % 2, -1.0, 1.0)[:, None, None]
+        return np.abs(values) * (alternating if sized else steady)
+
+    found = rewritten(swept, "peak_at:section:rod:bending", signed)
+    figure = Along("x", "rod", "l", {"r": 0.1, "m1": 0.2}).draw(found)
+    values = found["peak_at:section:rod:bending"][:, 1, 1].T
+    assert np.nanmin(values) < 0.0 < np.nanmax(values)
+    cells, shade = figure.axes[2].collections
+    np.testing.assert_array_equal(np.ma.filled(cells.get_array(), np.nan), np.abs(values) if sized else values)
+    np.testing.assert_array_equal(np.ma.getmaskarray(shade.get_array()), ~np.isnan(values))
+    assert cells.norm.vmin == (0.0 if sized else -cells.norm.vmax)
+    assert plain(cells.colorbar.ax.get_xlabel()) == f"rod bending, {'|peak|' if sized else 'peak'} [N m]"
+
+
+def test_a_few_designs_are_curves_along_the_link(swept):
+    """A jump to the other sign is no line, but rounding is no jump; a design without a result is named with the reason."""
+
+    def jumping(values):
+        values[-1, 1, 0], values[-1, 2, 0] = np.nan, [-1e-20, 1.0, 2.0, -2.0, -1.0]
+        return values
+
+    found = rewritten(swept, "peak_at:section:rod:bending", jumping)
+    figure = Along("x", "rod", "r", {"l": 0.4}).draw(rewritten(found, "status", lambda values: np.where(values, 4, values)))
+    drawn = lines(figure.axes[2], "None")[:3]
+    values = found["peak_at:section:rod:bending"][-1, [0, 2, 1], 0]
+    for line, row in zip(drawn, values, strict=True):
+        y = line.get_ydata()
+        np.testing.assert_array_equal(y[~np.isnan(y)], row[~np.isnan(row)])
+    np.testing.assert_array_equal(drawn[1].get_ydata(), [-1e-20, 1.0, 2.0, np.nan, -2.0, -1.0])
+    assert plain(figure.axes[2].get_ylabel()) == "rod bending, peak [N m]"
+    status = found["status"][-1, [0, 2, 1], 0]
+    assert status.any()
+    reasons = ["" if not kind else ", no result: a loop cannot be closed" for kind in status]
+    assert legend(figure) == [f"r = {r} m{why}" for r, why in zip((0.05, 0.07, 0.1), reasons, strict=True)]
 
 
 def test_the_front_and_all_designs(swept):
     figure = Front("x", EFFORT, BENDING).draw(swept)
-    dots, front = figure.axes[0].get_lines()
+    dots, _, front = lines(figure.axes[0], "o")[0], *lines(figure.axes[0], "None"), lines(figure.axes[0], "o")[1]
     both = ~np.isnan(swept[EFFORT]).ravel()
     assert np.isfinite(dots.get_xdata()).sum() == both.sum()
-    expected = [abs(design.values[BENDING]) for design in best(swept, minimise=[EFFORT, BENDING])]
-    np.testing.assert_array_equal(front.get_ydata(), expected)
+    designs = best(swept, minimise=[EFFORT, BENDING])
+    np.testing.assert_array_equal(front.get_ydata(), [abs(design.values[BENDING]) for design in designs])
+    (low, high), axes = figure.axes[0].get_xlim(), figure.axes[0]
+    assert low < front.get_xdata().min()
+    assert front.get_xdata().max() < high
+    keys = list(legend(figure)[2:])
+    named = [
+        ", ".join(f"{name} = {design.values[name]:.4g} {unit}" for name, unit in swept.parameters.items()) for design in designs
+    ]
+    assert keys
+    assert keys[0] == named[0]
+    assert keys[-1] == named[-1]
+    assert set(keys) <= set(named)
+    assert [note.get_text() for note in axes.texts] == [str(k + 1) for k in range(len(keys))]
+    there = {key: note.xy for key, note in zip(keys, axes.texts, strict=True)}
+    for design, words in zip(designs, named, strict=True):
+        if words in there:
+            assert there[words] == (abs(design.values[EFFORT]), abs(design.values[BENDING]))
+    some = Front("x", EFFORT, "l", {"m1": 0.2}).draw(swept)
+    assert np.isfinite(lines(some.axes[0], "o")[0].get_xdata()).sum() == (~np.isnan(swept[EFFORT][:, :, 1])).sum()
+    assert some.axes[0].get_ylabel() == "l [m]"
+    assert plain(some.get_suptitle()).endswith("at m1 = 0.2 kg")
 
 
 def test_grids_finer_than_the_picture_are_thinned(swept, monkeypatch):
-    monkeypatch.setattr(plots, "_PIXELS", 4)
-    monkeypatch.setattr(plots, "_DOTS", 10)
+    monkeypatch.setattr(cut, "PIXELS", 4)
+    monkeypatch.setattr(plots, "DOTS", 10)
     figure = Peaks("x", (BENDING,), ("l", "r")).draw(swept)
     assert figure.axes[0].collections[0].get_array().shape == (3, 3)
+    assert "one of 3 values of l drawn" in plain(figure.get_suptitle())
     assert Front("x", EFFORT, BENDING).draw(swept).axes[0].get_lines()[0].get_xdata().size <= 10
 
 
@@ -70,31 +227,146 @@ def test_the_usual_figures(swept, tmp_path):
         "along_rod",
         f"front_{EFFORT}_{BENDING}".replace(":", "-"),
     ]
-    paths = list(draw_sweep(swept, default_plots(swept, over=["m1"]), tmp_path))
-    assert [path.stem for path in paths] == names
-    before = [path.read_bytes() for path in paths]
-    assert [path.read_bytes() for path in draw_sweep(swept, default_plots(swept, over=["m1"]), tmp_path)] == before
+    assert (default_plots(swept)[0].over, default_plots(swept, over=["m1"])[0].family) == (("l", "r"), "l")
+    assert default_plots(swept, over=["m1"], at={"l": 0.4})[0].family == "r"
+    drawn = list(draw_sweep(swept, default_plots(swept, over=["m1"]), tmp_path))
+    assert [(path.stem, why) for path, why in drawn] == [(name, "") for name in names]
+    before = [path.read_bytes() for path, _ in drawn]
+    assert [path.read_bytes() for path, _ in draw_sweep(swept, default_plots(swept, over=["m1"]), tmp_path)] == before
 
 
-def test_a_list_is_drawn_over_one_parameter(monkeypatch, tmp_path):
-    sweeps.use(monkeypatch)
-    rows = np.random.default_rng(3).uniform(0.1, 0.3, (50, 2))
-    found = sweep(sweeps.scene(), Listed(("l", "r"), rows), out=tmp_path / "y.h5")
-    specs = default_plots(found, over=["r"])
-    figure = specs[0].draw(found)
-    (line,) = figure.axes[0].get_lines()
-    np.testing.assert_array_equal(line.get_xdata(), np.sort(rows[:, 1]))
-    assert len(list(draw_sweep(found, specs, tmp_path))) == 4
-    with pytest.raises(DeclarationError, match="plots are over one parameter of a list, got l, r"):
-        default_plots(found, over=["l", "r"])
+def test_a_list_is_drawn_over_each_parameter(listed, tmp_path):
+    specs = default_plots(listed)
+    assert [spec.name for spec in specs if isinstance(spec, Scatter)] == ["peak_effort", "peak_reactions", "peak_section_rod"]
+    figure = specs[2].draw(listed)
+    assert len(figure.axes) == 9
+    for k, axes in enumerate(figure.axes):
+        (dots,), (crosses,), (star,) = (lines(axes, marker) for marker in "ox*")
+        values = np.abs(listed[specs[2].columns[k // 3]])
+        x = listed[("l", "r", "m1")[k % 3]]
+        np.testing.assert_array_equal(dots.get_xdata(), x)
+        np.testing.assert_array_equal(dots.get_ydata(), values)
+        np.testing.assert_array_equal(crosses.get_xdata(), x[np.isnan(values)])
+        assert star.get_xdata()[0] == x[np.nanargmin(values)]
+    assert figure.axes[0].get_title(loc="left").endswith(f", design {np.nanargmin(np.abs(listed[specs[2].columns[0]]))}")
+    assert default_plots(listed, over=["r"])[0].over == ("r",)
+    at = default_plots(listed, at={"m1": 0.2})[0]
+    assert at.over == ("l", "r")
+    np.testing.assert_array_equal(lines(at.draw(listed).axes[0], "o")[0].get_xdata(), listed["l"][25:])
+    assert at.draw(listed).axes[0].get_title(loc="left").endswith(f"design {25 + np.nanargmin(np.abs(listed[EFFORT][25:]))}")
+    assert [why for _, why in draw_sweep(listed, specs, tmp_path)] == [""] * 4
 
 
-def test_what_cannot_be_drawn_is_named(swept):
-    with pytest.raises(UnknownNameError, match="unknown swept parameter 'q'; valid: l, r, m1"):
-        default_plots(swept, over=["q"])
-    with pytest.raises(DeclarationError, match="plots are over one parameter or two, got l, r, m1"):
-        default_plots(swept, over=["l", "r", "m1"])
-    with pytest.raises(UnknownNameError, match="unknown column 'bending'"):
-        default_plots(swept, against=[(EFFORT, "bending")])
-    with pytest.raises(DeclarationError, match=r"no design has r = 0\.08; nearest: 0\.07, 0\.1"):
-        Peaks("x", (BENDING,), ("l",), {"r": 0.08}).draw(swept)
+def test_many_columns_and_parameters_come_on_pages(monkeypatch, tmp_path):
+    engine = sweeps.use(monkeypatch)
+    engine.quantities = tuple(f"reaction:J{k}" for k in range(10))
+    grid = sweep(sweeps.scene(), {"l": (0.15, 0.4, 3), "r": [0.05, 0.1]}, out=tmp_path / "x.h5", wanted=["effort"])
+    specs = [spec for spec in default_plots(grid) if isinstance(spec, Peaks)]
+    assert [(spec.name, len(spec.columns)) for spec in specs] == [("peak_reactions_1", 5), ("peak_reactions_2", 5)]
+    rows = np.random.default_rng(3).uniform(0.1, 0.3, (9, 4))
+    found = sweep(sweeps.scene(), Listed(("l", "r", "m1", "m2"), rows), out=tmp_path / "y.h5", wanted=["effort"])
+    specs = [spec for spec in default_plots(found) if isinstance(spec, Scatter)]
+    assert [spec.name for spec in specs] == [f"peak_reactions_{k}" for k in range(1, 7)]
+    assert [len(spec.columns) * len(spec.over) for spec in specs] == [8, 8, 6, 6, 6, 6]
+    assert {(c, n) for spec in specs for c in spec.columns for n in spec.over} == {
+        (f"peak:reaction:J{k}:resultant", name) for k in range(10) for name in found.parameters
+    }
+
+
+def test_what_is_the_same_for_all_is_said_and_not_drawn(swept, tmp_path):
+    found = rewritten(swept, EFFORT, lambda values: np.where(np.isnan(values), np.nan, 3.0))
+    figure = Peaks("x", (EFFORT, BENDING), ("l", "r")).draw(found)
+    assert len(figure.axes) == 2, "a map and its bar"
+    assert "the same for all: effort O, |peak| [N m] = 3" in plain(figure.get_suptitle())
+    ((path, why),) = draw_sweep(found, [Peaks("x", (EFFORT,), ("l", "r"))], tmp_path)
+    assert why == "the same for all: effort O, |peak| [N m] = 3"
+    assert not path.exists()
+
+
+def test_no_empty_axes(swept, tmp_path):
+    """Of designs that have no result there is no figure, and of a sweep without any there is an error."""
+
+    def without(values):
+        values[0] = np.nan if values.dtype.kind == "f" else 1
+        return values
+
+    found = swept
+    for name in ("status", BENDING, "peak_at:section:rod:axial"):
+        found = rewritten(found, name, without)
+    specs = [Peaks("a", (BENDING,), ("r", "m1"), at={"l": 0.15}), Along("b", "rod", "r", {"l": 0.15})]
+    drawn = list(draw_sweep(found, [*specs, Front("c", BENDING, BENDING, {"l": 0.15})], tmp_path))
+    assert [why for _, why in drawn] == [
+        "no design at l = 0.15 m has a result",
+        "no design at l = 0.15 m, m1 = 0.1 kg has a result",
+        "no design at l = 0.15 m has a result",
+    ]
+    assert not any(path.exists() for path, _ in drawn)
+    found = rewritten(found, "status", lambda values: np.where(values, values, 4))
+    with pytest.raises(NoDesignError, match=rf"no design has a result \(\d+ x {CLOSED}; \d+ x a loop cannot be closed"):
+        default_plots(found)
+
+
+def test_what_cannot_be_drawn_is_named(swept, listed, monkeypatch, tmp_path):
+    cases = [
+        ({"over": ["q"]}, UnknownNameError, "unknown swept parameter 'q'; valid: l, r, m1"),
+        ({"at": {"q": 1.0}}, UnknownNameError, "unknown swept parameter 'q'; valid: l, r, m1"),
+        ({"over": ["l", "r", "m1"]}, DeclarationError, "a grid is drawn over one parameter or two, got 3: l, r, m1"),
+        ({"over": ["l", "l"]}, DeclarationError, "parameter 'l' is to be drawn over twice"),
+        ({"over": ["l"], "at": {"l": 0.4}}, DeclarationError, r"parameter 'l' cannot be drawn over and stay at 0\.4 as well"),
+        ({"at": {"r": 0.08}}, DeclarationError, r"no design has r = 0\.08; nearest: 0\.07, 0\.1"),
+        ({"against": [(EFFORT, "bending")]}, UnknownNameError, "unknown column 'bending'"),
+        (
+            {"against": [(EFFORT, EFFORT)]},
+            DeclarationError,
+            f"expected two columns to draw against each other, got '{EFFORT}' twice",
+        ),
+        ({"against": [(EFFORT, "peak_at:section:rod:axial")]}, DeclarationError, "has no single value of a design"),
+    ]
+    for asked, kind, words in cases:
+        with pytest.raises(kind, match=words):
+            default_plots(swept, **asked)
+    assert len(default_plots(listed, over=["l", "r", "m1"])[0].over) == 3
+    one = sweep(sweeps.scene(), {"l": (0.2, 0.3, 5), "r": [0.1]}, out=tmp_path / "z.h5")
+    with pytest.raises(DeclarationError, match=r"'r' cannot be drawn over: it is 0\.1 in all designs; those that vary: l"):
+        default_plots(one, over=["r"])
+    with pytest.raises(DeclarationError, match="there is nothing to draw: it comes to one design"):
+        default_plots(one, at={"l": 0.2})
+    engine = sweeps.use(monkeypatch)
+    engine.quantities, engine.efforts = ("pose:rod:x",), ()
+    poses = sweep(sweeps.scene(), {"l": (0.2, 0.3, 5)}, out=tmp_path / "p.h5")
+    with pytest.raises(DeclarationError, match="there is nothing to draw: it keeps no peak of an effort"):
+        default_plots(poses)
+
+
+def test_the_command_writes_figures_or_nothing(swept, tmp_path, capsys):
+    """What shows nothing is a note beside the others, and an error where there is no other."""
+    found = rewritten(swept, EFFORT, lambda values: np.where(np.isnan(values), np.nan, 3.0))
+    file, out = str(found.path), tmp_path / "figures"
+    assert main(["plot", file, "--over", "l", "--at", "m1=0.2", "--out", str(out)]) == 0
+    names = sorted(path.stem for path in out.iterdir())
+    front = f"front_{EFFORT}_{BENDING}".replace(":", "-")
+    assert names == ["along_rod", front, "peak_reactions", "peak_section_rod"]
+    err = capsys.readouterr().err
+    assert err == "note: not drawn: peak_effort.png: the same for all: effort O, |peak| [N m] = 3\n"
+    for asked, words in (
+        (["--over", "l", "--over", "r", "--over", "m1"], "a grid is drawn over one parameter or two, got 3: l, r, m1"),
+        (["--at", "l=0.4", "--at", "l=0.15"], "--at: a parameter stays at one value, got two for 'l'"),
+        (["--at", "l=0.2"], "no design has l = 0.2; nearest: 0.2125, 0.18125"),
+    ):
+        assert main(["plot", file, *asked, "--out", str(tmp_path / "none")]) == 2
+        assert capsys.readouterr().err == f"error: {words}\n"
+    rewritten(found, "status", lambda values: np.full_like(values, 4))
+    assert main(["plot", file, "--out", str(tmp_path / "none")]) == 1
+    assert capsys.readouterr().err.endswith("(54 x a loop cannot be closed: its links do not reach): there is nothing to draw\n")
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_command_whose_figures_all_show_nothing_writes_none(monkeypatch, tmp_path, capsys):
+    engine = sweeps.use(monkeypatch)
+    engine.quantities, engine.efforts = ("load:gas:fx",), ()
+    found = sweep(sweeps.scene(), {"l": (0.2, 0.3, 5)}, out=tmp_path / "x.h5")
+    rewritten(found, "peak:load:gas:fx", lambda values: np.zeros_like(values))
+    assert main(["plot", str(found.path), "--out", str(tmp_path / "none")]) == 1
+    words = "error: there is nothing to draw: peak_loads.png: the same for all: load gas fx, |peak| [N] = 0\n"
+    assert capsys.readouterr().err == words
+    assert not (tmp_path / "none").exists()

@@ -8,30 +8,42 @@ from pathlib import Path
 import click
 from tqdm import tqdm
 
+from ..errors import NoDesignError
 from ..figures import parse_specs
 from ..publish import check_writable, filling
 from ..store import figure_specs, load
 from ..sweep import Sweep, is_sweep
-from ..sweep.plots import default_plots, draw_sweep
+from ..sweep.plots import Spec, draw_sweep
+from ..sweep.usual import default_plots
 from .drawing import draw_with_progress
-from .options import parameters, setting
+from .options import setting
 
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="The figures' folder.")
-@click.option("--over", multiple=True, metavar="NAME", help="Of a sweep: the parameter along the axis, or two for maps.")
-@click.option("--at", type=setting, multiple=True, metavar="NAME=VALUE", help="Of a sweep: where another parameter stays.")
-@click.option("--against", nargs=2, multiple=True, metavar="COLUMN COLUMN", help="Of a sweep: the front of these two.")
+@click.option(
+    "--over", multiple=True, metavar="NAME", help="Of a sweep: the parameter along the axis, two for maps; of a list, any."
+)
+@click.option(
+    "--at",
+    type=setting,
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Of a sweep: where another parameter stays, or which designs of a list.",
+)
+@click.option(
+    "--against", nargs=2, multiple=True, metavar="COLUMN COLUMN", help="Of a sweep: the front of these two columns or parameters."
+)
 def plot(file: Path, out: Path, over: Sequence[str], at: Sequence[tuple[str, float]], against: Sequence[tuple[str, str]]) -> None:
     """Draw the figures of FILE.h5, as its case wants them, or peaks over parameters where it is a sweep."""
     check_writable(out, folder=True)
     if is_sweep(file):
+        stays = dict(at)
+        if len(stays) < len(at):
+            raise click.UsageError("--at: a parameter stays at one value, got two for " + _twice(at))
         sweep = Sweep.open(file)
-        specs = default_plots(sweep, over=over, at=parameters(at), against=against)
-        with filling(out) as draft:
-            for _ in tqdm(draw_sweep(sweep, specs, draft), total=len(specs), desc="figures", leave=False, disable=None):
-                pass
+        _draw(sweep, default_plots(sweep, over=over, at=stays, against=against), out)
     elif over or at or against:
         raise click.UsageError("--over, --at and --against go with a sweep's file")
     else:
@@ -39,3 +51,21 @@ def plot(file: Path, out: Path, over: Sequence[str], at: Sequence[tuple[str, flo
         with filling(out) as draft:
             draw_with_progress(solution, drawn, draft)
     click.echo(f"wrote the figures in {out}/")
+
+
+def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
+    """Draw a sweep; what shows nothing is said. Raises :class:`NoDesignError` where no figure shows anything."""
+    skipped = []
+    with filling(out) as draft:
+        for path, why in tqdm(draw_sweep(sweep, specs, draft), total=len(specs), desc="figures", leave=False, disable=None):
+            if why:
+                skipped.append(f"{path.name}: {why}")
+        if len(skipped) == len(specs):
+            raise NoDesignError(f"there is nothing to draw: {'; '.join(dict.fromkeys(skipped))}")
+    for line in skipped:
+        click.echo(f"note: not drawn: {line}", err=True)
+
+
+def _twice(at: Sequence[tuple[str, float]]) -> str:
+    names = [name for name, _ in at]
+    return ", ".join(dict.fromkeys(f"'{name}'" for name in names if names.count(name) > 1))
