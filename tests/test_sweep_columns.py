@@ -5,7 +5,7 @@ import pytest
 import sweeps
 
 from lagrange_casadi import evaluate
-from lagrange_casadi.errors import DeclarationError, UnknownNameError
+from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
 from lagrange_casadi.peaks import forces, refine
 from lagrange_casadi.rung import Rung
 from lagrange_casadi.section_law import FORCES
@@ -152,6 +152,12 @@ def test_what_cannot_be_kept_is_named(slider_crank):
         sweep(slider_crank, grid, wanted=["effort"], keep="laws")
     with pytest.raises(DeclarationError, match=r"ratios xi/l must lie in \[0, 1\]"):
         sweep(slider_crank, grid, xi=(0, 2, 3))
+
+
+def test_what_no_file_keeps_in_one_piece_is_refused(slider_crank, tmp_path):
+    with pytest.raises(SizeError, match=r"history:section:crank:axial of a single design takes 4\.81 GB; HDF5 keeps 2 GB"):
+        sweep(slider_crank, {"l": [0.2, 0.3]}, t=(0, 0.08, 1_000_000), xi=(0, 1, 601), keep="histories", out=tmp_path / "x.h5")
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.fixture

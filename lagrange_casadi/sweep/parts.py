@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from ..errors import BusyError, PathError, StoreError
 from .columns import Column
@@ -30,27 +30,29 @@ _PLAN, _LOCK, _FORCED, _JOINED, _DRAFT, _PART = "plan.json", "lock", "forced", "
 
 @dataclass(frozen=True)
 class Part:
-    """A committed part: its designs, and where each column is in its file, how long it is, and its checksum."""
+    """A committed part: its designs, and how many bytes their columns take."""
 
     path: Path
     start: int
     stop: int
-    columns: Mapping[str, tuple[int, int, int]]
-
-    @property
-    def size(self) -> int:
-        """Bytes of its columns."""
-        return sum(length for _, length, _ in self.columns.values())
+    size: int
 
     def read(self) -> list[bytes]:
         """Its columns. Where one is not what was committed the part is deleted: raises :class:`StoreError`."""
-        content, found = self.path.read_bytes(), []
-        for name, (place, length, checksum) in self.columns.items():
-            found.append(content[place : place + length])
-            if zlib.crc32(found[-1]) != checksum:
-                self.path.unlink()
-                raise StoreError(f"{self.path} was damaged, in column {name}, and is deleted")
-        return found
+        with self.path.open("rb") as file:
+            try:
+                columns: dict[str, list[int]] = _head(file)["columns"]
+            except ValueError:
+                raise self._damaged("head") from None
+            contents = [file.read(length) for length, _ in columns.values()]
+        for (name, (_, checksum)), content in zip(columns.items(), contents, strict=True):
+            if zlib.crc32(content) != checksum:
+                raise self._damaged(f"column {name}")
+        return contents
+
+    def _damaged(self, where: str) -> StoreError:
+        self.path.unlink()
+        return StoreError(f"{self.path} was damaged, in {where}, and is deleted")
 
 
 @dataclass(frozen=True)
@@ -147,22 +149,18 @@ class Folder:
     def commit(self, start: int, stop: int, columns: Sequence[Column], contents: Sequence[bytes]) -> Part:
         """Commit a block: on return it outlives a kill and a loss of power. Raises :class:`StoreError` where that fails."""
         name = f"{start:012d}-{stop:012d}{_PART}"
-        table, place = {}, 0
-        for column, content in zip(columns, contents, strict=True):
-            table[column.name] = (place, len(content), zlib.crc32(content))
-            place += len(content)
-        head = json.dumps({"start": start, "stop": stop, "columns": table}).encode()
+        sums = {column.name: (len(content), zlib.crc32(content)) for column, content in zip(columns, contents, strict=True)}
+        head = json.dumps({"start": start, "stop": stop, "columns": sums}).encode()
         lines = head + b"\n" + hashlib.sha256(head).hexdigest().encode() + b"\n"
         with telling(self.target):
             self._publish(name, [lines, *contents])
-        return _part(self.path / name, head, len(lines))
+        return Part(self.path / name, start, stop, sum(map(len, contents)))
 
     def parts(self) -> list[Part]:
         """The parts that are whole, in order; what is not is removed. Their columns are checked where they are read."""
         found: list[Part] = []
-        for path in sorted(self.path.glob(f"*{_PART}")):
-            part = _whole(path)
-            if part is None or (found and part.start < found[-1].stop):
+        for path, part in self._looked_through():
+            if part is None:
                 path.unlink()
             else:
                 found.append(part)
@@ -172,12 +170,16 @@ class Folder:
 
     def done(self) -> int:
         """How many designs the parts that are whole cover; it only looks, so a sweep may be at work meanwhile."""
-        after = count = 0
+        return sum(part.stop - part.start for _, part in self._looked_through() if part)
+
+    def _looked_through(self) -> Iterator[tuple[Path, Part | None]]:
+        after = 0
         for path in sorted(self.path.glob(f"*{_PART}")):
             part = _whole(path)
-            if part is not None and part.start >= after:
-                count, after = count + part.stop - part.start, part.stop
-        return count
+            if part and part.start < after:
+                part = None
+            yield path, part
+            after = part.stop if part else after
 
     def publish(self) -> None:
         """Put the joined file into its place, and remove the folder."""
@@ -216,22 +218,23 @@ class Folder:
 
 
 def _whole(path: Path) -> Part | None:
+    """A part, unless its head is not what was committed, or its length."""
     try:
         with path.open("rb") as file:
-            head, digest = file.readline(), file.readline()
-            size = os.fstat(file.fileno()).st_size
-        if hashlib.sha256(head[:-1]).hexdigest().encode() != digest[:-1]:
-            return None
-        part = _part(path, head, len(head) + len(digest))
-    except (OSError, ValueError, KeyError, TypeError):
+            told = _head(file)
+            size = sum(length for length, _ in told["columns"].values())
+            whole = os.fstat(file.fileno()).st_size == file.tell() + size
+        return Part(path, told["start"], told["stop"], size) if whole else None
+    except (OSError, ValueError):
         return None
-    return part if size == max(place + length for place, length, _ in part.columns.values()) else None
 
 
-def _part(path: Path, head: bytes, offset: int) -> Part:
-    told = json.loads(head)
-    columns = {name: (place + offset, length, checksum) for name, (place, length, checksum) in told["columns"].items()}
-    return Part(path, told["start"], told["stop"], columns)
+def _head(file: BinaryIO) -> Any:
+    """What a part tells of itself. Raises ``ValueError`` where that is damaged."""
+    head, digest = file.readline(), file.readline()
+    if hashlib.sha256(head[:-1]).hexdigest().encode() != digest[:-1]:
+        raise ValueError("damaged")
+    return json.loads(head)
 
 
 def _flush(path: Path) -> None:

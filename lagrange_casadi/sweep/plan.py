@@ -16,7 +16,7 @@ import numpy as np
 from ..density import Array
 from ..description import Description, describe
 from ..designs import DesignEngine
-from ..errors import DeclarationError
+from ..errors import DeclarationError, SizeError
 from ..fingerprint import fingerprint, sources
 from ..rung import Rung
 from ..scene import Grid as Span
@@ -34,6 +34,7 @@ MANY = 10**9
 """Designs from which on a sweep must be meant."""
 
 _FEW, _SHARES = 1 << 11, 16
+_CHUNK = 1 << 31
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,11 @@ class Plan:
         names = _wanted(scene, wanted)
         ratios = None if xi is None else checked_ratios(xi)
         task = Task(names, checked("t", scene.t if t is None else t), ratios, keep, rung)
-        return cls(scene, designs, values, task, task.harvest(scene))
+        harvest = task.harvest(scene)
+        largest = max(harvest.columns, key=lambda column: column.width)
+        if largest.width > _CHUNK:
+            raise SizeError(f"{largest.name} of a single design takes {largest.width / 1e9:.3g} GB; HDF5 keeps 2 GB in one piece")
+        return cls(scene, designs, values, task, harvest)
 
     @property
     def size(self) -> int:
