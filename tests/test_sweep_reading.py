@@ -74,6 +74,15 @@ def test_selection_by_value(swept):
     np.testing.assert_array_equal(swept.select(l=0.4)["peak_at:section:rod:axial"], swept["peak_at:section:rod:axial"][5:])
 
 
+@pytest.mark.parametrize("numbers", [[0], [5], [1, 2], [0, 5], [0, 2, 4], [1, 3, 4], [0, 1, 2, 3, 4, 5]])
+def test_any_numbers_along_an_axis_are_read(swept, numbers):
+    found = swept.select(l=[LENGTHS[k] for k in numbers])
+    for name in ("peak:effort:O", "peak_at:section:rod:bending"):
+        np.testing.assert_array_equal(found[name], swept[name][numbers])
+        np.testing.assert_array_equal(found.thinned("r", 2)[name], swept[name][numbers][:, ::2])
+    np.testing.assert_array_equal(found["l"], np.array(LENGTHS)[numbers])
+
+
 def test_selection_of_a_list(listed):
     rows, found = listed
     there = (rows[:, 0] >= 0.2) & (rows[:, 1] <= 0.2)

@@ -260,12 +260,11 @@ class Sweep:
         return parameter if parameter in self.dimensions else DESIGN
 
     def _cut(self, dataset: Any, axes: Sequence[str]) -> Values:
-        """What is selected of a dataset: the box around it is read, and cut in memory."""
+        """What is selected of a dataset: where numbers are evenly spaced they are read, else the box around them, cut in memory."""
         numbers = [self.chosen.get(axis) for axis in axes]
-        box = tuple(slice(None) if n is None else slice(int(n[0]), int(n[-1]) + 1) for n in numbers)
-        values = np.asarray(dataset[box])
+        values = np.asarray(dataset[tuple(_box(n) for n in numbers)])
         for axis, n in enumerate(numbers):
-            if n is not None:
+            if n is not None and n.size != values.shape[axis]:
                 values = np.take(values, n - n[0], axis=axis)
         return values
 
@@ -321,6 +320,13 @@ def _described(path: Path, file: h5py.File, keeper: Any) -> Sweep:
         {},
         keeper,
     )
+
+
+def _box(numbers: npt.NDArray[np.int64] | None) -> slice:
+    if numbers is None:
+        return slice(None)
+    steps = np.unique(np.diff(numbers))
+    return slice(int(numbers[0]), int(numbers[-1]) + 1, int(steps[0]) if steps.size == 1 else 1)
 
 
 def _plain(value: Any) -> Any:
