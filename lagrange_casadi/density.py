@@ -71,12 +71,12 @@ class NumericDensity:
 
     def tails(self, u: Array) -> tuple[Array, Array, Array]:
         """T0, T1 and T2 at ratios ``u`` of any shape."""
-        found = [np.zeros_like(u) for _ in range(3)]
+        found: list[Any] = [np.zeros_like(u) for _ in range(3)]
         for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
             parts = _differences(np.maximum(b - u, 0.0), np.maximum(a - u, 0.0), len(cell) + 2)
             for j, shifted in enumerate(_shift(cell, u)):
                 for k in range(3):
-                    found[k] += shifted * parts[j + k] / (j + k + 1)
+                    found[k] = found[k] + shifted * parts[j + k] / (j + k + 1)
         return found[0], found[1], found[2]
 
     def at(self, u: Array) -> Array:

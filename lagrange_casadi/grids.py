@@ -46,12 +46,11 @@ def fill(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array
     if out.shape != (columns[0].size, u.size):
         raise DeclarationError(f"out: expected an array of shape {(columns[0].size, u.size)}, got {out.shape}")
     plain = out.flags.c_contiguous and out.dtype == np.float64
-    entry = _compiled() if plain and out.size >= WORTH_COMPILING else None
-    if entry is None:
+    library = _compiled() if plain and out.size >= WORTH_COMPILING else None
+    if library is None:
         _fill_in_blocks(columns, basis, loads, u, out)
         return
-    flat = [np.ascontiguousarray(row, dtype=np.float64) for row in (*columns, *(row for load in loads for row in load))]
-    functions, ratios = (np.ascontiguousarray(array, dtype=np.float64) for array in (basis, u))
+    flat, functions, ratios = _flat(columns, basis, loads, u)
     n, k = out.shape
     shares = max(1, min(threads, out.size // _SHARE, n))
     size = -(-n // shares)
@@ -59,7 +58,7 @@ def fill(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array
     def run(start: int) -> None:
         addresses = [row.ctypes.data + start * row.itemsize for row in flat]
         terms, acting = addresses[: len(columns)], addresses[len(columns) :]
-        entry(
+        library.lagrange_casadi_grid(
             *(min(size, n - start), k, len(terms), (ctypes.c_void_p * len(terms))(*terms), functions.ctypes.data),
             *(len(loads), (ctypes.c_void_p * len(acting))(*acting), ratios.ctypes.data),
             *(int(out.nbytes >= _STREAMING), out[start:].ctypes.data),
@@ -70,6 +69,32 @@ def fill(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array
         return
     with ThreadPoolExecutor(shares) as pool:
         list(pool.map(run, range(0, n, size)))
+
+
+def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array) -> Array:
+    """Over the instants of n designs the value largest in size at each ratio, with its sign: (n, xi).
+
+    ``columns`` and what ``loads`` consist of are (n, t), ``basis`` is (terms, n, xi); see :func:`fill`. Of values of one size the
+    positive one is given, and NaN where all are NaN.
+    """
+    n, t = columns[0].shape
+    out = np.empty((n, u.size))
+    library = _compiled() if t * out.size >= WORTH_COMPILING else None
+    if library is None:
+        for i in range(n):
+            grid = np.empty((t, u.size))
+            _fill_in_blocks([column[i] for column in columns], basis[:, i], [(a[i], b[i], c[i]) for a, b, c in loads], u, grid)
+            high, low = grid.max(axis=0), grid.min(axis=0)
+            out[i] = np.where(high >= -low, high, low)
+        return out
+    flat, functions, ratios = _flat(columns, basis, loads, u)
+    addresses = [array.ctypes.data for array in flat]
+    terms, acting = addresses[: len(columns)], addresses[len(columns) :]
+    library.lagrange_casadi_largest(
+        *(n, t, u.size, len(terms), (ctypes.c_void_p * len(terms))(*terms), functions.ctypes.data),
+        *(len(loads), (ctypes.c_void_p * len(acting))(*acting), ratios.ctypes.data, out.ctypes.data),
+    )
+    return out
 
 
 def require(what: str, shape: tuple[int, ...]) -> None:
@@ -96,6 +121,12 @@ def empty(what: str, shape: tuple[int, ...], dtype: Any = np.float64) -> Array:
     return room[first : first + count].reshape(shape)
 
 
+def _flat(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array) -> tuple[list[Array], Array, Array]:
+    """Columns and loads one after another, basis and ratios, as C takes them."""
+    rows = [np.ascontiguousarray(row, dtype=np.float64) for row in (*columns, *(row for load in loads for row in load))]
+    return rows, np.ascontiguousarray(basis, dtype=np.float64), np.ascontiguousarray(u, dtype=np.float64)
+
+
 def _fill_in_blocks(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array) -> None:
     height = max(1, _BLOCK // max(1, out.shape[1]))
     for start in range(0, out.shape[0], height):
@@ -112,17 +143,22 @@ def _fill_in_blocks(columns: Sequence[Array], basis: Array, loads: Sequence[Load
 
 @functools.cache
 def _compiled() -> Any | None:
-    """The C function, or None where there is no compiler that takes it."""
+    """The C functions, or None where there is no compiler that takes them."""
     source = resources.files("lagrange_casadi.codegen").joinpath("grids.c").read_text()
     try:
         compiler = find_compiler()
         if compiler is None:
             return None
         with built(source, compiler, _OPTIONS) as path:
-            entry = ctypes.CDLL(str(path)).lagrange_casadi_grid
+            library = ctypes.CDLL(str(path))
     except (CompilerError, OSError):
         return None
-    integer, pointer = ctypes.c_longlong, ctypes.c_void_p
-    entry.restype = None
-    entry.argtypes = [integer, integer, ctypes.c_int, pointer, pointer, ctypes.c_int, pointer, pointer, ctypes.c_int, pointer]
-    return entry
+    integer, number, pointer = ctypes.c_longlong, ctypes.c_int, ctypes.c_void_p
+    arguments = {
+        "lagrange_casadi_grid": [integer, integer, number, pointer, pointer, number, pointer, pointer, number, pointer],
+        "lagrange_casadi_largest": [integer, integer, integer, number, pointer, pointer, number, pointer, pointer, pointer],
+    }
+    for name, types in arguments.items():
+        entry = getattr(library, name)
+        entry.restype, entry.argtypes = None, types
+    return library

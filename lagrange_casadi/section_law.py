@@ -63,7 +63,7 @@ class SectionLaw:
         """The functions along the link at ratios ``xi`` of any shape; they serve every force, and the law at any instants."""
         xi = np.asarray(xi, dtype=float)
         t0, t1, t2 = self.density.tails(xi)
-        l, one = self.length, np.ones_like(xi)
+        l, one = self.length, np.ones_like(t0)
         bending = [one, l * (1.0 - xi), l * t1, l * l * (xi * t1 + t2)]
         return Basis(xi, np.stack([one, t0, l * (xi * t0 + t1)]), np.stack(bending))
 
@@ -81,6 +81,14 @@ class SectionLaw:
         out = grids.empty(f"a grid of {force}", size) if out is None else out
         grids.fill(columns, rows, [self._acting(force, load) for load in self.loads], basis.u, out, threads or cores())
         return out
+
+    def largest(self, force: str, basis: Basis) -> Array:
+        """Of n laws, whose members are (n, t), length and density (n, 1): a force, largest in size over the instants, (n, xi).
+
+        It has its sign, the positive one where both are as large, and is NaN where all instants are.
+        """
+        columns, rows = self._terms(force, basis)
+        return grids.largest(columns, rows, [self._acting(force, load) for load in self.loads], basis.u)
 
     def during(self, instants: slice) -> SectionLaw:
         """The law at some of the instants."""

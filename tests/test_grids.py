@@ -1,5 +1,7 @@
 """Grids of section forces: compiled or not, in one piece or in many, the same bits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from builders import slider_crank
@@ -40,6 +42,39 @@ def test_a_grid_is_what_the_law_gives_at_each_point():
     law, xi = loaded_law(50), np.linspace(0, 1, 41)
     for force in FORCES:
         np.testing.assert_allclose(law.on_grid(force, xi), law.at(force, np.tile(xi, (50, 1))), rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize(("designs", "n", "k"), [(1, 1, 1), (5, 40, 7), (3, 200, 2100), (2, 1, 4097)])
+@pytest.mark.parametrize("worth", [0, 10**12])
+def test_what_is_largest_over_the_instants_is_that_of_each_design_s_grid(designs, n, k, worth, monkeypatch):
+    laws, xi = [loaded_law(n) for _ in range(designs)], np.linspace(0, 1, k)
+    scale = np.linspace(0.5, 2.0, designs)[:, None]
+    stations = [
+        StationLoad("", *(np.stack([getattr(law.loads[i], name) for law in laws]) for name in ("station", "n", "f", "m")))
+        for i in range(3)
+    ]
+    together = SectionLaw(
+        0.7 * scale,
+        NumericDensity((0.0, 0.3, 1.0), ((1.3 * scale, 0.2 * scale), (0.5 * scale,))),
+        {name: np.stack([law.coefficients[name] for law in laws]) for name in laws[0].coefficients},
+        tuple(stations),
+    )
+    monkeypatch.setattr(grids, "WORTH_COMPILING", worth)
+    for force in FORCES:
+        found = together.largest(force, together.basis(xi))
+        for row, law, (factor,) in zip(found, laws, scale, strict=True):
+            density = NumericDensity((0.0, 0.3, 1.0), ((1.3 * factor, 0.2 * factor), (0.5 * factor,)))
+            grid = replace(law, length=0.7 * factor, density=density).on_grid(force, xi)
+            best = grid[np.argmax(np.abs(grid), axis=0), np.arange(k)]
+            assert row.tobytes() == best.tobytes()
+
+
+@pytest.mark.parametrize("worth", [0, 10**12])
+def test_what_is_largest_of_two_as_large_and_of_nothing(worth, monkeypatch):
+    monkeypatch.setattr(grids, "WORTH_COMPILING", worth)
+    columns = [np.array([[-2.0, 2.0, 1.0], [np.nan] * 3, [1.0, -3.0, 0.0]]), *np.zeros((2, 3, 3))]
+    found = grids.largest(columns, np.ones((3, 3, 4)), [], np.linspace(0, 1, 4))
+    np.testing.assert_array_equal(found, np.repeat([[2.0], [np.nan], [-3.0]], 4, axis=1))
 
 
 def test_without_a_compiler_numpy_fills(monkeypatch):

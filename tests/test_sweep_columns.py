@@ -186,7 +186,7 @@ def test_chunks_do_not_know_how_many_designs_were_evaluated_at_once(harvest, mon
     p = np.random.default_rng(2).uniform(0.1, 0.3, (23, 5))
     whole = harvest.chunks(p, 30)
     harvest.engine.calls.clear()
-    monkeypatch.setattr(columns, "_AT_HAND", room)
+    monkeypatch.setattr(columns, "_BYTES", room)
     assert harvest.chunks(p, 30) == whole
     assert len(harvest.engine.calls) == {1: 23, 5_000: 8, 1 << 20: 1}[room]
     assert sum(count for count, _ in harvest.engine.calls) == 23

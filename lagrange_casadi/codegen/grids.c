@@ -1,4 +1,5 @@
 /* Section forces over instants and ratios, row by row: a combination of a few functions along the link. */
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 #ifdef __SSE2__
@@ -74,4 +75,39 @@ void lagrange_casadi_grid(long long n, long long k, int terms, const double* con
 #ifdef __SSE2__
   if (streams) _mm_sfence();
 #endif
+}
+
+/* out[d*k + j], of so many designs: over n instants, what is largest in size at each of k ratios u, with its sign; of sizes that are
+   the same, the positive one. As above, but columns[m][d*n + i] are the coefficients of basis[(m*designs + d)*k + j], and loads have
+   a value for every d*n + i. Nothing but NaN over the instants gives NaN. */
+__attribute__((visibility("default")))
+void lagrange_casadi_largest(long long designs, long long n, long long k, int terms, const double* const* columns,
+                             const double* basis, int loads, const double* const* acting, const double* u, double* out) {
+  double row[TILE], high[TILE], low[TILE], c[4];
+  const double* along[4];
+  long long d, start, i, j;
+  int m, s;
+  for (d = 0; d < designs; ++d) {
+    for (start = 0; start < k; start += TILE) {
+      const long long size = k - start < TILE ? k - start : TILE;
+      for (m = 0; m < terms; ++m) along[m] = basis + (m*designs + d)*k + start;
+      for (j = 0; j < size; ++j) {
+        high[j] = -HUGE_VAL;
+        low[j] = HUGE_VAL;
+      }
+      for (i = d*n; i < (d + 1)*n; ++i) {
+        for (m = 0; m < terms; ++m) c[m] = columns[m][i];
+        combine(size, terms, c, along, row);
+        for (s = 0; s < loads; ++s) {
+          const double* const* load = acting + 3*s;
+          act(size, load[0][i], load[1][i], load[2][i], u + start, row);
+        }
+        for (j = 0; j < size; ++j) {
+          high[j] = row[j] > high[j] ? row[j] : high[j];
+          low[j] = row[j] < low[j] ? row[j] : low[j];
+        }
+      }
+      for (j = 0; j < size; ++j) out[d*k + start + j] = high[j] < low[j] ? NAN : high[j] >= -low[j] ? high[j] : low[j];
+    }
+  }
 }

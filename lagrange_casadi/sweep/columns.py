@@ -36,7 +36,7 @@ KINDS = (STATUS, "peak", "peak_t", "peak_xi", "mean", "rms", "peak_at", "history
 
 _MOST, _BYTES, _SECONDS = 1 << 14, 1 << 24, 1.0
 _AT_HAND = 1 << 20
-_GRID_COST = 5e-9
+_GRID_COST = 5e-10
 """Seconds of a section force at an instant and a ratio."""
 
 
@@ -152,7 +152,8 @@ class Harvest:
     def _piece(self) -> int:
         """How many designs are evaluated at once: so few that their outcome is still at hand when it is taken apart."""
         series = 8 * len(self.engine.columns) * self.t.size if self._histories else 0
-        return max(1, _AT_HAND // (series + sum(column.width for column in self.columns)))
+        room = _BYTES if self._histories else _AT_HAND
+        return max(1, room // (series + sum(column.width for column in self.columns)))
 
     @cached_property
     def _links(self) -> tuple[str, ...]:
@@ -199,20 +200,24 @@ class Harvest:
         """Of each link and force what is largest over the instants, (designs, xi), and, where it is kept, all, (designs, t, xi)."""
         if not self.xi.size:
             return [], []
-        n, series, names = len(p), outcome.series, [(link, force) for link in self._links for force in FORCES]
+        series = outcome.series
         assert series is not None
-        largest = {name: np.full((n, self.xi.size), np.nan) for name in names}
-        whole = {name: np.full((n, self.t.size, self.xi.size), np.nan) for name in names if self.keep == "histories"}
+        largest, whole = [], []
         for link in self._links:
             matter = _Matter.of(self.mechanism, link)
-            rows = {name: k for k, name in enumerate(self.engine.columns) if name.startswith(f"section:{link}:")}
-            for i in np.flatnonzero(outcome.status == 0):
-                law = matter.law({name.split(":", 2)[2]: series[i, k] for name, k in rows.items()}, p[i])
-                basis = law.basis(self.xi)
-                for force in FORCES:
-                    out = whole[link, force][i] if whole else None
-                    largest[link, force][i] = _largest(law.on_grid(force, basis, out, threads=1))
-        return list(largest.values()), list(whole.values())
+            rows = {name.split(":", 2)[2]: k for k, name in enumerate(self.engine.columns) if name.startswith(f"section:{link}:")}
+            with np.errstate(all="ignore"):  # of designs that have no result
+                laws = matter.law({name: series[:, k] for name, k in rows.items()}, p)
+                basis = laws.basis(self.xi)
+                largest += [laws.largest(force, basis) for force in FORCES]
+            if self.keep == "histories":
+                grids = np.full((len(FORCES), len(p), self.t.size, self.xi.size), np.nan)
+                for i in np.flatnonzero(outcome.status == 0):
+                    law = matter.law({name: series[i, k] for name, k in rows.items()}, p[i])
+                    for force, grid in zip(FORCES, grids, strict=True):
+                        law.on_grid(force, self.xi, grid[i], threads=1)
+                whole += list(grids)
+        return largest, whole
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,8 +235,11 @@ class _Matter:
         return cls(link.mass, ca.Function("matter", [mechanism.symbols], [ca.vertcat(ca.SX(0, 1), link.length, *cells)]))
 
     def law(self, members: Mapping[str, Array], p: Array) -> SectionLaw:
-        """The law from its coefficients and loads, by ``law:n0``, ``STATION:n`` and so on."""
-        length, *cells = self.numbers(p).full().ravel().tolist()
+        """The law from its coefficients and loads, by ``law:n0``, ``STATION:n`` and so on, (t,), of a design (parameters,).
+
+        Or the laws of n designs: members are (n, t), length and density (n, 1).
+        """
+        length, *cells = self.numbers(p.T).full()[..., None] if p.ndim > 1 else self.numbers(p).full().ravel().tolist()
         rest = iter(cells)
         density = self.density.at(lambda _: next(rest), length)
         stations: dict[str, dict[str, Array]] = {}
@@ -240,10 +248,3 @@ class _Matter:
             stations.setdefault(part, {})[member] = values
         coefficients = stations.pop("law")
         return SectionLaw(length, density, coefficients, tuple(StationLoad(part, **m) for part, m in stations.items()))
-
-
-def _largest(grid: Array) -> Array:
-    """Over the instants (axis 0), the value largest in size with its sign."""
-    high, low = grid.max(axis=0), grid.min(axis=0)
-    found: Array = np.where(high >= -low, high, low)
-    return found
