@@ -11,6 +11,8 @@ from typing import Any
 import click
 from tqdm import tqdm
 
+from ..sweep.axes import counted, grouped
+
 _SECONDS = 10.0
 
 
@@ -49,13 +51,13 @@ class Lines(Silent):
         if not self._began:
             self._began, self._last, self._first = now, now, done
             if done:
-                click.echo(f"going on after {_grouped(done)} of {designs(total)}", err=True)
+                click.echo(f"going on after {grouped(int(done))} of {counted(int(total))}", err=True)
         elif now - self._last >= _SECONDS:
             self._last = now
             rate = (done - self._first) / (now - self._began)
             left = tqdm.format_interval((total - done) / rate) if rate else "?"
             click.echo(
-                f"{_grouped(done)} of {designs(total)}, {100 * done / total:.3g} %, {rate:.4g} a second, {left} left",
+                f"{grouped(int(done))} of {counted(int(total))}, {100 * done / total:.3g} %, {rate:.4g} a second, {left} left",
                 err=True,
             )
 
@@ -73,6 +75,7 @@ class Bar(Silent):
             self.close()
             unit = {"designs": " designs"}.get(what, "")
             bars = "{l_bar}{bar}| {n_fmt}/{total_fmt} [{elapsed}<{remaining}, {rate_fmt}]" if unit else "{l_bar}{bar}| [{elapsed}]"
+            sys.stderr.flush()  # fails where a bar would, half made
             self._bar = tqdm(total=total, initial=done, desc=what, unit=unit, unit_scale=bool(unit), leave=False, bar_format=bars)
             self._what = what
         self._bar.update(done - self._bar.n)
@@ -89,12 +92,3 @@ def shown(quiet: bool) -> Silent:
     if quiet:
         return Silent()
     return Bar() if sys.stderr.isatty() else Lines()
-
-
-def designs(count: float) -> str:
-    """So many designs, in words."""
-    return f"{_grouped(count)} design{'' if count == 1 else 's'}"
-
-
-def _grouped(count: float) -> str:
-    return f"{int(count):,}".replace(",", " ")

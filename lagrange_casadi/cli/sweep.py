@@ -14,8 +14,8 @@ from ..rung import Backend
 from ..scene import Grid
 from ..sweep import KEEPS, Axis, Keep, Sweep, read_designs
 from ..sweep import sweep as carry_out
+from ..sweep.axes import counted
 from .options import AXIS, GRID, axis, grid, parameters, setting, untabled_rung
-from .progress import designs as counted
 from .progress import shown
 
 

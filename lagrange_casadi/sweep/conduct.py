@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ..errors import ClusterError, DeclarationError, PathError, StoppedError, StoreError
 from ..publish import check_writable, uninterrupted
+from .axes import counted, grouped
 from .blocks import Queue
 from .file import check_names, joining
 from .parts import Folder, Part, telling
@@ -53,8 +54,11 @@ def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: 
 
 def _kept(folder: Folder, plan: Plan) -> str:
     kept = sum(part.stop - part.start for part in folder.parts())
-    count = f"{kept:,} of {plan.size:,} designs".replace(",", " ")
-    return f"{count} are kept in {folder.path}: go on with resume=True" if kept else "nothing was done yet"
+    return (
+        f"{grouped(kept)} of {counted(plan.size)} are kept in {folder.path}: go on with resume=True"
+        if kept
+        else "nothing was done yet"
+    )
 
 
 def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:

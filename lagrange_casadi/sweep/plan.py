@@ -22,7 +22,7 @@ from ..rung import Rung
 from ..scene import Grid as Span
 from ..scene import Scene, Wanted, checked, checked_ratios, outputs, points
 from ..solution import Provenance
-from .axes import Designs, check_designs
+from .axes import Designs, check_designs, counted
 from .blocks import Slab, chunk_of, slabs
 from .columns import Column, Harvest, Keep, check_keep
 from .engine import Engine
@@ -91,9 +91,7 @@ class Plan:
         values = scene.mechanism.values(fixed)
         check_designs(designs, scene.mechanism, fixed)
         if designs.size > MANY and not many:
-            raise DeclarationError(
-                f"the grid has {designs.size:,} designs".replace(",", " ") + ", more than 10^9; if that is meant, say many=True"
-            )
+            raise DeclarationError(f"the grid has {counted(designs.size)}, more than 10^9; if that is meant, say many=True")
         names = _wanted(scene, wanted)
         ratios = None if xi is None else checked_ratios(xi)
         task = Task(names, checked("t", scene.t if t is None else t), ratios, keep, rung)
