@@ -6,7 +6,6 @@ import contextlib
 import os
 import signal
 import subprocess
-import sys
 import threading
 import time
 
@@ -83,6 +82,3 @@ def wait_for(condition, seconds=60.0):
 def interrupt_after(seconds):
     """Send this process an interrupt in a while."""
     threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT)).start()
-
-
-PYTHON = sys.executable
