@@ -75,10 +75,11 @@ def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
     """Over the instants of n designs the value largest in size at each ratio, with its sign: (n, xi).
 
     ``columns`` and what ``loads`` consist of are (n, t), ``basis`` is (terms, n, xi); see :func:`fill`. Of values of one size the
-    positive one is given, and NaN where all are NaN.
+    positive one is given; a design whose columns or loads are not all finite has NaN.
     """
     n, t = columns[0].shape
     out = np.empty((n, u.size))
+    finite = np.all([np.isfinite(row).all(axis=1) for row in (*columns, *(row for load in loads for row in load))], axis=0)
     library = _compiled() if t * out.size >= WORTH_COMPILING else None
     if library is None:
         for i in range(n):
@@ -86,6 +87,7 @@ def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
             _fill_in_blocks([column[i] for column in columns], basis[:, i], [(a[i], b[i], c[i]) for a, b, c in loads], u, grid)
             high, low = grid.max(axis=0), grid.min(axis=0)
             out[i] = np.where(high >= -low, high, low)
+        out[~finite] = np.nan
         return out
     flat, functions, ratios = _flat(columns, basis, loads, u)
     addresses = [array.ctypes.data for array in flat]
@@ -94,6 +96,7 @@ def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
         *(n, t, u.size, len(terms), (ctypes.c_void_p * len(terms))(*terms), functions.ctypes.data),
         *(len(loads), (ctypes.c_void_p * len(acting))(*acting), ratios.ctypes.data, out.ctypes.data),
     )
+    out[~finite] = np.nan
     return out
 
 

@@ -15,9 +15,14 @@ from typing import Any
 from .errors import PathError, StoreError, one_line
 from .interrupts import interrupts
 
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
-def check_writable(target: Path, *, folder: bool = False) -> None:
-    """Raise :class:`PathError` where no file (or folder) can be put at ``target``: said before anything is computed."""
+
+def check_writable(target: Path, *, folder: bool = False, hdf5: bool = False) -> None:
+    """Raise :class:`PathError` where no file (or folder) can be put at ``target``: said before anything is computed.
+
+    What is no ``hdf5`` file itself replaces none.
+    """
     try:
         taken, whole = target.exists() or target.is_symlink(), target.is_dir()
     except OSError as error:
@@ -29,16 +34,26 @@ def check_writable(target: Path, *, folder: bool = False) -> None:
     if not target.parent.is_dir():
         lacking = "is a file" if target.parent.exists() else "does not exist"
         raise PathError(f"cannot write {target}: folder {target.parent} {lacking}")
+    if not folder and not hdf5 and _is_hdf5(target):
+        raise PathError(f"cannot write {target}: it is an HDF5 file; choose another name")
     for place in (target.parent, *([target] if target.is_dir() else [])):
         if not os.access(place, os.W_OK):
             raise PathError(f"cannot write {target}: folder {place} is not writable")
 
 
+def _is_hdf5(path: Path) -> bool:
+    try:
+        with path.open("rb") as file:
+            return file.read(len(_SIGNATURE)) == _SIGNATURE
+    except OSError:
+        return False
+
+
 @contextmanager
-def replacing(target: Path) -> Iterator[Path]:
+def replacing(target: Path, *, hdf5: bool = False) -> Iterator[Path]:
     """A temporary file to write, renamed to ``target`` on success and removed on any failure."""
-    check_writable(target)
-    with _failing(target), _beside(target) as work:
+    check_writable(target, hdf5=hdf5)
+    with telling(target), _beside(target) as work:
         draft = work / target.name
         yield draft
         with draft.open("rb") as written:
@@ -112,7 +127,7 @@ def filling(folder: Path) -> Iterator[Path]:
     check_writable(folder, folder=True)
     # What is mounted there takes no file from beside it by a new name.
     within = folder / folder.name if os.path.ismount(folder) else folder
-    with _failing(folder), _beside(within) as work:
+    with telling(folder), _beside(within) as work:
         yield work
         folder.mkdir(exist_ok=True)
         for draft in sorted(work.iterdir()):
@@ -126,7 +141,8 @@ def _beside(target: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def _failing(target: Path) -> Iterator[None]:
+def telling(target: Path) -> Iterator[None]:
+    """Say failures of the disk in one line: raise :class:`StoreError` for ``OSError``."""
     try:
         yield
     except OSError as error:

@@ -85,7 +85,7 @@ class SectionLaw:
     def largest(self, force: str, basis: Basis) -> Array:
         """Of n laws, whose members are (n, t), length and density (n, 1): a force, largest in size over the instants, (n, xi).
 
-        It has its sign, the positive one where both are as large, and is NaN where all instants are.
+        It has its sign, the positive one where both are as large, and is NaN of a law that is not finite throughout.
         """
         columns, rows = self._terms(force, basis)
         return grids.largest(columns, rows, [self._acting(force, load) for load in self.loads], basis.u)

@@ -21,7 +21,7 @@ import numpy as np
 from .certificate import certify, tolerance
 from .density import Array
 from .errors import DeclarationError, PathError, StoreError, one_line
-from .publish import PatientFile, replacing, uninterrupted
+from .publish import PatientFile, check_writable, replacing, uninterrupted
 from .quantities import CONVENTIONS, quantity_of
 from .section_law import FORCES
 from .solution import Provenance, Solution, in_order
@@ -48,9 +48,10 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
     if not isinstance(solution, Solution) or not isinstance(path, (str, os.PathLike)):
         raise DeclarationError(f"save: expected a solution and a path, got {solution!r} and {path!r}")
     target = Path(path)
+    check_target(target)
     _require_room(solution, target)
     with (
-        replacing(target) as draft,
+        replacing(target, hdf5=True) as draft,
         uninterrupted() as breathe,
         PatientFile(draft, "x+") as bytes_,
         h5py.File(bytes_, "w", track_order=True) as file,
@@ -58,6 +59,19 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
         _write(file, solution, figures, breathe)
         file.flush()
         file.attrs["complete"] = True
+
+
+def check_target(target: Path) -> None:
+    """Raise :class:`PathError` where no file of a run can be put: it replaces another one, but no other HDF5 file."""
+    check_writable(target, hdf5=True)
+    try:
+        with h5py.File(target) as file:
+            schema = file.attrs.get("schema", "")
+    except OSError:
+        return
+    if schema != SCHEMA:
+        kind = "the file of a sweep" if schema == f"{SCHEMA}-sweep" else "an HDF5 file of something else"
+        raise PathError(f"cannot write {target}: it is {kind}; choose another name")
 
 
 def _require_room(solution: Solution, target: Path) -> None:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
-import signal
 import subprocess
 import threading
 import time
@@ -77,8 +75,3 @@ def wait_for(condition, seconds=60.0):
     while not condition():
         assert time.monotonic() < until, "it never came"
         time.sleep(0.002)
-
-
-def interrupt_after(seconds):
-    """Send this process an interrupt in a while."""
-    threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT)).start()

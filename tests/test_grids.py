@@ -72,9 +72,9 @@ def test_what_is_largest_over_the_instants_is_that_of_each_design_s_grid(designs
 @pytest.mark.parametrize("worth", [0, 10**12])
 def test_what_is_largest_of_two_as_large_and_of_nothing(worth, monkeypatch):
     monkeypatch.setattr(grids, "WORTH_COMPILING", worth)
-    columns = [np.array([[-2.0, 2.0, 1.0], [np.nan] * 3, [1.0, -3.0, 0.0]]), *np.zeros((2, 3, 3))]
-    found = grids.largest(columns, np.ones((3, 3, 4)), [], np.linspace(0, 1, 4))
-    np.testing.assert_array_equal(found, np.repeat([[2.0], [np.nan], [-3.0]], 4, axis=1))
+    rows = [[-2.0, 2.0, 1.0], [np.nan] * 3, [1.0, -3.0, 0.0], [np.nan, 2.0, 1.0], [1.0, np.inf, 1.0]]
+    found = grids.largest([np.array(rows), *np.zeros((2, 5, 3))], np.ones((3, 5, 4)), [], np.linspace(0, 1, 4))
+    np.testing.assert_array_equal(found, np.repeat([[2.0], [np.nan], [-3.0], [np.nan], [np.nan]], 4, axis=1))
 
 
 def test_without_a_compiler_numpy_fills(monkeypatch):

@@ -3,6 +3,7 @@
 import os
 import signal
 
+import h5py
 import pytest
 
 from lagrange_casadi.errors import PathError
@@ -46,6 +47,19 @@ def test_what_is_in_the_way_is_named(tmp_path):
         check_writable(tmp_path / "file", folder=True)
     with pytest.raises(PathError, match="it is a folder"):
         check_writable(tmp_path)
+
+
+def test_only_an_hdf5_file_replaces_another(tmp_path):
+    target = tmp_path / "x.h5"
+    with h5py.File(target, "w") as file:
+        file["a"] = 1.0
+    before = target.read_bytes()
+    with pytest.raises(PathError, match=r"cannot write .*x\.h5: it is an HDF5 file; choose another name"), replacing(target):
+        pass
+    assert target.read_bytes() == before
+    check_writable(target, hdf5=True)
+    target.write_text("l\n0.2\n")
+    check_writable(target)
 
 
 def test_an_interrupt_waits_until_it_is_let_through():

@@ -192,6 +192,19 @@ def test_places_that_cannot_be_written(solution, tmp_path):
         save(solution, tmp_path / "nowhere" / "result.h5")
 
 
+@pytest.mark.parametrize(
+    ("schema", "says"), [("lagrange-casadi-sweep", "it is the file of a sweep"), ("", "it is an HDF5 file of something else")]
+)
+def test_no_other_hdf5_file_is_replaced(solution, tmp_path, schema, says):
+    target = tmp_path / "x.h5"
+    with h5py.File(target, "w") as h:
+        h.attrs["schema"] = schema
+    before = target.read_bytes()
+    with pytest.raises(PathError, match=rf"cannot write .*x\.h5: {says}; choose another name"):
+        save(solution, target)
+    assert target.read_bytes() == before
+
+
 def test_a_file_that_the_disk_has_no_room_for_is_refused(solution, tmp_path, monkeypatch):
     monkeypatch.setattr("lagrange_casadi.store.shutil.disk_usage", lambda _: shutil._ntuple_diskusage(10**6, 0, 10**6))
     with pytest.raises(StoreError, match=r"cannot write .*x\.h5: it takes 0\.004\d+ GB, and the disk has 0\.001 GB left"):

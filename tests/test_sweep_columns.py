@@ -155,8 +155,17 @@ def test_what_cannot_be_kept_is_named(slider_crank):
 
 
 def test_what_no_file_keeps_in_one_piece_is_refused(slider_crank, tmp_path):
-    with pytest.raises(SizeError, match=r"history:section:crank:axial of a single design takes 4\.81 GB; HDF5 keeps 2 GB"):
+    with pytest.raises(SizeError, match=r"history:section:crank:axial of one design takes 4\.48 GiB, a chunk 2 GiB at most"):
         sweep(slider_crank, {"l": [0.2, 0.3]}, t=(0, 0.08, 1_000_000), xi=(0, 1, 601), keep="histories", out=tmp_path / "x.h5")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_design_that_memory_cannot_hold_is_refused(slider_crank, tmp_path, monkeypatch):
+    monkeypatch.setattr("os.sysconf", lambda name: {"SC_PAGE_SIZE": 4096, "SC_PHYS_PAGES": 5_000}[name])
+    with pytest.raises(
+        SizeError, match=r"no room for a design and what it is made from: 4 x .* GB, and this machine has 0\.0205 GB"
+    ):
+        sweep(slider_crank, {"l": [0.2, 0.3]}, t=(0, 0.08, 1001), xi=(0, 1, 201), keep="histories", out=tmp_path / "x.h5")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -15,7 +15,7 @@ import pytest
 import sweeps
 
 from lagrange_casadi.codegen import cores
-from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoppedError, StoreError
+from lagrange_casadi.errors import BusyError, DeclarationError, PathError, SizeError, StoppedError, StoreError
 from lagrange_casadi.sweep import sweep
 from lagrange_casadi.sweep.parts import Folder
 
@@ -218,6 +218,19 @@ def test_what_no_sweep_put_into_the_folder_is_not_touched(engine, tmp_path, keyw
     assert os.listdir(folder) == ["thesis.txt"]
 
 
+@pytest.mark.parametrize("keywords", [{}, {"resume": True}])
+def test_parts_of_nobody_knows_what_are_not_touched(whole, tmp_path, keywords):
+    path, folder = tmp_path / "x.h5", tmp_path / "x.h5.parts"
+    with pytest.raises(_StopError):
+        run(path, progress=stop_after(4))
+    (folder / "plan.json").unlink()
+    before = sorted(os.listdir(folder))
+    with pytest.raises(PathError, match=r"x\.h5\.parts holds parts, and no plan\.json that tells what they are of: force=True"):
+        run(path, **keywords)
+    assert sorted(os.listdir(folder)) == before
+    assert run(path, force=True) == whole
+
+
 def test_an_interrupt_after_the_end_stops_nothing(whole, tmp_path, monkeypatch):
     publish = Folder.publish
 
@@ -256,21 +269,71 @@ def test_two_sweeps_into_one_file(whole, engine, tmp_path):
     assert first == [whole]
 
 
-def test_ctrl_c_finishes_the_block_and_says_how_to_go_on(whole, engine, tmp_path):
-    engine.pause = 2e-3
-    path = tmp_path / "x.h5"
-    sweeps.interrupt_after(0.3)
-    with pytest.raises(
-        StoppedError, match=r"stopped; \d+ of 420 designs are kept in .*x\.h5\.parts: go on with resume=True"
-    ) as caught:
-        run(path)
+def test_ctrl_c_finishes_the_blocks_under_way_and_says_how_to_go_on(whole, engine, tmp_path):
+    path, told = tmp_path / "x.h5", []
+
+    def progress(what, done, _total):
+        told.append(what)
+        if done and what == "designs":
+            signal.raise_signal(signal.SIGINT)
+
+    says = r"stopped; \d+ of 420 designs are kept in .*x\.h5\.parts: go on with resume=True"
+    engine.pause = 1e-3
+    with pytest.raises(StoppedError, match=says) as caught:
+        run(path, workers=2, progress=progress)
     kept = int(str(caught.value).split()[1])
-    assert 0 < kept < SIZE
+    assert 14 <= kept <= 4 * 14
+    assert told.count("stopping") == 1
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    engine.pause = 0.0
     engine.calls.clear()
     assert run(path, resume=True) == whole
     assert sum(size for size, _ in engine.calls) == SIZE - kept
+
+
+def test_after_a_failure_nothing_more_is_begun(engine, tmp_path, monkeypatch):
+    def fail(*_):
+        raise StoreError("no")
+
+    engine.pause = 1e-3
+    monkeypatch.setattr(Folder, "commit", fail)
+    with pytest.raises(StoreError, match="no; nothing was done yet"):
+        run(tmp_path / "x.h5", workers=2)
+    assert len(engine.calls) <= 4
+    assert os.listdir(tmp_path) == []
+
+
+def test_out_of_memory_is_one_line_and_keeps_what_was_done(whole, engine, tmp_path, monkeypatch):
+    fine, calls = engine.evaluate, []
+
+    def fail(p, **keywords):
+        calls.append(p)
+        if len(calls) == 3:
+            raise MemoryError
+        return fine(p, **keywords)
+
+    monkeypatch.setattr(engine, "evaluate", fail)
+    with pytest.raises(SizeError, match=r"out of memory: fewer workers take less; 28 of 420 designs are kept in .*resume=True"):
+        run(tmp_path / "x.h5", workers=1)
+    assert run(tmp_path / "x.h5", resume=True) == whole
+
+
+def test_a_part_that_cannot_be_read_is_named(whole, tmp_path, monkeypatch):
+    path = tmp_path / "x.h5"
+    with pytest.raises(_StopError):
+        run(path, progress=stop_after(4))
+    lost = min(path.with_name("x.h5.parts").glob("*.part"))
+    parts = Folder.parts
+
+    def listed(self):
+        found = parts(self)
+        lost.unlink(missing_ok=True)
+        return found
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Folder, "parts", listed)
+        with pytest.raises(StoreError, match=rf"cannot read {lost}: .*No such file or directory.*; \d+ of 420 designs are kept"):
+            run(path, resume=True)
+    assert run(path, resume=True) == whole
 
 
 def test_an_engine_that_fails_leaves_what_was_committed(whole, engine, tmp_path, monkeypatch):
@@ -346,6 +409,8 @@ def test_killed_at_twenty_random_moments(whole, tmp_path):
     while kills < 20:
         with program(path, pause=2e-4) as running:
             assert running.stdout.readline() == "ready\n"
+            if kills % 2:
+                sweeps.wait_for(lambda: any(tmp_path.glob("x.h5.parts/*.part")) or running.poll() is not None)
             try:
                 running.wait(timeout=chance.uniform(0.0, 0.25))
             except subprocess.TimeoutExpired:

@@ -55,11 +55,13 @@ def test_a_part_cut_short_is_not_believed(folder, keep):
 def test_every_flipped_byte_is_found(folder):
     commit(folder, (0, 2))
     (part,) = folder.parts()
+    assert list(folder.flaws()) == []
     path, content = part.path, part.path.read_bytes()
     for place in range(len(content)):
         damaged = bytearray(content)
         damaged[place] ^= 0x10
         path.write_bytes(damaged)
+        assert len(list(folder.flaws())) == 1
         with pytest.raises(StoreError, match=r"was damaged, in (head|column .*), and is deleted"):
             part.read()
         assert not path.exists(), place

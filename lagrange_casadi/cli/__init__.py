@@ -70,7 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except _Interrupted:
             return _fail(SENTENCE, STATUS)
         except MemoryError as error:
-            return _fail(f"out of memory: {error or 'fewer instants or ratios fit'}", 1)
+            return _fail(f"out of memory: {str(error) or 'fewer instants or ratios fit'}", 1)
         except OSError as error:  # of standard output, for files fail with an error of ours
             return _fail(one_line(error), 1)
     return result if isinstance(result, int) else 0

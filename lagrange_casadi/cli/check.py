@@ -26,5 +26,5 @@ def check(file: Path) -> int:
 def _findings(file: Path) -> list[str]:
     folder = unfinished(file)
     if folder:
-        return [progress(folder)]
+        return [progress(folder), *folder.flaws()]
     return check_sweep(file) if is_sweep(file) else store.check(file)

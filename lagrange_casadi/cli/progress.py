@@ -71,6 +71,9 @@ class Bar(Silent):
 
     def show(self, what: str, done: float, total: float) -> None:
         """Move the bar."""
+        if what == "stopping":
+            tqdm.write("stopping: what is under way is being finished", file=sys.stderr)
+            return
         if what != self._what:
             self.close()
             unit = {"designs": " designs"}.get(what, "")

@@ -18,7 +18,7 @@ from ..publish import check_writable, filling
 from ..rung import Backend
 from ..scene import Grid
 from ..solution import Peak, Solution
-from ..store import save
+from ..store import check_target, save
 from .drawing import draw_with_progress
 from .options import GRID, grid, parameters, rung, setting
 from .report import peak_line
@@ -65,7 +65,7 @@ def run(
     loaded = load_case(case)
     out = out or Path(f"{loaded.name}.h5")
     folder = None if no_figures else figures or Path(f"{loaded.name}_figures")
-    check_writable(out)
+    check_target(out)
     if folder:
         check_writable(folder, folder=True)
     solution = evaluate(

@@ -14,7 +14,7 @@ from ..rung import Backend
 from ..scene import Grid
 from ..sweep import KEEPS, Axis, Keep, Sweep, read_designs
 from ..sweep import sweep as carry_out
-from ..sweep.axes import counted
+from ..sweep.axes import counted, grouped
 from .options import AXIS, GRID, axis, grid, parameters, setting, untabled_rung
 from .progress import shown
 
@@ -114,4 +114,4 @@ def _report(found: Sweep) -> None:
     click.echo(f"{found.case}: {product}{counted(found.size)} over {', '.join(found.parameters)}")
     for status, many in found.counts().items():
         if status and many:
-            click.echo(f"  {many} without a result: {found.statuses[status][1]}")
+            click.echo(f"  {grouped(many)} without a result: {found.statuses[status][1]}")

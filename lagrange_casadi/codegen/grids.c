@@ -79,7 +79,7 @@ void lagrange_casadi_grid(long long n, long long k, int terms, const double* con
 
 /* out[d*k + j], of so many designs: over n instants, what is largest in size at each of k ratios u, with its sign; of sizes that are
    the same, the positive one. As above, but columns[m][d*n + i] are the coefficients of basis[(m*designs + d)*k + j], and loads have
-   a value for every d*n + i. Nothing but NaN over the instants gives NaN. */
+   a value for every d*n + i. All of them must be finite. */
 __attribute__((visibility("default")))
 void lagrange_casadi_largest(long long designs, long long n, long long k, int terms, const double* const* columns,
                              const double* basis, int loads, const double* const* acting, const double* u, double* out) {
@@ -107,7 +107,7 @@ void lagrange_casadi_largest(long long designs, long long n, long long k, int te
           low[j] = row[j] < low[j] ? row[j] : low[j];
         }
       }
-      for (j = 0; j < size; ++j) out[d*k + start + j] = high[j] < low[j] ? NAN : high[j] >= -low[j] ? high[j] : low[j];
+      for (j = 0; j < size; ++j) out[d*k + start + j] = high[j] >= -low[j] ? high[j] : low[j];
     }
   }
 }

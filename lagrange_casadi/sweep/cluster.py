@@ -25,7 +25,7 @@ from ..scene import Scene
 from .blocks import Queue
 from .columns import Harvest
 from .plan import Plan, Task, difference, signature
-from .workers import Block
+from .workers import Blocks
 
 _PATIENCE = 10.0
 """Seconds in which a scheduler must answer."""
@@ -74,7 +74,7 @@ class Cluster:
         if not _ADDRESS.fullmatch(self.address):
             raise DeclarationError(f"dask: expected an address like tcp://HOST:8786, got '{self.address}'")
 
-    def results(self, plan: Plan, queue: Queue) -> Iterator[Block | None]:
+    def results(self, plan: Plan, queue: Queue) -> Blocks:
         """Evaluate what is in the queue, in the order in which workers are done."""
         source = Source(str(self.case.path), self.case.path.read_text())
         told = signature(plan.scene, plan.task, plan.harvest.engine.provenance)
@@ -90,7 +90,7 @@ class Cluster:
             finally:
                 connecting.add_done_callback(_let_go)
 
-    def _served(self, client: Any, plan: Plan, queue: Queue, source: Source, told: Mapping[str, Any]) -> Iterator[Block | None]:
+    def _served(self, client: Any, plan: Plan, queue: Queue, source: Source, told: Mapping[str, Any]) -> Blocks:
         waiting = _dask().as_completed(loop=client.loop)
         blocks: dict[Any, tuple[int, int]] = {}
 

@@ -214,8 +214,9 @@ class Harvest:
                 grids = np.full((len(FORCES), len(p), self.t.size, self.xi.size), np.nan)
                 for i in np.flatnonzero(outcome.status == 0):
                     law = matter.law({name: series[i, k] for name, k in rows.items()}, p[i])
+                    basis = law.basis(self.xi)
                     for force, grid in zip(FORCES, grids, strict=True):
-                        law.on_grid(force, self.xi, grid[i], threads=1)
+                        law.on_grid(force, basis, grid[i], threads=1)
                 whole += list(grids)
         return largest, whole
 

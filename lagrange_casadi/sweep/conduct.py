@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import closing
 from itertools import islice
 from pathlib import Path
 
-from ..errors import ClusterError, DeclarationError, PathError, StoppedError, StoreError
-from ..publish import check_writable, uninterrupted
+from ..errors import ClusterError, DeclarationError, PathError, SizeError, StoppedError, StoreError
+from ..publish import check_writable, telling, uninterrupted
 from .axes import counted, grouped
 from .blocks import Queue
 from .file import check_names, joining
-from .parts import Folder, Part, telling
+from .parts import Folder, Part
 from .plan import Plan, difference
 from .reading import identity_of
 from .workers import Workers
 
 Progress = Callable[[str, float, float], None]
-"""Hears what is being done (``designs``, ``file``), how much of it is done, and of how much."""
+"""Hears what is being done (``designs``, ``stopping`` them, ``file``), how much of it is done, and of how much."""
 
 _CATCHING_UP = 4
 """Parts joined for each that is committed, where there are more."""
@@ -33,7 +34,7 @@ def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: 
     if resume and force:
         raise DeclarationError("resume and force exclude each other: go on with what is there, or start anew")
     check_names(plan.designs)
-    check_writable(target)
+    check_writable(target, hdf5=True)
     folder = Folder(target)
     with folder.locked():
         if _settled(folder, plan, resume, force):
@@ -48,12 +49,14 @@ def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: 
             if finished:  # it came when there was nothing left to interrupt
                 return
             raise StoppedError(f"stopped; {_kept(folder, plan)}") from None
-        except (StoreError, ClusterError) as error:
+        except (StoreError, ClusterError, SizeError) as error:
             raise type(error)(f"{error}; {_kept(folder, plan)}") from None
+        except MemoryError as error:
+            raise SizeError(f"out of memory: {str(error) or 'fewer workers take less'}; {_kept(folder, plan)}") from None
 
 
 def _kept(folder: Folder, plan: Plan) -> str:
-    kept = sum(part.stop - part.start for part in folder.parts())
+    kept = folder.done()
     return (
         f"{grouped(kept)} of {counted(plan.size)} are kept in {folder.path}: go on with resume=True"
         if kept
@@ -68,6 +71,8 @@ def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
         raise PathError(f"{folder.path} holds an unfinished sweep: go on with resume=True, or start anew with force=True")
     if there and not (resume or force):
         raise PathError(f"{folder.target} exists: force=True replaces it, resume=True goes on with a sweep that was not finished")
+    if not (folder.begun or force) and folder.parts():
+        raise PathError(f"{folder.path} holds parts, and no plan.json that tells what they are of: force=True starts anew")
     if force or not (folder.begun or there):
         folder.begin(plan.identity, forced=force)
         return False
@@ -98,10 +103,14 @@ def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], No
     parts = {part.start: part for part in folder.parts()}
     done, size = sum(part.stop - part.start for part in parts.values()), sum(part.size for part in parts.values())
     queue = Queue((start, stop) for start, stop, _ in plan.slabs() if start not in parts)
-    with telling(folder.target), joining(plan, folder.joined) as append:
+    with (
+        telling(folder.target),
+        joining(plan, folder.joined) as append,
+        closing(workers.results(plan, queue)) as blocks,
+    ):
         joined = 0
         progress("designs", done, plan.size)
-        for block in workers.results(plan, queue):
+        for block in blocks:
             if block is not None:
                 start, stop, contents = block
                 parts[start] = folder.commit(start, stop, plan.columns, contents)
@@ -117,6 +126,8 @@ def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], No
             try:
                 breathe()
             except KeyboardInterrupt:
+                if not queue.stopped:
+                    progress("stopping", done, plan.size)
                 queue.stop()
         breathe()
         for part in _following(parts, joined):

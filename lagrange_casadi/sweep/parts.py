@@ -17,7 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from ..errors import BusyError, PathError, StoreError
+from ..errors import BusyError, PathError, StoreError, one_line
+from ..publish import telling
 from .columns import Column
 
 try:
@@ -39,20 +40,30 @@ class Part:
 
     def read(self) -> list[bytes]:
         """Its columns. Where one is not what was committed the part is deleted: raises :class:`StoreError`."""
+        try:
+            contents, flaw = self._read()
+        except OSError as error:
+            raise StoreError(f"cannot read {self.path}: {one_line(error)}") from None
+        if flaw:
+            self.path.unlink()
+            raise StoreError(f"{self.path} was damaged, in {flaw}, and is deleted")
+        return contents
+
+    def flaw(self) -> str | None:
+        """What of it is not what was committed; nothing is deleted."""
+        return self._read()[1]
+
+    def _read(self) -> tuple[list[bytes], str | None]:
         with self.path.open("rb") as file:
             try:
                 columns: dict[str, list[int]] = _head(file)["columns"]
             except ValueError:
-                raise self._damaged("head") from None
+                return [], "head"
             contents = [file.read(length) for length, _ in columns.values()]
-        for (name, (_, checksum)), content in zip(columns.items(), contents, strict=True):
-            if zlib.crc32(content) != checksum:
-                raise self._damaged(f"column {name}")
-        return contents
-
-    def _damaged(self, where: str) -> StoreError:
-        self.path.unlink()
-        return StoreError(f"{self.path} was damaged, in {where}, and is deleted")
+        sums = zip(columns.items(), contents, strict=True)
+        return contents, next(
+            (f"column {name}" for (name, (_, checksum)), content in sums if zlib.crc32(content) != checksum), None
+        )
 
 
 @dataclass(frozen=True)
@@ -172,6 +183,16 @@ class Folder:
         """How many designs the parts that are whole cover; it only looks, so a sweep may be at work meanwhile."""
         return sum(part.stop - part.start for _, part in self._looked_through() if part)
 
+    def flaws(self) -> Iterator[str]:
+        """What is wrong with the parts, a line each; all is read, and nothing touched."""
+        for path, part in self._looked_through():
+            try:
+                flaw = part.flaw() if part else "head or length"
+            except FileNotFoundError:  # a sweep at work has come to its end
+                continue
+            if flaw:
+                yield f"{path.name}: damaged, in {flaw}: it will be done again"
+
     def _looked_through(self) -> Iterator[tuple[Path, Part | None]]:
         after = 0
         for path in sorted(self.path.glob(f"*{_PART}")):
@@ -243,13 +264,3 @@ def _flush(path: Path) -> None:
         os.fsync(number)
     finally:
         os.close(number)
-
-
-@contextmanager
-def telling(target: Path) -> Iterator[None]:
-    """Say failures of the disk in one line: raise :class:`StoreError` for ``OSError``."""
-    try:
-        yield
-    except OSError as error:
-        reason = os.strerror(error.errno) if error.errno else " ".join(str(error).split())
-        raise StoreError(f"cannot write {target}: {reason}") from None

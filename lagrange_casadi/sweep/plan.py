@@ -18,6 +18,7 @@ from ..description import Description, describe
 from ..designs import DesignEngine
 from ..errors import DeclarationError, SizeError
 from ..fingerprint import fingerprint, sources
+from ..grids import require
 from ..rung import Rung
 from ..scene import Grid as Span
 from ..scene import Scene, Wanted, checked, checked_ratios, outputs, points
@@ -34,7 +35,11 @@ MANY = 10**9
 """Designs from which on a sweep must be meant."""
 
 _FEW, _SHARES = 1 << 11, 16
-_CHUNK = 1 << 31
+_LARGEST = 1 << 31
+"""Bytes of a chunk of the file."""
+
+_TIMES = 4
+"""How many times what is kept of a design is in memory before it is written."""
 
 
 @dataclass(frozen=True)
@@ -97,8 +102,10 @@ class Plan:
         task = Task(names, checked("t", scene.t if t is None else t), ratios, keep, rung)
         harvest = task.harvest(scene)
         largest = max(harvest.columns, key=lambda column: column.width)
-        if largest.width > _CHUNK:
-            raise SizeError(f"{largest.name} of a single design takes {largest.width / 1e9:.3g} GB; HDF5 keeps 2 GB in one piece")
+        if largest.width > _LARGEST:
+            size = f"{largest.width / 2**30:.3g} GiB"
+            raise SizeError(f"{largest.name} of one design takes {size}, a chunk 2 GiB at most: ask for fewer instants or ratios")
+        require("a design and what it is made from", (_TIMES, sum(column.width for column in harvest.columns) // 8))
         return cls(scene, designs, values, task, harvest)
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Generator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -15,15 +15,15 @@ from .plan import Plan
 Block = tuple[int, int, list[bytes]]
 """Designs from and to before, and their columns as the file keeps them."""
 
+Blocks = Generator[Block | None, None, None]
+"""Blocks as they are done; None where nothing was done for a while, so that whoever waits may stop."""
+
 
 class Workers(Protocol):
     """Whoever evaluates blocks."""
 
-    def results(self, plan: Plan, queue: Queue) -> Iterator[Block | None]:
-        """Evaluate what is in the queue, in any order; what was begun before it was stopped is still given.
-
-        None where nothing was done for a while, so that whoever waits may stop.
-        """
+    def results(self, plan: Plan, queue: Queue) -> Blocks:
+        """Evaluate what is in the queue, in any order; what was begun before it was stopped is still given."""
 
 
 @dataclass(frozen=True)
@@ -32,15 +32,15 @@ class Threads:
 
     count: int | None = None
 
-    def results(self, plan: Plan, queue: Queue) -> Iterator[Block]:
+    def results(self, plan: Plan, queue: Queue) -> Blocks:
         """Evaluate what is in the queue."""
         count = self.count or cores()
 
         def evaluated(start: int, stop: int) -> list[bytes]:
             return plan.harvest.chunks(plan.block(start, stop), plan.room)
 
-        with ThreadPoolExecutor(count) as pool:
-            pending: deque[tuple[int, int, Any]] = deque()
+        pool, pending = ThreadPoolExecutor(count), deque[tuple[int, int, Any]]()
+        try:
             while True:
                 while len(pending) <= count and (block := queue.take()):
                     pending.append((*block, pool.submit(evaluated, *block)))
@@ -49,3 +49,5 @@ class Threads:
                 start, stop, future = pending.popleft()
                 if not (queue.stopped and future.cancel()):
                     yield start, stop, future.result()
+        finally:
+            pool.shutdown(cancel_futures=True)
