@@ -75,11 +75,13 @@ def sweep(
     many
         Mean it where there are more than 10^9 designs.
     progress
-        Called with what is being done (``designs``, then ``file``), how much of it is done, and of how much.
+        Called with what is being done (``designs``, after an interrupt ``stopping``, then ``file``), how much of it is done, and of
+        how much.
 
     Raises :class:`DeclarationError`, :class:`UnknownNameError`, :class:`ParameterError` or :class:`PathError` for mistakes,
     :class:`StoreError` where the file is another sweep's or cannot be written, :class:`BusyError` where another process writes it,
-    :class:`ClusterError` where a cluster cannot serve, :class:`StoppedError` after an interrupt. What was done is kept.
+    :class:`ClusterError` where a cluster cannot serve, :class:`SizeError` where memory does not hold what a design keeps,
+    :class:`StoppedError` after an interrupt. What was done is kept.
     """
     case = scene if isinstance(scene, Case) else None
     own = scene.scene if isinstance(scene, Case) else scene
