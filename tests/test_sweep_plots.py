@@ -167,17 +167,25 @@ def test_a_few_designs_are_curves_along_the_link(swept):
 
     found = rewritten(swept, "peak_at:section:rod:bending", jumping)
     figure = Along("x", "rod", "r", {"l": 0.4}).draw(rewritten(found, "status", lambda values: np.where(values, 4, values)))
-    drawn = lines(figure.axes[2], "None")[:3]
+    solid = [line for line in lines(figure.axes[2], "None") if line.get_linestyle() == "-"]
+    drawn = solid[:3]
     values = found["peak_at:section:rod:bending"][-1, [0, 2, 1], 0]
     for line, row in zip(drawn, values, strict=True):
         y = line.get_ydata()
         np.testing.assert_array_equal(y[~np.isnan(y)], row[~np.isnan(row)])
     np.testing.assert_array_equal(drawn[1].get_ydata(), [-1e-20, 1.0, 2.0, np.nan, -2.0, -1.0])
+    jumps = [line.get_ydata().tolist() for line in lines(figure.axes[2], "None") if line.get_linestyle() == ":"]
+    assert [2.0, -2.0] in jumps
     assert plain(figure.axes[2].get_ylabel()) == "rod bending, peak [N m]"
     status = found["status"][-1, [0, 2, 1], 0]
     assert status.any()
     reasons = ["" if not kind else ", no result: a loop cannot be closed" for kind in status]
-    assert legend(figure) == [f"r = {r} m{why}" for r, why in zip((0.05, 0.07, 0.1), reasons, strict=True)]
+    keys = [f"r = {r} m{why}" for r, why in zip((0.05, 0.07, 0.1), reasons, strict=True)]
+    assert legend(figure) == [*keys, "where the largest in size changes its sign"]
+    positive = rewritten(found, "peak_at:section:rod:bending", np.abs)
+    for force in ("axial", "shear"):
+        positive = rewritten(positive, f"peak_at:section:rod:{force}", np.abs)
+    assert legend(Along("x", "rod", "r", {"l": 0.4}).draw(positive)) == keys
 
 
 def test_the_front_and_all_designs(swept):
@@ -190,6 +198,7 @@ def test_the_front_and_all_designs(swept):
     (low, high), axes = figure.axes[0].get_xlim(), figure.axes[0]
     assert low < front.get_xdata().min()
     assert front.get_xdata().max() < high
+    assert plain(figure.get_suptitle()) == "slider_crank: designs and their front"
     keys = list(legend(figure)[2:])
     named = [
         ", ".join(f"{name} = {design.values[name]:.4g} {unit}" for name, unit in swept.parameters.items()) for design in designs
@@ -198,15 +207,42 @@ def test_the_front_and_all_designs(swept):
     assert keys[0] == named[0]
     assert keys[-1] == named[-1]
     assert set(keys) <= set(named)
-    assert [note.get_text() for note in axes.texts] == [str(k + 1) for k in range(len(keys))]
-    there = {key: note.xy for key, note in zip(keys, axes.texts, strict=True)}
-    for design, words in zip(designs, named, strict=True):
-        if words in there:
-            assert there[words] == (abs(design.values[EFFORT]), abs(design.values[BENDING]))
+    for k, words in enumerate(keys, 1):
+        ((x, y),) = lines(axes, f"${k}$")[0].get_xydata()
+        design = designs[named.index(words)]
+        assert (x, y) == (abs(design.values[EFFORT]), abs(design.values[BENDING]))
+        assert any((ring.get_xydata() == [x, y]).all() for ring in lines(axes, "o")[2:])
     some = Front("x", EFFORT, "l", {"m1": 0.2}).draw(swept)
     assert np.isfinite(lines(some.axes[0], "o")[0].get_xdata()).sum() == (~np.isnan(swept[EFFORT][:, :, 1])).sum()
     assert some.axes[0].get_ylabel() == "l [m]"
     assert plain(some.get_suptitle()).endswith("at m1 = 0.2 kg")
+    assert all(words.startswith("l = ") and "m1" not in words for words in legend(some)[2:])
+
+
+def test_numbered_designs_of_a_front_lie_apart(swept):
+    """Of a front that is short beside the other designs, as many are numbered as there is room for, the ends first."""
+    order = np.arange(54.0).reshape(9, 3, 2)
+    effort = np.where(order < 6, 100.0 + order, 100.0 + 20 * order)
+    bending = np.where(order < 6, 10.0 - 0.1 * order, 10.0 + order)
+    found = rewritten(rewritten(swept, "status", np.zeros_like), EFFORT, lambda _: effort)
+    figure = Front("x", EFFORT, BENDING).draw(rewritten(found, BENDING, lambda _: bending))
+    assert "front: no other is less in both (6)" in legend(figure)
+    figure.draw_without_rendering()
+    rings = [line for line in lines(figure.axes[0], "o") if line.get_markerfacecolor() == "white"]
+    places = np.array([figure.axes[0].transData.transform(ring.get_xydata()[0]) for ring in rings])
+    gaps = np.hypot(*(places[:, None] - places[None]).T)[~np.eye(len(rings), dtype=bool)]
+    assert len(rings) < 5
+    assert rings[0].get_xdata()[0] == 100.0
+    assert (gaps > rings[0].get_markersize() / 72 * figure.dpi).all()
+
+
+def test_a_front_of_all_designs(swept):
+    """There are no others to say anything of."""
+    ranks = np.arange(1.0, 55.0).reshape(9, 3, 2)
+    found = rewritten(rewritten(swept, "status", np.zeros_like), EFFORT, lambda _: ranks)
+    figure = Front("x", EFFORT, BENDING).draw(rewritten(found, BENDING, lambda _: 100.0 - ranks))
+    assert legend(figure)[0] == "front: no other is less in both (54)"
+    assert not any("with a result" in text for text in legend(figure))
 
 
 def test_grids_finer_than_the_picture_are_thinned(swept, monkeypatch):
@@ -214,8 +250,36 @@ def test_grids_finer_than_the_picture_are_thinned(swept, monkeypatch):
     monkeypatch.setattr(plots, "DOTS", 10)
     figure = Peaks("x", (BENDING,), ("l", "r")).draw(swept)
     assert figure.axes[0].collections[0].get_array().shape == (3, 3)
-    assert "one of 3 values of l drawn" in plain(figure.get_suptitle())
-    assert Front("x", EFFORT, BENDING).draw(swept).axes[0].get_lines()[0].get_xdata().size <= 10
+    assert "1 in 3 values of l drawn" in plain(figure.get_suptitle())
+    figure = Front("x", EFFORT, BENDING).draw(swept)
+    dots, front = lines(figure.axes[0], "o")[:2]
+    assert 0 < dots.get_xdata().size <= 10
+    assert front.get_xdata().size == len(best(swept, minimise=[EFFORT, BENDING]))
+    assert legend(figure)[0] == "designs with a result, 1 in 6 drawn"
+    monkeypatch.setattr(plots, "DOTS", 20)
+    some = Front("x", EFFORT, BENDING, {"m1": 0.2}).draw(swept)
+    assert lines(some.axes[0], "o")[0].get_xdata().size > 3, "of each second design, all that are odd are drawn or none"
+
+
+def test_a_few_values_are_ticks(swept, listed):
+    axes = Peaks("x", (BENDING,), ("l", "r")).draw(swept).axes[0]
+    np.testing.assert_array_equal(axes.get_yticks(), [0.05, 0.07, 0.1])
+    assert len(axes.get_xticks()) != 9
+    np.testing.assert_array_equal(Peaks("x", (BENDING,), ("r",), "l").draw(swept).axes[0].get_xticks(), [0.05, 0.07, 0.1])
+    for over in ("l", "r"):
+        axes = Along("x", "rod", over).draw(swept).axes[0]
+        np.testing.assert_array_equal(axes.get_yticks() if over == "l" else axes.get_xticks(), [0.0, 0.25, 0.5, 0.75, 1.0])
+    np.testing.assert_array_equal(Scatter("x", (BENDING,), ("l", "m1")).draw(listed).axes[1].get_xticks(), [0.1, 0.2])
+
+
+def test_the_star_says_that_others_are_as_small(swept, listed):
+    """What differs by rounding is as small."""
+    title = Scatter("x", (BENDING,), ("l",)).draw(rewritten(listed, BENDING, lambda v: np.resize([0.25, 0.5], 50))).axes[0]
+    assert plain(title.get_title(loc="left")) == "★ 0.25, design 0 and 24 more"
+    sizes = np.resize([0.5, 0.25, 0.25 * (1 - 1e-12)], 9)[:, None, None]
+    found = rewritten(rewritten(swept, "status", np.zeros_like), BENDING, lambda values: np.broadcast_to(sizes, values.shape))
+    title = Peaks("x", (BENDING,), ("l",)).draw(found).axes[0].get_title(loc="left")
+    assert plain(title) == "★ 0.25 at l = 0.2125 and 5 more"
 
 
 def test_the_usual_figures(swept, tmp_path):
@@ -274,12 +338,12 @@ def test_many_columns_and_parameters_come_on_pages(monkeypatch, tmp_path):
 
 
 def test_what_is_the_same_for_all_is_said_and_not_drawn(swept, tmp_path):
-    found = rewritten(swept, EFFORT, lambda values: np.where(np.isnan(values), np.nan, 3.0))
+    found = rewritten(swept, EFFORT, lambda values: np.where(np.isnan(values), np.nan, [3.0, 4.0]))
     figure = Peaks("x", (EFFORT, BENDING), ("l", "r")).draw(found)
     assert len(figure.axes) == 2, "a map and its bar"
-    assert "the same for all: effort O, |peak| [N m] = 3" in plain(figure.get_suptitle())
+    assert "at m1 = 0.1 kg; the same for all drawn: effort O, |peak| [N m] = 3" in plain(figure.get_suptitle())
     ((path, why),) = draw_sweep(found, [Peaks("x", (EFFORT,), ("l", "r"))], tmp_path)
-    assert why == "the same for all: effort O, |peak| [N m] = 3"
+    assert why == "the same for all drawn, at m1 = 0.1 kg: effort O, |peak| [N m] = 3"
     assert not path.exists()
 
 
@@ -347,7 +411,7 @@ def test_the_command_writes_figures_or_nothing(swept, tmp_path, capsys):
     front = f"front_{EFFORT}_{BENDING}".replace(":", "-")
     assert names == ["along_rod", front, "peak_reactions", "peak_section_rod"]
     err = capsys.readouterr().err
-    assert err == "note: not drawn: peak_effort.png: the same for all: effort O, |peak| [N m] = 3\n"
+    assert err == "note: not drawn: peak_effort.png: the same for all drawn, at m1 = 0.2 kg: effort O, |peak| [N m] = 3\n"
     for asked, words in (
         (["--over", "l", "--over", "r", "--over", "m1"], "a grid is drawn over one parameter or two, got 3: l, r, m1"),
         (["--at", "l=0.4", "--at", "l=0.15"], "--at: a parameter stays at one value, got two for 'l'"),
@@ -367,6 +431,6 @@ def test_a_command_whose_figures_all_show_nothing_writes_none(monkeypatch, tmp_p
     found = sweep(sweeps.scene(), {"l": (0.2, 0.3, 5)}, out=tmp_path / "x.h5")
     rewritten(found, "peak:load:gas:fx", lambda values: np.zeros_like(values))
     assert main(["plot", str(found.path), "--out", str(tmp_path / "none")]) == 1
-    words = "error: there is nothing to draw: peak_loads.png: the same for all: load gas fx, |peak| [N] = 0\n"
+    words = "error: there is nothing to draw: peak_loads.png: the same for all drawn: load gas fx, |peak| [N] = 0\n"
     assert capsys.readouterr().err == words
     assert not (tmp_path / "none").exists()

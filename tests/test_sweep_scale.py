@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from matplotlib import colors
+from matplotlib.figure import Figure
 
 from lagrange_casadi.sweep.panels import fitted
-from lagrange_casadi.sweep.scale import Scale, edges, logarithmic, number
+from lagrange_casadi.sweep.scale import Scale, edges, logarithmic, number, tick
 
 
 @pytest.mark.parametrize(
@@ -21,6 +22,8 @@ from lagrange_casadi.sweep.scale import Scale, edges, logarithmic, number
         (np.array([1.0, 2.0, 1e3]), (1.0, 1e3, True, False, False)),
         (np.array([np.nan, 3.0]), (2.85, 3.15, False, False, False)),
         (np.zeros(3), (-1.0, 1.0, False, False, False)),
+        (np.append(np.geomspace(10.0, 60.0, 94), np.geomspace(100.0, 900.0, 6)), (10.0, 900.0, True, False, False)),
+        (np.linspace(0.01, 1.0, 50) ** 2, (1e-4, 1.0, False, False, False)),
         (np.append(np.ones(99), 7.0), (1.0, 7.0, False, False, False)),
     ],
 )
@@ -41,6 +44,33 @@ def test_signed_limits_keep_zero_in_the_middle():
         assert norm(sizes.max()) == pytest.approx(1.0)
         assert norm(-sizes.max()) == pytest.approx(0.0)
     assert norm(100.0) > 0.7, "a hundredth of the largest is seen"
+
+
+@pytest.mark.parametrize("far", [25.0, 1e3, 1e5])
+def test_signed_values_are_seen_beside_a_few_far_ones(far):
+    """Whether these set the limits or lie beyond them, and though forces vanish at a link's ends."""
+    along = np.sin(np.pi * np.linspace(0.0, 1.0, 11)) * np.sign(np.linspace(-1.0, 1.0, 11))
+    values = np.outer([1.0, 1.3, 1.7, 2.2, 3.0, 4.0, 6.0, 10.0, far], along)
+    scale = Scale.of(values, sides=2)
+    low, middle, high = scale.norm()(np.array([-1.0, 0.0, 1.0]))
+    assert (low, middle) == pytest.approx((1.0 - high, 0.5))
+    assert high > 0.58
+    assert scale.extend == ("both" if scale.high < np.abs(values).max() else "neither")
+
+
+@pytest.mark.parametrize(
+    ("axis", "inches", "shown"), [("x", 6.0, "0.05 0.0625 0.1 0.5"), ("x", 1.5, "0.05 0.1 0.5"), ("y", 1.0, "0.05 0.1 0.5")]
+)
+def test_ticks_at_values(axis, inches, shown):
+    """All are ticked, and numbered where there is room."""
+    axes = Figure().subplots()
+    values = np.array([0.05, 0.0625, 0.1, 0.5])
+    axes.set(xscale="log", yscale="log", xlim=(0.04, 0.6), ylim=(0.04, 0.6))
+    tick(getattr(axes, f"{axis}axis"), values, inches)
+    ticks = getattr(axes, f"{axis}axis")
+    np.testing.assert_array_equal(ticks.get_majorticklocs(), values)
+    assert ticks.get_minorticklocs().size == 0
+    assert [text.get_text() for text in ticks.get_ticklabels() if text.get_text()] == shown.split()
 
 
 def test_axes_even_in_ratios_are_logarithmic():

@@ -38,7 +38,7 @@ class Cut:
             if name in names:
                 stride = 1 + (length - 1) // PIXELS
                 sweep = sweep.thinned(name, stride)
-                thinned += [f"one of {stride} values of {name} drawn"] if stride > 1 else []
+                thinned += [f"1 in {stride} values of {name} drawn"] if stride > 1 else []
             else:
                 sweep = sweep.at_number(name, (length - 1) // 2)
                 fixed[name] = float(sweep[name][0])
@@ -52,7 +52,7 @@ class Cut:
         """Of a list, the designs that have the values ``at``."""
         sweep = sweep.select(**at)
         stride = 1 + sweep.size // DOTS
-        thinned = (f"one of {stride} designs drawn",) if stride > 1 else ()
+        thinned = (f"1 in {stride} designs drawn",) if stride > 1 else ()
         return cls(sweep.thinned(DESIGN, stride), (), (), (*stays(sweep, at), *thinned))
 
     @property

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ..density import Array
 from .reading import Sweep
-from .scale import Scale
+from .scale import Scale, tick
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,7 +21,7 @@ STYLE: dict[Any, Any] = {"font.size": 8, "axes.titlesize": 7, "axes.labelsize": 
 
 _COLUMN, _PAGE, _HEIGHT, _ALONE, _LINE, _TITLE = 3.5, 7.0, 2.3, 2.9, 0.17, 8.5
 _STEPS = (1, 2, 5, 10)
-_NAMED = 3
+_NAMED, _TICKED = 3, 6
 _FOOT = 0.03
 _TIED = re.compile(r" (?=[^\[\]]*\])| (?==)|(?<==) |(?<=\d) (?=[a-zA-Z])")
 _SHADES = (0.12, 0.3, 0.48, 0.66)
@@ -130,6 +130,12 @@ class Sheet:
         bar = self.figure.colorbar(cells, ax=axes, location="top", extend=scale.extend, aspect=25, pad=0.02)
         scale.mark(bar)
         bar.set_label(fitted(0.97 * self.across, text, scale.note))
+
+    def tick(self, axes: Any, axis: str, values: Array) -> None:
+        """Where axis "x" or "y" of a panel has a few values, its ticks are these."""
+        there = np.unique(values[np.isfinite(values)])
+        if 0 < there.size <= _TICKED:
+            tick(getattr(axes, f"{axis}axis"), there, 0.9 * self.across if axis == "x" else 0.7 * self.up)
 
     def name_axes(self, x: str, y: str = "") -> None:
         """Say below the lowest panels, and left of the leftmost ones, what is along their axes."""

@@ -17,13 +17,14 @@ from .best import best, chosen, size
 from .columns import STATUS
 from .cut import DOTS, LINES, Cut, stays
 from .panels import STYLE, Gaps, Sheet, fitted, label, value
-from .reading import Sweep
+from .reading import Sweep, near
 from .scale import Scale, edges, even_in_ratios, logarithmic, number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_KEYED, _NAMED, _OFTEN = 5, 3, 3
+_KEYED, _NAMED, _OFTEN, _GOLDEN = 5, 3, 3, (5.0**0.5 - 1.0) / 2.0
+_RING = 0.15
 _BLUE, _RED = "#1f4e79", "#c1272d"
 _OUTSIDE = {"viridis": {"over": "#fffbd0", "under": "#1a0022"}, "RdBu_r": {"over": "#3d0010", "under": "#021a33"}}
 _STAR: dict[str, Any] = {
@@ -63,10 +64,12 @@ class Peaks:
                 _curves(axes, cut, values, gaps, sheet.legend)
                 scale.limit(axes, "y", foot=gaps.foot(values.size // len(values)))
                 axes.set_ylabel(fitted(sheet.up, label(sweep, column), scale.note))
+            for axis, x in zip("xy"[: len(self.over)], cut.axes, strict=False):
+                sheet.tick(axes, axis, x)
             place = np.unravel_index(np.nanargmin(values), values.shape)
             spot = [x[k] for x, k in zip(cut.axes, place, strict=True)]
             _star(axes, spot[0], spot[1] if len(self.over) == 2 else values[place], sheet.legend)
-            where = ", ".join(value(sweep, name, x, "") for name, x in zip(cut.names, spot, strict=True))
+            where = ", ".join(value(sweep, name, x, "") for name, x in zip(cut.names, spot, strict=True)) + _ties(values)
             inches = (0.6 + 0.2 * len(self.over)) * sheet.across
             axes.set_title(fitted(inches, f"★ {number(values[place])} at {where}", points=7), loc="left", color=_RED)
         sheet.name_axes(label(sweep, self.over[0]), label(sweep, self.over[1]) if len(self.over) == 2 else "")
@@ -97,12 +100,13 @@ class Scatter:
                 axes.set_xscale("log")
                 even_in_ratios(axes.xaxis)
             scale.limit(axes, "y", foot=gaps.foot())
+            sheet.tick(axes, "x", x)
             axes.grid(True, color="0.9")
             place = np.nanargmin(values)
             _star(axes, x[place], values[place], sheet.legend)
             if k % len(self.over) == 0:
                 axes.set_ylabel(fitted(sheet.up, label(sweep, column), scale.note))
-                axes.set_title(f"★ {number(values[place])}, design {cut.numbers[place]}", loc="left", color=_RED)
+                axes.set_title(f"★ {number(values[place])}, design {cut.numbers[place]}{_ties(values)}", loc="left", color=_RED)
             if k + len(self.over) >= len(sheet.panels):
                 axes.set_xlabel(fitted(0.9 * sheet.across, label(sweep, name)))
         return sheet.finish(f"{sweep.case}: peak over time of {cut.numbers.size} designs", *cut.notes, same)
@@ -126,6 +130,7 @@ class Along:
         cut = Cut.of(sweep, (self.over,), self.at)
         (there,), xi = cut.axes, sweep["xi"]
         mapped = there.size > LINES
+        flips: dict[str, Any] = {}
         gaps = Gaps.of(sweep, np.repeat(cut[STATUS][:, None], xi.size, axis=1))
         sheet = Sheet.of(len(FORCES), share=("all", mapped))
         for axes, force in zip(sheet.panels, FORCES, strict=True):
@@ -136,20 +141,27 @@ class Along:
             sized = _alternates(values)
             values, words = np.abs(values) if sized else values, label(sweep, column, sized)
             if mapped:
-                scale = Scale.of(np.fmax.reduce(np.abs(values), axis=1), sides=1 if sized else 2)
+                scale = Scale.of(values, sides=1 if sized else 2)
                 colours = "viridis" if sized else "RdBu_r"
                 sheet.bar(axes, _cells(axes, (there, xi), values, scale, gaps, sheet.legend, colours), scale, words)
+                sheet.tick(axes, "y", xi)
             else:
                 for k, row in enumerate(values):
-                    # Where the largest changes its sign, it jumps from one instant to another.
-                    jumps = np.flatnonzero(_flips(row)) + 1
-                    x, y = (np.insert(w, jumps, np.nan) for w in (xi, row))
-                    (line,) = axes.plot(x, y, color=_colour(k, there.size), linewidth=1.1)
+                    # Where the largest changes its sign, it mostly jumps from one instant to another.
+                    jumps = np.flatnonzero(_flips(row))
+                    colour = _colour(k, there.size)
+                    for j in jumps:
+                        (jump,) = axes.plot(xi[j : j + 2], row[j : j + 2], ":", color=colour, linewidth=0.8)
+                        flips["where the largest in size changes its sign"] = jump
+                    x, y = (np.insert(w, jumps + 1, np.nan) for w in (xi, row))
+                    (line,) = axes.plot(x, y, color=colour, linewidth=1.1)
                     why = "" if np.isfinite(row).any() else f", {gaps.words[gaps.codes[k, 0] - 1]}"
                     sheet.legend[value(sweep, self.over, there[k]) + why] = line
                 axes.axhline(0.0, color="0.6", linewidth=0.8, zorder=0)
+                sheet.tick(axes, "x", xi)
                 axes.grid(True, color="0.9")
                 axes.set_ylabel(fitted(sheet.up, words))
+        sheet.legend.update(flips)
         ratio = r"$\xi/l$"
         sheet.name_axes(*((label(sweep, self.over), ratio) if mapped else (ratio, "")))
         return sheet.finish(f"{sweep.case}: section forces of {self.link}, at each ratio the largest in size over time", *cut.notes)
@@ -170,32 +182,42 @@ class Front:
     def draw(self, sweep: Sweep) -> Figure:
         """The figure. Raises :class:`NoDesignError` where no design has a result."""
         pair, sweep = (self.first, self.second), sweep.select(**self.at)
-        stride = 1 + sweep.size // DOTS
-        dots = [[size(n, v[n])[numbers % stride == 0] for n in pair] for numbers, v in chosen(sweep, pair, ["status==0"])]
-        x, y = np.concatenate(dots, axis=1)
         front = best(sweep, minimise=pair)
         if not front:
             raise NoDesignError(_none(stays(sweep, self.at)))
+        stride = 1 + sweep.size // DOTS
+        count, dots = 0, []
+        for numbers, values in chosen(sweep, pair, ["status==0"]):
+            count += numbers.size
+            # By the golden ratio, since each n-th of a grid may be all that share a value, or none of those chosen.
+            few = numbers * _GOLDEN % 1.0 * stride < 1.0
+            dots.append([size(name, values[name])[few] for name in pair])
+        x, y = np.concatenate(dots, axis=1)
         u, v = (size(name, np.array([design.values[name] for design in front])) for name in pair)
         sheet = Sheet.of(1)
         (axes,) = sheet.panels
-        many = "" if stride == 1 else f", one of {stride} drawn"
-        (sheet.legend[f"designs with a result{many}"],) = axes.plot(x, y, "o", color="0.75", markersize=2.5, markeredgewidth=0.0)
+        if count > len(front):
+            words = "designs with a result" + (f", 1 in {stride} drawn" if stride > 1 else "")
+            (sheet.legend[words],) = axes.plot(x, y, "o", color="0.75", markersize=2.5, markeredgewidth=0.0)
         axes.step(u, v, where="post", color=_RED, linewidth=0.8)
         words = f"front: no other is less in both ({len(front)})"
         (sheet.legend[words],) = axes.plot(u, v, "o", color=_RED, markersize=2.5)
         scales = [Scale.of(both) for both in (np.append(x, u), np.append(y, v))]
         for axis, scale, held in zip("xy", scales, (u, v), strict=True):
-            scale.limit(axes, axis, held, 0.12)
-        varied = [name for name in sweep.parameters if sweep.dimensions.get(name) != 1]
-        for count, k in enumerate(_spread(*(np.log(w) if s.log else w for w, s in zip((u, v), scales, strict=True))), 1):
-            axes.annotate(str(count), (u[k], v[k]), (-5, -5), textcoords="offset points", ha="right", va="top", color=_RED)
+            scale.limit(axes, axis, held)
+        varied = [name for name in sweep.parameters if name not in self.at and sweep.dimensions.get(name) != 1]
+        seen = (axes.transScale + axes.transLimits).transform(np.column_stack([u, v])) * (sheet.across, sheet.up)
+        for n, k in enumerate(_apart(seen), 1):
             where = ", ".join(value(sweep, name, front[k].values[name]) for name in varied)
-            (sheet.legend[where],) = axes.plot([], [], linestyle="", marker=f"${count}$", color=_RED, markersize=5)
+            style = {"color": _RED, "linestyle": "", "zorder": 4}
+            sheet.legend[where] = (
+                *axes.plot(u[k], v[k], "o", markersize=8.0, markerfacecolor="white", markeredgewidth=0.8, clip_on=False, **style),
+                *axes.plot(u[k], v[k], marker=f"${n}$", markersize=4.5, markeredgewidth=0.0, clip_on=False, **style),
+            )
         for axis, name, scale in zip("xy", pair, scales, strict=True):
             axes.set(**{f"{axis}label": fitted(0.9 * sheet.up, label(sweep, name), scale.note)})
         axes.grid(True, color="0.9")
-        return sheet.finish(f"{sweep.case}: designs of which no other is less in both", *stays(sweep, self.at))
+        return sheet.finish(f"{sweep.case}: designs and their front", *stays(sweep, self.at))
 
 
 Spec = Peaks | Scatter | Along | Front
@@ -232,10 +254,10 @@ def _differing(columns: Sequence[str], cut: Cut) -> tuple[dict[str, Array], str]
         elif found.size:
             shown[column] = values
     more = f"; and {len(same) - _NAMED} more" if len(same) > _NAMED else ""
-    words = f"the same for all: {'; '.join(same[:_NAMED])}{more}" if same else ""
+    words = f"{'; '.join(same[:_NAMED])}{more}"
     if not shown:
-        raise NoDesignError(words or _none(cut.notes))
-    return shown, words
+        raise NoDesignError(f"{', '.join(('the same for all drawn', *cut.notes))}: {words}" if same else _none(cut.notes))
+    return shown, f"the same for all drawn: {words}" if same else ""
 
 
 def _cells(
@@ -286,6 +308,12 @@ def _alternates(values: Array) -> bool:
     return any(float(_flips(each).sum(axis=0).mean()) > _OFTEN for each in (values, values.T))
 
 
+def _ties(values: Array) -> str:
+    """How many others are as small as the smallest, in words."""
+    others = int(near(values, np.nanmin(values)).sum()) - 1
+    return f" and\N{NO-BREAK SPACE}{others} more" if others else ""
+
+
 def _star(axes: Any, x: Any, y: Any, legend: dict[str, Any]) -> None:
     (legend["smallest of those drawn"],) = axes.plot(x, y, clip_on=False, zorder=5, **_STAR)
 
@@ -297,8 +325,13 @@ def _colour(k: int, count: int) -> Any:
     return _BLUE if count == 1 else colormaps["viridis"](0.88 * k / (count - 1))
 
 
-def _spread(u: Array, v: Array) -> list[int]:
-    """Numbers of a few points along a curve, its ends among them, as far from each other as they come."""
-    way = np.sum([np.abs(w - w[0]) / (np.ptp(w) or 1.0) for w in (u, v)], axis=0)
-    wanted = np.linspace(0.0, way[-1], _KEYED)
-    return sorted({int(np.argmin(np.abs(way - place))) for place in wanted})
+def _apart(places: Array) -> list[int]:
+    """Numbers of a few places (n, 2) in inches along a curve, its ends among them, that lie evenly and apart."""
+    way = np.abs(places - places[0]).sum(axis=1)
+    count = min(_KEYED, 1 + int(way[-1] / _RING))
+    kept: list[int] = []
+    for wanted in (0.0, *np.linspace(way[-1], 0.0, count)[:-1]):
+        k = int(np.argmin(np.abs(way - wanted)))
+        if all(np.hypot(*(places[k] - places[j])) > _RING for j in kept):
+            kept.append(k)
+    return sorted(kept)

@@ -11,7 +11,8 @@ import numpy as np
 from ..density import Array
 
 _MIDDLE: Any = ((5, "higher"), (95, "lower"))
-_SPAN, _SAME = 20.0, 1e-9
+_SPAN, _LOWEST, _DEPTH, _SAME = 5.0, 0.2, 1e6, 1e-9
+_TALL, _WIDE = 0.15, 0.065
 
 
 @dataclass(frozen=True)
@@ -19,9 +20,9 @@ class Scale:
     """Limits of colours or of an axis, which a few designs near a dead centre do not set.
 
     They are those of the values; but where some are further from the middle 90 % than twice what it spans, half its span away from
-    it. A scale is logarithmic where the middle spans more than 20 times, and there once its span is far. One with ``sides`` begins
-    with zero (1) or has zero in its middle (2); up to ``low`` it is linear. ``below`` and ``above`` say that values lie outside,
-    ``most`` is the largest.
+    it. A scale is logarithmic where half of the values would be in the lowest fifth of it otherwise, and the middle spans more than
+    five times; there spans are ratios. One with ``sides`` is that of sizes, and begins with zero (1) or has zero in its middle (2);
+    a logarithmic one is linear up to ``low``. ``below`` and ``above`` say that values lie outside, ``most`` is the largest.
     """
 
     low: float
@@ -34,23 +35,23 @@ class Scale:
 
     @classmethod
     def of(cls, values: Array, sides: int = 0) -> Scale:
-        """The scale of sizes of which at least one is finite, or with ``sides`` of what does not exceed them."""
+        """The scale of values of which at least one is finite."""
         found = values[np.isfinite(values)]
+        found = np.abs(found) if sides else found
         least, most = float(found.min()), float(found.max())
         # Of a few values, the least and the largest are never in the middle.
         near, far = (float(np.percentile(found, at, method=way)) for at, way in _MIDDLE) if found.size > 3 else (least, most)
-        log = bool(near > 0.0 and far > _SPAN * near)
-        turn, back = (np.log, np.exp) if log else (np.positive, np.positive)
-        with np.errstate(divide="ignore"):
-            first, near, far, last = turn([least, near, far, most])
-        reach = far - near or last - first
-        away = reach if log else 2 * reach
-        low = back(near - reach / 2) if first < near - away else least
-        high = back(far + reach / 2) if last > far + away else most
+        low, high = _limits(0.0, 0.0, far, most) if sides else _limits(least, near, far, most)
+        middle = float(np.median(found))
+        log = middle - low < _LOWEST * (high - low) and far > _SPAN * near and (near > 0.0 or sides > 0)
+        if log:
+            # Some sizes are zero, or rounding; a twentieth of the median is little enough.
+            near, least = (max(near, middle / 20.0, far / _DEPTH),) * 2 if sides else (near, least)
+            low, high = _limits(least, near, far, most, log=True)
         if high - low <= _SAME * max(abs(high), abs(low)):
             pad = 0.05 * abs(high) or 1.0
             low, high = low - pad, high + pad
-        return cls(float(low), float(high), log, least < low, most > high, most, sides)
+        return cls(low, high, log, not sides and least < low, most > high, most, sides)
 
     @property
     def extend(self) -> str:
@@ -108,6 +109,16 @@ class Scale:
             even_in_ratios(getattr(axes, f"{axis}axis"))
 
 
+def _limits(least: float, near: float, far: float, most: float, log: bool = False) -> tuple[float, float]:
+    """Of values and of their middle: the values', or the middle's and half of its span where some are far from it."""
+    turn, back = (np.log, np.exp) if log else (np.positive, np.positive)
+    with np.errstate(divide="ignore"):
+        first, start, end, last = turn([least, near, far, most])
+    reach = end - start or last - first
+    low = float(back(start - reach / 2)) if first < start - 2 * reach else least
+    return low, float(back(end + reach / 2)) if last > end + 2 * reach else most
+
+
 def number(value: float) -> str:
     """A number as figures say it."""
     if value == 0.0 or 1e-3 <= abs(value) < 1e5:
@@ -130,6 +141,21 @@ def even_in_ratios(axis: Any) -> None:
     axis.set_major_locator(LogLocator(subs=(1.0,) if decades > 2.5 else (1.0, 3.0) if decades > 1.2 else (1.0, 2.0, 5.0)))
     axis.set_major_formatter(FuncFormatter(lambda x, _: number(x)))
     axis.set_minor_formatter(NullFormatter())
+
+
+def tick(axis: Any, values: Array, inches: float) -> None:
+    """Ticks of an axis of a length at values, ascending, with numbers as far as they do not run into each other."""
+    turn = np.log if axis.get_scale() == "log" else np.positive
+    low, high = turn(axis.get_view_interval())
+    words, end = [f"{x:.4g}".replace("-", "\N{MINUS SIGN}") for x in values], -np.inf
+    for k, middle in enumerate((turn(values) - low) / (high - low) * inches):
+        half = (_TALL if axis.axis_name == "y" else _WIDE * (len(words[k]) + 1)) / 2
+        if middle - half < end:
+            words[k] = ""
+        else:
+            end = middle + half
+    axis.set_ticks(values, words)
+    axis.set_ticks([], minor=True)
 
 
 def logarithmic(x: Array) -> bool:
