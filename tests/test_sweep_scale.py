@@ -16,6 +16,7 @@ from lagrange_casadi.sweep.scale import Scale, edges, logarithmic, number, tick
         (np.append(np.linspace(1.0, 2.0, 99), 50.0), (1.0, None, False, False, True)),
         (np.geomspace(1.0, 1e4, 50), (1.0, 1e4, True, False, False)),
         (np.append(np.geomspace(1.0, 1e4, 99), [0.0]), (None, 1e4, True, True, False)),
+        (np.append(np.geomspace(1.0, 1e4, 99), [-1.0]), (-1.0, 1e4, False, False, False)),
         (np.append(np.geomspace(1.0, 1e4, 99), [1e12]), (1.0, None, True, False, True)),
         (np.append(np.linspace(1.0, 2.0, 8), 50.0), (1.0, None, False, False, True)),
         (2.0 ** np.arange(5), (1.0, 16.0, False, False, False)),
@@ -34,6 +35,14 @@ def test_limits(values, expected):
     assert scale.low == pytest.approx(low) if low is not None else scale.low > np.nanmin(values)
     assert scale.high == pytest.approx(high) if high is not None else np.sort(values)[-2] <= scale.high < values.max()
     assert isinstance(scale.norm(), colors.LogNorm) == scale.log
+
+
+@pytest.mark.parametrize("held", [0.0, -1.0])
+def test_an_axis_that_holds_what_is_not_positive_is_linear(held):
+    axes = Figure().subplots()
+    Scale.of(np.append(np.geomspace(1.0, 1e4, 99), 0.0)).limit(axes, "x", [held, 5.0])
+    assert axes.get_xscale() == "linear"
+    assert axes.get_xlim()[0] < held < 1e4 <= axes.get_xlim()[1]
 
 
 def test_signed_limits_keep_zero_in_the_middle():

@@ -43,7 +43,7 @@ class Scale:
         near, far = (float(np.percentile(found, at, method=way)) for at, way in _MIDDLE) if found.size > 3 else (least, most)
         low, high = _limits(0.0, 0.0, far, most) if sides else _limits(least, near, far, most)
         middle = float(np.median(found))
-        log = middle - low < _LOWEST * (high - low) and far > _SPAN * near and (near > 0.0 or sides > 0)
+        log = middle - low < _LOWEST * (high - low) and far > _SPAN * near and (least >= 0.0 < near or sides > 0)
         if log:
             # Some sizes are zero, or rounding; a twentieth of the median is little enough.
             near, least = (max(near, middle / 20.0, far / _DEPTH),) * 2 if sides else (near, least)
@@ -96,16 +96,20 @@ class Scale:
             bar.update_ticks()
 
     def limit(self, axes: Any, axis: str, held: Iterable[float] = (), foot: float = 0.05) -> None:
-        """Let axis "x" or "y" of axes have this scale, with room below for ``foot`` of it; values ``held`` are inside."""
+        """Let axis "x" or "y" of axes have this scale, with room below for ``foot`` of it; values ``held`` are inside.
+
+        Where one of them is not positive, the axis is linear.
+        """
         low, high = min([self.low, *held]), max([self.high, *held])
-        if self.log:
+        log = self.log and low > 0.0
+        if log:
             limits = low / (high / low) ** foot, high * (high / low) ** 0.05
         else:
             limits = low - foot * (high - low), high + 0.05 * (high - low)
-        if self.log:
+        if log:
             axes.set(**{f"{axis}scale": "log"})
         axes.set(**{f"{axis}lim": limits})
-        if self.log:
+        if log:
             even_in_ratios(getattr(axes, f"{axis}axis"))
 
 
