@@ -115,7 +115,7 @@ def test_what_a_grid_rounds_is_what_was_meant():
     assert Condition.parse("l==0.3").holds(values).tolist() == [False, False, True, False]
 
 
-@pytest.mark.parametrize("text", ["l", "l<", "<3", "l<x", "l<<3", "l=<3", "l<0.1<r", ""])
+@pytest.mark.parametrize("text", ["l", "l<", "<3", "l<x", "l<<3", "l=<3", "l<0.1<r", "l<1_0", ""])
 def test_what_is_no_condition_is_named(text):
     with pytest.raises(DeclarationError, match="expected a condition like"):
         Condition.parse(text)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from ..density import Array
 from ..errors import DeclarationError
+from ..numerals import real
 from .columns import STATUS
 from .reading import Sweep, names_in, near
 
@@ -46,7 +47,7 @@ class Condition:
         try:
             if not found:
                 raise ValueError
-            value = float(found[3])
+            value = real(found[3])
             if math.isnan(value):
                 raise ValueError
             return cls(found[1], found[2], value)
