@@ -35,7 +35,7 @@ class UnknownNameError(DeclarationError):
     """
 
     def __init__(self, kind: str, name: str | Sequence[str], valid: Iterable[str], listed_by: str = "", place: str = "") -> None:
-        names, unknown = list(valid), [name] if isinstance(name, str) else list(name)
+        names, unknown = list(valid), [name] if isinstance(name, str) else list(dict.fromkeys(name))
         listed = f"valid: {', '.join(names) or 'none are declared'}"
         many = len(listed) > _LONG
         if many:

@@ -23,7 +23,7 @@ def test_a_few_names_are_listed(name, valid, says):
 def test_several_names_are_told_at_once():
     told = str(UnknownNameError("link", ["crnk", "q"], ["crank", "rod"], place="a.csv, line 1"))
     assert told == "a.csv, line 1: unknown links 'crnk' (did you mean 'crank'?), 'q'; valid: crank, rod"
-    told = str(UnknownNameError("output", ["joint_4", "q"], MANY, "`info`"))
+    told = str(UnknownNameError("output", ["joint_4", "q", "joint_4"], MANY, "`info`"))
     assert told == "unknown outputs 'joint_4' (did you mean 'reaction:joint_4'?), 'q'; `info` lists the 100 there are"
 
 

@@ -7,6 +7,7 @@ import signal
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import sweeps
@@ -169,6 +170,8 @@ def test_best(file, capfd):
     assert capfd.readouterr().err == said.format("0 meet them", 0)
     assert main(["best", "s.h5", "--minimise", BENDING, "--where", "l<0.1", "--where", "r>0.07"]) == 1
     assert capfd.readouterr().err == said.format("1 meet them", 0)
+    assert main(["best", "s.h5", "--minimise", BENDING, "--where", "l==0.1"]) == 1
+    assert capfd.readouterr().err == said.format("0 meet them", 0).rstrip() + "; no design has l = 0.1; nearest: 0.06, 0.16\n"
 
 
 def test_best_as_csv_names_the_design(file, capfd):
@@ -247,6 +250,50 @@ def test_columns_over_ratios_on_the_terminal(file, capfd):
     limit = float(np.nanmax(np.abs(Sweep.open("s.h5")[AT[2]]))) * 0.999
     assert main(["table", "s.h5", "--where", f"{AT[2]}>{limit!r}"]) == 0
     assert len(capfd.readouterr().out.splitlines()) == 2
+
+
+def test_a_condition_on_an_axis_needs_a_column_over_it(file, capfd):
+    for command in (["table"], ["best", "--minimise", BENDING]):
+        assert main([command[0], "s.h5", *command[1:], "--where", "xi==0.5"]) == 2
+        said = f"error: 'xi' is no column but an axis: it needs a column over xi, as {AT[0]} is\n"
+        assert capfd.readouterr() == ("", said)
+
+
+def test_unknown_columns_are_told_at_once(file, capfd):
+    assert main(["table", "s.h5", *columns("zz", "l", "yy"), "--where", "xx<1"]) == 2
+    assert "error: unknown columns 'zz', 'yy', 'xx'; " in capfd.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ([*columns(AT[2]), "--where", "xi==0.505"], "no row meets the conditions; no design has xi = 0.505; nearest: 0.5, 1"),
+        (["--where", "l=0.3"], "no design meets the conditions; no design has l = 0.3; nearest: 0.26, 0.36"),
+        (["--where", "l>1"], "no design meets the conditions"),
+    ],
+)
+def test_a_table_of_nothing_is_refused(file, capfd, arguments, says):
+    for more in ([], ["--csv", "x.csv"]):
+        assert main(["table", "s.h5", *arguments, *more]) == 1
+        assert capfd.readouterr() == ("", f"error: s.h5: {says}\n")
+    assert not Path("x.csv").exists()
+
+
+def test_a_damaged_column_is_named(file, capfd):
+    with h5py.File("s.h5") as h:
+        place = h["peak/section/rod/bending"].id.get_chunk_info(0).byte_offset + 20
+    data = bytearray(file.read_bytes())
+    data[place] ^= 1
+    file.write_bytes(data)
+    for command in (["best", "--minimise", BENDING], ["table", "--csv", "x.csv"], ["plot", "--over", "l", "--out", "figures"]):
+        assert main([command[0], "s.h5", *command[1:]]) == 1
+        assert capfd.readouterr().err.startswith(f"error: s.h5: {BENDING}: damaged: ")
+
+
+def test_where_a_figure_stays_is_a_number(file, capfd):
+    for value in ("nan", "inf"):
+        assert main(["plot", "s.h5", "--at", f"l={value}", "--out", "figures"]) == 2
+        assert capfd.readouterr() == ("", f"error: Invalid value for '--at': l: expected a finite number, got {value}\n")
 
 
 def test_columns_of_different_axes_need_a_table_each(here, capfd):
