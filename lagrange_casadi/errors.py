@@ -7,7 +7,7 @@ A message is one line: it names the offending part, says what was expected and, 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 _LONG = 300
 """Characters of names that a message takes at most."""
@@ -29,20 +29,29 @@ class DeclarationError(LagrangeCasadiError):
 
 
 class UnknownNameError(DeclarationError):
-    """A name that nothing bears; the message lists the names that exist, or the nearest of many and what lists them all."""
+    """A name that nothing bears, or several; the message lists the names that exist, or the nearest of many and what lists all.
 
-    def __init__(self, kind: str, name: str, valid: Iterable[str], listed_by: str = "") -> None:
-        names = list(valid)
-        close = difflib.get_close_matches(name, names, n=1)
+    ``place`` is where they stand, as in a file.
+    """
+
+    def __init__(self, kind: str, name: str | Sequence[str], valid: Iterable[str], listed_by: str = "", place: str = "") -> None:
+        names, unknown = list(valid), [name] if isinstance(name, str) else list(dict.fromkeys(name))
         listed = f"valid: {', '.join(names) or 'none are declared'}"
-        if len(listed) > _LONG:
-            close = close or [other for other in names if name and name in other][:1]
+        many = len(listed) > _LONG
+        if many:
             most = listed[:_LONG].count(", ")
             listed = f"valid: {', '.join(names[:most])} and {len(names) - most} more"
             if listed_by:
                 listed = f"{listed_by} lists the {len(names)} there are"
-        hint = f" (did you mean '{close[0]}'?)" if close else ""
-        super().__init__(f"unknown {kind} '{name}'{hint}; {listed}")
+        told = ", ".join(f"'{other}'{_hint(other, names, many)}" for other in unknown)
+        super().__init__(f"{f'{place}: ' if place else ''}unknown {kind}{'s' if len(unknown) > 1 else ''} {told}; {listed}")
+
+
+def _hint(name: str, names: Sequence[str], many: bool) -> str:
+    """The nearest of names, in words; of those that are too many to be listed else one that holds it."""
+    held = [other for other in names if name and name in other] if many else []
+    close = [*difflib.get_close_matches(name, names, n=1), *held]
+    return f" (did you mean '{close[0]}'?)" if close else ""
 
 
 class ParameterError(LagrangeCasadiError):

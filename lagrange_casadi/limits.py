@@ -32,18 +32,20 @@ def check_connected(name: str, ground: Ground, bodies: Iterable[Body], joints: I
 
 
 def parameter_values(parameters: Mapping[str, Parameter], overrides: Mapping[str, float]) -> dict[str, float]:
-    """Defaults with overrides, each checked against its range. Raises :class:`UnknownNameError` or :class:`ParameterError`."""
-    for name in overrides:
-        if name not in parameters:
-            raise UnknownNameError("parameter", name, parameters)
-    values = {}
-    for name, parameter in parameters.items():
-        try:
-            values[name] = float(overrides.get(name, parameter.default))
-        except (TypeError, ValueError):
-            raise ParameterError(f"parameter '{name}' must be a number, got {overrides[name]!r}") from None
-        parameter.check(values[name])
-    return values
+    """Defaults with overrides, each checked against its range.
+
+    Raises :class:`UnknownNameError` for names, :class:`ParameterError` for values, all of them at once.
+    """
+    if unknown := [name for name in overrides if name not in parameters]:
+        raise UnknownNameError("parameter", unknown, parameters)
+    if faults := parameter_faults(parameters, overrides):
+        raise ParameterError("; ".join(faults))
+    return {name: float(overrides.get(name, parameter.default)) for name, parameter in parameters.items()}
+
+
+def parameter_faults(parameters: Mapping[str, Parameter], values: Mapping[str, float]) -> list[str]:
+    """What is wrong with values of parameters, each in words of its own."""
+    return [fault for name, value in values.items() if (fault := parameters[name].fault(value))]
 
 
 def check_parts(

@@ -304,9 +304,9 @@ class Mechanism:
     def values(self, overrides: Mapping[str, float] | None = None) -> dict[str, float]:
         """Every parameter's value, the defaults overridden, checked against the ranges and against what the parts allow.
 
-        Raises :class:`UnknownNameError` for a name that is no parameter's, :class:`ParameterError` for a value that is not
-        finite or out of range, a length that is not positive, a mass or density that is negative, a station outside its link, or a
-        mechanism without any mass.
+        Raises :class:`UnknownNameError` for names that are no parameters', :class:`ParameterError` for values that are not finite
+        or out of range, all of them at once, a length that is not positive, a mass or density that is negative, a station outside
+        its link, or a mechanism without any mass.
         """
         values = parameter_values(self.parameters, overrides or {})
         check_parts(self.name, self.moving, self.joints.values(), self.loads.values(), lambda e: self.number(e, values))

@@ -29,13 +29,23 @@ class Parameter:
 
     def check(self, value: float) -> None:
         """Raise :class:`ParameterError` unless ``value`` is finite and within ``[low, high]``."""
-        if not math.isfinite(value):
-            raise ParameterError(f"parameter '{self.name}' must be a finite number, got {value}")
-        if not self.low <= value <= self.high:
-            raise ParameterError(
-                f"parameter '{self.name}' = {value:.17g}{'' if self.unit == '1' else ' ' + self.unit} is out of its range "
+        if found := self.fault(value):
+            raise ParameterError(found)
+
+    def fault(self, value: Any) -> str:
+        """What is wrong with a value, in words; nothing where it is a finite number within ``[low, high]``."""
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            return f"parameter '{self.name}' must be a number, got {value!r}"
+        if not math.isfinite(number):
+            return f"parameter '{self.name}' must be a finite number, got {number}"
+        if not self.low <= number <= self.high:
+            return (
+                f"parameter '{self.name}' = {number:.17g}{'' if self.unit == '1' else ' ' + self.unit} is out of its range "
                 f"[{self.low:.17g}, {self.high:.17g}]"
             )
+        return ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -135,6 +135,11 @@ def scene():
         (["run", "CASE", "--set", "r=nan"], 2, "parameter 'r' must be a finite number, got nan"),
         (["run", "CASE", "--set", "r=0.1", "--set", "r=0.2"], 2, "parameter 'r' is set twice"),
         (["run", "CASE", "--set", "m2=-1"], 2, "parameter 'm2' = -1 kg is out of its range [0, inf]"),
+        (
+            ["run", "CASE", "--set", "l=-1", "--set", "r=-2"],
+            2,
+            "'l' = -1 m is out of its range [0, inf]; parameter 'r' = -2 m is out of its range [0, inf]",
+        ),
         (["run", "CASE", "--set", "l=0"], 2, "link 'rod': length must be positive, got 0 m"),
         (["run", "CASE", "--set", "r=0.3"], 1, "closed by joint 'guide' cannot be closed at t = 0.0093 s, where O = 0.73"),
         (["run", "CASE", "--set", "m1=0", "--set", "m2=0", "--set", "m3=0"], 2, "'slider_crank' is massless"),

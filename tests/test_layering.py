@@ -13,6 +13,7 @@ ORDER = (
     "interrupts",
     "version",
     "errors",
+    "numerals",
     "interpret",
     "compensated",
     "rung",

@@ -77,6 +77,12 @@ def test_a_mechanism_freezes_in_a_scene(m):
     ("values", "error", "says"),
     [
         ({"R": 1.0}, UnknownNameError, "unknown parameter 'R'; valid: r, l, m1, m2, m3"),
+        ({"R": 1.0, "ll": 1.0}, UnknownNameError, r"unknown parameters 'R', 'll' \(did you mean 'l'\?\); valid: r, l, m1, m2, m3"),
+        (
+            {"l": math.nan, "m2": "big"},
+            ParameterError,
+            "parameter 'l' must be a finite number, got nan; parameter 'm2' must be a number, got 'big'$",
+        ),
         ({"l": math.nan}, ParameterError, "parameter 'l' must be a finite number"),
         ({"l": math.inf}, ParameterError, "parameter 'l' must be a finite number"),
         ({"l": 0.0}, ParameterError, "link 'rod': length must be positive, got 0 m"),
@@ -94,5 +100,8 @@ def test_ranges(m):
     m.point_mass("p", 1)
     with pytest.raises(ParameterError, match=r"parameter 'r' = 2 m is out of its range \[0.1.*, 1\]"):
         m.values({"r": 2.0})
+    m.parameter("l", 1.0, low=0.0)
+    with pytest.raises(ParameterError, match=r"parameter 'r' = 2 m is out of its range .*; parameter 'l' = -1 is out of"):
+        m.values({"r": 2.0, "l": -1.0})
     with pytest.raises(ParameterError, match="parameter 's' = 5"):
         m.parameter("s", 5, high=1)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.sweep import Condition, best, chosen, reading, sweep
-from lagrange_casadi.sweep.best import _front, tally
+from lagrange_casadi.sweep.best import _front, missed, tally
 
 BENDING, EFFORT = "peak:section:rod:bending", "peak:effort:O"
 
@@ -58,6 +58,15 @@ def test_one_name_may_stand_alone(swept):
     condition = Condition("l", "<", 0.3)
     assert best(swept, maximise=BENDING, where=condition) == best(swept, maximise=[BENDING], where=[condition])
     assert sum(numbers.size for numbers, _ in chosen(swept, "l", "l<0.3")) == 6 * (swept["l"] < 0.3).sum()
+
+
+def test_values_that_never_are_are_told_with_the_nearest(swept):
+    wanted = ["l==0.151", "r=0.05", f"{EFFORT}==3", "l<0"]
+    assert missed(swept, wanted) == "; no design has l = 0.151; nearest: 0.15, 0.1631578947"
+    assert (
+        missed(swept, ["l=1", "r==0"])
+        == "; no design has l = 1; nearest: 0.4, 0.3868421053; no design has r = 0; nearest: 0.05, 0.06"
+    )
 
 
 def test_how_many_meet_conditions(swept):
@@ -115,7 +124,7 @@ def test_what_a_grid_rounds_is_what_was_meant():
     assert Condition.parse("l==0.3").holds(values).tolist() == [False, False, True, False]
 
 
-@pytest.mark.parametrize("text", ["l", "l<", "<3", "l<x", "l<<3", "l=<3", "l<0.1<r", ""])
+@pytest.mark.parametrize("text", ["l", "l<", "<3", "l<x", "l<<3", "l=<3", "l<0.1<r", "l<1_0", ""])
 def test_what_is_no_condition_is_named(text):
     with pytest.raises(DeclarationError, match="expected a condition like"):
         Condition.parse(text)
@@ -132,6 +141,8 @@ def test_what_cannot_be_asked_is_named(swept):
         best(swept, minimise=[EFFORT], where=["q<1"])
     with pytest.raises(UnknownNameError, match="unknown column 'q'"):
         best(swept, minimise=[EFFORT], columns=["q"])
+    with pytest.raises(UnknownNameError, match=r"unknown columns 'p' .*, 'q', 's' \(did"):
+        best(swept, minimise=[EFFORT, "p"], columns=["q", "l"], where="s<1")
     with pytest.raises(DeclarationError, match="expected a condition like"):
         best(swept, minimise=EFFORT, where="l")
     with pytest.raises(DeclarationError, match="at least 1, got 0"):

@@ -7,6 +7,7 @@ import signal
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import sweeps
@@ -75,7 +76,28 @@ MISTAKES = [
     (["--grid", "l=nan:0.4:3"], 2, "l: START and STOP must be finite, got nan:0.4:3"),
     (["--grid", "l=0.1,nan"], 2, "l: values must be finite, got nan"),
     (["--grid", "l=0:0.4:3:log"], 2, "l: a log range must begin above 0, got 0.0:0.4:3:log"),
-    (["--grid", "l=0.1:0.4:3:lin"], 2, "expected NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..."),
+    (["--grid", "l=0.1:0.4:3:lin"], 2, "l: expected log or nothing after COUNT, got 'lin' in 0.1:0.4:3:lin"),
+    (["--grid", "l=0.1:0.4:2.5"], 2, "l: expected a whole number for COUNT, got '2.5' in 0.1:0.4:2.5"),
+    (["--grid", "l=0.1:x:5"], 2, "l: expected a number for STOP, got 'x' in 0.1:x:5"),
+    (["--grid", "l=0.1,abc"], 2, "l: expected a number for each value, got 'abc' in 0.1,abc"),
+    (["--grid", "l=0.1,,0.2"], 2, "l: expected a number for each value, got nothing in 0.1,,0.2"),
+    (["--grid", "l=1_0"], 2, "l: expected a number for each value, got '1_0' in 1_0"),
+    (["--grid", "l=0.1:0.4:1_0"], 2, "l: expected a whole number for COUNT, got '1_0'"),
+    (["--grid", "l=0.1", "--set", "r=1_0"], 2, "expected NAME=VALUE with a number, as in l=0.25, got 'r=1_0'"),
+    (["--grid", "l=0.1", "--t", "0:1_0:5"], 2, "expected START:STOP:COUNT, as in 0:0.08:801, got '0:1_0:5'"),
+    (["--grid", "l=0.1:0.4"], 2, "expected NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..."),
+    (
+        ["--grid", "ll=0.1:0.4:5", "--grid", "R=1:2:3"],
+        2,
+        "unknown parameters 'll' (did you mean 'l'?), 'R'; valid: r, l, m1, m2, m3",
+    ),
+    (["--set", "x=3", "--grid", "q=1,2"], 2, "unknown parameters 'q', 'x'; valid: r, l, m1, m2, m3"),
+    (
+        ["--grid", "l=-1:0.4:5", "--set", "r=-2", "--set", "m1=nan"],
+        2,
+        "-1 to 0.4, out of its range [0, inf]; parameter 'r' = -2 m is out of its range [0, inf]; parameter 'm1' must be a finite",
+    ),
+    (["--grid", "l=0.1,0.2", "--set", "r=-2", "--set", "m3=-1"], 2, "is out of its range [0, inf]; parameter 'm3' = -1 kg is out"),
     (["--grid", "0.1:0.4:3"], 2, "as in l=0.1:0.4:31, got '0.1:0.4:3'"),
     (["--grid", "l="], 2, "got 'l='"),
     (["--grid", "l=0.1", "--grid", "l=0.2"], 2, "--grid: parameter 'l' is swept twice"),
@@ -91,7 +113,9 @@ MISTAKES = [
     (["--designs", "none.csv"], 2, "none.csv: no such file"),
     (["--designs", "bad.csv"], 2, "bad.csv, line 3, column 'r': expected a finite number, got 'x'"),
     (["--designs", "short.csv"], 2, "short.csv, line 2: 1 cells, expected 2, column 'r' is missing"),
-    (["--designs", "low.csv"], 2, "l = -0.2 in line 2, -0.3 in line 4, out of its range [0, inf]"),
+    (["--designs", "note.csv"], 2, "note.csv, line 1, columns 2, 4: unknown parameters 'note', 'q'; valid: r, l, m1, m2, m3"),
+    (["--designs", "numbered.csv"], 2, "numbered.csv, line 1, column 1: 'design' is a result of a sweep, not a parameter: take"),
+    (["--designs", "low.csv"], 2, "error: low.csv: l = -0.2 in line 2, -0.3 in line 4, out of its range [0, inf]"),
     (["--grid", "l=0.2", "--xi", "0:2:3"], 2, "ratios xi/l must lie in [0, 1]"),
     (["--grid", "l=0.2", "--t", "1:0:3"], 2, "t: STOP must be after START"),
     (["--grid", "l=0.2", "--t", "0:0.08:1"], 2, "t: COUNT must be 2 or more to reach from 0 to 0.08, got 1"),
@@ -114,6 +138,8 @@ def test_a_mistake_is_one_line_and_leaves_nothing(here, capfd, monkeypatch, argu
     files = {
         "bad.csv": "l,r\n0.2,0.1\n0.3,x\n",
         "short.csv": "l,r\n0.2\n",
+        "note.csv": "l,note,r,q\n0.2,hello,0.1,1\n",
+        "numbered.csv": "design,l\n0,0.2\n",
         "low.csv": "l\n-0.2\n0.1\n-0.3\n",
         "mine.h5": "mine",
     }
@@ -144,6 +170,8 @@ def test_best(file, capfd):
     assert capfd.readouterr().err == said.format("0 meet them", 0)
     assert main(["best", "s.h5", "--minimise", BENDING, "--where", "l<0.1", "--where", "r>0.07"]) == 1
     assert capfd.readouterr().err == said.format("1 meet them", 0)
+    assert main(["best", "s.h5", "--minimise", BENDING, "--where", "l==0.1"]) == 1
+    assert capfd.readouterr().err == said.format("0 meet them", 0).rstrip() + "; no design has l = 0.1; nearest: 0.06, 0.16\n"
 
 
 def test_best_as_csv_names_the_design(file, capfd):
@@ -222,6 +250,50 @@ def test_columns_over_ratios_on_the_terminal(file, capfd):
     limit = float(np.nanmax(np.abs(Sweep.open("s.h5")[AT[2]]))) * 0.999
     assert main(["table", "s.h5", "--where", f"{AT[2]}>{limit!r}"]) == 0
     assert len(capfd.readouterr().out.splitlines()) == 2
+
+
+def test_a_condition_on_an_axis_needs_a_column_over_it(file, capfd):
+    for command in (["table"], ["best", "--minimise", BENDING]):
+        assert main([command[0], "s.h5", *command[1:], "--where", "xi==0.5"]) == 2
+        said = f"error: 'xi' is no column but an axis: it needs a column over xi, as {AT[0]} is\n"
+        assert capfd.readouterr() == ("", said)
+
+
+def test_unknown_columns_are_told_at_once(file, capfd):
+    assert main(["table", "s.h5", *columns("zz", "l", "yy"), "--where", "xx<1"]) == 2
+    assert "error: unknown columns 'zz', 'yy', 'xx'; " in capfd.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ([*columns(AT[2]), "--where", "xi==0.505"], "no row meets the conditions; no design has xi = 0.505; nearest: 0.5, 1"),
+        (["--where", "l=0.3"], "no design meets the conditions; no design has l = 0.3; nearest: 0.26, 0.36"),
+        (["--where", "l>1"], "no design meets the conditions"),
+    ],
+)
+def test_a_table_of_nothing_is_refused(file, capfd, arguments, says):
+    for more in ([], ["--csv", "x.csv"]):
+        assert main(["table", "s.h5", *arguments, *more]) == 1
+        assert capfd.readouterr() == ("", f"error: s.h5: {says}\n")
+    assert not Path("x.csv").exists()
+
+
+def test_a_damaged_column_is_named(file, capfd):
+    with h5py.File("s.h5") as h:
+        place = h["peak/section/rod/bending"].id.get_chunk_info(0).byte_offset + 20
+    data = bytearray(file.read_bytes())
+    data[place] ^= 1
+    file.write_bytes(data)
+    for command in (["best", "--minimise", BENDING], ["table", "--csv", "x.csv"], ["plot", "--over", "l", "--out", "figures"]):
+        assert main([command[0], "s.h5", *command[1:]]) == 1
+        assert capfd.readouterr().err.startswith(f"error: s.h5: {BENDING}: damaged: ")
+
+
+def test_where_a_figure_stays_is_a_number(file, capfd):
+    for value in ("nan", "inf"):
+        assert main(["plot", "s.h5", "--at", f"l={value}", "--out", "figures"]) == 2
+        assert capfd.readouterr() == ("", f"error: Invalid value for '--at': l: expected a finite number, got {value}\n")
 
 
 def test_columns_of_different_axes_need_a_table_each(here, capfd):

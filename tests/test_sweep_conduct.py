@@ -204,7 +204,7 @@ def test_another_law_of_motion_is_refused(whole, tmp_path):
 
     scene = sweeps.scene()
     other = Scene(scene.mechanism, {"O": polynomial(0, 1)}, t=scene.t, posture=scene.posture)
-    with pytest.raises(StoreError, match="an expression or a law of motion of the scene has changed"):
+    with pytest.raises(StoreError, match="an expression, a law of motion or the posture of the scene has changed"):
         sweep(other, GRID, out=tmp_path / "whole.h5", resume=True)
 
 

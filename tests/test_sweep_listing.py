@@ -4,9 +4,11 @@ import re
 
 import numpy as np
 import pytest
+import sweeps
 
-from lagrange_casadi.errors import DeclarationError, PathError
+from lagrange_casadi.errors import DeclarationError, PathError, UnknownNameError
 from lagrange_casadi.sweep import read_designs
+from lagrange_casadi.sweep.axes import check_designs
 
 
 def test_a_list_is_read(tmp_path):
@@ -38,6 +40,10 @@ def test_a_list_is_read(tmp_path):
             "line 1, column 2: 'peak:effort:O' is a result of a sweep, not a parameter: take the results out",
         ),
         ("l,peak:effort:O\n0.2,nan\n", "`lagrange-casadi table` writes what it is told"),
+        ("l,r\n1_0,0.1\n", "line 2, column 'l': expected a finite number, got '1_0'"),
+        ('l,r\n0.2,0.1\n0.2,"0.1\n0.3,0.1\n', "line 3: not cells with commas between them: a quote is opened and never closed"),
+        ('l,r\n0.2,"0.1"3\n', "line 2: not cells with commas between them: ',' expected after"),
+        ('l,r\n0.2,"\n\nx"\n', "line 2, column 'r': expected a finite number"),
         ("l,r,l\n1,2,3\n", "line 1, column 3: 'l' stands there already as column 1"),
     ],
 )
@@ -47,6 +53,32 @@ def test_what_is_wrong_is_named(tmp_path, text, says):
     with pytest.raises(DeclarationError, match=re.escape(says)) as caught:
         read_designs(path)
     assert str(caught.value).startswith(str(path))
+
+
+def test_the_head_is_checked_before_the_numbers(tmp_path):
+    path = tmp_path / "d.csv"
+    path.write_text("l,note,r\n0.2,hello,0.1\n")
+    with pytest.raises(UnknownNameError) as caught:
+        read_designs(path, ["l", "r"])
+    assert str(caught.value) == f"{path}, line 1, column 2: unknown parameter 'note'; valid: l, r"
+    path.write_text("design,l\n0,0.2\n")
+    with pytest.raises(DeclarationError, match="line 1, column 1: 'design' is a result of a sweep, not a parameter"):
+        read_designs(path, ["l", "r"])
+    assert read_designs(path, ["l", "design"]).names == ("design", "l")
+
+
+def test_a_sweep_names_the_place_in_the_file(tmp_path):
+    """Where the reader is told of no parameters."""
+    path, mechanism = tmp_path / "d.csv", sweeps.scene().mechanism
+    for text, says in (
+        ("l,q\n1,2\n", "line 1, column 2: unknown parameter 'q'; valid: r, l, m1, m2, m3"),
+        ("q,l,x\n1,2,3\n", "line 1, columns 1, 3: unknown parameters 'q', 'x'; valid: r, l"),
+        ("l,status\n1,0\n", "line 1, column 2: 'status' is a result of a sweep, not a parameter"),
+    ):
+        path.write_text(text)
+        with pytest.raises(DeclarationError) as caught:
+            check_designs(read_designs(path), mechanism, {})
+        assert str(caught.value).startswith(f"{path}, {says}")
 
 
 def test_what_is_no_text_is_named(tmp_path):

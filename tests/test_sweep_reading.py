@@ -118,7 +118,7 @@ def test_what_selects_nothing_is_named(swept, wrong):
 
 
 def test_an_unknown_one_of_many_columns_is_answered_by_the_nearest(swept):
-    many = replace(swept, columns={f"peak:effort:J{k}": None for k in range(30)} | swept.columns)
+    many = replace(swept, columns={f"peak:effort:J{k}": swept.columns["peak:effort:O"] for k in range(30)} | swept.columns)
     with pytest.raises(UnknownNameError) as caught:
         many.column("peak:effort:P")
     hint = f"`lagrange-casadi info {swept.path}` lists the {len(many.columns) + 3} there are"
@@ -178,6 +178,28 @@ def test_blocks_of_rows_along_axes(histories, monkeypatch, size, along):
         assert max(places.size for places, _ in blocks) <= max(size, np.prod(shape[2:]))
 
 
+def test_an_axis_is_no_column(histories):
+    said = "'xi' is no column but an axis: it needs a column over xi, as peak_at:section:rod:axial is"
+    for read in (
+        lambda: histories.column("xi"),
+        lambda: histories.blocks(["l", "q", "xi"]),
+        lambda: histories.blocks(["xi"], ["t"]),
+        lambda: histories.values(0, ["xi"]),
+    ):
+        with pytest.raises(DeclarationError, match=said):
+            read()
+    with pytest.raises(DeclarationError, match="as history:effort:O is"):
+        histories.column("t")
+
+
+def test_all_unknown_names_are_told(histories):
+    for read in (lambda: histories.axes_of(["l", "p", "q"]), lambda: histories.blocks(["p", "status", "q"])):
+        with pytest.raises(UnknownNameError, match=r"unknown columns 'p' .*, 'q'; `lagrange-casadi info "):
+            read()
+    with pytest.raises(UnknownNameError, match="unknown swept parameters 'm3', 'q'; valid: l, r"):
+        histories.select(m3=0.1, l=0.2, q=1)
+
+
 def test_rows_along_axes_that_are_none_are_refused(histories, monkeypatch, tmp_path):
     with pytest.raises(DeclarationError, match="column 'history:effort:O' has a value for every t, not one a design"):
         histories.blocks(["history:effort:O"], ["xi"])
@@ -187,6 +209,8 @@ def test_rows_along_axes_that_are_none_are_refused(histories, monkeypatch, tmp_p
         histories.axes_of(["l", "status", "history:effort:O", "history:section:rod:axial"])
     assert histories.axes_of(["l", "status", "history:section:rod:axial"]) == ("t", "xi")
     assert histories.axes_of("status") == ()
+    assert histories.axes_of(["xi"]) == ()
+    assert histories.axes_of(["xi", "history:effort:O"]) == ("t",)
     with pytest.raises(DeclarationError, match="column 'history:effort:O' has a value for every t"):
         histories.values(3, ["history:effort:O"])
 
@@ -290,5 +314,21 @@ def test_a_flipped_byte_is_found(swept):
     swept.path.write_bytes(data)
     (finding,) = check_sweep(swept.path)
     assert finding.startswith("peak:section:rod:bending: damaged: ")
-    with pytest.raises(StoreError, match="damaged"):
-        swept["peak:section:rod:bending"]
+    name, says = "peak:section:rod:bending", r"x\.h5: peak:section:rod:bending: damaged: "
+    with pytest.raises(StoreError, match=says):
+        swept[name]
+    with pytest.raises(StoreError, match=says):
+        list(swept.blocks(["status", name]))
+    with pytest.raises(StoreError, match=says):
+        swept.values(0, ["status", name])
+
+
+def test_a_flipped_byte_of_a_parameter_is_named(swept):
+    with h5py.File(swept.path) as h:
+        chunk = h["grid/l"].id.get_chunk_info(0)
+    data = bytearray(swept.path.read_bytes())
+    data[chunk.byte_offset + 20] ^= 1
+    swept.path.write_bytes(data)
+    for read in (lambda: swept["l"], lambda: swept.design(3), lambda: list(swept.blocks(["l"]))):
+        with pytest.raises(StoreError, match=r"x\.h5: l: damaged: "):
+            read()

@@ -12,7 +12,7 @@ from ..publish import check_writable
 from ..sweep import Sweep
 from ..sweep import best as find
 from ..sweep.axes import DESIGN, counted, grouped
-from ..sweep.best import tally
+from ..sweep.best import missed, tally
 from .rows import show, write_csv
 
 
@@ -42,7 +42,7 @@ def best(
         met, with_result = (grouped(count) for count in tally(sweep, where))
         raise NoDesignError(
             f"{file}: no design has a result and meets the conditions: of {counted(sweep.size)}, {met} meet them, {with_result} of "
-            "these with a result"
+            f"these with a result{missed(sweep, where)}"
         )
     names = list(found[0].values)
     show(sweep, names, [(design.number, list(design.values.values())) for design in found])

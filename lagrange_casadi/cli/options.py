@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 
 from ..compensated import PRECISIONS
 from ..errors import DeclarationError
+from ..numerals import real, whole
 from ..rung import BACKENDS
 from ..scene import Grid
 from ..sweep import Axis, Range, Values
@@ -17,34 +19,36 @@ from ..sweep import Axis, Range, Values
 GRID = "START:STOP:COUNT"
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
+Number = TypeVar("Number", int, float)
+
 
 def grid(text: str) -> Grid:
     """START:STOP:COUNT, both ends included."""
     try:
         start, stop, count = text.split(":")
-        return float(start), float(stop), int(count)
+        return real(start), real(stop), whole(count)
     except ValueError:
         raise click.BadParameter(f"expected START:STOP:COUNT, as in 0:0.08:801, got '{text}'") from None
 
 
 def axis(text: str) -> tuple[str, Axis]:
     """NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..."""
-    name, equals, words = text.partition("=")
-    try:
-        if not (equals and name.strip()):
-            raise ValueError
-        if ":" not in words:
-            return name.strip(), Values(tuple(float(word) for word in words.split(",")))
-        start, stop, count, *log = words.split(":")
-        if log not in ([], ["log"]):
-            raise ValueError
-        return name.strip(), Range(float(start), float(stop), int(count), bool(log))
-    except ValueError:
+    name, words = (word.strip() for word in text.partition("=")[::2])
+    parts = words.split(":")
+    if not (name and words) or len(parts) not in (1, 3, 4):
         raise click.BadParameter(
             f"expected NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..., as in l=0.1:0.4:31, got '{text}'"
-        ) from None
+        )
+    try:
+        if len(parts) == 1:
+            return name, Values(tuple(_read(real, "a number for each value", word, words) for word in words.split(",")))
+        start, stop = (_read(real, f"a number for {end}", word, words) for end, word in zip(("START", "STOP"), parts, strict=False))
+        count = _read(whole, "a whole number for COUNT", parts[2], words)
+        if parts[3:] not in ([], ["log"]):
+            raise DeclarationError(f"expected log or nothing after COUNT, got '{parts[3]}' in {words}")
+        return name, Range(start, stop, count, len(parts) == 4)
     except DeclarationError as error:
-        raise click.BadParameter(f"{name.strip()}: {error}") from None
+        raise click.BadParameter(f"{name}: {error}") from None
 
 
 def setting(text: str) -> tuple[str, float]:
@@ -53,9 +57,17 @@ def setting(text: str) -> tuple[str, float]:
     try:
         if not equals:
             raise ValueError
-        return name.strip(), float(number)
+        return name.strip(), real(number)
     except ValueError:
         raise click.BadParameter(f"expected NAME=VALUE with a number, as in l=0.25, got '{text}'") from None
+
+
+def place(text: str) -> tuple[str, float]:
+    """NAME=VALUE, the value finite."""
+    name, value = setting(text)
+    if not math.isfinite(value):
+        raise click.BadParameter(f"{name}: expected a finite number, got {value}")
+    return name, value
 
 
 def parameters(settings: Sequence[tuple[str, float]]) -> dict[str, float]:
@@ -71,9 +83,17 @@ def parameters(settings: Sequence[tuple[str, float]]) -> dict[str, float]:
 def table(text: str) -> float:
     """A number of nodes, or an accuracy."""
     try:
-        return int(text) if re.fullmatch(r"[0-9]+", text) else float(text)
+        return int(text) if re.fullmatch(r"[0-9]+", text) else real(text)
     except ValueError:
         raise click.BadParameter(f"expected a number of nodes or an accuracy, as in 128 or 1e-6, got '{text}'") from None
+
+
+def _read(read: Callable[[str], Number], what: str, word: str, words: str) -> Number:
+    """A number among words. Raises :class:`DeclarationError` that names it."""
+    try:
+        return read(word)
+    except ValueError:
+        raise DeclarationError(f"expected {what}, got {repr(word) if word.strip() else 'nothing'} in {words}") from None
 
 
 def _together(*options: Callable[..., Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:

@@ -16,7 +16,7 @@ from ..sweep import Sweep, is_sweep
 from ..sweep.plots import Spec, draw_sweep
 from ..sweep.usual import default_plots
 from .drawing import draw_with_progress
-from .options import setting
+from .options import place
 
 
 @click.command()
@@ -27,7 +27,7 @@ from .options import setting
 )
 @click.option(
     "--at",
-    type=setting,
+    type=place,
     multiple=True,
     metavar="NAME=VALUE",
     help="Of a sweep: where another parameter stays, or which designs of a list.",

@@ -86,7 +86,7 @@ def sweep(
     with closing(shown(quiet)) as progress:
         found = carry_out(
             loaded,
-            read_designs(designs) if designs else dict(axes),
+            read_designs(designs, loaded.scene.mechanism.parameters) if designs else dict(axes),
             out=out or Path(f"{loaded.name}_sweep.h5"),
             parameters=parameters(settings),
             t=t,

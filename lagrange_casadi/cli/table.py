@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 
 import click
 
+from ..errors import NoDesignError
 from ..publish import check_writable
 from ..sweep import Sweep, chosen
 from ..sweep.axes import counted, grouped
-from ..sweep.best import conditions_in, tally
+from ..sweep.best import conditions_in, missed, tally
 from ..sweep.columns import STATUS
 from .rows import show, write_csv
 
@@ -33,18 +34,23 @@ def table(file: Path, where: Sequence[str], columns: Sequence[str], rows: int, c
     if csv:
         check_writable(csv)
     sweep = Sweep.open(file)
-    along = sweep.axes_of([*columns, *(c.name for c in conditions_in(where) if c.name in sweep.columns)])
+    along = sweep.axes_of([*columns, *(condition.name for condition in conditions_in(where))])
     single = [name for name, kept in sweep.columns.items() if not kept.axes]
     peaks = [name for name in single if name.startswith("peak:")]
     main = [STATUS, *sorted(peaks, key=lambda name: name.split(":")[1] not in ("effort", "section"))]
     names = list(dict.fromkeys([*sweep.parameters, *along, *(columns or (single if csv else main[:_WIDE]))]))
+    found, what = _rows(sweep, names, where, along), "row" if along else "design"
+    first = next(found, None)
+    if first is None:
+        raise NoDesignError(f"{file}: no {what} meets the conditions{missed(sweep, where, along)}")
+    found = chain([first], found)
     if csv:
-        count = write_csv(names, (values for _, values in _rows(sweep, names, where, along)), csv)
-        click.echo(f"wrote {csv}: {counted(count, 'row' if along else 'design')}")
-    elif show(sweep, names, islice(_rows(sweep, names, where, along), rows)) == rows:
+        count = write_csv(names, (values for _, values in found), csv)
+        click.echo(f"wrote {csv}: {counted(count, what)}")
+    elif show(sweep, names, islice(found, rows)) == rows:
         met, with_result = tally(sweep, where, along)
         if met > rows:
-            what = counted(met, "row" if along else "design") + (" that meet the conditions" if where else "")
+            what = counted(met, what) + (" that meet the conditions" if where else "")
             click.echo(f"... of {what}, {grouped(with_result)} with a result; --rows N shows more, --csv OUT.csv writes all")
     if not columns:
         _tell_of_others(sweep, names)

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import hashlib
 import math
+import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from ..density import Array
 from ..errors import DeclarationError, ParameterError, UnknownNameError
+from ..limits import parameter_faults
 from ..mechanism import Mechanism
 from ..scene import points
 
@@ -47,6 +49,8 @@ class Range:
             raise DeclarationError(
                 f"expected numbers for START and STOP and a whole COUNT, got {self.start}:{self.stop}:{self.count}"
             )
+        if type(self.log) is not bool:
+            raise DeclarationError(f"expected True or False after (start, stop, count), for equal ratios or not, got {self.log!r}")
         if not (math.isfinite(self.start) and math.isfinite(self.stop)):
             raise DeclarationError(f"START and STOP must be finite, got {self}")
         if self.count < 1:
@@ -130,6 +134,7 @@ class Grid:
     """The product of axes by the names of parameters; the last axis runs fastest. Raises :class:`DeclarationError` for none."""
 
     axes: Mapping[str, Axis]
+    source: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
         if not isinstance(self.axes, Mapping) or not self.axes:
@@ -175,7 +180,7 @@ class Grid:
 
 @dataclass(frozen=True, eq=False)
 class Listed:
-    """A list of designs: ``rows`` (designs, names) of values; ``lines`` tell where each row stood in a file.
+    """A list of designs: ``rows`` (designs, names) of values; ``lines`` tell where each row stood in a file ``source``.
 
     Raises :class:`DeclarationError` for no designs, no or repeated names, or values that are not finite.
     """
@@ -183,6 +188,7 @@ class Listed:
     names: tuple[str, ...]
     rows: Array
     lines: Numbers | None = None
+    source: str = ""
 
     def __post_init__(self) -> None:
         rows = np.ascontiguousarray(self.rows, dtype=np.float64)
@@ -238,20 +244,44 @@ def designs_of(given: Any) -> Designs:
 
 def check_designs(designs: Designs, mechanism: Mechanism, fixed: Mapping[str, float]) -> None:
     """Raise for parameters that are none or set twice, and for values out of their ranges, all of them at once."""
+    parameters = mechanism.parameters
+    if designs.source:
+        check_head(designs.source, designs.names, parameters)
+    check_known([*designs.names, *fixed], parameters)
     for name in designs.names:
-        if name not in mechanism.parameters and name in RESULTS:
-            raise DeclarationError(not_parameter(name))
-        if name not in mechanism.parameters:
-            raise UnknownNameError("parameter", name, mechanism.parameters)
         if name in fixed:
-            raise DeclarationError(f"parameter '{name}' is swept and set to {fixed[name]:g} as well")
+            raise DeclarationError(f"parameter '{name}' is swept and set to {fixed[name]} as well")
     wrong = []
     for name in designs.names:
-        parameter = mechanism.parameters[name]
+        parameter = parameters[name]
         if found := designs.outside(name, parameter.low, parameter.high):
             wrong.append(f"{name} = {found}, out of its range [{parameter.low:g}, {parameter.high:g}]")
+    if wrong and designs.source:
+        wrong[0] = f"{designs.source}: {wrong[0]}"
+    wrong += parameter_faults(parameters, fixed)
     if wrong:
         raise ParameterError("; ".join(wrong))
+
+
+def check_known(names: Sequence[str], parameters: Collection[str]) -> None:
+    """Raise :class:`DeclarationError` for names that are no parameters', all of them at once."""
+    unknown = [name for name in names if name not in parameters]
+    for name in unknown:
+        if _is_result(name):
+            raise DeclarationError(not_parameter(name))
+    if unknown:
+        raise UnknownNameError("parameter", unknown, parameters)
+
+
+def check_head(path: str | os.PathLike[str], names: Sequence[str], parameters: Collection[str]) -> None:
+    """The same of the head of a file, by its columns."""
+    unknown = {column: name for column, name in enumerate(names, 1) if name not in parameters}
+    for column, name in unknown.items():
+        if _is_result(name):
+            raise DeclarationError(f"{path}, line 1, column {column}: {not_parameter(name)}")
+    if unknown:
+        place = f"{path}, line 1, column{'s' if len(unknown) > 1 else ''} {', '.join(map(str, unknown))}"
+        raise UnknownNameError("parameter", list(unknown.values()), parameters, place=place)
 
 
 def size_of(described: Mapping[str, str]) -> int:
@@ -274,6 +304,10 @@ def not_parameter(name: str) -> str:
     return f"'{name}' is a result of a sweep, not a parameter: take the results out; `lagrange-casadi table` writes what it is told"
 
 
+def _is_result(name: str) -> bool:
+    return name in RESULTS or ":" in name
+
+
 def _length(words: str) -> int:
     if found := re.match(r"([\d ]+) (designs?|values)\b", words):
         return int(found[1].replace(" ", ""))
@@ -292,6 +326,10 @@ def _axis(name: str, given: Any) -> Axis:
             return given
         if isinstance(given, tuple) and len(given) in (3, 4) and type(given[2]) is int:
             return Range(*given)
+        if isinstance(given, str):
+            raise TypeError
         return Values(tuple(np.atleast_1d(np.asarray(given, dtype=float)).tolist()))
-    except (DeclarationError, TypeError, ValueError) as error:
+    except DeclarationError as error:
         raise DeclarationError(f"grid of {name}: {error}") from None
+    except (TypeError, ValueError):
+        raise DeclarationError(f"grid of {name}: expected (start, stop, count) or numbers, got {given!r}") from None

@@ -13,8 +13,10 @@ import numpy.typing as npt
 
 from ..density import Array
 from ..errors import DeclarationError
+from ..numerals import real
 from .columns import STATUS
-from .reading import Sweep, names_in, near
+from .reading import Sweep, names_in
+from .selection import absent, near
 
 _RELATIONS: dict[str, Callable[[Any, Any, Any], Any]] = {
     "<=": lambda values, number, same: (values < number) | same,
@@ -46,7 +48,7 @@ class Condition:
         try:
             if not found:
                 raise ValueError
-            value = float(found[3])
+            value = real(found[3])
             if math.isnan(value):
                 raise ValueError
             return cls(found[1], found[2], value)
@@ -95,6 +97,7 @@ def best(
     if count is not None and count < 1:
         raise DeclarationError(f"count: expected a whole number of at least 1, got {count}")
     names = tuple(dict.fromkeys(name for name, _ in objectives))
+    sweep.check_columns([*names, *names_in(columns), *(condition.name for condition in conditions_in(where))])
     kept: npt.NDArray[np.int64] = np.zeros(0, np.int64)
     costs = np.zeros((len(objectives), 0))
     for numbers, values in chosen(sweep, (*names, STATUS), where):
@@ -136,6 +139,12 @@ def tally(sweep: Sweep, where: str | Condition | Sequence[str | Condition] = (),
         met += numbers.size
         with_result += int(np.sum(values[STATUS] == 0))
     return met, with_result
+
+
+def missed(sweep: Sweep, where: str | Condition | Sequence[str | Condition], along: Sequence[str] = ()) -> str:
+    """Of conditions that nothing meets, which ask a parameter or an axis for a value that it never has, with the nearest it has."""
+    asked = [c for c in conditions_in(where) if c.relation in ("==", "=") and c.name in (*sweep.parameters, *along)]
+    return "".join(f"; {absent(c.name, sweep[c.name], c.value)}" for c in asked if not near(sweep[c.name], c.value).any())
 
 
 def row(sweep: Sweep, number: int, names: Sequence[str]) -> Design:

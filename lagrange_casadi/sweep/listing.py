@@ -6,16 +6,21 @@ import csv
 import math
 import os
 from array import array
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import DeclarationError, PathError
-from .axes import Listed, not_parameter
+from ..numerals import real
+from .axes import Listed, check_head, not_parameter
 
 
-def read_designs(path: str | os.PathLike[str]) -> Listed:
+def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | None = None) -> Listed:
     """Read a list of designs. Empty lines are passed over.
+
+    With the names of ``parameters``, as of a mechanism, the head is checked against them before any number is read; without, a
+    sweep checks it.
 
     Raises :class:`PathError` for no file, :class:`DeclarationError` for a head or a cell that is wrong, with its line and column.
     """
@@ -24,24 +29,40 @@ def read_designs(path: str | os.PathLike[str]) -> Listed:
     values, lines = array("d"), array("q")
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
-            reader = csv.reader(file)
-            names = [name.strip() for name in next(reader, [])]
+            rows = _rows(path, file)
+            names = [name.strip() for name in next(rows, (1, []))[1]]
             _check_head(path, names)
-            for row in reader:
+            if parameters is not None:
+                check_head(path, names, parameters)
+            for line, row in rows:
                 if not any(cell.strip() for cell in row):
                     continue
                 if len(row) != len(names):
                     short = f", column '{names[len(row)]}' is missing" if len(row) < len(names) else ""
-                    raise DeclarationError(f"{path}, line {reader.line_num}: {len(row)} cells, expected {len(names)}{short}")
-                values.extend(_number(path, reader.line_num, name, cell) for name, cell in zip(names, row, strict=True))
-                lines.append(reader.line_num)
-    except (UnicodeDecodeError, csv.Error) as error:
+                    raise DeclarationError(f"{path}, line {line}: {len(row)} cells, expected {len(names)}{short}")
+                values.extend(_number(path, line, name, cell) for name, cell in zip(names, row, strict=True))
+                lines.append(line)
+    except UnicodeDecodeError as error:
         raise DeclarationError(f"{path}: not a table of text in UTF-8: {error}") from None
     except OSError as error:
         raise PathError(f"{path}: {error.strerror}") from None
     if not lines:
         raise DeclarationError(f"{path}: no designs below its head {', '.join(names)}")
-    return Listed(tuple(names), np.array(values).reshape(-1, len(names)), np.array(lines))
+    return Listed(tuple(names), np.array(values).reshape(-1, len(names)), np.array(lines), str(path))
+
+
+def _rows(path: str | os.PathLike[str], file: Iterable[str]) -> Iterator[tuple[int, list[str]]]:
+    """The rows, each with the line on which it begins."""
+    reader = csv.reader(file, strict=True)
+    while True:
+        line = reader.line_num + 1
+        try:
+            yield line, next(reader)
+        except StopIteration:
+            return
+        except csv.Error as error:
+            why = "a quote is opened and never closed" if str(error) == "unexpected end of data" else error
+            raise DeclarationError(f"{path}, line {line}: not cells with commas between them: {why}") from None
 
 
 def _check_head(path: str | os.PathLike[str], names: list[str]) -> None:
@@ -64,7 +85,7 @@ def _check_head(path: str | os.PathLike[str], names: list[str]) -> None:
 
 def _is_number(text: str) -> bool:
     try:
-        float(text)
+        real(text)
     except ValueError:
         return False
     return True
@@ -72,7 +93,7 @@ def _is_number(text: str) -> bool:
 
 def _number(path: str | os.PathLike[str], line: int, name: str, cell: str) -> float:
     try:
-        value = float(cell)
+        value = real(cell)
         if not math.isfinite(value):
             raise ValueError
     except ValueError:

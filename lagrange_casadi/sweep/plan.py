@@ -93,8 +93,8 @@ class Plan:
         if rung.table is not None:
             raise DeclarationError("a sweep reads no tables: every design would need one of its own")
         check_keep(keep)
-        values = scene.mechanism.values(fixed)
         check_designs(designs, scene.mechanism, fixed)
+        values = scene.mechanism.values(fixed)
         if designs.size > MANY and not many:
             raise DeclarationError(f"the grid has {counted(designs.size)}, more than 10^9; if that is meant, say many=True")
         names = _wanted(scene, wanted)
@@ -210,7 +210,7 @@ def difference(before: Any, now: Any, where: str = "") -> str | None:
     if before == now:
         return None
     if where in ("sources", "scene"):
-        what = {"sources": "the program's own code", "scene": "an expression or a law of motion of the scene"}[where]
+        what = {"sources": "the program's own code", "scene": "an expression, a law of motion or the posture of the scene"}[where]
         return f"{what} has changed"
     return f"{where} was {_short(before)} and is {_short(now)}"
 

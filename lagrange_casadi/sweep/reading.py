@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -24,12 +24,12 @@ from .columns import KINDS, STATUS
 from .file import WORDS
 from .parts import Folder
 from .plan import SCHEMA, SCHEMA_VERSION
+from .selection import matches
 
 if TYPE_CHECKING:
     import xarray
 
 _BLOCK = 1 << 15
-_NEAR = 1e-9
 _UNITS = {"t": "s", "xi": "1"}
 _DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError)
 _NAMED = ("backend", "precision", "compiler", "flags", "rung", "sources", "keep", "scene", "case", "schema_version")
@@ -98,14 +98,14 @@ class Sweep:
             if name in self.parameters:
                 return self._cut(file["grid"][name], (self._axis(name),))
             if name in ("t", "xi") and name in file:
-                return np.asarray(file[name][()])
+                return _taken(file[name])
             kept = self.column(name)
             return self._cut(file[name.replace(":", "/")], (*self.dimensions, *kept.axes))
 
     def column(self, name: str) -> Kept:
         """What a column is. Raises :class:`UnknownNameError`."""
         if name not in self.columns:
-            raise UnknownNameError("column", name, [*self.parameters, *self.columns], f"`lagrange-casadi info {self.path}`")
+            raise self._unknown([name])
         return self.columns[name]
 
     def select(self, **values: Any) -> Sweep:
@@ -116,12 +116,12 @@ class Sweep:
         :class:`DeclarationError` for what is none of these, and where no design has such a value, with the nearest one that has.
         """
         chosen = dict(self.chosen)
+        if unknown := [name for name in values if name not in self.parameters]:
+            raise UnknownNameError("swept parameter", unknown, self.parameters)
         for name, wanted in values.items():
-            if name not in self.parameters:
-                raise UnknownNameError("swept parameter", name, self.parameters)
             axis = self._axis(name)
             there = replace(self, chosen=chosen)[name]
-            found = np.flatnonzero(_matches(name, there, wanted))
+            found = np.flatnonzero(matches(name, there, wanted))
             before = chosen.get(axis)
             chosen[axis] = found if before is None else before[found]
         return replace(self, chosen=chosen)
@@ -137,11 +137,14 @@ class Sweep:
         return replace(self, chosen={**self.chosen, axis: numbers[number : number + 1]})
 
     def axes_of(self, names: Sequence[str]) -> tuple[str, ...]:
-        """The axes beyond those of the designs that columns share; those without any go with all.
+        """The axes beyond those of the designs that columns share; those without any go with all, and so do axes by name.
 
-        Raises :class:`DeclarationError` where two columns have different ones.
+        Raises :class:`UnknownNameError` for names that are none, :class:`DeclarationError` where two columns have different axes.
         """
-        found = {self.column(name).axes: name for name in names_in(names) if name not in self.parameters}
+        names = names_in(names)
+        if unknown := [name for name in names if name not in (*self.parameters, *self.columns, *self._over)]:
+            raise self._unknown(unknown)
+        found = {self.columns[name].axes: name for name in names if name in self.columns}
         (axes, first), *others = [item for item in found.items() if item[0]] or [((), "")]
         for other, name in others:
             every, else_every = (" and ".join(words) for words in (axes, other))
@@ -163,21 +166,21 @@ class Sweep:
         Raises :class:`DeclarationError` for a column with other axes.
         """
         names, along = names_in(names), names_in(along)
-        self._check(names, along)
+        self.check_columns(names, along)
         return self._blocks(names, along)
 
     def design(self, number: int) -> dict[str, float]:
         """The values of the swept parameters of a design, by its number."""
         with self._opened() as file:
             places = dict(zip(self.dimensions, np.unravel_index(number, tuple(self.dimensions.values())), strict=True))
-            return {name: float(file["grid"][name][places.get(name, number)]) for name in self.parameters}
+            return {name: float(_taken(file["grid"][name], places.get(name, number))) for name in self.parameters}
 
     def values(self, number: int, names: Sequence[str]) -> dict[str, float]:
         """Columns of a design, by its number. Raises :class:`DeclarationError` for a column with axes of its own."""
-        self._check(names, ())
+        self.check_columns(names)
         place = tuple(int(i) for i in np.unravel_index(number, tuple(self.dimensions.values())))
         with self._opened() as file:
-            return {name: file[name.replace(":", "/")][place].item() for name in names}
+            return {name: _taken(file[name.replace(":", "/")], place).item() for name in names}
 
     def counts(self) -> dict[int, int]:
         """How many designs have each status."""
@@ -211,14 +214,15 @@ class Sweep:
         """The mechanism as a file describes it, swept parameters at their defaults."""
         return dict(self.identity["mechanism"])
 
-    def _check(self, names: Sequence[str], along: Sequence[str]) -> None:
-        """Raise for columns with other axes than these, and for axes that are none or bear a parameter's name."""
-        there = {axis for kept in self.columns.values() for axis in kept.axes}
+    def check_columns(self, names: Sequence[str], along: Sequence[str] = ()) -> None:
+        """Raise for columns that are none or have other axes than these, and for axes that are none or bear a parameter's name."""
         for axis in along:
-            if axis not in there:
-                raise UnknownNameError("axis", axis, there)
+            if axis not in self._over:
+                raise UnknownNameError("axis", axis, self._over)
             if axis in self.parameters:
                 raise DeclarationError(f"parameter '{axis}' bears the name of an axis: its columns cannot be rows")
+        if unknown := [name for name in names if name not in (*self.parameters, *self.columns, *along)]:
+            raise self._unknown(unknown)
         for name in names:
             if name in self.parameters or name in along:
                 continue
@@ -226,10 +230,26 @@ class Sweep:
             if axes and axes != tuple(along):
                 raise DeclarationError(f"column '{name}' has a value for every {' and '.join(axes)}, not one a design")
 
+    @cached_property
+    def _over(self) -> dict[str, str]:
+        """The axes of columns, each with a column over it."""
+        return {axis: kept.name for kept in list(self.columns.values())[::-1] for axis in kept.axes}
+
+    def _unknown(self, names: Sequence[str]) -> DeclarationError:
+        """Of names that are no column's."""
+        for name in names:
+            if name in self._over:
+                return DeclarationError(
+                    f"'{name}' is no column but an axis: it needs a column over {name}, as {self._over[name]} is"
+                )
+        return UnknownNameError("column", names, [*self.parameters, *self.columns], f"`lagrange-casadi info {self.path}`")
+
     def _blocks(self, names: Sequence[str], along: Sequence[str]) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
         dims = tuple(self.dimensions.values())
         with self._opened() as file:
-            places = dict(zip(along, np.meshgrid(*(file[axis][()] for axis in along), indexing="ij"), strict=True)) if along else {}
+            places = (
+                dict(zip(along, np.meshgrid(*(_taken(file[axis]) for axis in along), indexing="ij"), strict=True)) if along else {}
+            )
             lengths = next((place.shape for place in places.values()), ())
             rows = math.prod(lengths)
             for start, stop, where in slabs(dims, chunk_of(dims, _BLOCK // rows)):
@@ -243,7 +263,7 @@ class Sweep:
                     elif name in self.parameters:
                         values = _along(file["grid"][name], name, list(self.dimensions), dims, where)[left]
                     else:
-                        values = np.asarray(file[name.replace(":", "/")][where])
+                        values = _taken(file[name.replace(":", "/")], where)
                         values = values.reshape(numbers.size, *(lengths if self.columns[name].axes else ()))[left]
                     values = values.reshape(*values.shape, *(1,) * (len(shape) - values.ndim))
                     found[name] = np.broadcast_to(values, shape).reshape(-1)
@@ -262,7 +282,7 @@ class Sweep:
     def _cut(self, dataset: Any, axes: Sequence[str]) -> Values:
         """What is selected of a dataset: where numbers are evenly spaced they are read, else the box around them, cut in memory."""
         numbers = [self.chosen.get(axis) for axis in axes]
-        values = np.asarray(dataset[tuple(_box(n) for n in numbers)])
+        values = _taken(dataset, tuple(_box(n) for n in numbers))
         for axis, n in enumerate(numbers):
             if n is not None and n.size != values.shape[axis]:
                 values = np.take(values, n - n[0], axis=axis)
@@ -322,6 +342,15 @@ def _described(path: Path, file: h5py.File, keeper: Any) -> Sweep:
     )
 
 
+def _taken(dataset: Any, where: Any = ()) -> Values:
+    """What is read of a dataset. Raises :class:`StoreError` that names its column."""
+    try:
+        return np.asarray(dataset[where])
+    except (OSError, RuntimeError) as error:
+        name = dataset.name.strip("/").removeprefix("grid/").replace("/", ":")
+        raise StoreError(f"{dataset.file.filename}: {name}: damaged: {one_line(error)}") from None
+
+
 def _box(numbers: npt.NDArray[np.int64] | None) -> slice:
     if numbers is None:
         return slice(None)
@@ -333,53 +362,22 @@ def _plain(value: Any) -> Any:
     return int(value) if isinstance(value, np.integer) else str(value)
 
 
-def near(values: Array, number: float) -> npt.NDArray[np.bool_]:
-    """Where values are a number, but for the rounding of a grid."""
-    if math.isinf(number):
-        return np.asarray(values == number)
-    return np.asarray(np.abs(values - number) <= _NEAR * np.maximum(np.abs(values), abs(number)))
-
-
 def names_in(given: str | Sequence[str]) -> list[str]:
     """Names, of which one may stand alone."""
     return [given] if isinstance(given, str) else list(given)
 
 
-def _matches(name: str, there: Array, wanted: Any) -> npt.NDArray[np.bool_]:
-    try:
-        numbers = np.array([float(number) for number in (wanted if isinstance(wanted, Iterable) else [wanted])])
-    except (TypeError, ValueError):
-        numbers = np.array([np.nan])
-    pair = isinstance(wanted, tuple)
-    if isinstance(wanted, str) or not numbers.size or np.isnan(numbers).any() or (pair and numbers.size != 2):
-        raise DeclarationError(f"select: {name}: expected a number, a list of numbers, or a tuple (low, high), got {wanted!r}")
-    if not pair:
-        return np.asarray(np.any([_found(name, there, near(there, number), number, "=") for number in numbers], axis=0))
-    low, high = numbers
-    if high < low:
-        raise DeclarationError(f"select: {name}: expected (low, high), got {wanted!r}: the range is reversed")
-    within = ((there > low) | near(there, low)) & ((there < high) | near(there, high))
-    return _found(name, there, within, low, f"up to {high:.10g} and from")
-
-
-def _found(name: str, there: Array, met: npt.NDArray[np.bool_], number: float, words: str) -> npt.NDArray[np.bool_]:
-    if not met.any():
-        close = ", ".join(f"{value:.10g}" for value in there[np.argsort(np.abs(there - number))[:2]])
-        raise DeclarationError(f"no design has {name} {words} {number:.10g}; nearest: {close}")
-    return met
-
-
 def _along(dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], where: tuple[Any, ...]) -> Array:
     """A parameter's values of the designs of a slab, flat."""
     if name not in axes:
-        return np.asarray(dataset[where[0]])
+        return _taken(dataset, where[0])
     axis = axes.index(name)
     kept = [
         len(range(*place.indices(length))) if isinstance(place, slice) else 1 for place, length in zip(where, dims, strict=True)
     ]
     shape = [1] * len(dims)
     shape[axis] = kept[axis]
-    return np.broadcast_to(np.reshape(dataset[where[axis]], shape), kept).ravel()
+    return np.broadcast_to(np.reshape(_taken(dataset, where[axis]), shape), kept).ravel()
 
 
 def _reading(path: str | Path) -> AbstractContextManager[h5py.File]:

@@ -1,0 +1,35 @@
+"""Which values are meant."""
+
+import numpy as np
+import pytest
+
+from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.sweep.selection import absent, matches, near
+
+THERE = np.array([0.3, 0.1, 0.30000000000000004, 0.1, 0.2])
+
+
+def test_near_is_but_for_rounding():
+    assert near(THERE, 0.3).tolist() == [True, False, True, False, False]
+    assert not near(THERE, 0.3000001).any()
+    assert near(np.array([np.inf, 1.0]), np.inf).tolist() == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("wanted", "expected"), [(0.3, [0, 2]), ([0.1, 0.2], [1, 3, 4]), ((0.15, 0.3), [0, 2, 4]), ((-np.inf, 0.1), [1, 3])]
+)
+def test_what_is_wanted(wanted, expected):
+    assert np.flatnonzero(matches("l", THERE, wanted)).tolist() == expected
+
+
+def test_the_nearest_values_are_different_ones():
+    """Of a list each value may come many times."""
+    assert absent("l", np.array([0.1, 0.1, 0.1, 0.3, 0.5]), 0.12) == "no design has l = 0.12; nearest: 0.1, 0.3"
+    with pytest.raises(DeclarationError, match=r"no design has l up to 0\.19 and from 0\.15; nearest: 0\.1, 0\.2"):
+        matches("l", np.array([0.1, 0.1, 0.2]), (0.15, 0.19))
+
+
+@pytest.mark.parametrize("wanted", [np.nan, "0.1", [], (0.1,), (0.1, 0.2, 0.3), (0.3, 0.1), [0.1, None]])
+def test_what_cannot_be_wanted(wanted):
+    with pytest.raises(DeclarationError, match="select: l: expected "):
+        matches("l", THERE, wanted)
