@@ -187,11 +187,11 @@ class Folder:
         """What is wrong with the parts, a line each; all is read, and nothing touched."""
         for path, part in self._looked_through():
             try:
-                flaw = part.flaw() if part else "head or length"
+                flaw = part.flaw() if part else "its head or length, or an earlier one holds the same designs"
             except FileNotFoundError:  # a sweep at work has come to its end
                 continue
             if flaw:
-                yield f"{path.name}: damaged, in {flaw}: it will be done again"
+                yield f"{path.name}: damaged in {flaw}: it will be done again"
 
     def _looked_through(self) -> Iterator[tuple[Path, Part | None]]:
         after = 0

@@ -17,8 +17,9 @@ from .best import best, chosen, size
 from .columns import STATUS
 from .cut import DOTS, LINES, Cut, stays
 from .panels import STYLE, Gaps, Sheet, fitted, label, value
-from .reading import Sweep, near
+from .reading import Sweep
 from .scale import Scale, edges, even_in_ratios, logarithmic, number
+from .selection import near
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
