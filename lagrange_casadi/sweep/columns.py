@@ -35,7 +35,7 @@ KINDS = (STATUS, "peak", "peak_t", "peak_xi", "mean", "rms", "peak_at", "history
 """What columns are of, in the order in which they are listed."""
 
 _MOST, _BYTES, _SECONDS = 1 << 14, 1 << 24, 1.0
-_AT_HAND = 1 << 20
+_AT_HAND = 1 << 22
 _GRID_COST = 5e-10
 """Seconds of a section force at an instant and a ratio."""
 

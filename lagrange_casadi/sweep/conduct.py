@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import closing
-from itertools import islice
+from contextlib import ExitStack, closing
+from itertools import chain, islice
 from pathlib import Path
 
 from ..errors import ClusterError, DeclarationError, PathError, SizeError, StoppedError, StoreError
@@ -103,14 +103,13 @@ def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], No
     parts = {part.start: part for part in folder.parts()}
     done, size = sum(part.stop - part.start for part in parts.values()), sum(part.size for part in parts.values())
     queue = Queue((start, stop) for start, stop, _ in plan.slabs() if start not in parts)
-    with (
-        telling(folder.target),
-        joining(plan, folder.joined) as append,
-        closing(workers.results(plan, queue)) as blocks,
-    ):
+    with telling(folder.target), closing(workers.results(plan, queue)) as blocks, ExitStack() as stack:
         joined = 0
         progress("designs", done, plan.size)
-        for block in blocks:
+        first = next(blocks, None)
+        # While the file is laid out, other blocks are evaluated.
+        append = stack.enter_context(joining(plan, folder.joined))
+        for block in chain([first], blocks):
             if block is not None:
                 start, stop, contents = block
                 parts[start] = folder.commit(start, stop, plan.columns, contents)

@@ -34,7 +34,7 @@ SCHEMA_VERSION = 1
 MANY = 10**9
 """Designs from which on a sweep must be meant."""
 
-_FEW, _SHARES = 1 << 11, 16
+_FEW, _SHARES = 1 << 11, 12
 _LARGEST = 1 << 31
 """Bytes of a chunk of the file."""
 
