@@ -53,3 +53,10 @@ def solution(slider_crank):
 def pytest_addoption(parser):
     generated = "parts of the documentation, and the golden text of an export"
     parser.addoption("--update", action="store_true", help=f"write anew what is generated: {generated}")
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """An empty folder that is the working directory."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path

@@ -20,12 +20,6 @@ from lagrange_casadi.cli import main
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
 
 
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 def test_run_writes_the_file_and_the_figures(here, capsys):
     assert main(["run", str(CASE)]) == 0
     assert sorted(path.name for path in here.iterdir()) == ["slider_crank.h5", "slider_crank_figures"]

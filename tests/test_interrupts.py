@@ -27,12 +27,6 @@ LONG = ["--grid", "l=0.11:0.4:4000", "--grid", "r=0.05:0.1:250"]
 KEPT = r"error: stopped; [\d ]+ of 1 000 000 designs are kept in x\.h5\.parts: go on with --resume\n"
 
 
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
 def program(*arguments, **keywords):
     return sweeps.process(sys.executable, "-m", "lagrange_casadi", *arguments, **keywords)
 
