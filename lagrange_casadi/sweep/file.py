@@ -6,6 +6,7 @@ Every dimension's scale is in the root, where netCDF looks for it, and those of 
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -60,6 +61,7 @@ def joining(plan: Plan, path: Path) -> Iterator[Callable[[Sequence[bytes]], None
                     dataset.id.write_direct_chunk((*corner, *rest), content)
                 if bytes_.failure:
                     raise bytes_.failure
+                os.fsync(bytes_.fileno())  # else all of it waits for the disk in the end
 
             yield append
             file.flush()
