@@ -83,6 +83,17 @@ def test_any_numbers_along_an_axis_are_read(swept, numbers):
     np.testing.assert_array_equal(found["l"], np.array(LENGTHS)[numbers])
 
 
+def test_a_design_by_its_number(swept, listed):
+    assert swept.design(35) == {"l": 0.4, "r": 0.07, "m1": 0.2}
+    assert swept.values(35, "status") == {"status": swept["status"][5, 2, 1]}
+    rows, other = listed
+    assert list(other.design(49).values()) == rows[49].tolist()
+    for number in (-1, 36, 10**20):
+        for read in (swept.design, lambda number: swept.values(number, "status")):
+            with pytest.raises(DeclarationError, match=rf"design {number}: expected a number from 0 to 35"):
+                read(number)
+
+
 def test_selection_of_a_list(listed):
     rows, found = listed
     there = (rows[:, 0] >= 0.2) & (rows[:, 1] <= 0.2)

@@ -170,17 +170,23 @@ class Sweep:
         return self._blocks(names, along)
 
     def design(self, number: int) -> dict[str, float]:
-        """The values of the swept parameters of a design, by its number."""
+        """The values of the swept parameters of a design, by its number. Raises :class:`DeclarationError` where there is none."""
+        places = dict(zip(self.dimensions, self._place(number), strict=True))
         with self._opened() as file:
-            places = dict(zip(self.dimensions, np.unravel_index(number, tuple(self.dimensions.values())), strict=True))
             return {name: float(_taken(file["grid"][name], places.get(name, number))) for name in self.parameters}
 
-    def values(self, number: int, names: Sequence[str]) -> dict[str, float]:
+    def values(self, number: int, names: str | Sequence[str]) -> dict[str, float]:
         """Columns of a design, by its number. Raises :class:`DeclarationError` for a column with axes of its own."""
+        names, place = names_in(names), self._place(number)
         self.check_columns(names)
-        place = tuple(int(i) for i in np.unravel_index(number, tuple(self.dimensions.values())))
         with self._opened() as file:
             return {name: _taken(file[name.replace(":", "/")], place).item() for name in names}
+
+    def _place(self, number: int) -> tuple[int, ...]:
+        dims = tuple(self.dimensions.values())
+        if not 0 <= number < math.prod(dims):
+            raise DeclarationError(f"design {number}: expected a number from 0 to {math.prod(dims) - 1}")
+        return tuple(int(i) for i in np.unravel_index(number, dims))
 
     def counts(self) -> dict[int, int]:
         """How many designs have each status."""
