@@ -141,8 +141,8 @@ def test_a_sweep_that_was_held_goes_on(here):
 
     with program(*SWEEP, *LONG, "--out", "x.h5") as held:
         sweeps.wait_for(parts)
-        held.send_signal(signal.SIGTSTP)
-        assert os.waitpid(held.pid, os.WUNTRACED)[1] == signal.SIGTSTP << 8 | 0x7F
+        held.send_signal(signal.SIGSTOP)
+        assert os.waitpid(held.pid, os.WUNTRACED)[1] == signal.SIGSTOP << 8 | 0x7F
         before = parts()
         held.send_signal(signal.SIGCONT)
         sweeps.wait_for(lambda: parts() > before)
