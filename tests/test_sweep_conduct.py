@@ -224,6 +224,7 @@ def test_parts_of_nobody_knows_what_are_not_touched(whole, tmp_path, keywords):
     with pytest.raises(_StopError):
         run(path, progress=stop_after(4))
     (folder / "plan.json").unlink()
+    (folder / "000000000900-000000000901.part").write_text("damaged")
     before = sorted(os.listdir(folder))
     with pytest.raises(PathError, match=r"x\.h5\.parts holds parts, and no plan\.json that tells what they are of: force=True"):
         run(path, **keywords)

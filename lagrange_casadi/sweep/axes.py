@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import math
-import os
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -246,7 +245,7 @@ def check_designs(designs: Designs, mechanism: Mechanism, fixed: Mapping[str, fl
     """Raise for parameters that are none or set twice, and for values out of their ranges, all of them at once."""
     parameters = mechanism.parameters
     if designs.source:
-        check_head(designs.source, designs.names, parameters)
+        check_known(designs.names, parameters, designs.source)
     check_known([*designs.names, *fixed], parameters)
     for name in designs.names:
         if name in fixed:
@@ -263,25 +262,21 @@ def check_designs(designs: Designs, mechanism: Mechanism, fixed: Mapping[str, fl
         raise ParameterError("; ".join(wrong))
 
 
-def check_known(names: Sequence[str], parameters: Collection[str]) -> None:
-    """Raise :class:`DeclarationError` for names that are no parameters', all of them at once."""
-    unknown = [name for name in names if name not in parameters]
-    for name in unknown:
-        if _is_result(name):
-            raise DeclarationError(not_parameter(name))
-    if unknown:
-        raise UnknownNameError("parameter", unknown, parameters)
+def check_known(names: Sequence[str], parameters: Collection[str], head_of: str = "") -> None:
+    """Raise :class:`DeclarationError` for names that are no parameters', all of them at once.
 
-
-def check_head(path: str | os.PathLike[str], names: Sequence[str], parameters: Collection[str]) -> None:
-    """The same of the head of a file, by its columns."""
+    Names that are the first line of a file, ``head_of``, are told with their columns.
+    """
     unknown = {column: name for column, name in enumerate(names, 1) if name not in parameters}
+
+    def place(columns: Collection[int]) -> str:
+        return f"{head_of}, line 1, column{'s' if len(columns) > 1 else ''} {', '.join(map(str, columns))}" if head_of else ""
+
     for column, name in unknown.items():
         if _is_result(name):
-            raise DeclarationError(f"{path}, line 1, column {column}: {not_parameter(name)}")
+            raise DeclarationError(": ".join(filter(None, (place([column]), not_parameter(name)))))
     if unknown:
-        place = f"{path}, line 1, column{'s' if len(unknown) > 1 else ''} {', '.join(map(str, unknown))}"
-        raise UnknownNameError("parameter", list(unknown.values()), parameters, place=place)
+        raise UnknownNameError("parameter", list(unknown.values()), parameters, place=place(unknown))
 
 
 def size_of(described: Mapping[str, str]) -> int:

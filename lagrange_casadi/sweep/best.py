@@ -34,7 +34,7 @@ _CONDITION = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|!=|==|<|>|=)\s*([^<>=!]+?)\s*"
 class Condition:
     """A parameter or a column against a number; peaks by their size, whatever their sign.
 
-    What differs from the number by a billionth of it is equal to it: 0.3 on a grid may be 0.30000000000000004.
+    What differs from the number by a billionth of it is equal to it, for what is computed is rounded.
     """
 
     name: str

@@ -71,7 +71,7 @@ def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
         raise PathError(f"{folder.path} holds an unfinished sweep: go on with resume=True, or start anew with force=True")
     if there and not (resume or force):
         raise PathError(f"{folder.target} exists: force=True replaces it, resume=True goes on with a sweep that was not finished")
-    if not (folder.begun or force) and folder.parts():
+    if not (folder.begun or force) and folder.done():
         raise PathError(f"{folder.path} holds parts, and no plan.json that tells what they are of: force=True starts anew")
     if force or not (folder.begun or there):
         folder.begin(plan.identity, forced=force)

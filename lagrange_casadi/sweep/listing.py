@@ -13,7 +13,7 @@ import numpy as np
 
 from ..errors import DeclarationError, PathError
 from ..numerals import real
-from .axes import Listed, check_head, not_parameter
+from .axes import Listed, check_known, not_parameter
 
 
 def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | None = None) -> Listed:
@@ -33,7 +33,7 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
             names = [name.strip() for name in next(rows, (1, []))[1]]
             _check_head(path, names)
             if parameters is not None:
-                check_head(path, names, parameters)
+                check_known(names, parameters, str(path))
             for line, row in rows:
                 if not any(cell.strip() for cell in row):
                     continue
