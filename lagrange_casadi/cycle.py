@@ -34,6 +34,9 @@ _SAME, _FAINT = 1e-9, 1e-11
 _ROUNDING = 16 * 2.0**-52
 """Of the largest value of a unit."""
 
+_GAP = 1e-8
+"""Of the mechanism's extent, what may be left of a loop's equations."""
+
 _PROBES = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (0.5, 0.0), (-0.1, 0.1), (1e-3, 0.0))
 _NAMED = 3
 _UNITS = {"x": LENGTH, "y": LENGTH, "fx": FORCE, "fy": FORCE, "mz": MOMENT}
@@ -206,6 +209,12 @@ class Drive:
             if not (closure > 0.0).all():
                 bad = angles[int(np.argmax(~(closure > 0.0)))]
                 raise DeclarationError(f"{name} cannot be closed{self._not_round(bad)}")
+        limit = _GAP * self.graph.extent(self.p)
+        for name, gaps in zip(self.graph.columns, values[0], strict=True):
+            if name.startswith("_gap:") and not (np.abs(gaps) <= limit).all():
+                bad = angles[int(np.argmax(~(np.abs(gaps) <= limit)))]
+                what = f"what was found for the loop closed by '{name.partition(':')[2]}' does not close it"
+                raise DeclarationError(f"table: {what}{self._not_round(bad)}")
         found = np.argwhere(~np.isfinite(values).all(axis=0))
         if found.size:
             k, i = found[0]
@@ -293,7 +302,7 @@ def _sizes(graph: SceneGraph, peaks: Array) -> Array:
     alike = np.stack((peaks[0], peaks[1], *[np.maximum(peaks[2], peaks[3])] * 2))
     largest = {kind: alike[:, [k == kind for k in kinds]].max(axis=-1) for kind in set(kinds)}
     sizes: Array = np.array([largest[kind] for kind in kinds]).reshape(len(kinds), 4).T
-    sizes[0, [name.startswith("_misfit:") for name in graph.columns]] = 1.0
+    sizes[0, [name.startswith(("_gap:", "_misfit:")) for name in graph.columns]] = 1.0
     return sizes
 
 

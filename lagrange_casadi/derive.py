@@ -64,6 +64,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     solved = kinematics.solve(body, scene.posture, start, iterate=iterate)
 
     columns = {f"_closure:{name}": closure for name, closure in solved.closures.items()}
+    columns |= {f"_gap:{name}": gap for name, gap in solved.gaps.items()}
     columns |= {f"_misfit:{name}": misfit for name, misfit in solved.misfits.items()}
     for graph in body.rows:
         columns |= {f"_row:{graph.row.name}": graph.residual, f"_rowsize:{graph.row.name}": graph.size}

@@ -82,7 +82,7 @@ class DesignEngine:
         graph = derive(scene, wanted, iterate=rung.newton is not None)
         instants = points(checked_times(scene, t))
         stages = stages_of(graph, rung, instants)
-        kept = Kept.of(graph, rung.precision)
+        kept = Kept.of(graph, rung)
         guess = np.array(graph.newton.guess if graph.newton else (), float)
 
         def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:

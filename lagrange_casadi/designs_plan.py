@@ -12,12 +12,13 @@ from .codegen.designs import Along, Plan, matter_of
 from .compensated import Precision
 from .density import Array, Density
 from .errors import DeclarationError
+from .gaps import extent
 from .kinematics import NEAR
 from .mechanism import Mechanism
 from .mobility import LAW, PLACE_FIRST, stations_of
 from .parts import Link, RigidMass
 from .quantities import FORCE, unit_in
-from .refusal import MISFIT, Status, dead_centre
+from .refusal import MISFIT, Status, dead_centre, gap_limit
 from .rung import Rung
 from .scene_graph import SceneGraph
 from .section_law import FORCES
@@ -56,8 +57,8 @@ class Kept:
     plan: Plan
 
     @classmethod
-    def of(cls, graph: SceneGraph, precision: Precision) -> Kept:
-        """What is kept of a scene's designs."""
+    def of(cls, graph: SceneGraph, rung: Rung) -> Kept:
+        """What is kept of a scene's designs on a rung."""
         mechanism, at = graph.scene.mechanism, {name: k for k, name in enumerate(graph.columns)}
         chosen: dict[str, tuple[int, ...]] = {}
         for name, k in at.items():
@@ -82,7 +83,7 @@ class Kept:
             links=along,
             units=tuple(numbers[unit] for unit in units),
             efforts=tuple(names.index(name) for name in efforts),
-            checks=tuple(_checks(graph, precision, at)),
+            checks=tuple(_checks(graph, rung.precision, rung.newton, at)),
             matter=matter,
             positive=positive,
             margins=margins,
@@ -109,13 +110,15 @@ def _along(link: Link, at: dict[str, int]) -> Along:
     )
 
 
-def _checks(graph: SceneGraph, precision: Precision, at: dict[str, int]) -> list[tuple[int, str, float]]:
+def _checks(graph: SceneGraph, precision: Precision, newton: int | None, at: dict[str, int]) -> list[tuple[int, str, float]]:
     found: list[tuple[int, str, float]] = []
     for name, k in at.items():
         kind, _, joint = name.partition(":")
         if kind == "_closure":
             jumps = graph.newton is not None and f"'{joint}'" in graph.newton.joints
             found.append((k, "BRANCH" if jumps else "CLOSURE", dead_centre(graph, precision, name)))
+        elif kind == "_gap":
+            found.append((k, "GAP", gap_limit(precision, newton)))
         elif kind == "_misfit":
             found.append((k, "MISFIT", MISFIT[precision]))
         elif kind == "_row":
@@ -127,7 +130,7 @@ def _matter(mechanism: Mechanism, links: list[Link], along: tuple[Along, ...]) -
     """What the plan wants to know of the parts, and how many numbers must be positive, and not negative."""
     lengths = {name: link.length for name, link in mechanism.links.items()}
     masses = [_masses(body.mass, lengths.get(body.name, 0.0)) for body in mechanism.moving]
-    positive = [*lengths.values(), sum((mass for mass, _ in masses), ca.SX(0))]
+    positive = [extent(mechanism), *lengths.values(), sum((mass for mass, _ in masses), ca.SX(0))]
     others = [value for _, values in masses for value in values]
     for point in (point for joint in mechanism.joints.values() for point in (joint.parent, joint.child)):
         others += _margins(point)

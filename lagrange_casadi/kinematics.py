@@ -8,10 +8,10 @@ matrix, transposed, gives the multipliers too.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import casadi as ca
@@ -21,11 +21,11 @@ import numpy.typing as npt
 from .blocks import Block, plan
 from .density import Array
 from .errors import AssemblyError, DeclarationError
+from .gaps import left, misfit, reach
 from .linear import LinearSystem
 from .loops import ClosedForm
 from .multibody import Coordinate, Multibody, column, joint_coordinate
-from .parts import Link
-from .planar import misalignment
+from .substitution import Expressions, Numbers
 
 _LARGEST_STEP = 0.3
 """Of an angle [rad], or of a slide over the length of all links: a full step from afar may land on another branch."""
@@ -62,27 +62,28 @@ class Start:
 class Kinematics:
     """The whole motion as graphs over time, the driven coordinates d, d', d'', the iterated unknowns z and the parameters.
 
-    ``symbols`` and ``values`` pair every variable, rate and acceleration of a :class:`.Multibody` with its expression; ``systems``
-    are the factorized Phi_z of ``blocks``. ``closures`` say by joint how far each loop is from a dead centre, ``misfits`` how
-    far the equations that are too many are from holding. ``loose`` names the joints whose angles are known up to whole turns.
+    ``found`` has the expression of every variable, rate and acceleration of a :class:`.Multibody`; ``systems`` are the factorized
+    Phi_z of ``blocks``. ``closures`` say by joint how far each loop is from a dead centre, ``gaps`` [m] what is
+    left of the equations of a block, ``misfits`` how far the equations that are too many are from holding. ``loose`` names the
+    joints whose angles are known up to whole turns.
     """
 
     driven: Any
     driven_rate: Any
     driven_acceleration: Any
     iterated: Any
-    symbols: Any
-    values: Any
+    found: Expressions
     blocks: tuple[Block, ...]
     systems: tuple[LinearSystem, ...]
     closures: dict[str, Any]
+    gaps: dict[str, Any]
     misfits: dict[str, Any]
     newton: NewtonLoop | None
     loose: frozenset[str]
 
     def evaluate(self, expression: Any) -> Any:
         """An expression in the multibody's symbols, as one in t, d, d', d'', z and the parameters."""
-        return ca.substitute(ca.SX(expression), self.symbols, self.values)
+        return self.found.put_into(expression)
 
 
 def solve(multibody: Multibody, posture: Mapping[str, float], start: Start, *, iterate: bool = False) -> Kinematics:
@@ -94,14 +95,14 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start, *, i
     leaves the branch open, :class:`AssemblyError` where the mechanism cannot be assembled at the start.
     """
     solver = _Solver(multibody, dict(posture), start, iterate)
-    blocks = plan(multibody, solver.numbers())
+    blocks = plan(multibody, solver.beginning())
     for block in blocks:
         solver.close(block)
     return solver.finish(blocks)
 
 
 class _Solver:
-    """Carries the expressions known so far while the blocks are closed in order."""
+    """Carries the expressions known so far, and their numbers at the start, while the blocks are closed in order."""
 
     def __init__(self, multibody: Multibody, posture: dict[str, float], start: Start, iterate: bool) -> None:
         self.iterate = iterate
@@ -115,25 +116,35 @@ class _Solver:
         self.scales: list[Any] = []
         self.turning: list[bool] = []
         self.residuals: list[Block] = []
-        values = column(c.value for c in driven)
-        self.known: dict[Coordinate, Any] = {c: _variables(c, values, self.d) for c in driven}
-        self.closures: dict[str, Any] = {}
+        self.closures: dict[str, tuple[Any, bool]] = {}
+        self.dyads: dict[Block, Any] = {}
         self.loose: set[str] = set()
+        self.length = reach(multibody.mechanism)
+        self.found = Expressions()
+        self.numbers = Numbers()
+        self.numbers.note(multibody.mechanism.time, [start.t])
+        self.numbers.note(multibody.mechanism.symbols, start.parameters)
+        self.numbers.note(self.d, start.driven)
+        self.known: dict[Coordinate, Any] = {}
+        values = column(c.value for c in driven)
+        for coordinate in driven:
+            self._know(coordinate, coordinate.placed(values, self.d))
+            self.numbers.note(coordinate.variables, self.numbers.of(self.known[coordinate]))
 
-    def numbers(self) -> dict[str, Any]:
-        """What the count of freedoms needs: the rough posture, and the inputs with their values at the start."""
+    def beginning(self) -> dict[str, Any]:
+        """What the count of freedoms needs: the rough posture, drives included, and the inputs with their values at the start."""
+        mechanism = self.multibody.mechanism
         told = {c: self.posture[_posture_name(c)] for c in self.multibody.coordinates if _posture_name(c) in self.posture}
-        symbols = [c.variables for c in self.known]
-        numbers = self._at_start(column(self.known.values()))
+        told |= dict(zip(self.known, self.start.driven, strict=True))
         return {
             "posture": told,
-            "inputs": [ca.vertcat(ca.SX(0, 1), *symbols), self.multibody.mechanism.time, self.multibody.mechanism.symbols],
-            "values": [numbers, self.start.t, self.start.parameters],
+            "inputs": [mechanism.time, mechanism.symbols],
+            "values": [self.start.t, self.start.parameters],
         }
 
-    def place(self, expression: Any) -> Any:
-        """An expression in variables, with those known so far put in."""
-        return ca.substitute(ca.SX(expression), column(c.variables for c in self.known), column(self.known.values()))
+    def _know(self, coordinate: Coordinate, value: Any) -> None:
+        self.known[coordinate] = value
+        self.found.note(coordinate.variables, value)
 
     def close(self, block: Block) -> None:
         """Solve a block for its variables."""
@@ -141,63 +152,80 @@ class _Solver:
         if form is None:
             if block.unknown:
                 self._iterate(block, self._told(block))
-        elif form.closure is None:
+        elif form.branch is None:
             for coordinate, value in zip(block.unknown, form.variables, strict=True):
-                self.known[coordinate] = self.place(value)
+                self.numbers.note(coordinate.variables, self.numbers.of(value))
+                self._know(coordinate, self.found.put_into(value))
+            if form.closure is not None:
+                self._judge(block, self.found.put_into(form.closure))
         else:
-            variables = self.place(ca.vertcat(*form.variables))
-            closure = self.place(form.closure)
-            sign = self._branch(block, form, variables, closure)
+            closure = self.found.put_into(form.closure)
+            sign, values = self._branch(block, form, form.branch)
             if self.iterate:
-                self.closures[block.name] = closure
-                self._iterate(block, _numbers(block.unknown, self._at_start(variables, form.branch, sign)))
+                self.dyads[block] = closure
+                self._iterate(block, _numbers(block.unknown, values))
                 return
-            sizes = itertools.accumulate(c.variables.numel() for c in block.unknown)
-            solved = ca.vertsplit(ca.substitute(variables, form.branch, sign), [0, *sizes])
-            self.known.update(zip(block.unknown, solved, strict=True))
+            self.numbers.note(column(c.variables for c in block.unknown), values)
+            for coordinate, value in zip(block.unknown, form.variables, strict=True):
+                self._know(coordinate, self.found.put_into(ca.substitute(value, form.branch, ca.SX(sign))))
             self.loose |= {c.joint for c in block.unknown if c.kind == "angle"}
-            self.closures[block.name] = closure
+            self._judge(block, closure)
 
-    def _at_start(self, expression: Any, extra: Any = None, value: float = 0.0) -> list[float]:
-        inputs = [self.multibody.mechanism.time, self.d, column(self.iterated), self.multibody.mechanism.symbols]
-        numbers: list[Any] = [self.start.t, self.start.driven, self.guess, self.start.parameters]
-        if extra is not None:
-            inputs, numbers = [*inputs, extra], [*numbers, value]
-        found = ca.Function("start", inputs, [expression])(*numbers)
-        return [float(x) for x in ca.DM(found).full().ravel()]
+    def _judge(self, block: Block, closure: Any) -> None:
+        """Note how far a block is from a dead centre: of blocks that one joint closes, the one that is nearest."""
+        # What iterates has the sine for its measure, a closed form its square.
+        sine = block.form is None
+        before = self.closures.get(block.name)
+        if before is not None:
+            both = (before, (closure, sine))
+            sine = sine or before[1]
+            closure = ca.fmin(*(ca.sqrt(value) if sine and not is_sine else value for value, is_sine in both))
+        self.closures[block.name] = closure, sine
 
-    def _branch(self, block: Block, form: ClosedForm, variables: Any, closure: Any) -> int:
-        reach = self._at_start(closure)[0]
-        if not reach > 0.0:
-            what = "is at a dead centre" if reach == 0.0 else "cannot be closed"
+    def _branch(self, block: Block, form: ClosedForm, branch: Any) -> tuple[int, list[float]]:
+        """The sign of the branch that is nearest to the posture, and the variables on it at the start."""
+        (closure,) = self.numbers.of(form.closure)
+        if not closure > 0.0:
+            what = "is at a dead centre" if closure == 0.0 else "cannot be closed"
             raise AssemblyError(f"the loop closed by {block.joints} {what} at the start of the motion{self._where()}")
-        found = {sign: self._at_start(variables, form.branch, sign) for sign in (1, -1)}
-        distance = {sign: self._distance(block, values) for sign, values in found.items()}
+        variables = column(form.variables)
+        values = {sign: self.numbers.of(ca.substitute(variables, branch, ca.SX(sign))) for sign in (1, -1)}
+        distance = {sign: self._distance(block, found) for sign, found in values.items()}
         if abs(distance[1] - distance[-1]) <= 1e-6 * (1.0 + distance[1]):
-            choices = " or ".join(_describe(block.unknown, values) for values in found.values())
+            choices = " or ".join(_describe(block.unknown, found) for found in values.values())
             raise DeclarationError(
                 f"the loop closed by {block.joints} can be assembled in two ways at the start of the motion: {choices}; "
                 f"say which by posture={{'{_posture_name(block.unknown[0])}': ...}}"
             )
-        return min(distance, key=lambda sign: distance[sign])
+        nearest = min(distance, key=lambda sign: distance[sign])
+        return nearest, values[nearest]
 
     def _distance(self, block: Block, values: Sequence[float]) -> float:
         """How far a solution is from the posture, by all that the posture says of what the block places."""
-        solved = column(c.variables for c in block.unknown)
-        later = column(c.variables for c in self.multibody.coordinates if c not in self.known and c not in block.unknown)
-        size = self._at_start(self._size())[0] or 1.0
-        total = 0.0
-        for name, rough in self.posture.items():
+        (size,) = self.numbers.of(self.length)
+        total, placed = 0.0, {*self.known, *block.unknown}
+        self.numbers.note(column(c.variables for c in block.unknown), values)
+        for name, (measured, of) in self._told_of.items():
+            if of & set(block.unknown) and of <= placed:
+                gap = self.numbers.of(measured)[0] - self.posture[name]
+                total += abs(math.remainder(gap, 2.0 * math.pi)) if name in self.multibody.frames else abs(gap) / size
+        return total
+
+    @cached_property
+    def _told_of(self) -> dict[str, tuple[Any, set[Coordinate]]]:
+        """What the posture tells of, as expressions, and the coordinates that these are of."""
+        owner = {key: c for c in self.multibody.coordinates for key in c.keys}
+        told: dict[str, tuple[Any, set[Coordinate]]] = {}
+        for name in self.posture:
             if name in self.multibody.frames:
                 turn = self.multibody.frames[name].rotation
                 measured = ca.SX(ca.atan2(turn.s, turn.c))
             else:
                 joint = self.multibody.mechanism.joints[name]
                 measured = ca.SX(joint_coordinate(joint, self.multibody.frames, self.multibody.coordinates))
-            if ca.depends_on(measured, solved) and not ca.depends_on(measured, later):
-                gap = self._at_start(self.place(ca.substitute(measured, solved, ca.SX(ca.DM(values)))))[0] - rough
-                total += abs(math.remainder(gap, 2.0 * math.pi)) if name in self.multibody.frames else abs(gap) / size
-        return total
+            of = (owner.get(symbol.element_hash()) for symbol in ca.symvar(measured))
+            told[name] = measured, {c for c in of if c is not None}
+        return told
 
     def _told(self, block: Block) -> dict[Coordinate, float]:
         """What the posture says of a block that has no closed form."""
@@ -211,20 +239,16 @@ class _Solver:
     def _iterate(self, block: Block, guess: Mapping[Coordinate, float]) -> None:
         for coordinate in block.unknown:
             symbol = ca.SX.sym(f"z_{coordinate.joint}")
-            self.known[coordinate] = _variables(coordinate, coordinate.value, symbol)
+            self._know(coordinate, coordinate.placed(coordinate.value, symbol))
             self.iterated.append(symbol)
             self.guess.append(guess[coordinate])
-            self.scales.append(1 if coordinate.kind == "angle" else self._size())
+            self.scales.append(1 if coordinate.kind == "angle" else self.length)
             counted = any(ca.depends_on(closure.gap, coordinate.value) for closure in self.multibody.closures)
             self.turning.append(coordinate.kind == "angle" and not counted)
             if self.turning[-1]:
                 self.loose.add(coordinate.joint)
         self.residuals.append(block)
         self._settle()
-
-    def _size(self) -> Any:
-        """A length to judge slides and gaps by: all links end to end."""
-        return sum((ca.SX(body.length) for body in self.multibody.mechanism.moving if isinstance(body, Link)), ca.SX(0))
 
     def _settle(self) -> None:
         """Iterate the guess at the start of the motion, so that every later evaluation begins on this branch."""
@@ -234,6 +258,9 @@ class _Solver:
             correction, size = loop.step(self.guess, self.start.t, self.start.driven, self.start.parameters)
             self.guess = [float(z) for z in (ca.DM(self.guess) + correction).full().ravel()]
             if float(size) < 1e-9:
+                self.numbers.note(column(self.iterated), self.guess)
+                for coordinate in (c for block in self.residuals for c in block.unknown):
+                    self.numbers.note(coordinate.variables, self.numbers.of(self.known[coordinate]))
                 return
         raise AssemblyError(
             f"the loops closed by {loop.joints} cannot be assembled from the given posture at the start of the motion"
@@ -246,66 +273,50 @@ class _Solver:
 
     def finish(self, blocks: tuple[Block, ...]) -> Kinematics:
         """Rates and accelerations, block by block, and the substitution of everything."""
-        body = self.multibody
-        rates = {c: self.dd[i] for i, c in enumerate(c for c in body.coordinates if c.driven)}
-        accelerations = {c: self.ddd[i] for i, c in enumerate(c for c in body.coordinates if c.driven)}
-        systems, misfits = [], {}
+        body, found = self.multibody, self.found
+        driven = column(c.rate for c in body.coordinates if c.driven), column(c.acceleration for c in body.coordinates if c.driven)
+        found.note(ca.vertcat(*driven), ca.vertcat(self.dd, self.ddd))
+        systems: list[LinearSystem] = []
+        gaps: dict[str, Any] = {}
+        misfits: dict[str, Any] = {}
         for block in blocks:
+            rates, accelerations = column(c.rate for c in block.unknown), column(c.acceleration for c in block.unknown)
             still = ca.SX.zeros(len(block.unknown))
-            left = ca.substitute(block.gap_rate, column(c.rate for c in block.unknown), still)
-            left_over = ca.substitute(block.gap_acceleration, column(c.acceleration for c in block.unknown), still)
-            system = LinearSystem.of(self._motion(block.jacobian, rates, accelerations))
-            solved = system.solve(-self._motion(left, rates, accelerations))
-            rates |= dict(zip(block.unknown, ca.vertsplit(solved) if block.unknown else (), strict=True))
-            solved = system.solve(-self._motion(left_over, rates, accelerations))
-            accelerations |= dict(zip(block.unknown, ca.vertsplit(solved) if block.unknown else (), strict=True))
+            system = LinearSystem.of(found.put_into(block.jacobian))
+            found.note(rates, system.solve(-found.put_into(ca.substitute(block.gap_rate, rates, still))))
+            found.note(accelerations, system.solve(-found.put_into(ca.substitute(block.gap_acceleration, accelerations, still))))
             systems.append(system)
             if block in self.residuals:
-                side = math.copysign(1.0, self._at_start(system.volume)[0])
+                side = math.copysign(1.0, self.numbers.of(system.volume)[0])
                 volume = ca.fabs(system.volume) if system.free else side * system.volume
                 # Of a dyad the closed form knows how near its dead centre is, and the volume on which branch it is.
-                dyad = self.closures.get(block.name)
-                self.closures[block.name] = volume if dyad is None else dyad * ca.copysign(1.0, volume)
+                dyad = self.dyads.get(block)
+                self._judge(block, volume if dyad is None else dyad * ca.copysign(1.0, volume))
             if system.free:
-                misfits[block.name] = self._misfit(block)
-        symbols, values = self._substitution(rates, accelerations)
+                misfits[block.name] = found.put_into(misfit(body, block))
+            else:
+                gaps[block.name] = gaps.get(block.name, 0) + found.put_into(left(body, block, self.length))
         return Kinematics(
             driven=self.d,
             driven_rate=self.dd,
             driven_acceleration=self.ddd,
             iterated=column(self.iterated),
-            symbols=symbols,
-            values=values,
+            found=found,
             blocks=blocks,
             systems=tuple(systems),
-            closures=self.closures,
+            closures={name: closure for name, (closure, _) in self.closures.items()},
+            gaps=gaps,
             misfits=misfits,
             newton=self.newton(),
             loose=frozenset(self.loose),
         )
-
-    def _misfit(self, block: Block) -> Any:
-        """Gaps over the length of all links; and a direction is missed by its sine as by a half turn, which has none."""
-        misfit = ca.mmax(ca.fabs(self.place(block.gap))) / self._size()
-        for closure in block.closures:
-            if closure.joint is not None and closure.joint.holds_direction:
-                ends = (self.multibody.frames[body.name] for body in closure.joint.bodies)
-                misfit = ca.fmax(misfit, self.place(1 - misalignment(closure.joint, *ends).c))
-        return misfit
-
-    def _substitution(self, rates: Mapping[Coordinate, Any], accelerations: Mapping[Coordinate, Any]) -> tuple[Any, Any]:
-        symbols = [*(c.variables for c in self.known), *(c.rate for c in rates), *(c.acceleration for c in accelerations)]
-        return column(symbols), column([*self.known.values(), *rates.values(), *accelerations.values()])
-
-    def _motion(self, expression: Any, rates: Mapping[Coordinate, Any], accelerations: Mapping[Coordinate, Any]) -> Any:
-        return ca.substitute(ca.SX(expression), *self._substitution(rates, accelerations))
 
     def newton(self) -> NewtonLoop | None:
         """The iteration of all blocks without a closed form, together."""
         if not self.residuals:
             return None
         iterated = column(self.iterated)
-        gaps = self.place(column(block.gap for block in self.residuals))
+        gaps = self.found.put_into(column(block.gap for block in self.residuals))
         correction = -LinearSystem.of(ca.jacobian(gaps, iterated)).solve(gaps)
         relative = ca.mmax(ca.fabs(correction / column(self.scales)))
         # Not fmin(1, limit / relative): where the loops are closed, its derivative would be 0 times infinity.
@@ -340,14 +351,6 @@ def passes_dead_centre(closure: Array, *, ends: bool = False) -> npt.NDArray[np.
 def describe_coordinate(joint: str, kind: str, value: float) -> str:
     """A coordinate's value for a reader."""
     return f"{joint} = {value:.6g} rad ({math.degrees(value):.6g} deg)" if kind == "angle" else f"{joint} = {value:.6g} m"
-
-
-def _variables(coordinate: Coordinate, symbols: Any, values: Any) -> Any:
-    """A coordinate's variables for values of the coordinates ``symbols``."""
-    if coordinate.kind == "slide":
-        return ca.substitute(coordinate.value, symbols, values)
-    turn, angle = ca.vertsplit(ca.substitute(ca.vertcat(coordinate.turn, coordinate.value), symbols, values))
-    return ca.vertcat(ca.cos(turn), ca.sin(turn), angle)
 
 
 def _posture_name(coordinate: Coordinate) -> str:

@@ -1,14 +1,18 @@
 """Closed forms of planar loops: a loop's equations solved for its unknown coordinates without iteration.
 
-Phi is affine in the (cosine, sine) of every angle and in every slide, so all five planar dyads come down to two problems:
+The planar dyads, and points that are guided along lines in any way, come down to two problems:
 
-* one direction on a line, A c + B s + C = 0: what is left of RRP, RPR, and of a point guided along a line, when the slide is
-  projected out;
+* one direction on a line, A c + B s + C = 0: a point guided along a line; and what is left of equations that are linear in one
+  direction and one slide, when the slide is eliminated (RRP, RPR, a bar guided at two of its points, ladders and trammels);
 * two directions, L1 e1 + L2 e2 + p = 0: two circles meet, RRR.
 
 Each has two solutions, told apart by a sign. What stands under the root is a product of a sum and a difference, so nothing
 cancels near a dead centre; divided by its largest value it is the square of the sine of the transmission angle, here called
 the *closure*: negative where the links do not reach, zero at a dead centre.
+
+Two equations may be the x and y of one pin, or be written by different joints and constraints, and look alike. So a form is
+applied where its pattern was verified, coefficient by coefficient, and what it gives was put back into the equations
+(:mod:`.sampling`); what has no form is iterated.
 """
 
 from __future__ import annotations
@@ -19,42 +23,58 @@ from typing import Any
 
 import casadi as ca
 
-from .multibody import Coordinate
+from .linear import LinearSystem
+from .multibody import Coordinate, column
+from .sampling import vanish
 
 
 @dataclass(frozen=True, eq=False)
 class ClosedForm:
     """Solved variables, one column a coordinate, as expressions in what is known and in ``branch`` (+1 or -1).
 
-    ``closure`` is None where the solution is unique (slides, and angles that are tied to others).
+    ``branch`` is None where the solution is unique; ``closure`` is None where it cannot fail but by a division by zero.
     """
 
-    branch: Any
     variables: tuple[Any, ...]
-    closure: Any | None
+    closure: Any | None = None
+    branch: Any | None = None
 
 
-def solve_loop(phi: Any, unknown: Sequence[Coordinate]) -> ClosedForm | None:
-    """The closed form of Phi = 0 for one or two unknown coordinates, or None where there is none."""
-    branch = ca.SX.sym("branch")
+def solve_loop(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> ClosedForm | None:
+    """The closed form of Phi = 0 for some unknown ones of all coordinates, or None where there is none that was verified."""
+    form = _matching(phi, unknown, coordinates)
+    return form if form is not None and _solves(form, phi, unknown, coordinates) else None
+
+
+def _matching(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> ClosedForm | None:
+    """The closed form of the pattern that the equations have; None where they have none."""
     kinds = "".join(sorted(c.kind[0] for c in unknown))
-    counted = ca.vertcat(ca.SX(0, 1), *(c.value for c in unknown if c.kind == "angle"))
-    if ca.depends_on(phi, counted):
-        return _tied(phi, unknown[0], branch) if phi.numel() == 1 and kinds == "a" else None
-    if phi.numel() == 1 and kinds == "a":
-        solved = _direction_on_line(phi, unknown[0], branch)
-        return solved and ClosedForm(branch, (_variables(solved[0]),), solved[1])
-    if phi.numel() == 2 and kinds == "aa":
-        return _two_circles(phi, unknown, branch)
-    if phi.numel() == 2 and kinds == "as":
+    if phi.numel() != len(unknown):
+        return None
+    if ca.depends_on(phi, column(c.value for c in unknown if c.kind == "angle")):
+        return _tied(phi, unknown[0]) if kinds == "a" else None
+    if kinds == "a":
+        return _one_direction(phi, unknown[0])
+    if kinds == "aa":
+        return _two_circles(phi, unknown, coordinates)
+    if kinds == "as":
         angle, slide = sorted(unknown, key=lambda c: c.kind)
-        form = _direction_and_slide(phi, angle, slide, branch)
-        if form is not None and unknown[0] is slide:
-            form = ClosedForm(branch, form.variables[::-1], form.closure)
-        return form
-    if kinds in ("s", "ss") and phi.numel() == len(unknown):
-        return _slides(phi, unknown, branch)
-    return None
+        form = _direction_and_slide(phi, angle, slide, coordinates)
+        return ClosedForm(form.variables[::-1], form.closure, form.branch) if form and unknown[0] is slide else form
+    return _slides(phi, unknown) if set(kinds) == {"s"} else None
+
+
+def _solves(form: ClosedForm, phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> bool:
+    """Whether the solution is one, on both branches."""
+    symbols, values = column(c.variables for c in unknown), column(form.variables)
+    # The size of what is added up in an equation: its slopes times what they are slopes of.
+    size = ca.mmax(ca.fabs(ca.jacobian(phi, symbols)) @ ca.fabs(symbols))
+    left, size = ca.vertsplit(ca.substitute(ca.vertcat(phi, size), symbols, values), [0, phi.numel(), phi.numel() + 1])
+    directions = [c[0] * c[0] + c[1] * c[1] - 1 for c in form.variables if c.numel() > 1]
+    left = ca.vertcat(left, *(size * off for off in directions))
+    if form.branch is not None:
+        left, size = (ca.vertcat(*(ca.substitute(e, form.branch, ca.SX(sign)) for sign in (1, -1))) for e in (left, size))
+    return vanish(left, coordinates, size)
 
 
 def _affine(phi: Any, symbols: Any, all_unknown: Any) -> tuple[Any, Any] | None:
@@ -65,7 +85,14 @@ def _affine(phi: Any, symbols: Any, all_unknown: Any) -> tuple[Any, Any] | None:
     return slope, ca.substitute(phi, symbols, ca.SX.zeros(symbols.numel()))
 
 
-def _direction_on_line(phi: Any, angle: Coordinate, branch: Any) -> tuple[Any, Any] | None:
+def _one_direction(phi: Any, angle: Coordinate) -> ClosedForm | None:
+    branch = ca.SX.sym("branch")
+    solved = _direction_on_line(phi, angle, branch)
+    return solved and ClosedForm((_variables(solved[0]),), solved[1], branch)
+
+
+def _direction_on_line(phi: Any, angle: Coordinate, branch: Any, largest: Any = None) -> tuple[Any, Any] | None:
+    """The direction for which phi = 0, and the closure: beside the square of its slope, or beside the ``largest`` there may be."""
     affine = _affine(phi, _pair(angle), _pair(angle))
     if affine is None:
         return None
@@ -77,88 +104,99 @@ def _direction_on_line(phi: Any, angle: Coordinate, branch: Any) -> tuple[Any, A
         reach = b if a.is_zero() else a
         cross = branch * ca.sqrt((reach - rest) * (reach + rest)) / reach
         along = -rest / reach
-        closure = (reach - rest) * (reach + rest) / _square(reach)
+        closure = (reach - rest) * (reach + rest) / (_square(reach) if largest is None else largest)
         return (ca.vertcat(cross, along) if a.is_zero() else ca.vertcat(along, cross)), closure
     squared = _square(a) + _square(b)
     reach = ca.sqrt(squared)
     if rest.is_zero():
-        return branch * ca.vertcat(-b, a) / reach, ca.SX(1)
+        return branch * ca.vertcat(-b, a) / reach, ca.SX(1) if largest is None else squared / largest
     root = (reach - rest) * (reach + rest)
     w = branch * ca.sqrt(root)
-    return ca.vertcat(-a * rest - b * w, -b * rest + a * w) / squared, root / squared
+    return ca.vertcat(-a * rest - b * w, -b * rest + a * w) / squared, root / (squared if largest is None else largest)
 
 
-def _two_circles(phi: Any, unknown: Sequence[Coordinate], branch: Any) -> ClosedForm | None:
+def _two_circles(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> ClosedForm | None:
     symbols = ca.vertcat(*(_pair(c) for c in unknown))
     affine = _affine(phi, symbols, symbols)
-    if affine is None:
+    if affine is None or not all(_turns(affine[0][:, 2 * i : 2 * i + 2], coordinates) for i in range(2)):
         return None
     slope, rest = affine
+    branch = ca.SX.sym("branch")
     arms = [(slope[0, 2 * i], slope[1, 2 * i]) for i in range(2)]
     l1, l2 = (_norm(*arm) for arm in arms)
     px, py = -rest[0], -rest[1]
     squared = _square(px) + _square(py)
     d = ca.sqrt(squared)
     further, nearer = d + l2, d - l2
-    root = ((l1 + l2 + d) * (l1 + l2 - d)) * ((further - l1) * (nearer + l1)) / 4
+    # Four times the square of twice the triangle's area, and twice the projection of the first arm on p, times p.
+    root = ((further + l1) * (l1 - nearer)) * ((further - l1) * (nearer + l1))
     w = branch * ca.sqrt(root)
-    reach = (_square(l1) + nearer * further) / 2
-    first = ((px * reach - py * w) / squared, (py * reach + px * w) / squared)
+    reach = _square(l1) + nearer * further
+    twice = squared + squared
+    first = ((px * reach - py * w) / twice, (py * reach + px * w) / twice)
     # What is left of p: its error is what p's own rounding makes of this arm.
     second = (px - first[0], py - first[1])
     directions = tuple(_variables(_direction(v, arm)) for v, arm in zip((first, second), arms, strict=True))
-    return ClosedForm(branch, directions, root / _square(l1 * l2))
+    return ClosedForm(directions, root / _square(2 * (l1 * l2)), branch)
 
 
-def _direction_and_slide(phi: Any, angle: Coordinate, slide: Coordinate, branch: Any) -> ClosedForm | None:
-    """Project the slide out along its own axis, a unit vector; what is left is a direction on a line."""
-    pair = _pair(angle)
+def _turns(columns: Any, coordinates: Sequence[Coordinate]) -> bool:
+    """Whether two columns, slopes by a cosine and a sine, are those of an arm that turns: (u, v) and (-v, u)."""
+    return vanish(columns[:, 1] - ca.vertcat(-columns[1, 0], columns[0, 0]), coordinates, columns)
+
+
+def _direction_and_slide(phi: Any, angle: Coordinate, slide: Coordinate, coordinates: Sequence[Coordinate]) -> ClosedForm | None:
+    """Eliminate the slide; what is left is a direction on a line."""
+    pair, branch = _pair(angle), ca.SX.sym("branch")
     unknown = ca.vertcat(pair, slide.variables)
-    axis = ca.jacobian(phi, slide.variables)
-    if not ca.depends_on(axis, unknown):
-        across = -axis[1] * phi[0] + axis[0] * phi[1]
-        rest = ca.substitute(across, slide.variables, 0)
-        if ca.depends_on(ca.jacobian(across, slide.variables), unknown):
-            return None
-        along = axis[0] * phi[0] + axis[1] * phi[1]
+    axis, turned = ca.jacobian(phi, slide.variables), ca.jacobian(phi, pair)
+    largest = None
+    if not ca.depends_on(ca.vertcat(axis, ca.vec(turned)), unknown):
+        along_axis, equations = axis, (phi[0], phi[1])
+        if not (vanish(ca.sumsqr(axis) - 1, coordinates) and _turns(turned, coordinates)):
+            # Not the x and y of one point that slides along a line: the lines may come to be parallel.
+            largest = ca.sumsqr(axis) * ca.sumsqr(turned)
     else:
         # The axis turns with the angle: Phi = p + R (b + axis sigma), and R' Phi is affine where R' R need not be formed.
-        turned = ca.jacobian(phi, pair)
         fixed = ca.substitute(phi, pair, ca.SX.zeros(2))
-        if ca.depends_on(fixed, slide.variables) or ca.depends_on(turned, pair):
+        if ca.depends_on(fixed, slide.variables) or ca.depends_on(turned, pair) or not _turns(turned, coordinates):
             return None
-        own = ca.jacobian(turned[:, 0], slide.variables)
+        along_axis = ca.jacobian(turned[:, 0], slide.variables)
         arm = ca.substitute(turned[:, 0], slide.variables, 0)
-        if ca.depends_on(own, unknown):
+        if ca.depends_on(along_axis, unknown):
             return None
         c, s = pair[0], pair[1]
-        resolved = (c * fixed[0] + s * fixed[1] + arm[0], c * fixed[1] - s * fixed[0] + arm[1])
-        rest = own[0] * resolved[1] - own[1] * resolved[0]
-        along = own[0] * resolved[0] + own[1] * resolved[1]
-    solved = _direction_on_line(rest, angle, branch)
+        equations = (c * fixed[0] + s * fixed[1] + arm[0], c * fixed[1] - s * fixed[0] + arm[1])
+    across = along_axis[0] * equations[1] - along_axis[1] * equations[0]
+    solved = _direction_on_line(ca.substitute(across, slide.variables, 0), angle, branch, largest)
     if solved is None:
         return None
     direction, closure = solved
+    along = along_axis[0] * equations[0] + along_axis[1] * equations[1]
     place = -ca.substitute(along, unknown, ca.vertcat(direction, 0))
-    return ClosedForm(branch, (_variables(direction), place), closure)
+    if not vanish(ca.sumsqr(along_axis) - 1, coordinates):
+        place = place / ca.sumsqr(along_axis)
+    return ClosedForm((_variables(direction), place), closure, branch)
 
 
-def _tied(phi: Any, angle: Coordinate, branch: Any) -> ClosedForm | None:
+def _tied(phi: Any, angle: Coordinate) -> ClosedForm | None:
     """An angle that counts turns and follows another one, as in a gear."""
     affine = _affine(phi, angle.value, angle.variables)
     if affine is None or ca.depends_on(affine[1], _pair(angle)):
         return None
     value = -affine[1] / affine[0]
-    return ClosedForm(branch, (ca.vertcat(ca.cos(value), ca.sin(value), value),), None)
+    return ClosedForm((ca.vertcat(ca.cos(value), ca.sin(value), value),))
 
 
-def _slides(phi: Any, unknown: Sequence[Coordinate], branch: Any) -> ClosedForm | None:
+def _slides(phi: Any, unknown: Sequence[Coordinate]) -> ClosedForm | None:
+    """Slides along lines that none of them turns; of several, the closure is the square of the volume that their slopes span."""
     symbols = ca.vertcat(*(c.variables for c in unknown))
     affine = _affine(phi, symbols, symbols)
     if affine is None:
         return None
-    places = ca.solve(affine[0], -affine[1])
-    return ClosedForm(branch, tuple(places[i] for i in range(len(unknown))), None)
+    system = LinearSystem.of(affine[0])
+    places = system.solve(-affine[1])
+    return ClosedForm(tuple(ca.vertsplit(places)), _square(system.volume) if len(unknown) > 1 else None)
 
 
 def _norm(x: Any, y: Any) -> Any:

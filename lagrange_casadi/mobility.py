@@ -15,6 +15,7 @@ between base and tip is seen by the sections on its base side.
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -142,8 +143,13 @@ def _material(multibody: Multibody, name: str) -> Any:
     these the first moment's forces are the rate squared and its change, to the last bit.
     """
     frame = multibody.felt[name].along_axis()
-    motion = column([*frame.speed, *frame.acceleration, frame.rate, frame.angular])
-    # By symbols of its own, for the graphs of a long chain are deep, and every step would go through them.
+    slopes, symbols = _of_any_link()
+    return ca.substitute(slopes, symbols, column([*frame.speed, *frame.acceleration, frame.rate, frame.angular]))
+
+
+@functools.cache
+def _of_any_link() -> tuple[Any, Any]:
+    """The same for symbols of the velocity and acceleration of the link's base, its rate, and the rate's change; and these."""
     vx, vy, ax, ay, rate, angular = symbols = ca.vertsplit(ca.SX.sym("motion", 6))
     base_frame = Frame(speed=(vx, vy), acceleration=(ax, ay), rate=rate, angular=angular)
     mass, first, second = (ca.SX.sym(f"mu{i}") for i in range(3))
@@ -161,7 +167,7 @@ def _material(multibody: Multibody, name: str) -> Any:
         velocity_graphs=column(velocities.graphs),
         velocity_rates=column(velocities.rates),
     )
-    return ca.substitute(ca.jacobian(piece.terms()[1], ca.vertcat(mass, first)), ca.vertcat(*symbols), motion)
+    return ca.jacobian(piece.terms()[1], ca.vertcat(mass, first)), ca.vertcat(*symbols)
 
 
 def _loads_on(multibody: Multibody, link: Link, borne: Any, drives: Any) -> Iterator[tuple[str, Any, Any, tuple[Any, Any, Any]]]:
@@ -212,7 +218,7 @@ def _multipliers(multibody: Multibody, kinematics: Kinematics, along: Any) -> tu
     rows = {c: along[i] for i, c in enumerate(multibody.coordinates)}
     symbols, values, free = ca.SX(0, 1), ca.SX(0, 1), ca.SX(0, 1)
     for block, system in reversed(list(zip(kinematics.blocks, kinematics.systems, strict=True))):
-        own = column(closure.multipliers for closure in block.closures)
+        own = block.multipliers
         left = column(rows[c] for c in block.unknown)
         left = ca.substitute(left, ca.vertcat(own, symbols), ca.vertcat(ca.SX.zeros(own.numel()), values))
         open_here = ca.SX.sym(f"free_{block.closures[0].name}", system.free)

@@ -8,6 +8,7 @@ are still those of the body's direction where drives alone set it, since angles 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal
 
 import casadi as ca
@@ -43,6 +44,18 @@ class Coordinate:
     def value(self) -> Any:
         """The symbol of the coordinate itself."""
         return self.variables[-1]
+
+    def placed(self, symbols: Any, values: Any) -> Any:
+        """Its variables for values of the coordinates ``symbols``."""
+        if self.kind == "slide":
+            return ca.substitute(self.value, symbols, values)
+        turn, angle = ca.vertsplit(ca.substitute(ca.vertcat(self.turn, self.value), symbols, values))
+        return ca.vertcat(ca.cos(turn), ca.sin(turn), angle)
+
+    @cached_property
+    def keys(self) -> tuple[int, ...]:
+        """What its variables are known by."""
+        return tuple(symbol.element_hash() for symbol in ca.vertsplit(self.variables))
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Fewer divisions: what is divided by more than once, or depends on parameters alone, is inverted once.
+"""Fewer divisions: what is divided by more than once, or depends on parameters alone, is inverted once; and fewer changes of sign.
 
 A division takes as long as ten products, and a machine has few dividers; a product with a reciprocal rounds once more.
 """
@@ -17,6 +17,8 @@ from .interpret import Step, followable, steps
 def share_reciprocals(function: Any, parameters: str) -> Any:
     """The same function of one output with divisions shared; ``parameters`` names the input whose reciprocals always pay.
 
+    Less a difference is the opposite difference, to the last bit.
+
     A function that calls others stays as it is.
     """
     if not followable(function):
@@ -31,6 +33,8 @@ def share_reciprocals(function: Any, parameters: str) -> Any:
             # It is given its own sign, for else CasADi writes (1/x) y as y/x again.
             inverse = inverses.setdefault(divisors[k][0], ca.copysign(1 / x, x))
             return operands[0] * inverse if operation == ca.OP_DIV else inverse
+        if operation == ca.OP_NEG and operands[0].op() == ca.OP_SUB:
+            return operands[0].dep(1) - operands[0].dep(0)
         return _applied(operation, operands)
 
     return _replayed(function, made)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from .backends import Table, run
 from .codegen.designs import INSIDE, ROUNDS
-from .codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW
+from .codegen.emit import NEWTON_LOST, NOT_CONVERGED, NOT_FINITE, OK, SLOW
 from .compensated import DTYPES, ROUNDING, Precision
 from .density import Array
 from .errors import AssemblyError
@@ -42,6 +42,7 @@ class Status(enum.IntEnum):
     ROW_VIOLATED = 9
     IMPOSSIBLE = 10
     INVALID = 11
+    NOT_CLOSED = 12
 
     @property
     def meaning(self) -> str:
@@ -62,6 +63,7 @@ _MEANINGS = {
     Status.ROW_VIOLATED: "the motion violates a non-holonomic row",
     Status.IMPOSSIBLE: "a length is not positive, a mass or density is negative, or a station is outside its link",
     Status.INVALID: "a parameter is not finite",
+    Status.NOT_CLOSED: "what was found for a loop does not satisfy its equations",
 }
 
 
@@ -84,11 +86,14 @@ def refusal(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> 
     """Why the first instant that has no result has none; None where all have."""
     precision = table.stages.precision
     bad, misfit = table.status != OK, MISFIT[precision]
+    widest = gap_limit(precision, rung.newton) * graph.extent(p)
     passed: dict[str, npt.NDArray[np.bool_]] = {}
     for k, name in enumerate(graph.columns):
         if name.startswith("_closure:"):
             bad |= ~(table.out[k] > dead_centre(graph, precision, name))
             passed[name] = passes_dead_centre(table.out[k], ends=graph.newton is None)
+        elif name.startswith("_gap:"):
+            bad |= ~(np.abs(table.out[k]) <= widest)
         elif name.startswith("_misfit:"):
             bad |= ~(table.out[k] <= misfit)
         elif name.startswith("_row:"):
@@ -106,7 +111,7 @@ def refusal(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> 
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
     at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
     at = f"at t = {t[i]:.6g} s{at}"
-    status, why = _why(graph, table, i, at, [name for name in passed if passed[name][i]])
+    status, why = _why(graph, table, i, at, [name for name in passed if passed[name][i]], widest)
     return Refusal(status, _beyond(graph, p, precision, at) or why)
 
 
@@ -114,6 +119,11 @@ def dead_centre(graph: SceneGraph, precision: Precision, closure: str) -> float:
     """Below what a closure says nothing: of a closed form it is the square of a sine, of an iterated loop as the sine itself."""
     square = _DEAD * ROUNDING[precision]
     return math.sqrt(square) if graph.iterates(closure.partition(":")[2]) else square
+
+
+def gap_limit(precision: Precision, newton: int | None) -> float:
+    """How far what is left of a loop's equations may be from zero, of the mechanism's extent; ``newton`` as in :class:`.Rung`."""
+    return MISFIT[precision] if newton is None else NEWTON_LOST
 
 
 def _dead_between(graph: SceneGraph, name: str, start: Array, stop: Array, p: Array, rung: Rung) -> npt.NDArray[np.bool_]:
@@ -142,7 +152,7 @@ def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str |
     return None
 
 
-def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]) -> tuple[Status, str]:
+def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str], widest: float) -> tuple[Status, str]:
     if table.status[i] == NOT_CONVERGED:
         assert graph.newton is not None
         return Status.NOT_CONVERGED, f"the loops closed by {graph.newton.joints} did not converge {at}"
@@ -164,6 +174,9 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]
             near = "; if it only comes near one, take more instants" if graph.newton is not None else ""
             passing = f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}"
             return Status.PASSES_DEAD_CENTRE, f"{passing}, and how it goes on is open{near}"
+        if kind == "_gap" and not abs(value) <= widest:
+            gap = f"a gap of {abs(value):.3g} m"
+            return Status.NOT_CLOSED, f"what was found for the loop closed by {closed} does not close it {at}: {gap}"
         if kind == "_misfit" and not value <= misfit:
             gap = f"a gap of {value:.3g} of the links' length"
             return Status.MISFIT, f"the loops closed by {closed} are over-constrained and do not fit {at}: {gap}"

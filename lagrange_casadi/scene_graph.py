@@ -10,6 +10,8 @@ from typing import Any
 
 import casadi as ca
 
+from .density import Array
+from .gaps import extent
 from .kinematics import NewtonLoop
 from .motion import Laws
 from .scene import Scene, Wanted
@@ -20,12 +22,12 @@ class SceneGraph:
     """What a scene computes, as CasADi functions that hold nothing else.
 
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` a
-    column name; ``newton`` where loops must be iterated. Columns that begin with ``_`` are no outputs. They tell whether there is a
-    result: ``_closure:JOINT`` (see :mod:`.loops`), ``_misfit:JOINT``, ``_row:NAME`` and ``_rowsize:NAME``; or they are what the
-    certificate needs: ``_held:NUMBER:...``, what multipliers do to the bodies that ``held`` names. ``wrapped`` names the angles
-    that loops set, and what they are sums and differences of: by ``pose:BODY:angle`` directions known up to whole turns, and by
-    ``_turns:JOINT`` the whole turns of angles that count them, which are in these columns without them.
-    ``undetermined`` names the outputs that equilibrium does not determine.
+    column name; ``newton`` where loops must be iterated. Columns that begin with ``_`` are no outputs. They tell whether there is
+    a result: ``_closure:JOINT`` (see :mod:`.loops`), ``_gap:JOINT`` and ``_misfit:JOINT`` (see :mod:`.kinematics`), ``_row:NAME``
+    and ``_rowsize:NAME``; or they are what the certificate needs: ``_held:NUMBER:...``, what multipliers do to the bodies that
+    ``held`` names. ``wrapped`` names the angles that loops set, and what they are sums and differences of: by
+    ``pose:BODY:angle`` directions known up to whole turns, and by ``_turns:JOINT`` the whole turns of angles that count them,
+    which are in these columns without them. ``undetermined`` names the outputs that equilibrium does not determine.
     """
 
     scene: Scene
@@ -45,6 +47,11 @@ class SceneGraph:
         if self.motion.is_a("SXFunction"):
             return Laws(self.motion, None, tuple(range(len(self.driven))))
         return Laws.of({name: self.scene.motion[name] for name in self.driven}, self.scene.mechanism.symbols)
+
+    def extent(self, p: Array) -> float:
+        """The size of the mechanism [m], beside which a gap is large or small, for parameters ``p``."""
+        mechanism = self.scene.mechanism
+        return mechanism.number(extent(mechanism), dict(zip(mechanism.parameters, map(float, p), strict=True)))
 
     def iterates(self, closure: str) -> bool:
         """Whether the loops that stand under the name of a closure are iterated."""

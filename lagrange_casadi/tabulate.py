@@ -80,7 +80,7 @@ def _table(cycle: Cycle, values: Array, between: Array, kept: npt.NDArray[np.boo
         gaps[place] -= np.convolve(spline, _HALFWAY, "valid")
     peaks = np.max([_reach(part, rate, acceleration).max(axis=-1) for part in (values, between)], axis=0)
     peaks += np.abs(cycle.drift) * cycle.period
-    peaks[[name.startswith("_misfit:") for name in columns]] = 1.0
+    peaks[[name.startswith(("_gap:", "_misfit:")) for name in columns]] = 1.0
     # The rate's square and the acceleration have one unit: where there is but one, the other still rounds.
     turning = max(rate**2, acceleration)
     rounding = np.array([1.0, math.sqrt(turning), turning, turning]) @ cycle.rounding

@@ -177,7 +177,7 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
     compiler, source = codegen.find_compiler(), tmp_path / "designs.c"
     for rung in (Rung(), Rung(newton=2), Rung(precision="single")):
         graph = derive(scene, iterate=rung.newton is not None)
-        stages, kept = stages_of(graph, rung, np.linspace(*scene.t)), Kept.of(graph, rung.precision)
+        stages, kept = stages_of(graph, rung, np.linspace(*scene.t)), Kept.of(graph, rung)
         source.write_text(codegen.emit_designs(graph, stages, rung.newton, kept.plan))
         command = [*compiler.command, *PEDANTIC, "-fsyntax-only", source]
         result = subprocess.run(command, capture_output=True, text=True, check=False)

@@ -194,7 +194,7 @@ def test_terms_are_those_that_there_are():
     table = made(case("slider_crank"), 16, ["effort"])
     expected = {("effort:O", factor) for factor in ("1", "rate^2", "acceleration")}
     assert set(table.terms) == expected | {("_closure:guide", "1")}
-    assert table.columns == ("_closure:guide", "effort:O")
+    assert table.columns == ("_closure:guide", "_gap:guide", "effort:O")
     assert table.nbytes == 8 * 4 * (16 + 5)
     assert not table.drift.any()
 

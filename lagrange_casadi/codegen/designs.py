@@ -16,8 +16,9 @@ from ..stages import Stages
 from .emit import FOLLOW, Parts, dump, emit, following, in_single, work
 
 DESIGNS, BEGIN = "lagrange_casadi_designs", "lagrange_casadi_begin"
-CHECKS = ("CLOSURE", "BRANCH", "MISFIT", "ROW", "ROWSIZE")
-"""What is checked at every instant: a closure, one whose branch iteration may leave, a misfit, a row's residual and its size."""
+CHECKS = ("CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "ROWSIZE")
+"""What is checked at every instant: a closure, one whose branch iteration may leave, what is left of a loop's equations, beside the
+mechanism's extent, a misfit, a row's residual and its size."""
 
 INSIDE, ROUNDS = 17, 7
 """Instants at which a dead centre between two others is looked for, and how often, ever closer."""
@@ -53,8 +54,8 @@ class Plan:
 
     ``quantities`` off links are one column, or the size of a vector of two; then come three forces of each of ``links``. ``units``
     numbers the units of all of them, ``efforts`` says which have means. ``checks`` are columns with a kind of :data:`CHECKS` and a
-    limit. ``matter(p)`` gives first ``margins`` numbers that must not be negative, ``positive`` of them not zero either, then what
-    ``sections.c`` takes for each link.
+    limit. ``matter(p)`` gives first ``margins`` numbers that must not be negative, ``positive`` of them not zero either: the first
+    is the mechanism's extent [m]. Then comes what ``sections.c`` takes for each link.
     """
 
     quantities: tuple[tuple[int, ...], ...]

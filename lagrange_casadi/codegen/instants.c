@@ -129,6 +129,8 @@ static int designs_why(const designs_now* now, casadi_int i) {
       if (x < -limit) return designs_kind[k] == DESIGNS_IS_BRANCH ? DESIGNS_JUMPED : DESIGNS_OUT_OF_REACH;
       if (!(x > limit)) return DESIGNS_DEAD_CENTRE;
       if (designs_passes(now, k, i)) return DESIGNS_PASSES_DEAD_CENTRE;
+    } else if (designs_kind[k] == DESIGNS_IS_GAP) {
+      if (!((x < 0 ? -x : x) <= limit*designs_lane(now->matter, 0))) return DESIGNS_NOT_CLOSED;
     } else if (designs_kind[k] == DESIGNS_IS_MISFIT) {
       if (!(x <= limit)) return DESIGNS_MISFIT;
     } else if (designs_kind[k] == DESIGNS_IS_ROW) {
@@ -143,6 +145,7 @@ static int designs_why(const designs_now* now, casadi_int i) {
 /* Why a design has no result: that of its first instant without one. */
 static int designs_refused(const designs_now* now) {
   const designs_real* row = designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS);
+  designs_real limit;
   casadi_int i;
   int k, bad = 0, why;
   for (i = 0; i < now->n; ++i) bad |= !(row[i] - row[i] == 0);
@@ -151,6 +154,9 @@ static int designs_refused(const designs_now* now) {
     row = designs_row(now, DESIGNS_CHECKED + k);
     if (designs_kind[k] == DESIGNS_IS_CLOSURE || designs_kind[k] == DESIGNS_IS_BRANCH) {
       for (i = 0; i < now->n; ++i) bad |= !(row[i] >= DESIGNS_NEAR*DESIGNS_NEAR);
+    } else if (designs_kind[k] == DESIGNS_IS_GAP) {
+      limit = designs_limit[k]*designs_lane(now->matter, 0);
+      for (i = 0; i < now->n; ++i) bad |= !(row[i] <= limit && -row[i] <= limit);
     } else if (designs_kind[k] != DESIGNS_IS_ROWSIZE) {
       bad = 1;
     }

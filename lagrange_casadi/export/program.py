@@ -16,6 +16,7 @@ from ..compensated import Precision, unsimplified
 from ..cycle_table import CycleTable
 from ..density import Array, Density
 from ..errors import DeclarationError
+from ..gaps import extent
 from ..parts import Link, RigidMass
 from ..scene_graph import SceneGraph
 from ..stages import controlled
@@ -73,11 +74,12 @@ def program(
     constants, instant = hoisted(stages.instant, kept)
     mechanism = graph.scene.mechanism
     symbols, fixed = mechanism.symbols, read is not None
+    gapped = read is None and any(name.startswith("_gap:") for name in columns)
     functions = {
         "law": stages.law,
         "count": stages.count,
         "constants_of": constants,
-        "matter": _matter(graph, symbols),
+        "matter": _matter(graph, symbols, extent_first=gapped),
         "sound": _sound(graph, symbols),
     }
     if fixed:
@@ -99,6 +101,7 @@ def program(
         "evaluated": len(kept),
         "rows": max(1, len(columns)),
         "matter": functions["matter"].size1_out(0),
+        "gapped": int(gapped),
         "sound": 0 if fixed else functions["sound"].size1_out(0),
         "lengths": 0 if fixed else len(_lengths(graph)),
     }
@@ -113,9 +116,12 @@ def _fixed(function: Any, p: Array) -> Any:
     return ca.Function(function.name(), [*inputs[:-1], ca.SX(0, 1)], function.call([*inputs[:-1], ca.DM(p)]), {"cse": True})
 
 
-def _matter(graph: SceneGraph, symbols: Any) -> Any:
-    """``matter(p)``: of each link with sections its length, and the coefficients of its density per unit of the ratio."""
-    found: list[Any] = []
+def _matter(graph: SceneGraph, symbols: Any, *, extent_first: bool) -> Any:
+    """``matter(p)``: of each link with sections its length, and the coefficients of its density per unit of the ratio.
+
+    With ``extent_first`` the mechanism's extent comes before all of them, for the gaps of loops to be compared with.
+    """
+    found: list[Any] = [extent(graph.scene.mechanism)] if extent_first else []
     for name in graph.wanted.sections:
         link = graph.scene.mechanism.links[name]
         assert isinstance(link.mass, Density)

@@ -12,7 +12,7 @@ import casadi as ca
 from ..codegen.emit import newton_rule
 from ..density import Density
 from ..mobility import LAW, PLACE_FIRST
-from ..refusal import MISFIT, dead_centre
+from ..refusal import MISFIT, dead_centre, gap_limit
 from ..version import __version__
 from .contract import REST, Contract
 from .data import sampled, table_call, table_text
@@ -318,6 +318,9 @@ class Source:
                 lost = "JUMPED" if graph.iterates(part) else "NOT_ASSEMBLED"
                 yield f"if (y[{k}] < -{dead}) return {P}_{lost};"
                 yield f"if (!(y[{k}] > {dead})) return {P}_DEAD_CENTRE;"
+            elif kind == "_gap" and self.program.sizes["gapped"]:
+                limit = f"{number(gap_limit(precision, self.program.newton))}*model->matter[0]"
+                yield f"if (!({self._function('fabs')}(y[{k}]) <= {limit})) return {P}_NOT_CLOSED;"
             elif kind == "_misfit":
                 yield f"if (!(y[{k}] <= {misfit})) return {P}_INCONSISTENT;"
             elif kind == "_row":
@@ -334,7 +337,7 @@ class Source:
         laws: list[str] = []
         breaks: list[float] = []
         sizes: list[int] = []
-        place = 0
+        place = self.program.sizes["gapped"]
         names = {m.source: m.name for m in c.outputs}
         for link in c.links:
             density = links[link.name].mass

@@ -16,5 +16,6 @@ STATUSES = {
     "JUMPED": "an iterated loop has jumped to another branch",
     "SLOW": "the iteration of the loops converges slowly: they are near a dead centre",
     "INCONSISTENT": "the motion violates a loop that is over-constrained, or a non-holonomic row",
+    "NOT_CLOSED": "what was found for a loop does not satisfy its equations",
     "NOT_FINITE": "a result is not finite: the mechanism is singular there, or its numbers overflow",
 }

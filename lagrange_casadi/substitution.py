@@ -1,0 +1,51 @@
+"""What is known of symbols: expressions to put in their place, or numbers. Only what an expression holds is looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import casadi as ca
+
+
+class Expressions:
+    """Expressions by the symbols that they stand for."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, tuple[Any, Any]] = {}
+
+    def note(self, symbols: Any, values: Any) -> None:
+        """Let expressions stand for symbols, entry by entry."""
+        for symbol, value in zip(_entries(symbols), _entries(values), strict=True):
+            self._known[symbol.element_hash()] = symbol, value
+
+    def put_into(self, expression: Any) -> Any:
+        """An expression with what is known in the place of its symbols."""
+        expression = ca.SX(expression)
+        there = [self._known[key] for symbol in ca.symvar(expression) if (key := symbol.element_hash()) in self._known]
+        if not there:
+            return expression
+        symbols, values = zip(*there, strict=True)
+        return ca.substitute(expression, ca.vertcat(*symbols), ca.vertcat(*values))
+
+
+class Numbers:
+    """Numbers by the symbols that they stand for."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, float] = {}
+
+    def note(self, symbols: Any, values: Sequence[float]) -> None:
+        """Let numbers stand for symbols, entry by entry."""
+        self._known |= {symbol.element_hash(): value for symbol, value in zip(_entries(symbols), values, strict=True)}
+
+    def of(self, expression: Any) -> list[float]:
+        """The entries of an expression all of whose symbols are known."""
+        expression = ca.SX(expression)
+        symbols = ca.symvar(expression)
+        function = ca.Function("number", [ca.vertcat(ca.SX(0, 1), *symbols)], [ca.densify(ca.vec(expression))])
+        return [float(x) for x in function([self._known[symbol.element_hash()] for symbol in symbols]).full().ravel()]
+
+
+def _entries(column: Any) -> list[Any]:
+    return ca.vertsplit(ca.SX(column)) if ca.SX(column).numel() else []

@@ -1,0 +1,144 @@
+"""Closed forms of loops: each where its pattern is there, and none where equations only look alike."""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+from builders import assert_balanced
+
+from lagrange_casadi import Mechanism, Scene, derive, evaluate
+from lagrange_casadi.motion import polynomial
+
+
+def iterated(scene):
+    return derive(scene).newton is not None
+
+
+def ladder(length=1.0, mass=2.0):
+    """Its foot on the floor, its tip on the wall, its middle in the slot of a driven crank without mass."""
+    m = Mechanism("ladder")
+    crank, bar = m.link("crank", length=0.8, mass=0.0), m.link("bar", length=length, mass=mass)
+    foot, tip, middle = (m.point_mass(name, 0.0) for name in ("foot", "tip", "middle"))
+    m.revolute("O", m.ground, crank)
+    m.prismatic("floor", m.ground, foot, axis=(1, 0))
+    m.revolute("F", bar, foot)
+    m.revolute("T", bar.tip, tip)
+    m.prismatic("wall", m.ground, tip, axis=(0, 1))
+    m.revolute("M", bar.at(length / 2), middle)
+    m.slot("slot", crank, middle)
+    return Scene(m, {"O": polynomial(0.5, 0.2)}, t=(0, 3, 31), posture={"bar": math.pi - 0.5, "floor": 0.8})
+
+
+def test_a_ladder_against_a_wall():
+    """Its middle goes round the corner on a circle with the crank, whose torque is the power of its weight: m g L/2 cos(angle)."""
+    scene = ladder()
+    solution = evaluate(scene)
+    angle = solution.motion("O").value
+    np.testing.assert_allclose(solution.pose("bar").x, np.cos(angle), atol=1e-15)
+    np.testing.assert_allclose(solution.effort("O"), 2.0 * 9.81 / 2 * np.cos(angle), rtol=1e-14)
+    assert not iterated(scene)
+    assert_balanced(scene)
+
+
+def guided(first, second):
+    """A bar whose two pins slide on two lines, pushed by a crank and a rod."""
+    m = Mechanism("guided")
+    bar, crank = m.link("bar", length=0.6, mass=1.0), m.link("crank", length=0.15, mass=0.3)
+    # Assembled in a posture of its own: every place follows from it.
+    x, y, turn, at, way = 0.4, 0.1, 0.9, (-0.5, -0.2), 0.3
+    for name, place, angle in (("P", (x, y), first), ("Q", (x + 0.6 * math.cos(turn), y + 0.6 * math.sin(turn)), second)):
+        foot = m.point_mass(name.lower(), 0.1)
+        m.prismatic(name, m.ground.at(*place), foot, axis=(math.cos(angle), math.sin(angle)))
+        m.revolute(f"at_{name}", bar.base if name == "P" else bar.tip, foot)
+    px, py = x + 0.2 * math.cos(turn), y + 0.2 * math.sin(turn)
+    cx, cy = at[0] + 0.15 * math.cos(way), at[1] + 0.15 * math.sin(way)
+    length = math.hypot(px - cx, py - cy)
+    rod = m.link("push", length=length, mass=0.2)
+    m.revolute("O", m.ground.at(*at), crank)
+    m.revolute("C", crank.tip, rod)
+    m.revolute("D", rod.tip, bar.at(0.2))
+    posture = {"bar": turn + 0.05, "P": 0.0, "Q": 0.0, "push": math.atan2(py - cy, px - cx)}
+    return Scene(m, {"O": polynomial(way, 1.0)}, t=(0, 0.3, 41), posture=posture)
+
+
+@pytest.mark.parametrize("lines", [(0.0, 1.3), (0.7, 2.4), (2.0, -0.4), (0.3, 0.3 + math.pi / 2)])
+def test_a_bar_guided_by_two_pins_on_two_lines(lines):
+    scene = guided(*lines)
+    assert evaluate(scene).certificate["closure"].max() < 1e-14
+    assert_balanced(scene)
+
+
+@pytest.mark.parametrize("line", [0.9, 0.9 + math.pi])
+def test_a_bar_guided_by_two_pins_on_one_line(line):
+    """An ordinary slide: its direction is that of the line, though rounding puts its place into the equation of the other pin."""
+    scene = guided(line, line)
+    solution = evaluate(scene)
+    np.testing.assert_allclose(solution.pose("bar").angle, 0.9, atol=1e-14)
+    assert_balanced(scene)
+
+
+def prescribed(equations, posture):
+    """An arm of two links, two of whose places are prescribed; and a slide that is driven, since something must be."""
+    m = Mechanism("prescribed")
+    a, b = m.link("a", length=0.6, mass=1.0), m.link("b", length=0.5, mass=1.2)
+    m.revolute("A", m.ground, a)
+    m.revolute("B", a.tip, b)
+    m.prismatic("S", m.ground.at(0, -1), m.point_mass("s", 1.0), axis=(1, 0))
+    for name, gap in equations(m, b).items():
+        m.constraint(name, gap)
+    return Scene(m, {"S": polynomial(0.0, 0.1)}, t=(0, 1, 41), posture=posture)
+
+
+def test_a_tip_that_is_prescribed_is_a_dyad():
+    def equations(m, b):
+        x, y = m.place(b.tip)
+        return {"across": x - 0.7 - 0.1 * ca.sin(2 * m.time), "up": y - 0.3 * ca.cos(m.time)}
+
+    scene = prescribed(equations, {"a": 1.1, "b": -0.5})
+    solution = evaluate(scene)
+    tip = solution.pose("b").x + 0.5 * np.cos(solution.pose("b").angle)
+    np.testing.assert_allclose(tip, 0.7 + 0.1 * np.sin(2 * solution.t), atol=1e-15)
+    assert not iterated(scene)
+
+
+def test_the_height_of_a_tip_and_the_place_of_a_middle_are_not_two_circles():
+    """Each equation holds both directions, as those of a pin do, and no two arms turn in them: they are iterated."""
+
+    def equations(m, b):
+        return {"height": m.place(b.tip)[1] - 0.471, "middle": m.place(b.at(0.25))[0] - 0.7 - 0.05 * ca.sin(3 * m.time)}
+
+    scene = prescribed(equations, {"a": 0.9, "b": -0.1})
+    solution = evaluate(scene)
+    base, angle = solution.pose("b"), solution.pose("b").angle
+    np.testing.assert_allclose(base.y + 0.5 * np.sin(angle), 0.471, atol=1e-14)
+    np.testing.assert_allclose(base.x + 0.25 * np.cos(angle), 0.7 + 0.05 * np.sin(3 * solution.t), atol=1e-14)
+    assert iterated(scene)
+
+
+def test_slides_of_any_number_are_one_linear_system():
+    """A wedge on a wedge on a wedge, and the last on the ground: closed form, whatever is declared first."""
+    m = Mechanism("wedges")
+    bodies = [m.link(f"w{i}", length=0.2, mass=1.0 + i) for i in range(3)]
+    chain = [m.ground, *bodies]
+    for i, way in enumerate((0.0, 0.7, 1.9)):
+        m.prismatic(f"S{i}", chain[i], chain[i + 1], axis=(math.cos(way), math.sin(way)))
+    m.prismatic("last", m.ground.at(0.1, 0.05), bodies[2], axis=(math.cos(2.5), math.sin(2.5)))
+    solution = evaluate(Scene(m, {"S0": polynomial(0.1, 0.2), "S2": polynomial(0.0, -0.1)}, t=(0, 1, 5)))
+    assert solution.certificate["closure"].max() < 1e-15
+    # Their directions are held four times for three bodies: moments are open, and the efforts are not.
+    weight = 9.81 * np.array([1.0, 2.0, 3.0])
+    rate = np.array([solution.pose(f"w{i}").y[1] - solution.pose(f"w{i}").y[0] for i in range(3)]) / 0.25
+    power = 0.2 * solution.effort("S0") - 0.1 * solution.effort("S2")
+    np.testing.assert_allclose(power, weight @ rate, rtol=1e-12)
+
+
+def test_lines_that_come_to_be_parallel_are_a_dead_centre():
+    """A pin on a fixed line and in the slot of a crank: where the crank lies along the line, its place is open."""
+    m = Mechanism("crossing")
+    crank, pin = m.link("crank", length=1.0, mass=0.2), m.point_mass("pin", 0.5)
+    m.revolute("O", m.ground.at(0, -0.3), crank)
+    m.slot("slot", crank, pin)
+    m.prismatic("line", m.ground, pin, axis=(1, 0))
+    scene = Scene(m, {"O": polynomial(1.0, 1.0)}, t=(0, 0.5, 6))
+    np.testing.assert_allclose(evaluate(scene).pose("pin").x, 0.3 / np.tan(1.0 + np.linspace(0, 0.5, 6)), rtol=1e-13)
