@@ -51,17 +51,16 @@ def estimate(graph: SceneGraph, table: Table, solution: Solution, p: Array) -> d
     rough = np.concatenate([found[0], np.asarray(table.out[:, chosen], float)[:, None]], axis=1)
     after, before = ({n: x[k] for k, n in enumerate(graph.columns) if not n.startswith("_")} for x in (rough, found[1]))
     errors = {name: _worst(after[name] - before[name], name in graph.wrapped) for name in after}
-    undetermined = {name: np.full(chosen.size, np.nan) for name in graph.undetermined}
-    exact = replace(solution, series=before | undetermined, t=solution.t[chosen])
-    rows = replace(solution, series={name: x.ravel() for name, x in (after | undetermined).items()})
+    exact = replace(solution, series=before, t=solution.t[chosen])
+    rows = replace(solution, series={name: x.ravel() for name, x in after.items()})
     for link in solution.links_with_sections:
-        if solution.determined(f"section:{link}:axial"):
-            for force in FORCES:
+        for force in FORCES:
+            if solution.determined(f"section:{link}:{force}"):
                 off, true = (_along(of.section(link).law, force).reshape(-1, chosen.size, _ALONG.size) for of in (rows, exact))
                 errors[f"section:{link}:{force}"] = _worst(off - true)
     # What underflows is in no trial.
     least = float(np.finfo(DTYPES[table.stages.precision]).tiny)
-    return {name: max(error, least) for name, error in errors.items()}
+    return {name: max(error, least) for name, error in errors.items() if solution.determined(name)}
 
 
 def explained(solution: Solution, residuals: Mapping[str, Array], errors: Mapping[str, float]) -> dict[str, float]:
@@ -90,11 +89,12 @@ def _of_cycle(graph: SceneGraph, cycle: CycleTable, solution: Solution) -> dict[
         reached = max(float(peaks[name]), float(np.max(np.abs(solution.series[name]), initial=0.0)))
         largest[solution.unit(name)] = max(largest.get(solution.unit(name), 0.0), reached)
     errors = {name: float(missed[name]) + rounding * largest[solution.unit(name)] for name in names}
-    bounds = replace(solution, series={name: np.array([error]) for name, error in errors.items()})
+    nothing = {name: np.zeros(1) for name in solution.undetermined}
+    bounds = replace(solution, series=nothing | {name: np.array([error]) for name, error in errors.items()})
     for link in bounds.links_with_sections:
-        if solution.determined(f"section:{link}:axial"):
-            law = bounds.section(link).law
-            errors |= {f"section:{link}:{force}": law.bound(force, _ALONG) for force in FORCES}
+        law = bounds.section(link).law
+        determined = (force for force in FORCES if solution.determined(f"section:{link}:{force}"))
+        errors |= {f"section:{link}:{force}": law.bound(force, _ALONG) for force in determined}
     return errors
 
 

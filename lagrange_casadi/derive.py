@@ -8,12 +8,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
 from . import cache, kinematics
 from .assembly import assemble
 from .fingerprint import fingerprint
-from .kinematics import NewtonLoop, Start
+from .kinematics import Start
 from .mechanism import Mechanism
 from .mobility import internal_forces, needed_reactions
 from .motion import motion_function
@@ -22,9 +21,6 @@ from .reciprocals import share_reciprocals
 from .scene import Scene, Wanted
 from .scene_graph import SceneGraph
 from .tree import span
-
-_OPEN = 1e-9
-_SAMPLES, _STEPS = 6, 8
 
 
 def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool = False) -> SceneGraph:
@@ -86,7 +82,6 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     placed = solved.evaluate(ca.vertcat(ca.SX(0, 1), *columns.values()))
     columns = dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True))
     inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, p]
-    undetermined: tuple[str, ...] = ()
     if want.forces:
         forces = internal_forces(
             body,
@@ -96,35 +91,28 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
             multipliers=want.multipliers,
             sections=want.sections,
         )
-        undetermined = _undetermined(forces.columns, forces.free, motion, inputs, scene, solved.newton)
-        settled = [column for name, column in forces.columns.items() if name not in undetermined]
-        settled = ca.vertsplit(ca.substitute(ca.vertcat(ca.SX(0, 1), *settled), forces.free, ca.SX.zeros(forces.free.numel())))
-        columns |= dict(zip((name for name in forces.columns if name not in undetermined), settled, strict=False))
-    undetermined = tuple(name for name in undetermined if not name.startswith("_"))
+        columns |= _settled(forces.columns, forces.free)
     held = tuple(part.point.body.name for part in body.held) if want.reactions else ()
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
-    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), wrapped, undetermined, held)
+    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), wrapped, held)
 
 
-def _undetermined(
-    columns: dict[str, Any], free: Any, motion: Any, inputs: list[Any], scene: Scene, newton: NewtonLoop | None
-) -> tuple[str, ...]:
-    """The outputs that change with what equilibrium leaves open, at any of a few instants of the motion."""
+def _settled(columns: dict[str, Any], free: Any) -> dict[str, Any]:
+    """Forces with nothing for what equilibrium leaves open, and by ``_open:NAME`` how much a force changes with that.
+
+    What does not change with it by structure is determined. Any other force is determined where that is zero, for parameters and
+    at instants that are looked at then.
+    """
     if not free.numel():
-        return ()
-    slopes = ca.Function("slopes", [*inputs, free], [ca.jacobian(ca.vertcat(*columns.values()), free)])
-    p = list(scene.mechanism.values().values())
-    largest = np.zeros((len(columns), free.numel()))
-    z = ca.DM(newton.guess if newton else [])
-    for number, t in enumerate(np.linspace(scene.t[0], scene.t[1], 10 * _SAMPLES + 1)):
-        if newton is not None:
-            for _ in range(_STEPS):
-                z += newton.step(z, t, motion(t, p)[0], p)[0]
-        if number % 10 == 0:
-            largest = np.fmax(largest, np.abs(slopes(t, *motion(t, p), z, p, ca.DM.zeros(free.numel())).full()))
-    return tuple(name for name, row in zip(columns, largest, strict=True) if row.max() > _OPEN)
+        return columns
+    forces = column(columns.values())
+    slopes = ca.jacobian(forces, free)
+    slopes, forces = (ca.substitute(part, free, ca.SX.zeros(free.numel())) for part in (slopes, forces))
+    doubted = ((name, slopes[k, :]) for k, name in enumerate(columns) if slopes[k, :].nnz() and not name.startswith("_"))
+    sizes = {f"_open:{name}": ca.sum2(ca.fabs(slope)) for name, slope in doubted}
+    return dict(zip(columns, ca.vertsplit(forces), strict=True)) | sizes
 
 
 def _motion_columns(body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]) -> dict[str, Any]:

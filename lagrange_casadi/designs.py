@@ -10,6 +10,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -22,12 +23,14 @@ from .density import Array
 from .derive import derive
 from .designs_plain import outcome
 from .designs_plan import Kept, stages_of
+from .determinacy import determinate, undetermined
 from .errors import DeclarationError
 from .evaluate import checked_times, outputs_of
 from .grids import require
 from .rung import Rung
 from .scene import Grid, Scene, points
 from .scene_graph import SceneGraph
+from .section_law import made_of
 from .solution import Provenance
 from .stages import Stages
 
@@ -61,7 +64,8 @@ class DesignEngine:
     """A scene compiled for many designs.
 
     ``parameters`` are the columns of what :meth:`evaluate` takes; ``quantities``, with ``units``, and ``efforts`` those of what it
-    gives; ``columns`` those of histories.
+    gives; ``columns`` those of histories. ``undetermined`` are the outputs that equilibrium leaves open for the parameters'
+    defaults, which are left out; what it leaves open for some design is NaN there.
     """
 
     scene: Scene
@@ -71,6 +75,7 @@ class DesignEngine:
     graph: SceneGraph
     stages: Stages
     library: codegen.DesignsLibrary | None
+    undetermined: tuple[str, ...]
     provenance: Provenance
 
     @classmethod
@@ -82,7 +87,9 @@ class DesignEngine:
         graph = derive(scene, wanted, iterate=rung.newton is not None)
         instants = points(checked_times(scene, t))
         stages = stages_of(graph, rung, instants)
-        kept = Kept.of(graph, rung)
+        p = np.array(list(scene.mechanism.values().values()))
+        _, left_open = determinate(graph, instants, p)
+        kept = Kept.of(graph, rung, left_open)
         guess = np.array(graph.newton.guess if graph.newton else (), float)
 
         def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:
@@ -92,11 +99,11 @@ class DesignEngine:
 
         found = compiled(rung, build)
         if found is None:
-            return cls(scene, rung, instants, kept, graph, stages, None, provenance("vm", "", "", rung))
+            return cls(scene, rung, instants, kept, graph, stages, None, left_open, provenance("vm", "", "", rung))
         compiler, library = found
         backend = "lanes" if compiler.language == "c++" else "c"
         made = provenance(backend, compiler.version, " ".join(library.flags), rung)
-        return cls(scene, rung, instants, kept, graph, stages, library, made)
+        return cls(scene, rung, instants, kept, graph, stages, library, left_open, made)
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -106,12 +113,12 @@ class DesignEngine:
     @property
     def quantities(self) -> tuple[str, ...]:
         """The names of the quantities that have peaks."""
-        return self.kept.quantities
+        return tuple(self.kept.quantities[k] for k in self._shown)
 
     @property
     def units(self) -> tuple[str, ...]:
         """Their units."""
-        return self.kept.units
+        return tuple(self.kept.units[k] for k in self._shown)
 
     @property
     def efforts(self) -> tuple[str, ...]:
@@ -119,9 +126,18 @@ class DesignEngine:
         return self.kept.efforts
 
     @property
+    def doubtful(self) -> tuple[str, ...]:
+        """The quantities, and the outputs in histories, that equilibrium may leave open for some designs."""
+        numbers = sorted({quantity for _, quantity in self.kept.plan.doubts})
+        return tuple(dict.fromkeys([*(self.kept.quantities[k] for k in numbers), *self.graph.doubtful]))
+
+    @property
     def columns(self) -> tuple[str, ...]:
         """The names of the outputs that histories have."""
-        return tuple(name for name in self.graph.columns if not name.startswith("_"))
+        left_out = {name for name in self.undetermined if not name.startswith("section:")}
+        whole = {f"section:{link}" for link in self.kept.links}
+        names = (name for name in self.graph.columns if not name.startswith("_") and name not in left_out)
+        return tuple(name for name in names if not name.startswith("section:") or name[: name.index(":", 8)] in whole)
 
     @property
     def cost(self) -> float:
@@ -139,7 +155,7 @@ class DesignEngine:
         p = np.ascontiguousarray(p, float)
         if p.ndim != 2 or p.shape[1] != len(self.parameters):
             raise DeclarationError(f"designs: expected an array of shape (n, {len(self.parameters)}), got {p.shape}")
-        n, q, e = p.shape[0], len(self.quantities), len(self.efforts)
+        n, q, e = p.shape[0], len(self.kept.quantities), len(self.efforts)
         history = (n, len(self.graph.columns), self.t.size)
         require("the peaks of the designs", (n, 3 * q + 2 * e))
         if histories:
@@ -151,11 +167,22 @@ class DesignEngine:
             self.library.evaluate(p, list(vars(found).values()), threads or codegen.cores())
         else:
             self._interpret(p, found)
+        if len(self._shown) < q:
+            found = replace(found, **{name: getattr(found, name)[:, self._shown] for name in ("value", "t", "xi")})
         if columns is None:
             return found
         with np.errstate(invalid="ignore"):
+            for row, out in zip(p, columns, strict=True):
+                out[[self.graph.columns.index(name) for name in undetermined(self.graph, out, row, self.rung)]] = np.nan
             series = outputs_of(self.graph, np.moveaxis(columns, 1, 0))
         return replace(found, series=np.stack([series[name] for name in self.columns], axis=1))
+
+    @cached_property
+    def _shown(self) -> list[int]:
+        """The quantities that are given: of a link that has some forces determined, all are made, and these are shown."""
+        names = enumerate(self.kept.quantities)
+        parts = ((k, name.split(":")) for k, name in names)
+        return [k for k, (kind, *part) in parts if kind != "section" or not made_of(self.undetermined, part[0], part[1])]
 
     def _interpret(self, p: Array, found: Outcome) -> None:
         kept = (found.value, found.t, found.xi, found.mean, found.rms)

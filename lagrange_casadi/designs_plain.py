@@ -14,6 +14,7 @@ from .codegen.designs import NOTHING, POLE, ROUNDING
 from .codegen.emit import NOT_CONVERGED
 from .density import Array, Density, NumericDensity
 from .designs_plan import Kept
+from .determinacy import undetermined
 from .mechanism import Mechanism
 from .mobility import LAW
 from .refusal import Status, refusal
@@ -52,7 +53,14 @@ def outcome(graph: SceneGraph, kept: Kept, t: Array, p: Array, newton: int | Non
     design = _Design(graph, kept, t, p, newton, table.iterated, matter)
     efforts = table.out[[graph.columns.index(name) for name in kept.efforts]]
     with np.errstate(all="ignore"):
-        return Status.OK, Row(design.peaks(table.out), np.stack(_means(efforts)), table.out)
+        peaks, means = design.peaks(table.out), np.stack(_means(efforts))
+    left_open = undetermined(graph, table.out, p, rung)
+    rows = [graph.doubtful[name] for name in left_open]
+    for check, quantity in plan.doubts:
+        if plan.checks[check][0] in rows:
+            peaks[:, quantity] = np.nan
+            means[:, [effort == quantity for effort in plan.efforts]] = np.nan
+    return Status.OK, Row(peaks, means, table.out)
 
 
 def _means(rows: Array) -> tuple[Array, Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,8 +10,8 @@ import casadi as ca
 import numpy as np
 
 from .codegen.designs import Along, Plan, matter_of
-from .compensated import Precision
 from .density import Array, Density
+from .determinacy import open_limits
 from .errors import DeclarationError
 from .gaps import extent
 from .kinematics import NEAR
@@ -21,7 +22,7 @@ from .quantities import FORCE, unit_in
 from .refusal import MISFIT, Status, dead_centre, gap_limit
 from .rung import Rung
 from .scene_graph import SceneGraph
-from .section_law import FORCES
+from .section_law import FORCES, made_of
 from .stages import Stages, compensated, counts, plain
 
 _BETWEEN = 9
@@ -47,7 +48,8 @@ class Kept:
     """The names of what is kept, and the plan by which: peaks of ``quantities``, in ``units``, and means of ``efforts``.
 
     Quantities are the wanted outputs by their full names, angles that loops set left out; ``reaction:JOINT`` is the size of a
-    joint's reaction; the section forces of ``links`` come last. What equilibrium does not determine is left out.
+    joint's reaction; the section forces of ``links`` come last. What equilibrium leaves open for the parameters' defaults is
+    left out.
     """
 
     quantities: tuple[str, ...]
@@ -57,19 +59,20 @@ class Kept:
     plan: Plan
 
     @classmethod
-    def of(cls, graph: SceneGraph, rung: Rung) -> Kept:
-        """What is kept of a scene's designs on a rung."""
+    def of(cls, graph: SceneGraph, rung: Rung, left_open: Collection[str] = ()) -> Kept:
+        """What is kept of a scene's designs on a rung, less what is ``left_open``."""
         mechanism, at = graph.scene.mechanism, {name: k for k, name in enumerate(graph.columns)}
         chosen: dict[str, tuple[int, ...]] = {}
         for name, k in at.items():
-            if name.startswith(("_", "section:")) or name in graph.wrapped:
+            if name.startswith(("_", "section:")) or name in graph.wrapped or name in left_open:
                 continue
             kind, part, *rest = name.split(":")
-            if kind == "reaction" and rest == ["fx"] and f"reaction:{part}:fy" in at:
-                chosen[f"reaction:{part}"] = (k, at[f"reaction:{part}:fy"])
+            other = f"reaction:{part}:fy"
+            if kind == "reaction" and rest == ["fx"] and other in at and other not in left_open:
+                chosen[f"reaction:{part}"] = (k, at[other])
             chosen[name] = (k,)
         links = [link for link in mechanism.links.values() if f"section:{link.name}:law:n0" in at]
-        links = [link for link in links if not any(name.startswith(f"section:{link.name}:") for name in graph.undetermined)]
+        links = [link for link in links if not all(made_of(left_open, link.name, force) for force in FORCES)]
         names = [*chosen, *(f"section:{link.name}:{force}" for link in links for force in FORCES)]
         if not names:
             raise DeclarationError("designs: nothing is wanted that has a peak")
@@ -78,12 +81,17 @@ class Kept:
         efforts = tuple(name for name in names if name.startswith("effort:"))
         along = tuple(_along(link, at) for link in links)
         matter, positive, margins = _matter(mechanism, links, along)
+        checks = _checks(graph, rung, at)
+        doubted = {k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")}
+        made = {name: _made_of(graph, name) for name in names}
+        doubts = [(doubted[graph.doubtful[n]], k) for k, name in enumerate(names) for n in made[name] if n in graph.doubtful]
         plan = Plan(
             quantities=tuple(chosen.values()),
             links=along,
             units=tuple(numbers[unit] for unit in units),
             efforts=tuple(names.index(name) for name in efforts),
-            checks=tuple(_checks(graph, rung.precision, rung.newton, at)),
+            checks=tuple(checks),
+            doubts=tuple(doubts),
             matter=matter,
             positive=positive,
             margins=margins,
@@ -110,15 +118,27 @@ def _along(link: Link, at: dict[str, int]) -> Along:
     )
 
 
-def _checks(graph: SceneGraph, precision: Precision, newton: int | None, at: dict[str, int]) -> list[tuple[int, str, float]]:
+def _made_of(graph: SceneGraph, quantity: str) -> list[str]:
+    """The columns that a quantity is made of."""
+    kind, part, *rest = quantity.split(":")
+    if kind == "section":
+        return made_of(graph.columns, part, rest[0])
+    return [f"{quantity}:{member}" for member in ("fx", "fy")] if kind == "reaction" and not rest else [quantity]
+
+
+def _checks(graph: SceneGraph, rung: Rung, at: dict[str, int]) -> list[tuple[int, str, float]]:
     found: list[tuple[int, str, float]] = []
+    precision, opened = rung.precision, open_limits(graph, rung)
     for name, k in at.items():
         kind, _, joint = name.partition(":")
         if kind == "_closure":
             jumps = graph.newton is not None and f"'{joint}'" in graph.newton.joints
             found.append((k, "BRANCH" if jumps else "CLOSURE", dead_centre(graph, precision, name)))
         elif kind == "_gap":
-            found.append((k, "GAP", gap_limit(precision, newton)))
+            found.append((k, "GAP", gap_limit(precision, rung.newton)))
+        elif kind == "_open":
+            limit, moment = opened[joint]
+            found.append((k, "OPEN_MOMENT" if moment else "OPEN", limit))
         elif kind == "_misfit":
             found.append((k, "MISFIT", MISFIT[precision]))
         elif kind == "_row":

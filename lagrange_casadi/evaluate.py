@@ -15,6 +15,7 @@ from .compensated import Precision
 from .density import Array
 from .derive import derive
 from .description import describe
+from .determinacy import determinate, undetermined
 from .errors import DeclarationError
 from .grids import require
 from .reading import columns
@@ -77,13 +78,17 @@ def evaluate(
     require("the grid of ratios", (ratios[2],))
     times, places = points((start, stop, count)), points(ratios)
     p = np.array(list(values.values()))
+    left_open: tuple[str, ...] = ()
+    if table is not None:
+        graph, left_open = determinate(graph, times, p)
     found, provenance = columns(graph, times, p, rung, threads)
     refuse(graph, found, times, p, rung)
     out = np.asarray(found.out, float)
-    series = outputs_of(graph, out) | {name: np.full(times.size, np.nan) for name in graph.undetermined}
+    left_open += undetermined(graph, out, p, rung)
+    series = outputs_of(graph, out) | {name: np.full(times.size, np.nan) for name in left_open}
     description = describe(scene.mechanism, values, scene.motion)
     ordered = in_order(series, description)
-    solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, graph.undetermined)
+    solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open)
     if not certificate:
         return solution
     residuals = certify(solution, _held(graph, found))

@@ -178,7 +178,7 @@ class _Cycle:
     def agrees(self) -> bool:
         """Whether the graph gives what the solution has: at one of three instants, for at a jump rounding decides."""
         solution = self.solution
-        names = [name for name in solution.series if name not in self.graph.undetermined]
+        names = [name for name in solution.series if name not in solution.undetermined]
         if not all(name in self.rows for name in names):
             return False
         names = [name for name in names if name not in self.graph.wrapped]

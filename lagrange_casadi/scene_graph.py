@@ -13,6 +13,7 @@ import casadi as ca
 from .density import Array
 from .gaps import extent
 from .kinematics import NewtonLoop
+from .mobility import LAW, STATION, stations_of
 from .motion import Laws
 from .scene import Scene, Wanted
 
@@ -23,11 +24,11 @@ class SceneGraph:
 
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` a
     column name; ``newton`` where loops must be iterated. Columns that begin with ``_`` are no outputs. They tell whether there is
-    a result: ``_closure:JOINT`` (see :mod:`.loops`), ``_gap:JOINT`` and ``_misfit:JOINT`` (see :mod:`.kinematics`), ``_row:NAME``
-    and ``_rowsize:NAME``; or they are what the certificate needs: ``_held:NUMBER:...``, what multipliers do to the bodies that
-    ``held`` names. ``wrapped`` names the angles that loops set, and what they are sums and differences of: by
-    ``pose:BODY:angle`` directions known up to whole turns, and by ``_turns:JOINT`` the whole turns of angles that count them,
-    which are in these columns without them. ``undetermined`` names the outputs that equilibrium does not determine.
+    a result: ``_closure:JOINT`` (see :mod:`.loops`), ``_gap:JOINT`` and ``_misfit:JOINT`` (see :mod:`.gaps`), ``_row:NAME`` and
+    ``_rowsize:NAME``; whether it is the only one: ``_open:FORCE`` (see :mod:`.determinacy`); or they are what the certificate
+    needs: ``_held:NUMBER:...``, what multipliers do to the bodies that ``held`` names. ``wrapped`` names the angles that loops set,
+    and what they are sums and differences of: by ``pose:BODY:angle`` directions known up to whole turns, and by ``_turns:JOINT``
+    the whole turns of angles that count them, which are in these columns without them.
     """
 
     scene: Scene
@@ -38,7 +39,6 @@ class SceneGraph:
     newton: NewtonLoop | None
     columns: tuple[str, ...]
     wrapped: Mapping[str, Mapping[str, int]]
-    undetermined: tuple[str, ...]
     held: tuple[str, ...]
 
     @cached_property
@@ -52,6 +52,21 @@ class SceneGraph:
         """The size of the mechanism [m], beside which a gap is large or small, for parameters ``p``."""
         mechanism = self.scene.mechanism
         return mechanism.number(extent(mechanism), dict(zip(mechanism.parameters, map(float, p), strict=True)))
+
+    @cached_property
+    def links(self) -> tuple[str, ...]:
+        """The links of which a whole section law was wanted, and is there."""
+        needed = {
+            link: [f"law:{member}" for member in LAW]
+            + [f"{station}:{member}" for station in stations_of(self.columns, link) for member in STATION]
+            for link in self.wanted.sections
+        }
+        return tuple(link for link, names in needed.items() if all(f"section:{link}:{name}" in self.columns for name in names))
+
+    @cached_property
+    def doubtful(self) -> dict[str, int]:
+        """The outputs that equilibrium may leave open, and the columns that tell where it does."""
+        return {name.removeprefix("_open:"): k for k, name in enumerate(self.columns) if name.startswith("_open:")}
 
     def iterates(self, closure: str) -> bool:
         """Whether the loops that stand under the name of a closure are iterated."""
@@ -92,4 +107,4 @@ class SceneGraph:
         return cls(scene=scene, wanted=wanted, motion=motion, instant=instant, newton=newton, wrapped=kept["wrapped"], **rest)
 
 
-_KEPT = ("driven", "columns", "undetermined", "held")
+_KEPT = ("driven", "columns", "held")

@@ -6,7 +6,7 @@ link beyond it: at the tip (n0, f0, m0), and at stations in between, each seen b
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -17,6 +17,13 @@ from .codegen import cores
 from .density import Array, NumericDensity
 
 FORCES = ("axial", "shear", "bending")
+MEMBERS = {
+    "axial": (("n0", "n1", "n2"), ("n",)),
+    "shear": (("f0", "f1", "f2"), ("f",)),
+    "bending": (("m0", "f0", "f1", "f2"), ("m", "f")),
+}
+"""The coefficients of a force, and what of the loads at stations goes into it."""
+
 Side = Literal["base", "tip"]
 
 _HALVINGS = 60
@@ -152,8 +159,7 @@ class SectionLaw:
         return np.take_along_axis(stacked, best, 1)[:, 0], np.take_along_axis(values, best, 1)[:, 0]
 
     def _terms(self, force: str, basis: Basis) -> tuple[list[Array], Array]:
-        names = {"axial": ("n0", "n1", "n2"), "shear": ("f0", "f1", "f2"), "bending": ("m0", "f0", "f1", "f2")}[force]
-        return [self.coefficients[name] for name in names], basis.bending if force == "bending" else basis.force
+        return [self.coefficients[name] for name in MEMBERS[force][0]], basis.bending if force == "bending" else basis.force
 
     def _smooth(self, force: str, u: Array) -> Array:
         columns, rows = self._terms(force, self.basis(u))
@@ -209,6 +215,13 @@ class SectionLaw:
             lower = (shear(middle) <= 0.0) == rising
             low, high = np.where(lower, middle, low), np.where(lower, high, middle)
         return list(((low + high) / 2).T)
+
+
+def made_of(columns: Iterable[str], link: str, force: str) -> list[str]:
+    """The columns of a link, among others by full name, that a force is made of; without the places of stations."""
+    coefficients, members = MEMBERS[force]
+    found = (name.split(":") for name in columns if name.startswith(f"section:{link}:"))
+    return [":".join(name) for name in found if name[-1] in (coefficients if name[2] == "law" else members)]
 
 
 def _seen(u: Array, station: Array, side: Side) -> Any:

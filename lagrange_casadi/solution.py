@@ -14,7 +14,7 @@ from .description import Description, density_of
 from .errors import LagrangeCasadiError, UnknownNameError
 from .grids import require
 from .quantities import QUANTITIES, quantity_of
-from .section_law import FORCES, Basis, SectionLaw, StationLoad
+from .section_law import FORCES, Basis, SectionLaw, StationLoad, made_of
 
 if TYPE_CHECKING:
     import xarray
@@ -175,10 +175,10 @@ class Solution:
         return replace(self, t=self.t[instants], series=series, certificate=certificate)
 
     def determined(self, name: str) -> bool:
-        """Whether equilibrium determines a quantity; of a link, all its section forces or none."""
-        group, part, *_ = name.split(":")
-        if group == "section":
-            return not any(other.startswith(f"section:{part}:") for other in self.undetermined)
+        """Whether equilibrium determines a quantity, at all instants."""
+        group, part, *rest = name.split(":")
+        if group == "section" and len(rest) == 1:
+            return not made_of(self.undetermined, part, rest[0])
         return name not in self.undetermined
 
     def names(self) -> Iterator[str]:

@@ -8,7 +8,7 @@ from arithmetic import Digits
 from beside import of_case
 from builders import columns_at, oracle_of, postures
 
-from lagrange_casadi import derive
+from lagrange_casadi import derive, evaluate
 
 
 def precise(scene, t, drives=None, parameters=None, digits=50, beside=None, least=None):
@@ -28,7 +28,12 @@ def precise(scene, t, drives=None, parameters=None, digits=50, beside=None, leas
     for given, declared in (("loads", [*m.loads]), ("extras", [*m.constraints, *m.rows])):
         assert bool(acting.get(given)) == bool(declared), f"'{m.name}' declares {declared}: give the oracle the same {given}"
     solved = oracle_of(m, values, arithmetic, **acting).solve(drives or motion, postures(m, found, motion, 0.0))
-    return {name: value for name, value in _named(m, solved).items() if _determined(name, graph.undetermined)}
+    named = _named(m, solved)
+    if not graph.doubtful:
+        return named
+    span = (float(t), float(t), 1) if graph.newton is None or t == scene.t[0] else (scene.t[0], float(t), 20)
+    told = evaluate(scene, wanted=["all"], t=span, parameters=parameters, backend="vm", certificate=False)
+    return {name: value for name, value in named.items() if told.determined(name)}
 
 
 def _named(m, solved):
@@ -49,10 +54,3 @@ def _named(m, solved):
 
 def _member(forces, k):
     return lambda ratio: forces(ratio)[k]
-
-
-def _determined(name, undetermined):
-    """Whether equilibrium determines a quantity; of a link, all its section forces or none."""
-    if name.startswith("section:"):
-        return not any(other.startswith(name.rpartition(":")[0] + ":") for other in undetermined)
-    return name not in undetermined

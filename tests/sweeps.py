@@ -21,6 +21,7 @@ class Formula:
 
     quantities = ("effort:O", "reaction:A", "reaction:A:fx", "section:rod:axial", "section:rod:shear", "section:rod:bending")
     efforts = ("effort:O",)
+    undetermined = doubtful = ()
     cost = 1 / 15
     provenance = Provenance("formula", "double", "", "", "(default)", {"lagrange_casadi": __version__})
 

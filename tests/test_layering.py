@@ -60,6 +60,7 @@ ORDER = (
     "reading",
     "accuracy",
     "refusal",
+    "determinacy",
     "evaluate",
     "designs_plan",
     "designs_plain",

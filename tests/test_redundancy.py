@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, evaluate
+from lagrange_casadi.designs import DesignEngine
 from lagrange_casadi.errors import AssemblyError, MobilityError
 from lagrange_casadi.motion import polynomial
+from lagrange_casadi.rung import Rung
 
 
 def parallelogram(third=1.0, pendulum=False):
@@ -119,3 +121,59 @@ def test_a_weld_that_misses_by_half_a_turn_does_not_fit():
     assert evaluate(bridge(0.0), wanted=["motion"]).certificate["closure"].max() == 0.0
     with pytest.raises(AssemblyError, match="over-constrained and do not fit"):
         evaluate(bridge(math.pi), wanted=["motion"])
+
+
+def three_cranks(**keywords):
+    """Three equal cranks side by side carry one bar; what each end of it bears is open, but for the postures in which it is not."""
+    m = Mechanism("three_cranks")
+    a, b, c = (m.link(name, length=0.2, mass=0.3) for name in "abc")
+    bar = m.link("bar", length=1.0, mass=1.0)
+    for k, link in enumerate((a, b, c)):
+        m.revolute(f"G{k}", m.ground.at(0.5 * k, 0.0), link)
+        m.revolute(f"B{k}", link.tip, (bar.base, bar.at(0.5), bar.tip)[k])
+    angle = m.parameter("angle", math.pi / 2, "rad")
+    return Scene(m, {"G0": polynomial(angle)}, posture={"a": 1.5, "b": 1.5, "c": 1.5, "bar": 0.0}, t=(0, 0, 1), **keywords)
+
+
+@pytest.mark.parametrize("backend", ["vm", "c", "lanes"])
+def test_what_is_open_is_decided_for_the_parameters_that_are_evaluated(backend):
+    """Upright cranks share the bar's weight in a way of their own each; leaning ones share its thrust too."""
+    scene = three_cranks()
+    upright, leaning = (evaluate(scene, parameters={"angle": angle}, backend=backend) for angle in (math.pi / 2, 1.0))
+    opened = {name for name in leaning.undetermined if name.startswith("reaction")}
+    assert opened > {name for name in upright.undetermined if name.startswith("reaction")}
+    for joint in ("B0", "B1", "B2"):
+        assert f"reaction:{joint}:fx" in opened
+        assert np.isnan(leaning.reaction(joint).fx).all()
+    assert leaning.determined("effort:G0")
+    torque = 9.81 * 0.2 * math.cos(1.0) * (3 * 0.3 / 2 + 1.0)
+    np.testing.assert_allclose(leaning.effort("G0"), torque, rtol=1e-13)
+
+
+def test_what_is_unique_is_not_withheld():
+    """A crank between two pins is bent by its own weight alone; what it carries along is open."""
+    solution = evaluate(three_cranks(), parameters={"angle": 1.0}, xi=(0, 1, 5))
+    for link in "bc":
+        section = solution.section(link)
+        assert [solution.determined(f"section:{link}:{force}") for force in ("axial", "shear", "bending")] == [False, True, True]
+        u, weight = solution.xi, 0.3 * 9.81 * math.cos(1.0)
+        np.testing.assert_allclose(section.bending[0], weight * 0.2 * u * (u - 1) / 2 * -1, atol=1e-14)
+        assert np.isnan(section.axial).all()
+        assert f"section:{link}:shear" in solution.errors
+        assert f"section:{link}:axial" not in solution.errors
+
+
+def test_a_sweep_decides_for_each_design():
+    """The same columns for all designs; where one is open for a design there is no number, and the file says that this may be."""
+    scene = three_cranks()
+    for rung in (Rung("vm"), Rung("c"), Rung("lanes"), Rung("c", precision="single")):
+        designs = DesignEngine.of(scene, rung=rung)
+        outcome = designs.evaluate(np.array([[math.pi / 2], [1.0]]))
+        assert np.all(outcome.status == 0)
+        found = dict(zip(designs.quantities, outcome.value.T, strict=True))
+        both, one = (evaluate(scene, parameters={"angle": angle}) for angle in (1.0, math.pi / 2))
+        for name, (upright, leaning) in found.items():
+            if name.count(":") > 1 or name.startswith("effort"):
+                assert np.isfinite(upright) == one.determined(name), (rung, name)
+                assert np.isfinite(leaning) == both.determined(name), (rung, name)
+        assert any(np.isfinite(upright) and np.isnan(leaning) for upright, leaning in found.values())

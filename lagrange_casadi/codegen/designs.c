@@ -35,6 +35,13 @@ static int designs_one(designs_now* now, const double* p, const double* guess, d
     mean[k] = designs_mean(now, designs_effort[k], 0);
     rms[k] = sqrt(designs_mean(now, designs_effort[k], 1));
   }
+  for (k = 0; k < DESIGNS_DOUBTS; ++k) {
+    if (!designs_is_open(now, designs_doubted[k])) continue;
+    value[designs_doubtful[k]] = t[designs_doubtful[k]] = xi[designs_doubtful[k]] = NAN;
+    for (j = 0; j < DESIGNS_EFFORTS; ++j) {
+      if (designs_effort[j] == designs_doubtful[k]) mean[j] = rms[j] = NAN;
+    }
+  }
   return DESIGNS_OK;
 }
 

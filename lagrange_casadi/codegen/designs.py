@@ -16,9 +16,9 @@ from ..stages import Stages
 from .emit import FOLLOW, Parts, dump, emit, following, in_single, work
 
 DESIGNS, BEGIN = "lagrange_casadi_designs", "lagrange_casadi_begin"
-CHECKS = ("CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "ROWSIZE")
+CHECKS = ("CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT")
 """What is checked at every instant: a closure, one whose branch iteration may leave, what is left of a loop's equations, beside the
-mechanism's extent, a misfit, a row's residual and its size."""
+mechanism's extent, a misfit, a row's residual and its size, and how far a force is open, a moment beside the extent."""
 
 INSIDE, ROUNDS = 17, 7
 """Instants at which a dead centre between two others is looked for, and how often, ever closer."""
@@ -54,8 +54,9 @@ class Plan:
 
     ``quantities`` off links are one column, or the size of a vector of two; then come three forces of each of ``links``. ``units``
     numbers the units of all of them, ``efforts`` says which have means. ``checks`` are columns with a kind of :data:`CHECKS` and a
-    limit. ``matter(p)`` gives first ``margins`` numbers that must not be negative, ``positive`` of them not zero either: the first
-    is the mechanism's extent [m]. Then comes what ``sections.c`` takes for each link.
+    limit, ``doubts`` the checks that leave a quantity open, by number of both. ``matter(p)`` gives first ``margins`` numbers that
+    must not be negative, ``positive`` of them not zero either: the first is the mechanism's extent [m]. Then comes what
+    ``sections.c`` takes for each link.
     """
 
     quantities: tuple[tuple[int, ...], ...]
@@ -63,6 +64,7 @@ class Plan:
     units: tuple[int, ...]
     efforts: tuple[int, ...]
     checks: tuple[tuple[int, str, float], ...]
+    doubts: tuple[tuple[int, int], ...]
     matter: Any
     positive: int
     margins: int
@@ -113,6 +115,7 @@ def _macros(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan, p
         "PLACES": 3 * links,
         "CHECKED": plain + 6 * links,
         "CHECKS": checks,
+        "DOUBTS": len(plan.doubts),
         "UNITS": max(plan.units) + 1,
         "EFFORTS": len(plan.efforts),
         "NEAR": f"((DESIGNS_REAL) {plan.near:.17g})",
@@ -147,6 +150,8 @@ def _tables(plan: Plan) -> str:
             _table("DESIGNS_REAL", "designs_limit", map(_number, limits)),
             _table("int", "designs_unit", plan.units),
             _table("int", "designs_effort", plan.efforts or (0,)),
+            _table("int", "designs_doubted", [check for check, _ in plan.doubts] or (0,)),
+            _table("int", "designs_doubtful", [quantity for _, quantity in plan.doubts] or (0,)),
             *breaks,
         )
     )

@@ -157,7 +157,7 @@ static int designs_refused(const designs_now* now) {
     } else if (designs_kind[k] == DESIGNS_IS_GAP) {
       limit = designs_limit[k]*designs_lane(now->matter, 0);
       for (i = 0; i < now->n; ++i) bad |= !(row[i] <= limit && -row[i] <= limit);
-    } else if (designs_kind[k] != DESIGNS_IS_ROWSIZE) {
+    } else if (designs_kind[k] == DESIGNS_IS_MISFIT || designs_kind[k] == DESIGNS_IS_ROW) {
       bad = 1;
     }
   }
@@ -167,6 +167,16 @@ static int designs_refused(const designs_now* now) {
     if (why != DESIGNS_OK) return why;
   }
   return DESIGNS_OK;
+}
+
+/* Whether equilibrium leaves open, at any instant, what a check tells of. */
+static int designs_is_open(const designs_now* now, int check) {
+  const designs_real* row = designs_row(now, DESIGNS_CHECKED + check);
+  const designs_real beside = designs_kind[check] == DESIGNS_IS_OPEN_MOMENT ? designs_lane(now->matter, 0) : 1;
+  casadi_int i;
+  int open = 0;
+  for (i = 0; i < now->n; ++i) open |= !(row[i] <= designs_limit[check]*beside);
+  return open;
 }
 
 /* The time mean of a row, or of its square, by trapezia. */

@@ -132,7 +132,9 @@ def _short(source: str, kind: str = "") -> str:
     return f"{_short(source.removeprefix(REST), kind)}_rest" if source.startswith(REST) else source.removeprefix("motion:")
 
 
-def contract(graph: SceneGraph, name: str, precision: Precision, solution: Solution, *, fixed: bool) -> Contract:
+def contract(
+    graph: SceneGraph, name: str, precision: Precision, solution: Solution, undetermined: tuple[str, ...], *, fixed: bool
+) -> Contract:
     """The contract of a graph whose evaluation over its cycle is ``solution``; ``fixed`` leaves no parameter open."""
     mechanism, values = graph.scene.mechanism, solution.description["parameters"]
     timed = _timed(graph)
@@ -147,7 +149,7 @@ def contract(graph: SceneGraph, name: str, precision: Precision, solution: Solut
         unit = unit_in(mechanism.joints, key)
         largest[unit] = max(largest.get(unit, 0.0), float(np.abs(solution.series[key]).max()))
     links = []
-    for link in graph.wanted.sections:
+    for link in graph.links:
         links.append(LinkContract(link, f"{prefix(name)}_link_{link}".upper(), stations_of(columns, link)))
     return Contract(
         prefix(name),
@@ -159,7 +161,7 @@ def contract(graph: SceneGraph, name: str, precision: Precision, solution: Solut
         tuple(links),
         graph.driven,
         timed,
-        graph.undetermined,
+        undetermined,
     )
 
 

@@ -14,13 +14,14 @@ import numpy as np
 
 from ..compensated import Precision
 from ..derive import derive
+from ..determinacy import determinate
 from ..errors import DeclarationError, PathError
-from ..evaluate import evaluate
+from ..evaluate import checked_times, evaluate
 from ..fingerprint import declaration
 from ..publish import check_writable, filling
 from ..reading import drive_of, table_of
 from ..rung import Rung
-from ..scene import Scene
+from ..scene import Scene, points
 from ..scene_graph import SceneGraph
 from ..version import __version__
 from .companions import companions
@@ -92,11 +93,13 @@ def export(
     graph = derive(scene, wanted, iterate=newton is not None)
     # What rounding alone makes of it: all steps that loops want, and no table.
     enough = None if newton is None else max(newton, _ENOUGH)
+    instants = points(checked_times(scene, None))
+    graph, left_open = determinate(graph, instants, p, telling=table is None)
     exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm", newton=enough)
     plain = newton == enough and table is None
     solution = exact if plain else evaluate(scene, parameters=values, wanted=wanted, backend="vm", newton=newton, table=table)
     read = None if table is None else (drive_of(graph), table_of(graph, solution.t, p, rung))
-    agreed = contract(graph, name or scene.mechanism.name, precision, solution, fixed=table is not None)
+    agreed = contract(graph, name or scene.mechanism.name, precision, solution, left_open, fixed=table is not None)
     emitted = program(graph, precision, newton, p, read)
     check_size(emitted, LARGEST[precision] if largest is None else largest)
     guess = graph.newton.guess if graph.newton is not None and read is None else ()

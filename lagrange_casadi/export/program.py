@@ -74,7 +74,7 @@ def program(
     constants, instant = hoisted(stages.instant, kept)
     mechanism = graph.scene.mechanism
     symbols, fixed = mechanism.symbols, read is not None
-    gapped = read is None and any(name.startswith("_gap:") for name in columns)
+    gapped = read is None and any(name.startswith(("_gap:", "_open:")) for name in columns)
     functions = {
         "law": stages.law,
         "count": stages.count,
@@ -122,7 +122,7 @@ def _matter(graph: SceneGraph, symbols: Any, *, extent_first: bool) -> Any:
     With ``extent_first`` the mechanism's extent comes before all of them, for the gaps of loops to be compared with.
     """
     found: list[Any] = [extent(graph.scene.mechanism)] if extent_first else []
-    for name in graph.wanted.sections:
+    for name in graph.links:
         link = graph.scene.mechanism.links[name]
         assert isinstance(link.mass, Density)
         density = link.mass.at(lambda e: e, link.length)

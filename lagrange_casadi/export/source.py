@@ -11,8 +11,10 @@ import casadi as ca
 
 from ..codegen.emit import newton_rule
 from ..density import Density
+from ..determinacy import open_limits
 from ..mobility import LAW, PLACE_FIRST
 from ..refusal import MISFIT, dead_centre, gap_limit
+from ..rung import Rung
 from ..version import __version__
 from .contract import REST, Contract
 from .data import sampled, table_call, table_text
@@ -321,6 +323,10 @@ class Source:
             elif kind == "_gap" and self.program.sizes["gapped"]:
                 limit = f"{number(gap_limit(precision, self.program.newton))}*model->matter[0]"
                 yield f"if (!({self._function('fabs')}(y[{k}]) <= {limit})) return {P}_NOT_CLOSED;"
+            elif kind == "_open":
+                least, moment = open_limits(graph, Rung("auto", precision, self.program.newton))[part]
+                limit = f"{number(least)}*model->matter[0]" if moment else number(least)
+                yield f"if (!(y[{k}] <= {limit})) return {P}_UNDETERMINED;"
             elif kind == "_misfit":
                 yield f"if (!(y[{k}] <= {misfit})) return {P}_INCONSISTENT;"
             elif kind == "_row":

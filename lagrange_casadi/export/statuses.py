@@ -17,5 +17,6 @@ STATUSES = {
     "SLOW": "the iteration of the loops converges slowly: they are near a dead centre",
     "INCONSISTENT": "the motion violates a loop that is over-constrained, or a non-holonomic row",
     "NOT_CLOSED": "what was found for a loop does not satisfy its equations",
+    "UNDETERMINED": "equilibrium does not determine all outputs: the mechanism has more constraints than it needs",
     "NOT_FINITE": "a result is not finite: the mechanism is singular there, or its numbers overflow",
 }

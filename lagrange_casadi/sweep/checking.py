@@ -75,7 +75,7 @@ def _check_column(file: h5py.File, sweep: Sweep, kept: Kept) -> Iterator[str]:
         surplus += int(np.sum(there & (states != 0)))
     if unknown:
         yield f"{kept.name}: {unknown} of the designs have a status that is none"
-    if missing and not _open(sweep, kept.name):
+    if missing and "missing" not in dataset.attrs and not _open(sweep, kept.name):
         yield f"{kept.name}: {missing} of the designs that have a result lack it"
     if surplus:
         yield f"{kept.name}: {surplus} of the designs that have no result have a number"

@@ -34,6 +34,9 @@ STATUS = "status"
 KINDS = (STATUS, "peak", "peak_t", "peak_xi", "mean", "rms", "peak_at", "history")
 """What columns are of, in the order in which they are listed."""
 
+MISSING = "NaN for designs of which equilibrium leaves it open"
+"""What a file says, as ``missing``, of a column that may lack a number where there is a result."""
+
 _MOST, _BYTES, _SECONDS = 1 << 14, 1 << 24, 1.0
 _AT_HAND = 1 << 22
 _GRID_COST = 5e-10
@@ -94,8 +97,9 @@ class Harvest:
             found += self._peak(name)
         for name in engine.efforts:
             unit, words = unit_in(self.mechanism.joints, name), quantity_of(name).attributes
-            found.append(Column(f"mean:{name}", unit, words | {"long_name": f"mean over time: {words['long_name']}"}))
-            found.append(Column(f"rms:{name}", unit, {"long_name": f"root of the mean square over time: {words['long_name']}"}))
+            mean, rms = f"mean over time: {words['long_name']}", f"root of the mean square over time: {words['long_name']}"
+            found.append(Column(f"mean:{name}", unit, words | {"long_name": mean} | self._open(name)))
+            found.append(Column(f"rms:{name}", unit, {"long_name": rms} | self._open(name)))
         found += [
             self._along(f"peak_at:section:{link}:{force}", "largest in size over the instants: ", ("xi",))
             for link in self._links
@@ -103,7 +107,7 @@ class Harvest:
             if self.xi.size
         ]
         for name in self._series:
-            words = quantity_of(name).attributes
+            words = quantity_of(name).attributes | self._open(name)
             found.append(Column(f"history:{name}", unit_in(self.mechanism.joints, name), words, ("t",), (self.t.size,)))
         if self.keep == "histories" and self.xi.size:
             found += [self._along(f"history:section:{link}:{force}", "", ("t", "xi")) for link in self._links for force in FORCES]
@@ -177,22 +181,27 @@ class Harvest:
     def _peak(self, name: str) -> list[Column]:
         """The columns of one quantity of the engine's."""
         kind, _, *member = name.split(":")
+        open_ = self._open(name)
         if kind == "reaction" and not member:
             name, unit, words = f"{name}:resultant", FORCE, {"long_name": "resultant of the joint's reaction"}
         else:
             unit, words = unit_in(self.mechanism.joints, name), quantity_of(name).attributes
         what = words["long_name"]
         found = [
-            Column(f"peak:{name}", unit, words | {"long_name": f"largest in size over time: {what}"}),
-            Column(f"peak_t:{name}", "s", {"long_name": f"instant of the peak: {what}"}),
+            Column(f"peak:{name}", unit, words | {"long_name": f"largest in size over time: {what}"} | open_),
+            Column(f"peak_t:{name}", "s", {"long_name": f"instant of the peak: {what}"} | open_),
         ]
         if kind == "section":
-            found.append(Column(f"peak_xi:{name}", "1", {"long_name": f"ratio xi/l of the peak: {what}"}))
+            found.append(Column(f"peak_xi:{name}", "1", {"long_name": f"ratio xi/l of the peak: {what}"} | open_))
         return found
+
+    def _open(self, name: str) -> dict[str, str]:
+        """What a file says of a quantity that is not determined for every design."""
+        return {"missing": MISSING} if name in self.engine.doubtful else {}
 
     def _along(self, name: str, prefix: str, axes: tuple[str, ...]) -> Column:
         quantity = quantity_of(name.partition(":")[2])
-        words = quantity.attributes | {"long_name": f"{prefix}{quantity.long_name}"}
+        words = quantity.attributes | {"long_name": f"{prefix}{quantity.long_name}"} | self._open(name.partition(":")[2])
         lengths = tuple({"t": self.t.size, "xi": self.xi.size}[axis] for axis in axes)
         return Column(name, quantity.unit, words, axes, lengths)
 

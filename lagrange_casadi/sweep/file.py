@@ -15,7 +15,6 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ..derive import derive
 from ..errors import DeclarationError
 from ..publish import PatientFile
 from ..quantities import CONVENTIONS
@@ -99,7 +98,7 @@ def _begin(file: h5py.File, plan: Plan) -> None:
         file.attrs[key] = json.dumps(value) if key in WORDS else value
     file.attrs["conventions"] = CONVENTIONS
     file.attrs["parameters"] = json.dumps(dict(plan.values))
-    file.attrs["undetermined"] = json.dumps(derive(plan.scene, plan.task.wanted).undetermined)
+    file.attrs["undetermined"] = json.dumps(plan.harvest.engine.undetermined)
     file.attrs["columns"] = len(plan.columns)
 
 

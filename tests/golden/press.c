@@ -88,11 +88,14 @@ static void constants_of(const casadi_real** arg, casadi_real** res) {
 }
 
 static void matter(const casadi_real** arg, casadi_real** res) {
-  casadi_real a0;
-  a0=arg[0][1];
+  casadi_real a0, a1;
+  a0=arg[0][0];
+  a1=arg[0][1];
+  a0=(a0+a1);
   res[0][0]=a0;
-  a0=arg[0][3];
-  res[0][1]=a0;
+  res[0][1]=a1;
+  a1=arg[0][3];
+  res[0][2]=a1;
 }
 
 static void sound(const casadi_real** arg, casadi_real** res) {
@@ -113,7 +116,7 @@ static void sound(const casadi_real** arg, casadi_real** res) {
 
 static void instant(const casadi_real** arg, casadi_real** res) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
-  casadi_real a12, a13, a14;
+  casadi_real a12, a13, a14, a15;
   a00=arg[4][1];
   a01=arg[0][1];
   a02=sin(a01);
@@ -125,87 +128,88 @@ static void instant(const casadi_real** arg, casadi_real** res) {
   a00=arg[4][2];
   a00=(a04*a00);
   res[0][0]=a00;
-  a00=arg[4][3];
-  a05=arg[2][0];
-  a00=(a00*a05);
+  a00=0.;
+  res[0][1]=a00;
+  a05=arg[4][3];
+  a06=arg[2][0];
+  a05=(a05*a06);
   a01=cos(a01);
   a01=(a01*a03);
   a03=arg[4][8];
   a04=sqrt(a04);
-  a06=arg[4][4];
-  a06=(a04*a06);
-  a07=arg[4][5];
-  a08=(a05*a01);
-  a09=arg[1][0];
-  a10=casadi_sq(a09);
-  a11=(a10*a02);
-  a08=(a08-a11);
-  a09=(a09*a01);
-  a11=(1./a04);
-  a11=copysign(a11,a04);
-  a09=(a09*a11);
-  a09=casadi_sq(a09);
-  a12=(a09*a02);
-  a12=(a08+a12);
-  a12=(a12*a11);
-  a07=(a07*a12);
-  a06=(a06-a07);
-  a07=arg[4][6];
-  a10=(a10*a01);
-  a05=(a05*a02);
-  a10=(a10+a05);
-  a05=(a09*a04);
-  a13=(a12*a02);
-  a05=(a05+a13);
-  a05=(a10+a05);
-  a07=(a07*a05);
-  a13=arg[4][7];
-  a05=(a13*a05);
-  a05=(a07+a05);
-  a14=(a02*a05);
-  a06=(a06-a14);
-  a06=(a06*a11);
-  a03=(a03-a06);
-  a06=arg[4][9];
-  a06=(a03+a06);
-  a11=9.8100000000000005e+00;
-  a11=(a11+a08);
-  a08=(a13*a11);
-  a06=(a06+a08);
-  a08=arg[4][10];
-  a06=(a06+a08);
-  a01=(a01*a06);
-  a00=(a00+a01);
-  a01=(a13*a10);
-  a05=(a05+a01);
-  a05=(a02*a05);
-  a00=(a00+a05);
-  res[0][1]=a00;
-  a00=arg[4][11];
-  a04=(a04*a00);
+  a07=arg[4][4];
   a07=(a04*a07);
-  a02=(a02*a00);
+  a08=arg[4][5];
+  a09=(a06*a01);
+  a10=arg[1][0];
+  a11=casadi_sq(a10);
+  a12=(a11*a02);
+  a09=(a09-a12);
+  a10=(a10*a01);
+  a12=(1./a04);
+  a12=copysign(a12,a04);
+  a10=(a10*a12);
+  a10=casadi_sq(a10);
+  a13=(a10*a02);
+  a13=(a09+a13);
+  a13=(a13*a12);
+  a08=(a08*a13);
+  a07=(a07-a08);
+  a08=arg[4][6];
+  a11=(a11*a01);
+  a06=(a06*a02);
+  a11=(a11+a06);
+  a06=(a10*a04);
+  a14=(a13*a02);
+  a06=(a06+a14);
+  a06=(a11+a06);
+  a08=(a08*a06);
+  a14=arg[4][7];
+  a06=(a14*a06);
+  a06=(a08+a06);
+  a15=(a02*a06);
+  a07=(a07-a15);
+  a07=(a07*a12);
+  a03=(a03-a07);
+  a07=arg[4][9];
+  a07=(a03+a07);
+  a12=9.8100000000000005e+00;
+  a12=(a12+a09);
+  a09=(a14*a12);
+  a07=(a07+a09);
+  a09=arg[4][10];
+  a07=(a07+a09);
+  a01=(a01*a07);
+  a05=(a05+a01);
+  a01=(a14*a11);
+  a06=(a06+a01);
+  a06=(a02*a06);
+  a05=(a05+a06);
+  res[0][2]=a05;
+  a05=arg[4][11];
+  a04=(a04*a05);
+  a08=(a04*a08);
+  a02=(a02*a05);
   a03=(a02*a03);
-  a07=(a07+a03);
-  res[0][2]=a07;
-  a07=(a02*a11);
-  a03=(a04*a10);
-  a07=(a07+a03);
-  res[0][3]=a07;
-  res[0][4]=a09;
-  a04=(a04*a11);
-  a02=(a02*a10);
-  a04=(a04-a02);
-  a13=(a04*a13);
-  a02=arg[4][12];
-  a02=(a12*a02);
-  a13=(a13-a02);
-  res[0][5]=a13;
-  a04=(-a04);
-  res[0][6]=a04;
-  res[0][7]=a12;
-  a12=0.;
-  res[0][8]=a12;
+  a08=(a08+a03);
+  res[0][3]=a08;
+  a08=(a02*a12);
+  a03=(a04*a11);
+  a08=(a08+a03);
+  res[0][4]=a08;
+  res[0][5]=a10;
+  a04=(a04*a12);
+  a02=(a02*a11);
+  a11=(a04-a02);
+  a11=(a11*a14);
+  a14=arg[4][12];
+  a14=(a13*a14);
+  a11=(a11-a14);
+  res[0][6]=a11;
+  a02=(a02-a04);
+  res[0][7]=a02;
+  res[0][8]=a13;
+  res[0][9]=a00;
 }
 
 /* ---- Written by lagrange_casadi ---- */
@@ -234,14 +238,14 @@ static int all_finite(const casadi_real* x, int many) {
 }
 
 static void put(const casadi_real* y, press_outputs* outputs) {
-  outputs->effort_O = y[1];
-  outputs->section_rod_n0 = y[2];
-  outputs->section_rod_n1 = y[3];
-  outputs->section_rod_n2 = y[4];
-  outputs->section_rod_f0 = y[5];
-  outputs->section_rod_f1 = y[6];
-  outputs->section_rod_f2 = y[7];
-  outputs->section_rod_m0 = y[8];
+  outputs->effort_O = y[2];
+  outputs->section_rod_n0 = y[3];
+  outputs->section_rod_n1 = y[4];
+  outputs->section_rod_n2 = y[5];
+  outputs->section_rod_f0 = y[6];
+  outputs->section_rod_f1 = y[7];
+  outputs->section_rod_f2 = y[8];
+  outputs->section_rod_m0 = y[9];
 }
 
 const press_parameters press_defaults = {
@@ -340,16 +344,17 @@ static press_status columns_of(press_model* model, const press_inputs* inputs, c
   instant(arg, res);
   if (y[0] < -7.1054273576010019e-15) return PRESS_NOT_ASSEMBLED;
   if (!(y[0] > 7.1054273576010019e-15)) return PRESS_DEAD_CENTRE;
-  if (!all_finite(y, 9)) return PRESS_NOT_FINITE;
+  if (!(fabs(y[1]) <= 1e-08*model->matter[0])) return PRESS_NOT_CLOSED;
+  if (!all_finite(y, 10)) return PRESS_NOT_FINITE;
   return PRESS_OK;
 }
 
 press_status press_evaluate(press_model* model, const press_inputs* inputs, press_outputs* outputs) {
-  casadi_real y[9];
+  casadi_real y[10];
   int k;
   const press_status status = columns_of(model, inputs, y);
   if (status != PRESS_OK) {
-    for (k = 0; k < 9; ++k) y[k] = nothing;
+    for (k = 0; k < 10; ++k) y[k] = nothing;
   }
   put(y, outputs);
   return status;
@@ -423,7 +428,7 @@ press_status press_section(const press_model* model, const press_outputs* output
   if (!(xi >= 0 && xi <= 1)) return PRESS_BAD_RATIO;
   switch (link) {
   case PRESS_LINK_ROD:
-    matter_of = model->matter + 0;
+    matter_of = model->matter + 1;
     stations = 0;
     law[0] = outputs->section_rod_n0;
     law[1] = outputs->section_rod_n1;
@@ -496,6 +501,10 @@ const char* press_message(press_status status) {
     return "the iteration of the loops converges slowly: they are near a dead centre";
   case PRESS_INCONSISTENT:
     return "the motion violates a loop that is over-constrained, or a non-holonomic row";
+  case PRESS_NOT_CLOSED:
+    return "what was found for a loop does not satisfy its equations";
+  case PRESS_UNDETERMINED:
+    return "equilibrium does not determine all outputs: the mechanism has more constraints than it needs";
   case PRESS_NOT_FINITE:
     return "a result is not finite: the mechanism is singular there, or its numbers overflow";
   }

@@ -38,7 +38,7 @@ extern "C" {
 
 /* Bytes of stack that any call of these functions takes at most, without what the C library takes for a sine, on machines whose
    pointers are of 8 bytes or less. */
-#define PRESS_STACK 1288
+#define PRESS_STACK 1304
 
 typedef double press_real;
 
@@ -56,7 +56,9 @@ typedef enum {
   PRESS_JUMPED = 10 /* an iterated loop has jumped to another branch */,
   PRESS_SLOW = 11 /* the iteration of the loops converges slowly: they are near a dead centre */,
   PRESS_INCONSISTENT = 12 /* the motion violates a loop that is over-constrained, or a non-holonomic row */,
-  PRESS_NOT_FINITE = 13 /* a result is not finite: the mechanism is singular there, or its numbers overflow */
+  PRESS_NOT_CLOSED = 13 /* what was found for a loop does not satisfy its equations */,
+  PRESS_UNDETERMINED = 14 /* equilibrium does not determine all outputs: the mechanism has more constraints than it needs */,
+  PRESS_NOT_FINITE = 15 /* a result is not finite: the mechanism is singular there, or its numbers overflow */
 } press_status;
 
 /* Numbers that may change without generating anything again. */
@@ -108,7 +110,7 @@ typedef struct {
   unsigned seal;
   press_real parameters[5];
   press_real constants[13];
-  press_real matter[2];
+  press_real matter[3];
 } press_model;
 
 /* Makes a model ready, for parameters, or 0 for the defaults. */
