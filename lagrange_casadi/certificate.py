@@ -1,8 +1,9 @@
 """Independent checks of a solution, from its own arrays: none shares the graphs that made them.
 
-The reported motions of the joints place every body anew, in plain arithmetic; the reported reactions, efforts and loads must then
-balance every body (Newton-Euler), the power of drives and loads must be the change of kinetic energy, loops must close, and the
-sections at a link's base must give back what its joints do there. Each residual is relative, (t,).
+The reported motions of the joints place every body anew, in plain arithmetic (:mod:`.placing`). The reported reactions, efforts,
+loads and multipliers must then balance every body (Newton-Euler), the power of drives and loads must be the change of kinetic
+energy, loops must close and the users' equations hold, and the sections at a link's base must give back what its joints do there.
+Each residual is relative, (t,).
 """
 
 from __future__ import annotations
@@ -12,14 +13,13 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from .compensated import ROUNDING
 from .density import Array
 from .description import Description, density_of
+from .placing import Complex, Moving, axis_of, measured, oriented, place
 from .solution import Solution
-
-Complex = npt.NDArray[np.complexfloating[Any, Any]]
+from .written import Written
 
 NEAR = 1e3
 _EDGE = 1e-9
@@ -32,36 +32,6 @@ TOLERANCE, LOOSE = 1e-9, 1e-3
 """A residual above it means that the solution is wrong, not that it is rounded; in doubles, and where less was asked for."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Motion:
-    """Place of a body's origin, direction, and both their derivatives: arrays of (t,), complex numbers for vectors."""
-
-    at: Complex
-    speed: Complex
-    change: Complex
-    angle: Array
-    rate: Array
-    acceleration: Array
-
-    @classmethod
-    def holding(
-        cls, at: tuple[Complex, Complex, Complex], point: Description, angle: Array, rate: Array, acceleration: Array
-    ) -> _Motion:
-        """The motion of a body that turns as said and whose ``point`` has the given place, velocity and acceleration."""
-        turning = np.exp(1j * angle) * (point["x"] + 1j * point["y"])
-        change = at[2] - (1j * acceleration - rate**2) * turning
-        return cls(at[0] - turning, at[1] - 1j * rate * turning, change, angle, rate, acceleration)
-
-    def point(self, x: Any, y: Any) -> tuple[Complex, Complex, Complex]:
-        """Place, velocity and acceleration of the body's point (x, y)."""
-        arm = (x + 1j * y) * np.exp(1j * self.angle)
-        return (
-            self.at + arm,
-            self.speed + 1j * self.rate * arm,
-            self.change + (1j * self.acceleration - self.rate**2) * arm,
-        )
-
-
 @dataclass(eq=False)
 class _Tally:
     """Forces on the bodies: what they sum to, about each centre, and how large they are."""
@@ -72,55 +42,43 @@ class _Tally:
     power: Array | float = 0.0
 
 
-@dataclass(frozen=True, eq=False)
-class Held:
-    """What the multiplier of a constraint or row does at a point (x, y) of a body, in its axes: arrays of (t,)."""
-
-    body: str
-    x: Array
-    y: Array
-    fx: Array
-    fy: Array
-    mz: Array
-
-    def during(self, instants: slice) -> Held:
-        """The same at some of the instants."""
-        return Held(self.body, *(values[instants] for values in (self.x, self.y, self.fx, self.fy, self.mz)))
-
-
-def certify(solution: Solution, held: Sequence[Held] | None = None) -> dict[str, Array]:
+def certify(
+    solution: Solution, equations: Sequence[Written] | None = None, hidden: Mapping[str, Array] | None = None
+) -> dict[str, Array]:
     """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``, ``ends``, each where it can be had.
 
-    Multipliers act by their equations, which a solution does not hold; so with constraints or rows all but ``closure`` needs to be
-    told what they do.
+    ``equations`` are the constraints and rows of its mechanism, which a solution does not hold: without them, a solution of a
+    mechanism that has some is looked at for ``closure`` alone. ``hidden`` are forces that it does not give: multipliers that were
+    not wanted, and what is open, which takes some value all the same.
     """
+    whole = replace(solution, series={**solution.series, **(hidden or {})}, undetermined=())
     found: dict[str, list[Array]] = {}
     scales: dict[str, float] = {}
-    for start in range(0, solution.t.size, _BLOCK):
-        block = slice(start, start + _BLOCK)
-        there = None if held is None else [part.during(block) for part in held]
-        for name, (gaps, scale) in _residuals(solution.during(block), there).items():
+    for start in range(0, whole.t.size, _BLOCK):
+        for name, (gaps, scale) in _residuals(whole.during(slice(start, start + _BLOCK)), equations).items():
             found.setdefault(name, []).append(gaps)
             scales[name] = max(scales.get(name, 0.0), scale)
     return {name: np.concatenate(gaps) / (scales[name] or 1.0) for name, gaps in found.items()}
 
 
-def _residuals(solution: Solution, held: Sequence[Held] | None) -> dict[str, tuple[Array, float]]:
+def _residuals(solution: Solution, equations: Sequence[Written] | None) -> dict[str, tuple[Array, float]]:
     """Each residual, and the largest of what it is to be compared with."""
     description = solution.description
     joints = description["joints"]
     if any(joint["coordinate"] and f"motion:{name}" not in solution.series for name, joint in joints.items()):
         return {}
-    bodies = _place(solution)
+    bodies = place(solution, equations or ())
     if len(bodies) < len(description["bodies"]) + 1:
         return {}
-    found = {"closure": (_closure(solution, bodies), _size(solution))}
+    found = {"closure": (_closure(solution, bodies, equations or ()), _size(solution))}
     wanted = [f"reaction:{name}:fx" for name in joints] + [f"load:{name}:fx" for name in description["loads"]]
     wanted += [f"effort:{name}" for name, joint in joints.items() if joint["driven"] and name not in description["rows"].values()]
-    told = held is not None or not (description["constraints"] or description["rows"])
-    if told and not solution.undetermined and all(name in solution.series for name in wanted):
+    wanted += [f"multiplier:{name}" for name in (*description["constraints"], *description["rows"])]
+    told = equations is not None or not (description["constraints"] or description["rows"])
+    known = (name in solution.series and np.isfinite(solution.series[name]).all() for name in wanted)
+    if told and all(known):
         matter = {name: _matter(body) for name, body in description["bodies"].items()}
-        acting = [*_acting(solution, bodies), *(_push(part, bodies) for part in held or ())]
+        acting = [*_acting(solution, bodies), *(push for e in equations or () for push in _held(solution, bodies, e))]
         tally = _tally(solution, bodies, acting, matter)
         found["balance"], found["power"] = _balance(solution, bodies, tally, matter)
         if solution.links_with_sections:
@@ -133,7 +91,7 @@ def tolerance(solution: Solution) -> float:
     exact = solution.provenance.precision == "double" and not any(
         word in solution.provenance.rung for word in ("--newton", "--table")
     )
-    return max(TOLERANCE if exact else LOOSE, _TURNED * blur(solution))
+    return min(LOOSE, max(TOLERANCE, _TURNED * blur(solution))) if exact else LOOSE
 
 
 def blur(solution: Solution) -> float:
@@ -146,96 +104,18 @@ def blur(solution: Solution) -> float:
     return rounding * max((float(np.max(np.abs(values))) for values in reported), default=0.0)
 
 
+def failure(solution: Solution) -> str:
+    """Which residuals of a solution fail, in words."""
+    worse = ", ".join(f"{name} {value:.2g}" for name, value in solution.failed.items())
+    return f"the certificate fails: {worse}, and no more than {solution.tolerance:.2g} is rounding"
+
+
 def summary(residuals: Mapping[str, Array]) -> str:
     """The largest residuals, in one line; and how singular the loops are, where it matters."""
     parts = [f"{name} {np.max(values):.1e}" for name, values in residuals.items() if name != "condition"]
     said = "certificate: " + (", ".join(parts) if parts else "nothing to check, for want of outputs")
     worst = float(np.max(residuals.get("condition", np.ones(1))))
     return said + (f"; near a dead centre, where the loops magnify by {worst:.3g}" if worst > NEAR else "")
-
-
-def _place(solution: Solution) -> dict[str, _Motion]:
-    zero = np.zeros_like(solution.t)
-    bodies = {"ground": _Motion(zero + 0j, zero + 0j, zero + 0j, zero, zero, zero)}
-    waiting = dict(solution.description["joints"])
-    moved = True
-    while waiting and moved:
-        moved = False
-        for name, joint in list(waiting.items()):
-            near, far = joint["parent"], joint["child"]
-            reverse = near["body"] not in bodies
-            if reverse:
-                near, far = far, near
-            if near["body"] not in bodies or far["body"] in bodies:
-                continue
-            motion = _hang(solution, name, joint, bodies[near["body"]], near, far, reverse)
-            if motion is not None:
-                bodies[far["body"]] = motion
-                del waiting[name]
-                moved = True
-        if not moved:
-            moved = _span(solution, bodies)
-    return bodies
-
-
-def _span(solution: Solution, bodies: dict[str, _Motion]) -> bool:
-    """Place a link that is pinned at two points to bodies already placed, from where these move; whether there was one."""
-    pins: dict[str, list[tuple[Description, Description]]] = {}
-    for joint in solution.description["joints"].values():
-        for own, other in ((joint["parent"], joint["child"]), (joint["child"], joint["parent"])):
-            if joint["kind"] == "revolute" and own["body"] not in bodies and other["body"] in bodies:
-                pins.setdefault(own["body"], []).append((own, other))
-    for name, found in pins.items():
-        first = found[0]
-        second = next((pin for pin in found if (pin[0]["x"], pin[0]["y"]) != (first[0]["x"], first[0]["y"])), None)
-        if second is None or not _oriented(solution.description, name):
-            continue
-        (a, va, ca), (b, vb, cb) = (bodies[other["body"]].point(other["x"], other["y"]) for _, other in (first, second))
-        reach = np.abs(b - a) ** 2
-        rate, acceleration = (np.conj(b - a) * (vb - va)).imag / reach, (np.conj(b - a) * (cb - ca)).imag / reach
-        local = (second[0]["x"] - first[0]["x"]) + 1j * (second[0]["y"] - first[0]["y"])
-        angle = np.angle((b - a) / local)
-        bodies[name] = _Motion.holding((a, va, ca), first[0], angle, rate, acceleration)
-        return True
-    return False
-
-
-def _oriented(description: Description, body: str) -> bool:
-    return body == "ground" or description["bodies"][body]["length"] is not None
-
-
-def _hang(
-    solution: Solution, name: str, joint: Description, base: _Motion, near: Description, far: Description, reverse: bool
-) -> _Motion | None:
-    """The motion of the body at a joint's far side, or None where the joint does not give it."""
-    oriented = _oriented(solution.description, far["body"])
-    kind, sign = joint["kind"], -1.0 if reverse else 1.0
-    zero = np.zeros_like(solution.t)
-    slides = kind in ("prismatic", "slot")
-    if slides and oriented and kind == "slot":
-        return None
-    if slides and reverse and not _oriented(solution.description, joint["child"]["body"]):
-        return None
-    motion = solution.motion(name) if joint["coordinate"] else None
-    if oriented and kind == "revolute":
-        if motion is None:
-            return None
-        angle = base.angle + sign * motion.value
-        rate, acceleration = base.rate + sign * motion.rate, base.acceleration + sign * motion.acceleration
-    elif oriented:
-        angle, rate, acceleration = base.angle + sign * joint["angle"], base.rate, base.acceleration
-    else:
-        angle, rate, acceleration = zero, zero, zero
-    at, speed, change = base.point(near["x"], near["y"])
-    if slides:
-        assert motion is not None
-        axis = (joint["axis"][0] + 1j * joint["axis"][1]) * np.exp(1j * (angle if reverse else base.angle))
-        turn, spin = (rate, acceleration) if reverse else (base.rate, base.acceleration)
-        at = at + sign * axis * motion.value
-        speed = speed + sign * axis * (motion.rate + 1j * turn * motion.value)
-        along = motion.acceleration - turn**2 * motion.value + 1j * (spin * motion.value + 2 * turn * motion.rate)
-        change = change + sign * axis * along
-    return _Motion.holding((at, speed, change), far, angle, rate, acceleration)
 
 
 def _matter(body: Description) -> _Matter:
@@ -253,23 +133,33 @@ def _size(solution: Solution) -> float:
     return sum(body["length"] or 0.0 for body in solution.description["bodies"].values()) or 1.0
 
 
-def _closure(solution: Solution, bodies: dict[str, _Motion]) -> Array:
-    """Gaps of all joints, and of the reported poses."""
+def _closure(solution: Solution, bodies: dict[str, Moving], equations: Sequence[Written]) -> Array:
+    """Gaps of all joints, of the reported poses, and of the users' equations: over their slopes, times the length of all links."""
     worst = np.zeros_like(solution.t)
     for joint in solution.description["joints"].values():
         (a, *_), (b, *_) = (bodies[p["body"]].point(p["x"], p["y"]) for p in (joint["parent"], joint["child"]))
-        gap = b - a
-        if joint["kind"] in ("prismatic", "slot"):
-            axis = (joint["axis"][0] + 1j * joint["axis"][1]) * np.exp(1j * bodies[joint["parent"]["body"]].angle)
-            gap = (gap * np.conj(axis)).imag
-        worst = np.maximum(worst, np.abs(gap))
+        slides = joint["kind"] in ("prismatic", "slot")
+        across = ((b - a) * np.conj(axis_of(joint, bodies[joint["parent"]["body"]]))).imag
+        worst = np.maximum(worst, np.abs(across if slides else b - a))
+        if joint["kind"] in ("prismatic", "weld") and oriented(solution.description, joint["child"]["body"]):
+            turned = bodies[joint["child"]["body"]].angle - bodies[joint["parent"]["body"]].angle - joint["angle"]
+            worst = np.maximum(worst, np.abs(np.exp(1j * turned) - 1.0) * _size(solution))
     for name in solution.description["bodies"]:
         pose = solution.pose(name)
         worst = np.maximum(worst, np.abs(pose.x + 1j * pose.y - bodies[name].at))
+        if pose.angle is not None:
+            worst = np.maximum(worst, np.abs(np.exp(1j * (pose.angle - bodies[name].angle)) - 1.0) * _size(solution))
+    for equation in equations:
+        motion = [measured(solution, bodies, entry) for entry in equation.entries]
+        units = [1.0 if entry.kind in ("direction", "coordinate") else _size(solution) for entry in equation.entries]
+        moving = [unit + np.abs(entry[1 if equation.row else 0]) for unit, entry in zip(units, motion, strict=True)]
+        scale = np.sum(np.abs(equation.slopes_at(motion, solution.t)) * moving, axis=0)
+        missed = np.abs(equation.at(motion, solution.t)[0])
+        worst = np.maximum(worst, np.divide(missed, scale, out=missed.copy(), where=scale > 0.0) * _size(solution))
     return worst
 
 
-def _acting(solution: Solution, bodies: dict[str, _Motion]) -> Iterator[_Action]:
+def _acting(solution: Solution, bodies: dict[str, Moving]) -> Iterator[_Action]:
     """Every force: the body, the place, the force and couple, and whether it does work."""
     for name, joint in solution.description["joints"].items():
         at = bodies[joint["child"]["body"]].point(joint["child"]["x"], joint["child"]["y"])[0]
@@ -278,7 +168,7 @@ def _acting(solution: Solution, bodies: dict[str, _Motion]) -> Iterator[_Action]
         pushes: list[tuple[Any, Any, bool]] = [(force, couple, False)]
         if f"effort:{name}" in solution.series:
             effort = solution.effort(name)
-            axis = (joint["axis"][0] + 1j * joint["axis"][1]) * np.exp(1j * bodies[joint["parent"]["body"]].angle)
+            axis = axis_of(joint, bodies[joint["parent"]["body"]])
             pushes.append((0j, effort, True) if joint["coordinate"] == "angle" else (effort * axis, 0.0, True))
         for push, twist, works in pushes:
             yield joint["child"]["body"], at, push, twist, works
@@ -290,11 +180,27 @@ def _acting(solution: Solution, bodies: dict[str, _Motion]) -> Iterator[_Action]
             yield point["body"], at, sign * (fx + 1j * fy), sign * mz, True
 
 
-def _push(part: Held, bodies: dict[str, _Motion]) -> _Action:
-    return part.body, bodies[part.body].point(part.x, part.y)[0], part.fx + 1j * part.fy, part.mz, True
+def _held(solution: Solution, bodies: dict[str, Moving], equation: Written) -> Iterator[_Action]:
+    """What the multiplier of an equation does: along whatever stands in it."""
+    motion = [measured(solution, bodies, entry) for entry in equation.entries]
+    forces = solution.multiplier(equation.name) * equation.slopes_at(motion, solution.t)
+    push: Any
+    for entry, force in zip(equation.entries, forces, strict=True):
+        if entry.kind == "direction":
+            yield entry.part, bodies[entry.part].at, 0j, force, True
+        elif entry.kind != "coordinate":
+            yield entry.part, bodies[entry.part].point(*entry.point)[0], force * (1.0 if entry.kind == "x" else 1j), 0.0, True
+        else:
+            joint = solution.description["joints"][entry.part]
+            child, parent = joint["child"]["body"], joint["parent"]["body"]
+            at = bodies[child].point(joint["child"]["x"], joint["child"]["y"])[0]
+            turns = joint["coordinate"] == "angle"
+            push, twist = (0j, force) if turns else (force * axis_of(joint, bodies[parent]), 0.0)
+            yield child, at, push, twist, True
+            yield parent, at, -push, -twist, True
 
 
-def _tally(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Action], matter: Mapping[str, _Matter]) -> _Tally:
+def _tally(solution: Solution, bodies: dict[str, Moving], acting: Sequence[_Action], matter: Mapping[str, _Matter]) -> _Tally:
     tally = _Tally()
     for body, at, force, couple, works in acting:
         if body == "ground":
@@ -313,7 +219,7 @@ def _tally(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Act
 
 
 def _balance(
-    solution: Solution, bodies: dict[str, _Motion], tally: _Tally, matter: Mapping[str, _Matter]
+    solution: Solution, bodies: dict[str, Moving], tally: _Tally, matter: Mapping[str, _Matter]
 ) -> tuple[tuple[Array, float], tuple[Array, float]]:
     """Newton-Euler for every body, beside the largest force; and power, beside the largest of force times speed."""
     gravity = complex(*solution.description["gravity"])
@@ -335,7 +241,7 @@ def _balance(
     return (worst, float(np.max(tally.size))), (np.abs(tally.power - power), float(np.max(largest + np.abs(tally.power))))
 
 
-def _ends(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Action]) -> tuple[Array, float]:
+def _ends(solution: Solution, bodies: dict[str, Moving], acting: Sequence[_Action]) -> tuple[Array, float]:
     """A link's section at its base is the opposite of all that acts on it there; beside the largest force on a link."""
     worst, scale = np.zeros_like(solution.t), 0.0
     base = np.zeros((solution.t.size, 1))
@@ -352,7 +258,7 @@ def _ends(solution: Solution, bodies: dict[str, _Motion], acting: Sequence[_Acti
     return worst, scale
 
 
-def _before(motion: _Motion, acting: Sequence[_Action], edge: float) -> tuple[Complex, Array]:
+def _before(motion: Moving, acting: Sequence[_Action], edge: float) -> tuple[Complex, Array]:
     """The force in a link's axes, and the moment about its base, of all that acts at its base or beyond it."""
     force, moment = np.zeros_like(motion.at), np.zeros_like(motion.angle)
     for _, at, push, couple, _ in acting:

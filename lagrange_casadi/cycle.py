@@ -18,7 +18,7 @@ import numpy.typing as npt
 from .density import Array
 from .errors import DeclarationError
 from .kinematics import describe_coordinate, passes_dead_centre, where
-from .quantities import ANGLE, FORCE, LENGTH, MOMENT, unit_in
+from .quantities import ANGLE, unit_in
 from .scene_graph import SceneGraph
 
 TURNS = 4
@@ -39,7 +39,6 @@ _GAP = 1e-8
 
 _PROBES = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (0.5, 0.0), (-0.1, 0.1), (1e-3, 0.0))
 _NAMED = 3
-_UNITS = {"x": LENGTH, "y": LENGTH, "fx": FORCE, "fy": FORCE, "mz": MOMENT}
 
 
 @dataclass(frozen=True, eq=False)
@@ -309,8 +308,8 @@ def _sizes(graph: SceneGraph, peaks: Array) -> Array:
 def _kind(graph: SceneGraph, column: str) -> str:
     """What columns are compared by: their unit, or, where that says nothing, their name."""
     group = column.partition(":")[0]
-    if group in ("_turns", "_held"):
-        return ANGLE if group == "_turns" else _UNITS[column.rpartition(":")[2]]
+    if group == "_turns":
+        return ANGLE
     if group.startswith("_"):
         return column
     unit = unit_in(graph.scene.mechanism.joints, column)

@@ -92,11 +92,10 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
             sections=want.sections,
         )
         columns |= _settled(forces.columns, forces.free)
-    held = tuple(part.point.body.name for part in body.held) if want.reactions else ()
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
-    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), wrapped, held)
+    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), wrapped)
 
 
 def _settled(columns: dict[str, Any], free: Any) -> dict[str, Any]:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+import functools
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
+
+import casadi as ca
 
 from .density import NumericDensity
 from .mechanism import Mechanism
@@ -19,10 +22,26 @@ def density_of(body: Description) -> NumericDensity:
 
 def describe(mechanism: Mechanism, values: Mapping[str, float], driven: Collection[str]) -> Description:
     """Bodies with their length [m] (None for a point mass) and mass [kg], and joints with the places they join."""
+    numbers = iter(_numbers(mechanism)([values[name] for name in mechanism.parameters]).full().ravel().tolist())
+    return _described(mechanism, values, driven, lambda _: next(numbers))
+
+
+@functools.lru_cache(maxsize=32)
+def _numbers(mechanism: Mechanism) -> ca.Function:
+    """All numbers of a description at once, in the order in which it asks for them."""
+    asked: list[Any] = []
 
     def number(expression: Any) -> float:
-        return mechanism.number(expression, values)
+        asked.append(expression)
+        return 1.0
 
+    _described(mechanism, dict.fromkeys(mechanism.parameters, 1.0), (), number)
+    return ca.Function("numbers", [mechanism.symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *asked))])
+
+
+def _described(
+    mechanism: Mechanism, values: Mapping[str, float], driven: Collection[str], number: Callable[[Any], float]
+) -> Description:
     def place(point: Point) -> Description:
         return {"body": point.body.name, "x": number(point.x), "y": number(point.y)}
 
@@ -32,8 +51,8 @@ def describe(mechanism: Mechanism, values: Mapping[str, float], driven: Collecti
         length = number(body.length)
         if isinstance(body.mass, RigidMass):
             x, y = body.mass.centre
-            centre = {"x": number(x), "y": number(y), "inertia": number(body.mass.inertia)}
-            return {"length": length, "mass": number(body.mass.mass), "centre": centre}
+            mass, centre = number(body.mass.mass), {"x": number(x), "y": number(y), "inertia": number(body.mass.inertia)}
+            return {"length": length, "mass": mass, "centre": centre}
         density = body.mass.at(number, length)
         return {
             "length": length,

@@ -33,6 +33,7 @@ from .scene_graph import SceneGraph
 from .section_law import made_of
 from .solution import Provenance
 from .stages import Stages
+from .witness import failures
 
 _LOOKS = 32
 """At about so many more instants is the peak of a quantity sought."""
@@ -183,6 +184,12 @@ class DesignEngine:
         names = enumerate(self.kept.quantities)
         parts = ((k, name.split(":")) for k, name in names)
         return [k for k, (kind, *part) in parts if kind != "section" or not made_of(self.undetermined, part[0], part[1])]
+
+    def failures(self, p: Array) -> dict[str, float]:
+        """What fails of one design that has a result, (parameters,), looked at with all its outputs: see :mod:`.witness`."""
+        series = self.evaluate(p[None], threads=1, histories=True).series
+        assert series is not None
+        return failures(self.scene, p, self.t, self.rung, self.columns, series[0])
 
     def _interpret(self, p: Array, found: Outcome) -> None:
         kept = (found.value, found.t, found.xi, found.mean, found.rms)

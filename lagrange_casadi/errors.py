@@ -118,6 +118,16 @@ class ClusterError(LagrangeCasadiError):
     exit_status = 1
 
 
+class CertificateError(LagrangeCasadiError):
+    """What was computed fails the independent checks that come with it."""
+
+    exit_status = 1
+
+
+class CertificateWarning(UserWarning):
+    """A solution fails the independent checks that come with it: it is given, and marked."""
+
+
 class StoppedError(LagrangeCasadiError):
     """What was asked for was stopped from outside, by Ctrl-C or a signal; what is done is kept."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -10,13 +11,13 @@ import numpy as np
 
 from .accuracy import estimate, explained
 from .backends import Table
-from .certificate import Held, certify
+from .certificate import certify, failure, tolerance
 from .compensated import Precision
 from .density import Array
 from .derive import derive
 from .description import describe
 from .determinacy import determinate, undetermined
-from .errors import DeclarationError
+from .errors import CertificateWarning, DeclarationError
 from .grids import require
 from .reading import columns
 from .refusal import refuse
@@ -24,6 +25,7 @@ from .rung import Backend, Rung
 from .scene import Grid, Scene, checked, checked_ratios, points
 from .scene_graph import SceneGraph
 from .solution import Solution, in_order
+from .written import written
 
 _BESIDE = 8
 
@@ -61,6 +63,8 @@ def evaluate(
         Whether to check the solution by :mod:`.certificate`, as far as the wanted outputs allow, and to estimate its errors by
         :mod:`.accuracy`.
 
+    A solution whose certificate fails says so: it is not :attr:`~.Solution.certified`, and :class:`CertificateWarning` is given.
+
     Raises :class:`AssemblyError` where a loop does not close at some instant, :class:`SizeError` where the outputs over time do not
     fit into memory, :class:`CompilerError`, and for mistakes in the arguments :class:`UnknownNameError`, :class:`ParameterError` or
     :class:`DeclarationError`.
@@ -89,11 +93,15 @@ def evaluate(
     description = describe(scene.mechanism, values, scene.motion)
     ordered = in_order(series, description)
     solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open)
+    solution = replace(solution, tolerance=tolerance(solution))
     if not certificate:
         return solution
-    residuals = certify(solution, _held(graph, found))
+    residuals = _closed(graph, out, p) | certify(solution, written(scene.mechanism, values), hidden(graph, out, left_open))
     errors = explained(solution, residuals, estimate(graph, found, solution, p))
-    return replace(solution, certificate=residuals | _condition(graph, found), errors=errors)
+    solution = replace(solution, certificate=residuals | _condition(graph, found), errors=errors)
+    if solution.failed:
+        warnings.warn(f"{failure(solution)}; the solution is not certified", CertificateWarning, stacklevel=2)
+    return solution
 
 
 def checked_times(scene: Scene, t: Grid | None) -> Grid:
@@ -123,13 +131,17 @@ def outputs_of(graph: SceneGraph, out: Array) -> dict[str, Array]:
     return series
 
 
-def _held(graph: SceneGraph, table: Table) -> list[Held] | None:
-    """What multipliers do to the bodies, or None where it was not asked for, or is not determined."""
-    rows = dict(zip(graph.columns, table.out, strict=True))
-    parts = [[f"_held:{i}:{name}" for name in ("x", "y", "fx", "fy", "mz")] for i in range(len(graph.held))]
-    if not all(name in rows for names in parts for name in names):
-        return None
-    return [Held(body, *(rows[name] for name in names)) for body, names in zip(graph.held, parts, strict=True)]
+def hidden(graph: SceneGraph, out: Array, undetermined: Sequence[str]) -> dict[str, Array]:
+    """Forces that a solution does not give, and its certificate needs: multipliers that were not wanted, and what is open."""
+    unwanted = {name[1:]: out[k] for k, name in enumerate(graph.columns) if name.startswith("_multiplier:")}
+    return unwanted | {name: out[graph.columns.index(name)] for name in undetermined if name in graph.columns}
+
+
+def _closed(graph: SceneGraph, out: Array, p: Array) -> dict[str, Array]:
+    """What is left of the loops' equations, over the mechanism's extent."""
+    gaps = [np.abs(out[k]) / graph.extent(p) for k, name in enumerate(graph.columns) if name.startswith("_gap:")]
+    gaps += [np.abs(out[k]) for k, name in enumerate(graph.columns) if name.startswith("_misfit:")]
+    return {"closure": np.max(gaps, axis=0)} if gaps else {}
 
 
 def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:

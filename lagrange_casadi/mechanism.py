@@ -44,7 +44,7 @@ _RESERVED_NAMES = ("law",)
 _GROUND = "ground"
 
 
-@dataclass
+@dataclass(eq=False)
 class Mechanism:
     """A planar mechanism under declaration: links and point masses in the x-y plane, joined to each other and to the ground.
 

@@ -88,9 +88,7 @@ def internal_forces(
     held |= {graph.row.name: graph.multiplier for graph in multibody.rows}
     columns |= {f"multiplier:{name}": held[name] for name in multipliers}
     if reactions:
-        for number, part in enumerate(multibody.held):
-            columns |= {f"_held:{number}:{member}": getattr(part, member) for member in ("fx", "fy", "mz")}
-            columns |= {f"_held:{number}:{member}": ca.SX(getattr(part.point, member)) for member in ("x", "y")}
+        columns |= {f"_multiplier:{name}": multiplier for name, multiplier in held.items() if name not in multipliers}
     for name in sections:
         for coefficient, force in _section_law(multibody, name, borne, drives).items():
             columns[f"section:{name}:{coefficient}"] = force

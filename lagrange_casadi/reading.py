@@ -92,7 +92,7 @@ def drive_of(graph: SceneGraph) -> SceneGraph:
     names = [graph.instant.name_in(i) for i in range(graph.instant.n_in())]
     instant = ca.Function("instant", [t, d, rate, acceleration, ca.SX(0, 1), p], [out], names, ["out"], {"cse": True})
     columns = ("angle", "rate", "acceleration", *(f"within:{turns}" for turns in range(1, TURNS + 1)))
-    return replace(graph, instant=instant, newton=None, columns=columns, wrapped={}, held=())
+    return replace(graph, instant=instant, newton=None, columns=columns, wrapped={})
 
 
 def _above(values: Array) -> float:

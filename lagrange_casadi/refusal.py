@@ -43,6 +43,7 @@ class Status(enum.IntEnum):
     IMPOSSIBLE = 10
     INVALID = 11
     NOT_CLOSED = 12
+    UNCERTIFIED = 13
 
     @property
     def meaning(self) -> str:
@@ -64,6 +65,7 @@ _MEANINGS = {
     Status.IMPOSSIBLE: "a length is not positive, a mass or density is negative, or a station is outside its link",
     Status.INVALID: "a parameter is not finite",
     Status.NOT_CLOSED: "what was found for a loop does not satisfy its equations",
+    Status.UNCERTIFIED: "the design was looked at closely, and fails its certificate: others may be wrong as well",
 }
 
 

@@ -26,9 +26,9 @@ class SceneGraph:
     column name; ``newton`` where loops must be iterated. Columns that begin with ``_`` are no outputs. They tell whether there is
     a result: ``_closure:JOINT`` (see :mod:`.loops`), ``_gap:JOINT`` and ``_misfit:JOINT`` (see :mod:`.gaps`), ``_row:NAME`` and
     ``_rowsize:NAME``; whether it is the only one: ``_open:FORCE`` (see :mod:`.determinacy`); or they are what the certificate
-    needs: ``_held:NUMBER:...``, what multipliers do to the bodies that ``held`` names. ``wrapped`` names the angles that loops set,
-    and what they are sums and differences of: by ``pose:BODY:angle`` directions known up to whole turns, and by ``_turns:JOINT``
-    the whole turns of angles that count them, which are in these columns without them.
+    needs: ``_multiplier:NAME``, where it was not wanted. ``wrapped`` names the angles that loops set, and what they are sums
+    and differences of: by ``pose:BODY:angle`` directions known up to whole turns, and by ``_turns:JOINT`` the whole turns of
+    angles that count them, which are in these columns without them.
     """
 
     scene: Scene
@@ -39,7 +39,6 @@ class SceneGraph:
     newton: NewtonLoop | None
     columns: tuple[str, ...]
     wrapped: Mapping[str, Mapping[str, int]]
-    held: tuple[str, ...]
 
     @cached_property
     def laws(self) -> Laws:
@@ -107,4 +106,4 @@ class SceneGraph:
         return cls(scene=scene, wanted=wanted, motion=motion, instant=instant, newton=newton, wrapped=kept["wrapped"], **rest)
 
 
-_KEPT = ("driven", "columns", "held")
+_KEPT = ("driven", "columns")

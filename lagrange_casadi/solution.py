@@ -122,8 +122,9 @@ class Solution:
     ``series`` holds every array over time by full name (``effort:O``, ``reaction:guide:fy``, ``section:rod:law:n0``, ...), each of
     shape (t,); :mod:`.quantities` says what each means. ``xi`` are the ratios of the section grids. ``undetermined`` names what
     equilibrium does not determine, because the mechanism is over-constrained: its values are NaN. ``certificate`` holds the
-    residuals of :mod:`.certificate`, and how singular the loops are. ``errors`` estimates by :mod:`.accuracy` how far
-    each quantity may be off, over all instants, in its unit.
+    residuals of :mod:`.certificate`, and how singular the loops are; a residual above ``tolerance`` means that the solution is
+    wrong, not that it is rounded. ``errors`` estimates by :mod:`.accuracy` how far each quantity may be off, over all
+    instants, in its unit.
     """
 
     case: str
@@ -135,6 +136,18 @@ class Solution:
     undetermined: tuple[str, ...] = ()
     certificate: Mapping[str, Array] = field(default_factory=dict)
     errors: Mapping[str, float] = field(default_factory=dict)
+    tolerance: float = 0.0
+
+    @property
+    def failed(self) -> dict[str, float]:
+        """The residuals that are above the tolerance, or no numbers, and the largest of each."""
+        residuals = {name: float(np.max(v, initial=0.0)) for name, v in self.certificate.items() if name != "condition"}
+        return {name: value for name, value in residuals.items() if not value <= self.tolerance}
+
+    @property
+    def certified(self) -> bool:
+        """Whether there are residuals, and none of them fails."""
+        return any(name != "condition" for name in self.certificate) and not self.failed
 
     def __repr__(self) -> str:
         return f"<Solution of {self.case}: {self.t.size} instants, {self.xi.size} ratios, {', '.join(self.names())}>"

@@ -30,6 +30,9 @@ class Formula:
         self.columns = ("effort:O", *(f"section:rod:law:{name}" for name in laws))
         self.count, self.pause, self.threads, self.calls = count, pause, [], []
 
+    def failures(self, p):
+        return {}
+
     def evaluate(self, p, *, threads=None, histories=False):
         self.threads.append(threads)
         self.calls.append((len(p), threading.get_ident()))

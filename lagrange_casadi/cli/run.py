@@ -9,8 +9,9 @@ from pathlib import Path
 import click
 
 from ..case import load_case
-from ..certificate import summary
+from ..certificate import failure, summary
 from ..compensated import Precision
+from ..errors import CertificateError
 from ..evaluate import evaluate
 from ..figures import dump_specs
 from ..peaks import forces, refine
@@ -87,9 +88,11 @@ def run(
             draw_with_progress(solution, loaded.figures, draft)
         save(solution, out, dump_specs(loaded.figures))
     _report(solution, refine(loaded.scene, solution, forces(solution)) if refine_peaks else None)
-    if solution.certificate:
+    if not no_certificate:
         click.echo(summary(solution.certificate))
     click.echo(f"wrote {out}" + (f" and the figures in {folder}/" if folder else ""))
+    if solution.failed:
+        raise CertificateError(f"{failure(solution)}; {out} is marked as not certified")
 
 
 def _report(solution: Solution, refined: Sequence[Peak] | None) -> None:

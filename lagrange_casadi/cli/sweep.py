@@ -10,6 +10,8 @@ import click
 
 from ..case import load_case
 from ..compensated import Precision
+from ..errors import CertificateError
+from ..refusal import Status
 from ..rung import Backend
 from ..scene import Grid
 from ..sweep import KEEPS, Axis, Keep, Sweep, read_designs
@@ -106,6 +108,11 @@ def sweep(
         )
     _report(found)
     click.echo(f"wrote {found.path}" if progress.begun else f"{found.path} was complete already: nothing was done")
+    if wrong := found.counts()[Status.UNCERTIFIED]:
+        raise CertificateError(
+            f"{counted(wrong)} of those that were looked at closely, one a block, {'fails its' if wrong == 1 else 'fail their'} "
+            f"certificate: others may be wrong as well"
+        )
 
 
 def _report(found: Sweep) -> None:

@@ -12,10 +12,11 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..certificate import failure
 from ..compensated import Precision
 from ..derive import derive
 from ..determinacy import determinate
-from ..errors import DeclarationError, PathError
+from ..errors import CertificateError, DeclarationError, PathError
 from ..evaluate import checked_times, evaluate
 from ..fingerprint import declaration
 from ..publish import check_writable, filling
@@ -96,6 +97,8 @@ def export(
     instants = points(checked_times(scene, None))
     graph, left_open = determinate(graph, instants, p, telling=table is None)
     exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm", newton=enough)
+    if exact.failed:
+        raise CertificateError(f"cannot export {name or scene.mechanism.name}: {failure(exact)}")
     plain = newton == enough and table is None
     solution = exact if plain else evaluate(scene, parameters=values, wanted=wanted, backend="vm", newton=newton, table=table)
     read = None if table is None else (drive_of(graph), table_of(graph, solution.t, p, rung))

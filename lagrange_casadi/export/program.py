@@ -69,7 +69,7 @@ def program(
     """
     evaluated = graph if read is None else read[0]
     stages = controlled(evaluated, precision)
-    kept = [k for k, name in enumerate(evaluated.columns) if not name.startswith(("_turns:", "_held:"))]
+    kept = [k for k, name in enumerate(evaluated.columns) if not name.startswith(("_turns:", "_multiplier:"))]
     columns = tuple(evaluated.columns[k] for k in kept) if read is None else read[1].columns
     constants, instant = hoisted(stages.instant, kept)
     mechanism = graph.scene.mechanism

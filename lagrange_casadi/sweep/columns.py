@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
@@ -21,6 +21,7 @@ from ..designs import Outcome
 from ..errors import DeclarationError, UnknownNameError
 from ..mechanism import Mechanism
 from ..quantities import FORCE, quantity_of, unit_in
+from ..refusal import Status
 from ..section_law import FORCES, SectionLaw, StationLoad
 from .chunks import encoded
 from .engine import STATUSES, Engine
@@ -127,7 +128,19 @@ class Harvest:
             some = slice(start, min(start + self._piece, len(p)))
             for into, values in zip(whole, self.evaluate(p[some]), strict=True):
                 into[some] = values
+        self._look_closely(p, whole)
         return [encoded(values) for values in whole]
+
+    def _look_closely(self, p: Array, whole: Sequence[Any]) -> None:
+        """Take one of the designs that have a result, and mark it where it fails its certificate."""
+        there = np.flatnonzero(whole[0][: len(p)] == Status.OK)
+        if not there.size:
+            return
+        chosen = int(there[there.size // 2])
+        if self.engine.failures(p[chosen]):
+            whole[0][chosen] = Status.UNCERTIFIED
+            for column in whole[1:]:
+                column[chosen] = np.nan
 
     def evaluate(self, p: Array) -> list[Any]:
         """The columns of designs ``p`` (designs, parameters), each of shape (designs, its own axes)."""

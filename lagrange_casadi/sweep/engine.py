@@ -47,3 +47,6 @@ class Engine(Protocol):
 
     def evaluate(self, p: Array, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """Evaluate designs ``p`` (designs, parameters), every parameter in the order of declaration; default: a thread a core."""
+
+    def failures(self, p: Array) -> Mapping[str, float]:
+        """What fails of one design that has a result, (parameters,), when it is looked at closely; nothing where all is well."""
