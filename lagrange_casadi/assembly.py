@@ -266,11 +266,16 @@ def _hold(resting: _Builder, name: str, expression: Any, of: Closure | RowGraph)
 
 
 def _row(resting: _Builder, row: Any) -> RowGraph:
-    residual = resting.at_state(row.expression)
-    rates = column(c.rate for c in resting.coordinates)
-    slopes = ca.jacobian(residual, rates).T
-    rest = ca.substitute(residual, rates, ca.SX.zeros(rates.numel()))
-    return RowGraph(row, residual, ca.sum1(ca.fabs(slopes * rates)) + ca.fabs(rest), ca.SX.sym(f"mu_{row.name}"))
+    """A row, and the size of what is added up in it: rates of coordinates, in what is measured, in the row.
+
+    Not the size of its own terms: of a motion along which a row is idle, all of them are rounding.
+    """
+    residual, rates = resting.at_state(row.expression), column(c.rate for c in resting.coordinates)
+    measured = resting.mechanism.measures.rates
+    slopes = ca.fabs(resting.at_state(ca.jacobian(row.expression, measured)))
+    going = ca.fabs(ca.jacobian(resting.at_state(measured), rates)) @ ca.fabs(rates)
+    rest = ca.fabs(resting.at_state(ca.substitute(row.expression, measured, ca.SX.zeros(measured.numel()))))
+    return RowGraph(row, residual, slopes @ going + rest, ca.SX.sym(f"mu_{row.name}"))
 
 
 def _work(felt: _Builder, applied: Iterable[Applied], closures: Iterable[Closure], velocities: Velocities) -> None:

@@ -131,12 +131,14 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
     found = []
     for k, (closure, row) in enumerate((own, row) for own in closures for row in range(own.gap.numel())):
         least = _ABSENT * max(sizes[k].values(), default=0.0)
+        present = frozenset(c for c, size in sizes[k].items() if size > least)
         parts = ca.vertcat(*(expressions[k] for expressions in motion))
-        absent = [c for c, size in sizes[k].items() if size <= least]
+        written = {symbol.element_hash() for symbol in ca.symvar(parts)}
+        absent = [c for c in unknown if c not in present and not written.isdisjoint(c.keys)]
         if absent:
             symbols = column(ca.vertcat(c.variables, c.rate, c.acceleration) for c in absent)
             parts = ca.substitute(parts, symbols, column([1, 0, 0, 0, 0] if c.kind == "angle" else [0, 0, 0] for c in absent))
-        found.append(Equation(closure, row, frozenset(sizes[k]).difference(absent), *ca.vertsplit(parts)))
+        found.append(Equation(closure, row, present, *ca.vertsplit(parts)))
     return found
 
 

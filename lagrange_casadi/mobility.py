@@ -215,10 +215,13 @@ def _multipliers(multibody: Multibody, kinematics: Kinematics, along: Any) -> tu
     """
     rows = {c: along[i] for i, c in enumerate(multibody.coordinates)}
     symbols, values, free = ca.SX(0, 1), ca.SX(0, 1), ca.SX(0, 1)
+    every = column(closure.multipliers for closure in multibody.closures)
     for block, system in reversed(list(zip(kinematics.blocks, kinematics.systems, strict=True))):
         own = block.multipliers
         left = column(rows[c] for c in block.unknown)
-        left = ca.substitute(left, ca.vertcat(own, symbols), ca.vertcat(ca.SX.zeros(own.numel()), values))
+        left = ca.substitute(left, symbols, values)
+        # What no equation of theirs moves, others may still be written in, with factors that cancel.
+        left = ca.substitute(left, every, ca.SX.zeros(every.numel()))
         open_here = ca.SX.sym(f"free_{block.closures[0].name}", system.free)
         free = ca.vertcat(free, open_here)
         symbols, values = ca.vertcat(own, symbols), ca.vertcat(system.solve_transposed(left, open_here), values)

@@ -54,8 +54,8 @@ class Coordinate:
 
     @cached_property
     def keys(self) -> tuple[int, ...]:
-        """What its variables are known by."""
-        return tuple(symbol.element_hash() for symbol in ca.vertsplit(self.variables))
+        """What its variables are known by, and then its rate and its acceleration."""
+        return tuple(symbol.element_hash() for symbol in ca.vertsplit(ca.vertcat(self.variables, self.rate, self.acceleration)))
 
 
 @dataclass(frozen=True, eq=False)

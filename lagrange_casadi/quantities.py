@@ -70,7 +70,7 @@ QUANTITIES = (
     Quantity("load", "mz", ("t",), MOMENT, "applied torque", _ON_FIRST),
     Quantity("certificate", "balance", ("t",), "1", "Newton-Euler balance of all bodies, over the largest force of the cycle"),
     Quantity("certificate", "power", ("t",), "1", "balance of power, over the largest force times speed of the cycle"),
-    Quantity("certificate", "closure", ("t",), "1", "gaps of the joints, and what users' equations miss, over the length of all links"),
+    Quantity("certificate", "closure", ("t",), "1", "gaps of joints, and what users' equations miss, over the length of all links"),
     Quantity("certificate", "ends", ("t",), "1", "sections at the base and what acts there, over the largest force of the cycle"),
     Quantity("certificate", "condition", ("t",), "1", "how much the loops magnify: 1/sin(transmission angle), or 2/volume"),
     Quantity("section", "axial", ("t", "xi"), FORCE, "axial force", f"tension is positive: {_ON_INBOARD}, along the axis"),

@@ -36,7 +36,7 @@ def drawn(expression: Any, coordinates: Iterable[Coordinate]) -> Values:
     for coordinate in coordinates:
         if coordinate.kind == "angle" and not values.keys().isdisjoint(coordinate.keys):
             angle = generator.uniform(-np.pi, np.pi, COUNT)
-            values |= dict(zip(coordinate.keys, (np.cos(angle), np.sin(angle), angle), strict=True))
+            values |= dict(zip(coordinate.keys, (np.cos(angle), np.sin(angle), angle), strict=False))
     rows = [values[symbol.element_hash()] for symbol in symbols]
     function = ca.Function("drawn", [column(symbols)], [ca.densify(ca.vec(ca.SX(expression)))])
     with np.errstate(all="ignore"):

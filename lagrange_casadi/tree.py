@@ -60,7 +60,16 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
         for joint in waiting
         if (joint.parent.body in depth) != (joint.child.body in depth) and _can_carry(joint, joint.parent.body not in depth)
     ]:
-        best = min(reachable, key=lambda branch: (-_rank(branch.joint, driven), depth[branch.near.body]))
+        # What a driven joint can carry one way only is left to it, for its motion would else close a loop.
+        kept = {j.child.body for j in waiting if j.name in driven and (_can_carry(j, False), _can_carry(j, True)) == (True, False)}
+        best = min(
+            reachable,
+            key=lambda branch: (
+                branch.far.body in kept and branch.joint.name not in driven,
+                -_rank(branch.joint, driven),
+                depth[branch.near.body],
+            ),
+        )
         depth[best.far.body] = depth[best.near.body] + 1
         branches.append(best)
         waiting.remove(best.joint)

@@ -9,6 +9,7 @@ import pytest
 from builders import INSTANT, MOTION, assert_balanced
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
+from lagrange_casadi.designs import DesignEngine
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.motion import expression, polynomial
 
@@ -180,3 +181,23 @@ def test_a_row_must_replace_a_drive():
     base = sleigh()
     with pytest.raises(DeclarationError, match="row 'blade' replaces the drive of joint 'Y', which has no motion"):
         Scene(base.mechanism, {"X": polynomial(0), "turn": polynomial(0)})
+
+
+def test_a_row_along_which_nothing_goes_is_not_violated():
+    """A skate that starts along an inclined axis: what is added up in its row is rounding, term by term, and its speed is not."""
+    m = Mechanism("sleigh")
+    cross, pivot, body = (m.link(n, length=0.1, mass=1.0) for n in ("cross", "pivot", "body"))
+    m.prismatic("X", m.ground, cross, axis=(0.0, -1.0), angle=-2.513896326794897)
+    across = m.prismatic("Y", cross, pivot, axis=(-0.8093825600407514, 0.58728176500031), angle=1.5437)
+    m.revolute("Z", pivot, body)
+    vx, vy = m.velocity(body)
+    q = m.direction(body)
+    m.nonholonomic("blade", -ca.sin(q) * vx + ca.cos(q) * vy, replaces=across)
+    laws = {
+        "X": expression(lambda t: 0.55 * ca.sin(0.35 * t)),
+        "Y": expression(lambda t: 0.55 - 0.55 * ca.cos(0.35 * t)),
+        "Z": expression(lambda t: -0.6006 + 0.35 * t),
+    }
+    scene = Scene(m, laws, t=(0, 0.05, 2))
+    assert evaluate(scene).certified
+    assert DesignEngine.of(scene, ["effort"]).evaluate(np.zeros((1, 0))).status == 0

@@ -55,3 +55,18 @@ def test_a_link_that_only_slides_on_a_point_is_refused():
     scene = Scene(m, {"P": polynomial(0.5)})
     with pytest.raises(DeclarationError, match="'a' only slides on a point"):
         span(m, scene.motion)
+
+
+def test_a_driven_slide_carries_its_mass_whatever_else_is_pinned_to_it():
+    """A point can be hung on its line, and no line on a point: a pin that is nearer the ground must wait."""
+    m = Mechanism("driven_slot")
+    a, b, c = m.link("a", length=0.3, mass=1.0), m.link("b", length=0.5, mass=1.0), m.link("c", length=0.6, mass=1.0)
+    pin = m.point_mass("pin", 0.1)
+    m.revolute("O", m.ground, a)
+    m.revolute("P", a.tip, pin)
+    m.revolute("Q", m.ground.at(0.6, 0), b)
+    m.revolute("R", b.tip, c)
+    m.slot("S", c, pin, axis=(1, 0))
+    tree = span(m, ["S", "R"])
+    assert [branch.joint.name for branch in tree.branches] == ["O", "Q", "R", "S"]
+    assert [joint.name for joint in tree.closures] == ["P"]

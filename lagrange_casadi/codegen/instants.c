@@ -117,6 +117,15 @@ static int designs_passes(const designs_now* now, int check, casadi_int i) {
   return DESIGNS_NZ || designs_dead_between(now, check, i);
 }
 
+/* The largest of what is checked over all instants. */
+static designs_real designs_most(const designs_now* now, int check) {
+  const designs_real* row = designs_row(now, DESIGNS_CHECKED + check);
+  designs_real most = 0;
+  casadi_int i;
+  for (i = 0; i < now->n; ++i) most = row[i] > most ? row[i] : most;
+  return most;
+}
+
 /* Why an instant has no result, or DESIGNS_OK. */
 static int designs_why(const designs_now* now, casadi_int i) {
   designs_real x, limit;
@@ -129,12 +138,15 @@ static int designs_why(const designs_now* now, casadi_int i) {
       if (x < -limit) return designs_kind[k] == DESIGNS_IS_BRANCH ? DESIGNS_JUMPED : DESIGNS_OUT_OF_REACH;
       if (!(x > limit)) return DESIGNS_DEAD_CENTRE;
       if (designs_passes(now, k, i)) return DESIGNS_PASSES_DEAD_CENTRE;
+    } else if (now->status[i] == DESIGNS_SLOW) {
+      return DESIGNS_SLOW;
     } else if (designs_kind[k] == DESIGNS_IS_GAP) {
-      if (!((x < 0 ? -x : x) <= limit*designs_lane(now->matter, 0))) return DESIGNS_NOT_CLOSED;
+      limit *= designs_lane(now->matter, 0);
+      if (x > limit || x < -limit) return DESIGNS_NOT_CLOSED;
     } else if (designs_kind[k] == DESIGNS_IS_MISFIT) {
-      if (!(x <= limit)) return DESIGNS_MISFIT;
+      if (x > limit) return DESIGNS_MISFIT;
     } else if (designs_kind[k] == DESIGNS_IS_ROW) {
-      if (!((x < 0 ? -x : x) <= limit*designs_row(now, DESIGNS_CHECKED + k + 1)[i])) return DESIGNS_ROW_VIOLATED;
+      if (!((x < 0 ? -x : x) <= limit*designs_most(now, k + 1))) return DESIGNS_ROW_VIOLATED;
     }
   }
   if (now->status[i] == DESIGNS_SLOW) return DESIGNS_SLOW;
@@ -157,8 +169,11 @@ static int designs_refused(const designs_now* now) {
     } else if (designs_kind[k] == DESIGNS_IS_GAP) {
       limit = designs_limit[k]*designs_lane(now->matter, 0);
       for (i = 0; i < now->n; ++i) bad |= !(row[i] <= limit && -row[i] <= limit);
-    } else if (designs_kind[k] == DESIGNS_IS_MISFIT || designs_kind[k] == DESIGNS_IS_ROW) {
-      bad = 1;
+    } else if (designs_kind[k] == DESIGNS_IS_MISFIT) {
+      for (i = 0; i < now->n; ++i) bad |= !(row[i] <= designs_limit[k]);
+    } else if (designs_kind[k] == DESIGNS_IS_ROW) {
+      limit = designs_limit[k]*designs_most(now, k + 1);
+      for (i = 0; i < now->n; ++i) bad |= !(row[i] <= limit && -row[i] <= limit);
     }
   }
   if (!bad) return DESIGNS_OK;

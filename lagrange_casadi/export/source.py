@@ -312,9 +312,12 @@ class Source:
 
     def _verdict(self) -> Iterable[str]:
         P, precision, number = self._upper, self.contract.precision, self._number
-        graph, misfit = self.program.graph, number(MISFIT[precision])
+        graph, misfit, closed = self.program.graph, number(MISFIT[precision]), self.iterated
         for k, name in enumerate(self.program.columns):
             kind, _, part = name.partition(":")
+            if closed and kind in ("_gap", "_misfit"):
+                yield f"if (closed != {P}_OK) return closed;"
+                closed = False
             if kind == "_closure":
                 dead = number(dead_centre(graph, precision, name))
                 lost = "JUMPED" if graph.iterates(part) else "NOT_ASSEMBLED"
@@ -322,17 +325,17 @@ class Source:
                 yield f"if (!(y[{k}] > {dead})) return {P}_DEAD_CENTRE;"
             elif kind == "_gap" and self.program.sizes["gapped"]:
                 limit = f"{number(gap_limit(precision, self.program.newton))}*model->matter[0]"
-                yield f"if (!({self._function('fabs')}(y[{k}]) <= {limit})) return {P}_NOT_CLOSED;"
+                yield f"if ({self._function('fabs')}(y[{k}]) > {limit}) return {P}_NOT_CLOSED;"
             elif kind == "_open":
                 least, moment = open_limits(graph, Rung("auto", precision, self.program.newton))[part]
                 limit = f"{number(least)}*model->matter[0]" if moment else number(least)
                 yield f"if (!(y[{k}] <= {limit})) return {P}_UNDETERMINED;"
             elif kind == "_misfit":
-                yield f"if (!(y[{k}] <= {misfit})) return {P}_INCONSISTENT;"
+                yield f"if (y[{k}] > {misfit}) return {P}_INCONSISTENT;"
             elif kind == "_row":
                 size = self.program.columns.index(name.replace("_row:", "_rowsize:"))
                 yield f"if (!({self._function('fabs')}(y[{k}]) <= {misfit}*y[{size}])) return {P}_INCONSISTENT;"
-        if self.iterated:
+        if closed:
             yield f"if (closed != {P}_OK) return closed;"
         rows = len(self.program.columns)
         yield f"if (!all_finite(y, {rows})) return {P}_NOT_FINITE;"

@@ -344,7 +344,7 @@ static press_status columns_of(press_model* model, const press_inputs* inputs, c
   instant(arg, res);
   if (y[0] < -7.1054273576010019e-15) return PRESS_NOT_ASSEMBLED;
   if (!(y[0] > 7.1054273576010019e-15)) return PRESS_DEAD_CENTRE;
-  if (!(fabs(y[1]) <= 1e-08*model->matter[0])) return PRESS_NOT_CLOSED;
+  if (fabs(y[1]) > 1e-08*model->matter[0]) return PRESS_NOT_CLOSED;
   if (!all_finite(y, 10)) return PRESS_NOT_FINITE;
   return PRESS_OK;
 }
