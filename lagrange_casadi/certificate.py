@@ -27,7 +27,7 @@ _BLOCK = 1 << 14
 _Matter = tuple[float, complex, float]
 _Action = tuple[str, Complex, Any, Any, bool]
 
-_TURNED = 100.0
+_TURNED, _ROUNDINGS = 100.0, 4.0
 TOLERANCE, LOOSE = 1e-9, 1e-3
 """A residual above it means that the solution is wrong, not that it is rounded; in doubles, and where less was asked for."""
 
@@ -43,31 +43,37 @@ class _Tally:
 
 
 def certify(
-    solution: Solution, equations: Sequence[Written] | None = None, hidden: Mapping[str, Array] | None = None
+    solution: Solution,
+    equations: Sequence[Written] | None = None,
+    hidden: Mapping[str, Array] | None = None,
+    phases: Mapping[str, Array] | None = None,
 ) -> dict[str, Array]:
     """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``, ``ends``, each where it can be had.
 
     ``equations`` are the constraints and rows of its mechanism, which a solution does not hold: without them, a solution of a
     mechanism that has some is looked at for ``closure`` alone. ``hidden`` are forces that it does not give: multipliers that were
-    not wanted, and what is open, which takes some value all the same.
+    not wanted, and what is open, which takes some value all the same. ``phases`` are angles that are known up to whole turns more
+    closely than they are reported.
     """
     whole = replace(solution, series={**solution.series, **(hidden or {})}, undetermined=())
+    turned = replace(whole, series={**whole.series, **(phases or {})})
     found: dict[str, list[Array]] = {}
     scales: dict[str, float] = {}
     for start in range(0, whole.t.size, _BLOCK):
-        for name, (gaps, scale) in _residuals(whole.during(slice(start, start + _BLOCK)), equations).items():
+        block = slice(start, start + _BLOCK)
+        for name, (gaps, scale) in _residuals(whole.during(block), turned.during(block), equations).items():
             found.setdefault(name, []).append(gaps)
             scales[name] = max(scales.get(name, 0.0), scale)
     return {name: np.concatenate(gaps) / (scales[name] or 1.0) for name, gaps in found.items()}
 
 
-def _residuals(solution: Solution, equations: Sequence[Written] | None) -> dict[str, tuple[Array, float]]:
-    """Each residual, and the largest of what it is to be compared with."""
+def _residuals(solution: Solution, turned: Solution, equations: Sequence[Written] | None) -> dict[str, tuple[Array, float]]:
+    """Each residual, and the largest of what it is to be compared with; ``turned`` has angles without their turns."""
     description = solution.description
     joints = description["joints"]
     if any(joint["coordinate"] and f"motion:{name}" not in solution.series for name, joint in joints.items()):
         return {}
-    bodies = place(solution, equations or ())
+    bodies = place(turned, equations or ())
     if len(bodies) < len(description["bodies"]) + 1:
         return {}
     found = {"closure": (_closure(solution, bodies, equations or ()), _size(solution))}
@@ -100,8 +106,11 @@ def blur(solution: Solution) -> float:
     angles = [f"motion:{name}" for name, joint in joints.items() if joint["coordinate"] == "angle"]
     angles += [f"pose:{name}:angle" for name in solution.description["bodies"]]
     reported = (solution.series[name] for name in angles if name in solution.series)
-    rounding = ROUNDING["single" if solution.provenance.precision == "single" else "double"]
-    return rounding * max((float(np.max(np.abs(values))) for values in reported), default=0.0)
+    return _rounding(solution) * max((float(np.max(np.abs(values))) for values in reported), default=0.0)
+
+
+def _rounding(solution: Solution) -> float:
+    return ROUNDING["single" if solution.provenance.precision == "single" else "double"]
 
 
 def failure(solution: Solution) -> str:
@@ -148,7 +157,11 @@ def _closure(solution: Solution, bodies: dict[str, Moving], equations: Sequence[
         pose = solution.pose(name)
         worst = np.maximum(worst, np.abs(pose.x + 1j * pose.y - bodies[name].at))
         if pose.angle is not None:
-            worst = np.maximum(worst, np.abs(np.exp(1j * (pose.angle - bodies[name].angle)) - 1.0) * _size(solution))
+            # An angle of many turns is reported to so many digits only.
+            off = np.abs(np.exp(1j * (pose.angle - bodies[name].angle)) - 1.0) - _ROUNDINGS * _rounding(solution) * np.abs(
+                pose.angle
+            )
+            worst = np.maximum(worst, off * _size(solution))
     for equation in equations:
         motion = [measured(solution, bodies, entry) for entry in equation.entries]
         units = [1.0 if entry.kind in ("direction", "coordinate") else _size(solution) for entry in equation.entries]

@@ -19,6 +19,7 @@ from .description import describe
 from .determinacy import determinate, undetermined
 from .errors import CertificateWarning, DeclarationError
 from .grids import require
+from .phases import phases
 from .reading import columns
 from .refusal import refuse
 from .rung import Backend, Rung
@@ -89,6 +90,7 @@ def evaluate(
     refuse(graph, found, times, p, rung)
     out = np.asarray(found.out, float)
     left_open += undetermined(graph, out, p, rung)
+    within = phases(graph, out, times, p) if certificate else {}
     series = outputs_of(graph, out) | {name: np.full(times.size, np.nan) for name in left_open}
     description = describe(scene.mechanism, values, scene.motion)
     ordered = in_order(series, description)
@@ -96,7 +98,8 @@ def evaluate(
     solution = replace(solution, tolerance=tolerance(solution))
     if not certificate:
         return solution
-    residuals = _closed(graph, out, p) | certify(solution, written(scene.mechanism, values), hidden(graph, out, left_open))
+    residuals = _closed(graph, out, p)
+    residuals |= certify(solution, written(scene.mechanism, values), hidden(graph, out, left_open), within)
     errors = explained(solution, residuals, estimate(graph, found, solution, p))
     solution = replace(solution, certificate=residuals | _condition(graph, found), errors=errors)
     if solution.failed:

@@ -17,6 +17,7 @@ from .density import Array
 from .derive import derive
 from .description import describe
 from .evaluate import hidden, outputs_of
+from .phases import phases
 from .rung import Rung
 from .scene import Scene
 from .solution import Solution
@@ -38,10 +39,11 @@ def failures(scene: Scene, p: Array, t: Array, rung: Rung, columns: Sequence[str
     table, provenance = run(graph, followed, p, Rung("vm", newton=rung.newton))
     rows = table.out[:, some] if graph.newton is not None else table.out
     values = dict(zip(scene.mechanism.parameters, p.tolist(), strict=True))
+    within = phases(graph, rows, t[some], p)
     series = outputs_of(graph, rows.copy())
     description = describe(scene.mechanism, values, scene.motion)
     whole = Solution(scene.mechanism.name, t[some], np.zeros(0), series, description, provenance)
-    residuals = certify(whole, written(scene.mechanism, values), hidden(graph, rows, ()))
+    residuals = certify(whole, written(scene.mechanism, values), hidden(graph, rows, ()), within)
     limit = tolerance(whole) if rung.newton is None else LOOSE
     found = {name: float(np.max(gaps)) for name, gaps in residuals.items()}
     failed = {name: gap for name, gap in found.items() if not gap <= limit}

@@ -63,6 +63,7 @@ ORDER = (
     "accuracy",
     "refusal",
     "determinacy",
+    "phases",
     "evaluate",
     "witness",
     "designs_plan",
