@@ -140,6 +140,7 @@ class Multibody:
             velocity_graphs=column(self.velocities.graphs),
             velocity_rates=column(self.velocities.rates),
             velocity_forces=column(self.velocities.forces),
+            time=self.mechanism.time,
         )
 
     def joint_motion(self, joint: Joint) -> tuple[Any, Any, Any]:

@@ -28,6 +28,7 @@ ORDER = (
     "mechanism",
     "tree",
     "planar",
+    "integrability",
     "lagrange",
     "multibody",
     "assembly",
