@@ -22,6 +22,7 @@ from .reciprocals import share_reciprocals
 from .scene import Scene, Wanted
 from .scene_graph import SceneGraph
 from .tree import span
+from .turns import count_turns
 
 _OPEN = 1e-9
 _SAMPLES, _STEPS = 6, 8
@@ -62,11 +63,14 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     first = [float(x) for x in ca.DM(motion(scene.t[0], defaults)[0]).full().ravel()]
     start = Start(float(scene.t[0]), first, defaults)
     solved = kinematics.solve(body, scene.posture, start, iterate=iterate)
+    times = (float(scene.t[0]), float(scene.t[1]))
+    solved, swings = count_turns(body, solved, motion, times, start, _seeing(body, want))
 
     columns = {f"_closure:{name}": closure for name, closure in solved.closures.items()}
     columns |= {f"_misfit:{name}": misfit for name, misfit in solved.misfits.items()}
     for graph in body.rows:
         columns |= {f"_row:{graph.row.name}": graph.residual, f"_rowsize:{graph.row.name}": graph.size}
+    columns |= {f"_turned:{name}": swing for name, swing in swings.items()}
     wrapped: dict[str, dict[str, int]] = {}
     if want.motion:
         motions = _motion_columns(body, solved, driven)
@@ -105,6 +109,16 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
     return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), wrapped, undetermined, held)
+
+
+def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
+    """The expressions of loads, rows and multipliers that are evaluated, by what they are of."""
+    parts = [part for part in (*body.applied, *body.held) if want.forces or part.source in want.loads]
+    found = {f"row '{graph.row.name}'": ca.vertcat(graph.residual, graph.size) for graph in body.rows}
+    for part in parts:
+        name = f"{'load' if part.source in body.mechanism.loads else 'row'} '{part.source}'"
+        found[name] = ca.vertcat(found.get(name, ca.SX(0, 1)), part.fx, part.fy, part.mz)
+    return found
 
 
 def _undetermined(

@@ -22,6 +22,7 @@ from .rung import Rung
 from .scene_graph import SceneGraph
 from .section_law import FORCES
 from .stages import Stages, compensated, counts, plain
+from .turns import REACH
 
 _BETWEEN = 9
 """Places in a cell of density at which one of a higher degree than a line is asked for its sign."""
@@ -116,6 +117,8 @@ def _checks(graph: SceneGraph, precision: Precision, at: dict[str, int]) -> list
         if kind == "_closure":
             jumps = graph.newton is not None and f"'{joint}'" in graph.newton.joints
             found.append((k, "BRANCH" if jumps else "CLOSURE", dead_centre(graph, precision, name)))
+        elif kind == "_turned":
+            found.append((k, "TURNED", REACH))
         elif kind == "_misfit":
             found.append((k, "MISFIT", MISFIT[precision]))
         elif kind == "_row":

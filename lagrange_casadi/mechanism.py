@@ -258,14 +258,17 @@ class Mechanism:
     def torsion_spring(
         self, name: str, joint: Joint, *, stiffness: Expression, angle: Expression = 0.0, damping: Expression = 0.0
     ) -> Torque:
-        """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint."""
+        """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint, whose coordinate counts turns."""
         if self._own_joint(joint).coordinate != "angle":
             raise DeclarationError(f"load '{name}': joint '{joint.name}' has no angle for a torsion spring")
         stretch, rate = self.coordinate(joint) - angle, self.rate(joint)
         return self.torque(name, joint.child, -(stiffness * stretch) - damping * rate, against=joint.parent)
 
     def coordinate(self, joint: Joint) -> Any:
-        """The symbol of a joint's coordinate, for loads and constraints."""
+        """The symbol of a joint's coordinate, for loads and constraints; an angle counts turns.
+
+        Where loops set the angle, it lies in (-pi, pi] at the start of the scene, with the default parameters.
+        """
         return self.measures.joint(self._moving_joint(joint)).places[0]
 
     def rate(self, joint: Joint) -> Any:
@@ -283,7 +286,7 @@ class Mechanism:
         return x, y
 
     def direction(self, link: Link) -> Any:
-        """The symbol of the direction of a link's axis against the ground's x axis [rad], for loads and constraints."""
+        """The symbol of the direction of a link's axis against the ground's x axis [rad]; it counts turns as a coordinate does."""
         body = self._point("direction", link).body
         if not isinstance(body, Link):
             raise DeclarationError(f"direction: expected a link, got '{body.name}'")

@@ -19,6 +19,7 @@ from .errors import AssemblyError
 from .kinematics import passes_dead_centre, where
 from .rung import Rung
 from .scene_graph import SceneGraph
+from .turns import LEAP, REACH
 
 MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 """How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
@@ -42,6 +43,7 @@ class Status(enum.IntEnum):
     ROW_VIOLATED = 9
     IMPOSSIBLE = 10
     INVALID = 11
+    TURNED = 12
 
     @property
     def meaning(self) -> str:
@@ -62,6 +64,7 @@ _MEANINGS = {
     Status.ROW_VIOLATED: "the motion violates a non-holonomic row",
     Status.IMPOSSIBLE: "a length is not positive, a mass or density is negative, or a station is outside its link",
     Status.INVALID: "a parameter is not finite",
+    Status.TURNED: "an angle that a load sees with its turns might be a turn further",
 }
 
 
@@ -89,6 +92,8 @@ def refusal(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> 
         if name.startswith("_closure:"):
             bad |= ~(table.out[k] > dead_centre(graph, precision, name))
             passed[name] = passes_dead_centre(table.out[k], ends=graph.newton is None)
+        elif name.startswith("_turned:"):
+            bad |= _turned(table.out[k])
         elif name.startswith("_misfit:"):
             bad |= ~(table.out[k] <= misfit)
         elif name.startswith("_row:"):
@@ -108,6 +113,11 @@ def refusal(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> 
     at = f"at t = {t[i]:.6g} s{at}"
     status, why = _why(graph, table, i, at, [name for name in passed if passed[name][i]])
     return Refusal(status, _beyond(graph, p, precision, at) or why)
+
+
+def _turned(swing: Array) -> npt.NDArray[np.bool_]:
+    """Where an angle may have made another turn: too far from the middle of its swing, or about to be as far on the other side."""
+    return ~(np.abs(swing) <= REACH) | (np.abs(np.diff(swing, append=swing[-1:])) > LEAP)
 
 
 def dead_centre(graph: SceneGraph, precision: Precision, closure: str) -> float:
@@ -167,6 +177,15 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]
         if kind == "_misfit" and not value <= misfit:
             gap = f"a gap of {value:.3g} of the links' length"
             return Status.MISFIT, f"the loops closed by {closed} are over-constrained and do not fit {at}: {gap}"
+        if kind == "_turned" and _turned(table.out[graph.columns.index(name), i : i + 2])[0]:
+            what = f"the angle of '{joint}', which a load sees with its turns,"
+            if abs(value) <= REACH:
+                return Status.TURNED, f"{what} goes most of a turn from the instant {at} to the next: take more instants"
+            swing = f"swings {math.degrees(value):.3g} deg from the middle of its swing over the scene's motion {at}"
+            return (
+                Status.TURNED,
+                f"{what} {swing}: it might be a turn further; take defaults and a motion that show how far it goes",
+            )
         if kind == "_row" and not abs(value) <= misfit * values[f"_rowsize:{joint}"]:
             return Status.ROW_VIOLATED, f"the motion violates the non-holonomic row '{joint}' by {value:.6g} {at}"
     if table.status[i] == SLOW:

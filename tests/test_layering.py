@@ -36,6 +36,7 @@ ORDER = (
     "blocks",
     "linear",
     "kinematics",
+    "turns",
     "mobility",
     "motion",
     "reciprocals",

@@ -13,11 +13,13 @@ import numpy as np
 from ..compensated import DTYPES, Precision
 from ..scene_graph import SceneGraph
 from ..stages import Stages
+from ..turns import LEAP
 from .emit import FOLLOW, Parts, dump, emit, following, in_single, work
 
 DESIGNS, BEGIN = "lagrange_casadi_designs", "lagrange_casadi_begin"
-CHECKS = ("CLOSURE", "BRANCH", "MISFIT", "ROW", "ROWSIZE")
-"""What is checked at every instant: a closure, one whose branch iteration may leave, a misfit, a row's residual and its size."""
+CHECKS = ("CLOSURE", "BRANCH", "MISFIT", "ROW", "ROWSIZE", "TURNED")
+"""What is checked at every instant: a closure, one whose branch iteration may leave, a misfit, a row's residual and its size, the
+swing of an angle."""
 
 INSIDE, ROUNDS = 17, 7
 """Instants at which a dead centre between two others is looked for, and how often, ever closer."""
@@ -99,6 +101,7 @@ def _macros(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan, p
         "ROOT": "sqrtf" if precision == "single" else "sqrt",
         "HALF": "((DESIGNS_REAL) 0.5)",
         "SIXTH": "((DESIGNS_REAL) 1/6)",
+        "LEAP": f"((DESIGNS_REAL) {LEAP:.17g})",
         "CLOSE": f"((DESIGNS_REAL) {8 * float(numbers.eps):.17g})",
         "LARGEST": f"((DESIGNS_REAL) {float(numbers.max):.17g})",
         **{name.upper(): sizes[name] for name in ("nt", "np", "nz", "columns", "constants")},

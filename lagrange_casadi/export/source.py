@@ -13,6 +13,7 @@ from ..codegen.emit import newton_rule
 from ..density import Density
 from ..mobility import LAW, PLACE_FIRST
 from ..refusal import MISFIT, dead_centre
+from ..turns import REACH
 from ..version import __version__
 from .contract import REST, Contract
 from .data import sampled, table_call, table_text
@@ -318,6 +319,8 @@ class Source:
                 lost = "JUMPED" if graph.iterates(part) else "NOT_ASSEMBLED"
                 yield f"if (y[{k}] < -{dead}) return {P}_{lost};"
                 yield f"if (!(y[{k}] > {dead})) return {P}_DEAD_CENTRE;"
+            elif kind == "_turned":
+                yield f"if (!({self._function('fabs')}(y[{k}]) <= {number(REACH)})) return {P}_TURNED;"
             elif kind == "_misfit":
                 yield f"if (!(y[{k}] <= {misfit})) return {P}_INCONSISTENT;"
             elif kind == "_row":

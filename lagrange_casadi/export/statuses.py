@@ -17,4 +17,5 @@ STATUSES = {
     "SLOW": "the iteration of the loops converges slowly: they are near a dead centre",
     "INCONSISTENT": "the motion violates a loop that is over-constrained, or a non-holonomic row",
     "NOT_FINITE": "a result is not finite: the mechanism is singular there, or its numbers overflow",
+    "TURNED": "an angle that a load sees with its turns might be a turn further",
 }

@@ -56,7 +56,8 @@ typedef enum {
   PRESS_JUMPED = 10 /* an iterated loop has jumped to another branch */,
   PRESS_SLOW = 11 /* the iteration of the loops converges slowly: they are near a dead centre */,
   PRESS_INCONSISTENT = 12 /* the motion violates a loop that is over-constrained, or a non-holonomic row */,
-  PRESS_NOT_FINITE = 13 /* a result is not finite: the mechanism is singular there, or its numbers overflow */
+  PRESS_NOT_FINITE = 13 /* a result is not finite: the mechanism is singular there, or its numbers overflow */,
+  PRESS_TURNED = 14 /* an angle that a load sees with its turns might be a turn further */
 } press_status;
 
 /* Numbers that may change without generating anything again. */
