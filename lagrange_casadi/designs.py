@@ -23,7 +23,7 @@ from .derive import derive
 from .designs_plain import outcome
 from .designs_plan import Kept, stages_of
 from .errors import DeclarationError
-from .evaluate import checked_times, outputs_of
+from .evaluate import checked_laws, checked_times, outputs_of
 from .grids import require
 from .rung import Rung
 from .scene import Grid, Scene, points
@@ -81,6 +81,7 @@ class DesignEngine:
             raise DeclarationError("designs are not read from a table: each would need a table of its own")
         graph = derive(scene, wanted, iterate=rung.newton is not None)
         instants = points(checked_times(scene, t))
+        checked_laws(scene, (float(instants[0]), float(instants[-1])), tuple(scene.mechanism.values().values()))
         stages = stages_of(graph, rung, instants)
         kept = Kept.of(graph, rung.precision)
         guess = np.array(graph.newton.guess if graph.newton else (), float)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -17,6 +18,7 @@ from .derive import derive
 from .description import describe
 from .errors import DeclarationError
 from .grids import require
+from .motion import refuse_kinked
 from .reading import columns
 from .refusal import refuse
 from .rung import Backend, Rung
@@ -71,6 +73,7 @@ def evaluate(
     rung = Rung(backend, precision, newton, table, flags)
     values = scene.mechanism.values(parameters)
     start, stop, count = checked_times(scene, t)
+    checked_laws(scene, (start, stop), tuple(values.values()))
     ratios = checked_ratios(scene.xi if xi is None else xi)
     graph = derive(scene, wanted, iterate=newton is not None)
     require("the outputs over time", (len(graph.columns) + _BESIDE, count))
@@ -102,6 +105,12 @@ def checked_times(scene: Scene, t: Grid | None) -> Grid:
                 f"{start:g} to {stop:g} s is asked for"
             )
     return start, stop, count
+
+
+@functools.lru_cache(maxsize=64)
+def checked_laws(scene: Scene, span: tuple[float, float], p: tuple[float, ...]) -> None:
+    """Raise :class:`DeclarationError` for a motion whose rate jumps within a span of time, for values of the parameters."""
+    refuse_kinked(scene.motion, scene.mechanism.symbols, p, span)
 
 
 def outputs_of(graph: SceneGraph, out: Array) -> dict[str, Array]:

@@ -19,6 +19,7 @@ ORDER = (
     "rung",
     "cache",
     "quantities",
+    "kinks",
     "curves",
     "density",
     "parts",
