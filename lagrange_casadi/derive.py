@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import casadi as ca
@@ -12,6 +13,7 @@ import numpy as np
 
 from . import cache, kinematics
 from .assembly import assemble
+from .errors import AssemblyError, MobilityError
 from .fingerprint import fingerprint
 from .kinematics import NewtonLoop, Start
 from .mechanism import Mechanism
@@ -19,7 +21,7 @@ from .mobility import internal_forces, needed_reactions
 from .motion import motion_function
 from .multibody import Multibody, column
 from .reciprocals import share_reciprocals
-from .scene import Scene, Wanted
+from .scene import Scene, Wanted, told_parameters
 from .scene_graph import SceneGraph
 from .tree import span
 from .turns import count_turns
@@ -35,18 +37,44 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool =
 
     Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the loops cannot be solved.
     """
-    return _kept(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted), iterate)
+    found = _kept(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted), iterate)
+    if isinstance(found, SceneGraph):
+        return found
+    raise type(found)(str(found))
+
+
+def assembled(scene: Scene, values: Mapping[str, float], wanted: Sequence[str] | None = None, *, iterate: bool = False) -> Scene:
+    """The scene; or where its loops cannot be assembled with its own parameters, the same assembled with ``values`` of all.
+
+    Raises what :func:`derive` does, where they can be assembled with neither.
+    """
+    try:
+        derive(scene, wanted, iterate=iterate)
+    except (AssemblyError, MobilityError):
+        if values == scene.mechanism.values(scene.assembly):
+            raise
+        scene = _at(scene, tuple(values.items()))
+        derive(scene, wanted, iterate=iterate)
+    return scene
 
 
 @functools.lru_cache(maxsize=32)
-def _kept(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
-    """The graph from the cache, or derived and kept there."""
+def _at(scene: Scene, values: tuple[tuple[str, float], ...]) -> Scene:
+    return replace(scene, assembly=dict(values))
+
+
+@functools.lru_cache(maxsize=32)
+def _kept(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph | AssemblyError | MobilityError:
+    """The graph from the cache, or derived and kept there; or why there is none."""
     key = fingerprint(scene, want)
     key = f"{key}-iterated" if key and iterate else key
     text = cache.read(f"{key}.graph") if key else None
     if text is not None:
         return SceneGraph.loads(text, scene, want)
-    graph = _derive(scene, want, iterate)
+    try:
+        graph = _derive(scene, want, iterate)
+    except (AssemblyError, MobilityError) as error:
+        return type(error)(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
     if key:
         cache.write(f"{key}.graph", graph.dumps())
     return graph
@@ -59,9 +87,9 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     body = assemble(mechanism, tree, scene.motion, needed_reactions(mechanism, want.reactions, want.sections))
     driven = tuple(c.joint for c in body.coordinates if c.driven)
     motion = motion_function({name: scene.motion[name] for name in driven}, p)
-    defaults = list(mechanism.values().values())
-    first = [float(x) for x in ca.DM(motion(scene.t[0], defaults)[0]).full().ravel()]
-    start = Start(float(scene.t[0]), first, defaults)
+    values = list(mechanism.values(scene.assembly).values())
+    first = [float(x) for x in ca.DM(motion(scene.t[0], values)[0]).full().ravel()]
+    start = Start(float(scene.t[0]), first, values)
     solved = kinematics.solve(body, scene.posture, start, iterate=iterate)
     times = (float(scene.t[0]), float(scene.t[1]))
     solved, swings = count_turns(body, solved, motion, times, start, _seeing(body, want))
@@ -128,7 +156,7 @@ def _undetermined(
     if not free.numel():
         return ()
     slopes = ca.Function("slopes", [*inputs, free], [ca.jacobian(ca.vertcat(*columns.values()), free)])
-    p = list(scene.mechanism.values().values())
+    p = list(scene.mechanism.values(scene.assembly).values())
     largest = np.zeros((len(columns), free.numel()))
     z = ca.DM(newton.guess if newton else [])
     for number, t in enumerate(np.linspace(scene.t[0], scene.t[1], 10 * _SAMPLES + 1)):

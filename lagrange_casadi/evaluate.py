@@ -14,7 +14,7 @@ from .backends import Table
 from .certificate import Held, certify
 from .compensated import Precision
 from .density import Array
-from .derive import derive
+from .derive import assembled, derive
 from .description import describe
 from .errors import DeclarationError
 from .grids import require
@@ -75,7 +75,7 @@ def evaluate(
     start, stop, count = checked_times(scene, t)
     checked_laws(scene, (start, stop), tuple(values.values()))
     ratios = checked_ratios(scene.xi if xi is None else xi)
-    graph = derive(scene, wanted, iterate=newton is not None)
+    graph = derive(assembled(scene, values, wanted, iterate=newton is not None), wanted, iterate=newton is not None)
     require("the outputs over time", (len(graph.columns) + _BESIDE, count))
     require("the grid of ratios", (ratios[2],))
     times, places = points((start, stop, count)), points(ratios)

@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from ..compensated import Precision
-from ..derive import derive
+from ..derive import assembled, derive
 from ..errors import DeclarationError, PathError
 from ..evaluate import evaluate
 from ..fingerprint import declaration
@@ -89,6 +89,7 @@ def export(
         check_tools()
     values = scene.mechanism.values(parameters)
     p = np.array(list(values.values()))
+    scene = assembled(scene, values, wanted, iterate=newton is not None)
     graph = derive(scene, wanted, iterate=newton is not None)
     # What rounding alone makes of it: all steps that loops want, and no table.
     enough = None if newton is None else max(newton, _ENOUGH)
