@@ -13,6 +13,7 @@ from .compensated import Precision
 from .density import Array, Density
 from .errors import DeclarationError
 from .kinematics import NEAR
+from .limits import margins
 from .mechanism import Mechanism
 from .mobility import LAW, PLACE_FIRST, stations_of
 from .parts import Link, RigidMass
@@ -77,7 +78,7 @@ class Kept:
         numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
         efforts = tuple(name for name in names if name.startswith("effort:"))
         along = tuple(_along(link, at) for link in links)
-        matter, positive, margins = _matter(mechanism, links, along)
+        matter, positive, margins = _matter(mechanism, links, along, precision)
         plan = Plan(
             quantities=tuple(chosen.values()),
             links=along,
@@ -126,16 +127,17 @@ def _checks(graph: SceneGraph, precision: Precision, at: dict[str, int]) -> list
     return found
 
 
-def _matter(mechanism: Mechanism, links: list[Link], along: tuple[Along, ...]) -> tuple[ca.Function, int, int]:
+def _matter(
+    mechanism: Mechanism, links: list[Link], along: tuple[Along, ...], precision: Precision
+) -> tuple[ca.Function, int, int]:
     """What the plan wants to know of the parts, and how many numbers must be positive, and not negative."""
     lengths = {name: link.length for name, link in mechanism.links.items()}
     masses = [_masses(body.mass, lengths.get(body.name, 0.0)) for body in mechanism.moving]
     positive = [*lengths.values(), sum((mass for mass, _ in masses), ca.SX(0))]
     others = [value for _, values in masses for value in values]
-    for point in (point for joint in mechanism.joints.values() for point in (joint.parent, joint.child)):
-        others += _margins(point)
-    for point in (point for load in mechanism.loads.values() for point in load.points):
-        others += _margins(point)
+    points = [point for joint in mechanism.joints.values() for point in (joint.parent, joint.child)]
+    for point in (*points, *(point for load in mechanism.loads.values() for point in load.points)):
+        others += margins(point, precision)
     rest: list[Any] = []
     for link, part in zip(links, along, strict=True):
         assert isinstance(link.mass, Density)
@@ -157,10 +159,3 @@ def _masses(matter: Any, length: Any) -> tuple[Any, list[Any]]:
         for u in np.linspace(a, b, min(len(cell), 2) if len(cell) < 3 else _BETWEEN):
             values.append(sum(c * float(u) ** j for j, c in enumerate(cell)))
     return base + tip, values
-
-
-def _margins(point: Any) -> list[Any]:
-    """How far a station of a link with sections is from either end."""
-    if isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None:
-        return [point.x, point.body.length - point.x]
-    return []

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from .density import Array, Density
 from .errors import DeclarationError, ParameterError, UnknownNameError
+from .limits import no_sections
 from .mechanism import Mechanism
 from .motion import Motion
 
@@ -126,13 +127,9 @@ def outputs(mechanism: Mechanism) -> list[str]:
 
 def _refuse_output(mechanism: Mechanism, name: str) -> None:
     kind, _, part = name.partition(":")
-    if kind == "section" and part in mechanism.links:
-        raise DeclarationError(
-            f"output '{name}': link '{part}' is known by its centre of mass and inertia only; a section needs to know how its mass "
-            "lies along it, so give it a mass alone or a density"
-        )
     if kind == "section" and part in mechanism.bodies:
-        raise DeclarationError(f"output '{name}': '{part}' is not a link and has no sections; links: {', '.join(mechanism.links)}")
+        why = no_sections(part, link=part in mechanism.links, links=mechanism.links)
+        raise DeclarationError(f"output '{name}': {why}")
 
 
 @dataclass(frozen=True, eq=False)

@@ -53,6 +53,7 @@ ORDER = (
     "cycle_table",
     "tabulate",
     "description",
+    "notes",
     "section_law",
     "solution",
     "certificate",
