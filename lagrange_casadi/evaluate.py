@@ -49,7 +49,7 @@ def evaluate(
     Parameters
     ----------
     parameters
-        Values that replace defaults, by name. Nothing is derived or compiled again for them.
+        Values that replace defaults, by name. Nothing is derived or compiled again for them where the defaults can be assembled.
     t, xi
         Start, stop and count of the instants [s] and of the section ratios xi/l.
     wanted

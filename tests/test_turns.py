@@ -56,6 +56,12 @@ def assert_followed(scene, joints, count=5, **keywords):
     oracle = oracle_of(m, values, loads=[Coil(m.joints[joint]) for joint in joints])
     found, drives = columns_at(graph, start, values)
     guess, before, worst = postures(m, found, drives, 0.02), start, 0.0
+    for joint, (drive, *_) in drives.items():
+        parent, child = (guess.get(body.name, (0.0, 0.0, 0.0)) for body in m.joints[joint].bodies)
+        if m.joints[joint].coordinate == "angle":
+            # The oracle wants the drive's turns between its two bodies.
+            turns = round((parent[2] + drive - child[2]) / math.tau)
+            guess[m.joints[joint].child.body.name] = (*child[:2], child[2] + math.tau * turns)
     size = max(np.abs(solution.reaction(name).fx).max() + np.abs(solution.reaction(name).fy).max() for name in m.joints)
     for i, t in enumerate(solution.t):
         fast = max(abs(rate) for moment in (before, t) for rate in graph.motion(moment, list(values.values()))[1].full().ravel())
