@@ -73,8 +73,10 @@ def _kept(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph | AssemblyErr
         return SceneGraph.loads(text, scene, want)
     try:
         graph = _derive(scene, want, iterate)
-    except (AssemblyError, MobilityError) as error:
-        return type(error)(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
+    except AssemblyError as error:
+        return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
+    except MobilityError as error:
+        return MobilityError(str(error))
     if key:
         cache.write(f"{key}.graph", graph.dumps())
     return graph
