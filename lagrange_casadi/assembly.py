@@ -10,7 +10,7 @@ import casadi as ca
 
 from .density import Density
 from .mechanism import Mechanism
-from .multibody import Applied, Closure, Coordinate, Multibody, RowGraph, change, column, joint_coordinate, joint_rates
+from .multibody import Applied, Closure, Coordinate, Multibody, RowGraph, Turned, change, column, joint_coordinate, joint_rates
 from .parts import Force, Joint, Link, Load, Point, PointMass, RigidMass, Spring, Torque
 from .planar import Frame, Pair, Rotation, Velocities, closure, gap_motion, reaction, slide
 from .tree import Branch, Tree
@@ -53,6 +53,7 @@ def assemble(mechanism: Mechanism, tree: Tree, driven: Collection[str], reaction
         felt=felt.frames,
         applied=applied,
         held=tuple(held),
+        turned=tuple(resting.turned.values()),
         kinetic=kinetic,
         velocities=velocities,
     )
@@ -67,6 +68,7 @@ class _Builder:
         self.coordinates = tuple(coordinate for coordinate in carried.values() if coordinate)
         self.frames: dict[str, Frame] = {mechanism.ground.name: ground}
         self.mobilities: dict[str, Any] = {}
+        self.turned: dict[str, Turned] = {}
 
     def ends(self, joint: Joint) -> tuple[Frame, Frame]:
         """The frames of a joint's parent and child."""
@@ -87,7 +89,7 @@ class _Builder:
         return self._measured(expression, turns=True)
 
     def at_state(self, expression: Any) -> Any:
-        """The same with the angles of undriven joints in (-pi, pi], and with rates."""
+        """The same with rates; angles that are not driven are symbols of their own, for :mod:`.turns` to tell."""
         return self._measured(expression, turns=False)
 
     def _measured(self, expression: Any, *, turns: bool) -> Any:
@@ -97,14 +99,27 @@ class _Builder:
             symbols += [*measure.places, *measure.rates]
             of = measure.of
             if isinstance(of, Joint):
-                place = joint_coordinate(of, self.frames, self.coordinates, counted=turns)
+                known = turns or of.coordinate != "angle" or any(c.joint == of.name and c.driven for c in self.coordinates)
+                place = joint_coordinate(of, self.frames, self.coordinates) if known else self._seen(of)
                 values += [place, joint_rates(of, self.frames, self.coordinates)[0]]
             elif isinstance(of, Point):
                 frame = self.frames[of.body.name]
                 values += [*frame.place_of(of.x, of.y), *frame.motion_of(of.x, of.y)[0]]
             else:
-                values += [self.frames[of.name].rotation.angle, self.frames[of.name].rate]
+                values += [self.frames[of.name].rotation.angle if turns else self._seen(of), self.frames[of.name].rate]
         return ca.substitute(ca.SX(expression), column(symbols), column(values))
+
+    def _seen(self, of: Joint | Link) -> Any:
+        """The symbol of an angle."""
+        if of.name not in self.turned:
+            if isinstance(of, Joint):
+                parent, child = self.ends(of)
+                turn = child.rotation.against(parent.rotation)
+            else:
+                turn = self.frames[of.name].rotation
+            symbol = ca.SX.sym(f"{of.name}_seen")
+            self.turned[of.name] = Turned(of.name, symbol, ca.SX(turn.c), ca.SX(turn.s), ca.SX(turn.angle))
+        return self.turned[of.name].symbol
 
     def _undisplaced(self, branch: Branch, coordinate: Coordinate | None) -> Frame:
         """The frame of the body that hangs on a branch, anchored at the joint's point on its child."""

@@ -269,8 +269,10 @@ def cycle_of(graph: SceneGraph, p: Array, rates: tuple[float, float]) -> Cycle:
             drift = np.where((whole != 0.0) & (np.abs(gain - whole) < _SAME), whole, gain) / turns
             return Cycle(drive, course, turns, drift, _ROUNDING * sizes + 2.0 * noise)
     names = [name for name, does in zip(graph.columns, moved, strict=True) if does]
+    wound = any(name.startswith("_turned:") for name in graph.columns)
     raise DeclarationError(
         f"table: expected columns that repeat after at most {TURNS} turns of joint '{drive.joint}', but {_listed(names)} go on"
+        f"{'; a load that sees an angle with its turns may wind up' if wound else ''}"
     )
 
 

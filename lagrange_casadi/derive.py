@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import casadi as ca
 
 from . import cache, kinematics
 from .assembly import assemble
+from .errors import AssemblyError, MobilityError
 from .fingerprint import fingerprint
 from .kinematics import Start
 from .mechanism import Mechanism
@@ -18,9 +20,10 @@ from .mobility import internal_forces, needed_reactions
 from .motion import motion_function
 from .multibody import Multibody, column
 from .reciprocals import share_reciprocals
-from .scene import Scene, Wanted
+from .scene import Scene, Wanted, told_parameters
 from .scene_graph import SceneGraph
 from .tree import span
+from .turns import count_turns
 
 
 def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool = False) -> SceneGraph:
@@ -30,18 +33,46 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool =
 
     Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the loops cannot be solved.
     """
-    return _kept(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted), iterate)
+    found = _kept(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted), iterate)
+    if isinstance(found, SceneGraph):
+        return found
+    raise type(found)(str(found))
+
+
+def assembled(scene: Scene, values: Mapping[str, float], wanted: Sequence[str] | None = None, *, iterate: bool = False) -> Scene:
+    """The scene; or where its loops cannot be assembled with its own parameters, the same assembled with ``values`` of all.
+
+    Raises what :func:`derive` does, where they can be assembled with neither.
+    """
+    try:
+        derive(scene, wanted, iterate=iterate)
+    except (AssemblyError, MobilityError):
+        if values == scene.mechanism.values(scene.assembly):
+            raise
+        scene = _at(scene, tuple(values.items()))
+        derive(scene, wanted, iterate=iterate)
+    return scene
 
 
 @functools.lru_cache(maxsize=32)
-def _kept(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
-    """The graph from the cache, or derived and kept there."""
+def _at(scene: Scene, values: tuple[tuple[str, float], ...]) -> Scene:
+    return replace(scene, assembly=dict(values))
+
+
+@functools.lru_cache(maxsize=32)
+def _kept(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph | AssemblyError | MobilityError:
+    """The graph from the cache, or derived and kept there; or why there is none."""
     key = fingerprint(scene, want)
     key = f"{key}-iterated" if key and iterate else key
     text = cache.read(f"{key}.graph") if key else None
     if text is not None:
         return SceneGraph.loads(text, scene, want)
-    graph = _derive(scene, want, iterate)
+    try:
+        graph = _derive(scene, want, iterate)
+    except AssemblyError as error:
+        return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
+    except MobilityError as error:
+        return MobilityError(str(error))
     if key:
         cache.write(f"{key}.graph", graph.dumps())
     return graph
@@ -54,16 +85,19 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     body = assemble(mechanism, tree, scene.motion, needed_reactions(mechanism, want.reactions, want.sections))
     driven = tuple(c.joint for c in body.coordinates if c.driven)
     motion = motion_function({name: scene.motion[name] for name in driven}, p)
-    defaults = list(mechanism.values().values())
-    first = [float(x) for x in ca.DM(motion(scene.t[0], defaults)[0]).full().ravel()]
-    start = Start(float(scene.t[0]), first, defaults)
+    values = list(mechanism.values(scene.assembly).values())
+    first = [float(x) for x in ca.DM(motion(scene.t[0], values)[0]).full().ravel()]
+    start = Start(float(scene.t[0]), first, values)
     solved = kinematics.solve(body, scene.posture, start, iterate=iterate)
+    times = (float(scene.t[0]), float(scene.t[1]))
+    solved, swings = count_turns(body, solved, motion, times, start, _seeing(body, want))
 
     columns = {f"_closure:{name}": closure for name, closure in solved.closures.items()}
     columns |= {f"_gap:{name}": gap for name, gap in solved.gaps.items()}
     columns |= {f"_misfit:{name}": misfit for name, misfit in solved.misfits.items()}
     for graph in body.rows:
         columns |= {f"_row:{graph.row.name}": graph.residual, f"_rowsize:{graph.row.name}": graph.size}
+    columns |= {f"_turned:{name}": swing for name, swing in swings.items()}
     wrapped: dict[str, dict[str, int]] = {}
     if want.motion:
         motions = _motion_columns(body, solved, driven)
@@ -112,6 +146,16 @@ def _settled(columns: dict[str, Any], free: Any) -> dict[str, Any]:
     doubted = ((name, slopes[k, :]) for k, name in enumerate(columns) if slopes[k, :].nnz() and not name.startswith("_"))
     sizes = {f"_open:{name}": ca.sum2(ca.fabs(slope)) for name, slope in doubted}
     return dict(zip(columns, ca.vertsplit(forces), strict=True)) | sizes
+
+
+def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
+    """The expressions of loads, rows and multipliers that are evaluated, by what they are of."""
+    parts = [part for part in (*body.applied, *body.held) if want.forces or part.source in want.loads]
+    found = {f"row '{graph.row.name}'": ca.vertcat(graph.residual, graph.size) for graph in body.rows}
+    for part in parts:
+        name = f"{'load' if part.source in body.mechanism.loads else 'row'} '{part.source}'"
+        found[name] = ca.vertcat(found.get(name, ca.SX(0, 1)), part.fx, part.fy, part.mz)
+    return found
 
 
 def _motion_columns(body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]) -> dict[str, Any]:

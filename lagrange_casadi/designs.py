@@ -25,7 +25,7 @@ from .designs_plain import outcome
 from .designs_plan import Kept, stages_of
 from .determinacy import determinate, undetermined
 from .errors import DeclarationError
-from .evaluate import checked_times, outputs_of
+from .evaluate import checked_laws, checked_times, outputs_of
 from .grids import require
 from .rung import Rung
 from .scene import Grid, Scene, points
@@ -87,6 +87,7 @@ class DesignEngine:
             raise DeclarationError("designs are not read from a table: each would need a table of its own")
         graph = derive(scene, wanted, iterate=rung.newton is not None)
         instants = points(checked_times(scene, t))
+        checked_laws(scene, (float(instants[0]), float(instants[-1])), tuple(scene.mechanism.values().values()))
         stages = stages_of(graph, rung, instants)
         p = np.array(list(scene.mechanism.values().values()))
         _, left_open = determinate(graph, instants, p)

@@ -10,11 +10,13 @@ import casadi as ca
 import numpy as np
 
 from .codegen.designs import Along, Plan, matter_of
+from .compensated import Precision
 from .density import Array, Density
 from .determinacy import open_limits
 from .errors import DeclarationError
 from .gaps import extent
 from .kinematics import NEAR
+from .limits import margins
 from .mechanism import Mechanism
 from .mobility import LAW, PLACE_FIRST, stations_of
 from .parts import Link, RigidMass
@@ -24,6 +26,7 @@ from .rung import Rung
 from .scene_graph import SceneGraph
 from .section_law import FORCES, made_of
 from .stages import Stages, compensated, counts, plain
+from .turns import REACH
 
 _BETWEEN = 9
 """Places in a cell of density at which one of a higher degree than a line is asked for its sign."""
@@ -80,7 +83,7 @@ class Kept:
         numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
         efforts = tuple(name for name in names if name.startswith("effort:"))
         along = tuple(_along(link, at) for link in links)
-        matter, positive, margins = _matter(mechanism, links, along)
+        matter, positive, margins = _matter(mechanism, links, along, rung.precision)
         checks = _checks(graph, rung, at)
         doubted = {k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")}
         made = {name: _made_of(graph, name) for name in names}
@@ -139,6 +142,8 @@ def _checks(graph: SceneGraph, rung: Rung, at: dict[str, int]) -> list[tuple[int
         elif kind == "_open":
             limit, moment = opened[joint]
             found.append((k, "OPEN_MOMENT" if moment else "OPEN", limit))
+        elif kind == "_turned":
+            found.append((k, "TURNED", REACH))
         elif kind == "_misfit":
             found.append((k, "MISFIT", MISFIT[precision]))
         elif kind == "_row":
@@ -146,16 +151,17 @@ def _checks(graph: SceneGraph, rung: Rung, at: dict[str, int]) -> list[tuple[int
     return found
 
 
-def _matter(mechanism: Mechanism, links: list[Link], along: tuple[Along, ...]) -> tuple[ca.Function, int, int]:
+def _matter(
+    mechanism: Mechanism, links: list[Link], along: tuple[Along, ...], precision: Precision
+) -> tuple[ca.Function, int, int]:
     """What the plan wants to know of the parts, and how many numbers must be positive, and not negative."""
     lengths = {name: link.length for name, link in mechanism.links.items()}
     masses = [_masses(body.mass, lengths.get(body.name, 0.0)) for body in mechanism.moving]
     positive = [extent(mechanism), *lengths.values(), sum((mass for mass, _ in masses), ca.SX(0))]
     others = [value for _, values in masses for value in values]
-    for point in (point for joint in mechanism.joints.values() for point in (joint.parent, joint.child)):
-        others += _margins(point)
-    for point in (point for load in mechanism.loads.values() for point in load.points):
-        others += _margins(point)
+    points = [point for joint in mechanism.joints.values() for point in (joint.parent, joint.child)]
+    for point in (*points, *(point for load in mechanism.loads.values() for point in load.points)):
+        others += margins(point, precision)
     rest: list[Any] = []
     for link, part in zip(links, along, strict=True):
         assert isinstance(link.mass, Density)
@@ -177,10 +183,3 @@ def _masses(matter: Any, length: Any) -> tuple[Any, list[Any]]:
         for u in np.linspace(a, b, min(len(cell), 2) if len(cell) < 3 else _BETWEEN):
             values.append(sum(c * float(u) ** j for j, c in enumerate(cell)))
     return base + tip, values
-
-
-def _margins(point: Any) -> list[Any]:
-    """How far a station of a link with sections is from either end."""
-    if isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None:
-        return [point.x, point.body.length - point.x]
-    return []

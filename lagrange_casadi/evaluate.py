@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import warnings
 from collections.abc import Mapping, Sequence
@@ -14,11 +15,12 @@ from .backends import Table
 from .certificate import certify, failure, tolerance
 from .compensated import Precision
 from .density import Array
-from .derive import derive
+from .derive import assembled, derive
 from .description import describe
 from .determinacy import determinate, undetermined
 from .errors import CertificateWarning, DeclarationError
 from .grids import require
+from .motion import refuse_kinked
 from .phases import phases
 from .reading import columns
 from .refusal import refuse
@@ -51,7 +53,7 @@ def evaluate(
     Parameters
     ----------
     parameters
-        Values that replace defaults, by name. Nothing is derived or compiled again for them.
+        Values that replace defaults, by name. Nothing is derived or compiled again for them where the defaults can be assembled.
     t, xi
         Start, stop and count of the instants [s] and of the section ratios xi/l.
     wanted
@@ -77,8 +79,9 @@ def evaluate(
     rung = Rung(backend, precision, newton, table, flags)
     values = scene.mechanism.values(parameters)
     start, stop, count = checked_times(scene, t)
+    checked_laws(scene, (start, stop), tuple(values.values()))
     ratios = checked_ratios(scene.xi if xi is None else xi)
-    graph = derive(scene, wanted, iterate=newton is not None)
+    graph = derive(assembled(scene, values, wanted, iterate=newton is not None), wanted, iterate=newton is not None)
     require("the outputs over time", (len(graph.columns) + _BESIDE, count))
     require("the grid of ratios", (ratios[2],))
     times, places = points((start, stop, count)), points(ratios)
@@ -118,6 +121,12 @@ def checked_times(scene: Scene, t: Grid | None) -> Grid:
                 f"{start:g} to {stop:g} s is asked for"
             )
     return start, stop, count
+
+
+@functools.lru_cache(maxsize=64)
+def checked_laws(scene: Scene, span: tuple[float, float], p: tuple[float, ...]) -> None:
+    """Raise :class:`DeclarationError` for a motion whose rate jumps within a span of time, for values of the parameters."""
+    refuse_kinked(scene.motion, scene.mechanism.symbols, p, span)
 
 
 def outputs_of(graph: SceneGraph, out: Array) -> dict[str, Array]:

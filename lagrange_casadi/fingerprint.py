@@ -39,6 +39,7 @@ def declaration(scene: Scene, wanted: Wanted) -> str | None:
         mechanism.symbols,
         scene.t[:2],
         scene.posture,
+        scene.assembly,
         wanted,
         list(scene.motion),
     ]

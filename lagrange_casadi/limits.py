@@ -6,11 +6,17 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+import casadi as ca
+
+from .compensated import Precision
 from .density import Density
 from .errors import DeclarationError, ParameterError, UnknownNameError
-from .parts import Body, Ground, Joint, Link, Load, Parameter, Point, PointMass, RigidMass
+from .parts import Body, Expression, Ground, Joint, Link, Load, Parameter, Point, PointMass, RigidMass
 
 Number = Callable[[Any], float]
+
+END: dict[Precision, float] = {"double": 1e-12, "single": 1e-6}
+"""Of a link's length: what misses its end by so little misses it by rounding, and is at it."""
 
 
 def check_connected(name: str, ground: Ground, bodies: Iterable[Body], joints: Iterable[Joint]) -> None:
@@ -90,8 +96,39 @@ def _density_mass(what: str, matter: Density, length: float, number: Number) -> 
     return density.mass
 
 
+def margins(point: Point, precision: Precision) -> list[Expression]:
+    """What must not be negative for a fixed point to be on its link, where that has sections: how far it is from either end."""
+    if not (isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None):
+        return []
+    slack = END[precision] * point.body.length
+    return [point.x + slack, (point.body.length - point.x) + slack]
+
+
+def at_end(point: Point) -> Expression:
+    """Where a fixed point of a link is along it [m]: at an end, if it misses that by rounding."""
+    assert isinstance(point.body, Link)
+    x, length = point.x, point.body.length
+    if isinstance(x, float) and x == 0.0:
+        return x
+    slack = END["double"] * length
+    if isinstance(x, float) and isinstance(length, float):
+        return 0.0 if abs(x) <= slack else length if abs(x - length) <= slack else x
+    return ca.if_else(ca.fabs(x) <= slack, 0.0, ca.if_else(ca.fabs(x - length) <= slack, length, x))
+
+
+def no_sections(name: str, *, link: bool, links: Iterable[str]) -> str:
+    """Why a body has no sections, in words: a link, of which it is not known how its mass lies, or none of the links."""
+    if link:
+        return (
+            f"link '{name}' is known by its centre of mass and inertia only; a section needs to know how its mass lies along it, "
+            "so give it a mass alone or a density"
+        )
+    return f"'{name}' is not a link and has no sections; links: {', '.join(links)}"
+
+
 def _check_station(what: str, point: Point, number: Number) -> None:
-    if isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None:
-        x, length = number(point.x), number(point.body.length)
-        if not 0.0 <= x <= length:
-            raise ParameterError(f"{what}: station {x:.17g} m is outside link '{point.body.name}', 0 to {length:.17g} m")
+    for margin in margins(point, "double"):
+        if not number(margin) >= 0.0:
+            assert isinstance(point.body, Link)
+            x, length = number(point.x), number(point.body.length)
+            raise ParameterError(f"{what}: station {x:.13g} m is outside link '{point.body.name}', 0 to {length:.13g} m")

@@ -18,6 +18,7 @@ from . import density as densities
 from .density import Density
 from .errors import DeclarationError
 from .expressions import check_name, scalar, unit_vector
+from .kinks import refuse_kinks
 from .limits import check_connected, check_parts, parameter_values
 from .measures import Measures
 from .parts import (
@@ -154,8 +155,7 @@ class Mechanism:
     ) -> Joint:
         """Let a point of ``child`` slide along ``axis`` (in the parent's axes) through a point of ``parent``.
 
-        ``angle`` [rad] is the child's direction against the parent's. The parent carries the line and is loaded where the child's
-        point is at the moment.
+        ``angle`` [rad] is the child's direction against the parent's, which carries the line and is loaded where the point is.
         """
         return self._joint(name, "prismatic", parent, child, axis, angle)
 
@@ -175,7 +175,7 @@ class Mechanism:
         return self.constraint(name, self.coordinate(second) - ratio * self.coordinate(first) - offset)
 
     def constraint(self, name: str, phi: Any) -> Constraint:
-        """Declare Phi = 0, an expression of coordinates, places, directions, time and parameters (paper eq. 5).
+        """Declare Phi = 0, an expression of coordinates, places, directions, time and parameters (paper eq. 5); no slope may jump.
 
         Its multiplier works on what it is written in: on joints' coordinates between their bodies, on places from the ground.
         """
@@ -187,6 +187,8 @@ class Mechanism:
             )
         if ca.depends_on(phi, self.measures.rates):
             raise DeclarationError(f"constraint '{name}' depends on rates; declare it with nonholonomic()")
+        defaults = [parameter.default for parameter in self.parameters.values()]
+        refuse_kinks(f"constraint '{name}'", phi, ca.vertcat(self.measures.places, self.time), self.symbols, defaults)
         constraint = Constraint(name, phi)
         self.constraints[name] = constraint
         return constraint
@@ -205,9 +207,7 @@ class Mechanism:
         row = Row(name, expression, self._own_joint(replaces).name)
         for other in self.rows.values():
             if other.replaces == row.replaces:
-                raise DeclarationError(
-                    f"row '{name}': the drive of joint '{row.replaces}' is replaced by row '{other.name}' already"
-                )
+                raise DeclarationError(f"row '{name}': row '{other.name}' replaces the drive of joint '{row.replaces}' already")
         self.rows[name] = row
         return row
 
@@ -258,14 +258,14 @@ class Mechanism:
     def torsion_spring(
         self, name: str, joint: Joint, *, stiffness: Expression, angle: Expression = 0.0, damping: Expression = 0.0
     ) -> Torque:
-        """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint."""
+        """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint, whose angle counts turns."""
         if self._own_joint(joint).coordinate != "angle":
             raise DeclarationError(f"load '{name}': joint '{joint.name}' has no angle for a torsion spring")
         stretch, rate = self.coordinate(joint) - angle, self.rate(joint)
         return self.torque(name, joint.child, -(stiffness * stretch) - damping * rate, against=joint.parent)
 
     def coordinate(self, joint: Joint) -> Any:
-        """The symbol of a joint's coordinate, for loads and constraints."""
+        """The symbol of a joint's coordinate, for loads and constraints; an angle counts turns from the start of the scene on."""
         return self.measures.joint(self._moving_joint(joint)).places[0]
 
     def rate(self, joint: Joint) -> Any:
@@ -283,7 +283,7 @@ class Mechanism:
         return x, y
 
     def direction(self, link: Link) -> Any:
-        """The symbol of the direction of a link's axis against the ground's x axis [rad], for loads and constraints."""
+        """The symbol of the direction of a link's axis against the ground's x axis [rad]; it counts turns as a coordinate does."""
         body = self._point("direction", link).body
         if not isinstance(body, Link):
             raise DeclarationError(f"direction: expected a link, got '{body.name}'")

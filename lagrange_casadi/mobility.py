@@ -26,6 +26,7 @@ import casadi as ca
 from .density import Density
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
+from .limits import at_end
 from .mechanism import Mechanism
 from .multibody import Multibody, column
 from .parts import Joint, Link, Point
@@ -193,18 +194,21 @@ def _loads_on(multibody: Multibody, link: Link, borne: Any, drives: Any) -> Iter
                 continue
             elif point.end == "tip":
                 x = None
+            else:
+                x = at_end(point)
             yield joint.name, x, y, (sign * fx, sign * fy, sign * mz)
     seen: dict[str, int] = {}
     for part in (*multibody.applied, *multibody.held):
         if part.point.body is link and not _at_base(part.point):
-            x = None if part.point.end == "tip" else part.point.x
+            x = None if part.point.end == "tip" else at_end(part.point)
             seen[part.source] = seen.get(part.source, 0) + 1
             name = part.source if seen[part.source] == 1 else f"{part.source}_{seen[part.source]}"
             yield name, x, part.point.y, (part.fx, part.fy, part.mz)
 
 
 def _at_base(point: Point) -> bool:
-    return point.end == "base" or (isinstance(point.x, float) and point.x == 0.0)
+    x = at_end(point)
+    return isinstance(x, float) and x == 0.0
 
 
 def _multipliers(multibody: Multibody, kinematics: Kinematics, along: Any) -> tuple[Any, Any, Any]:

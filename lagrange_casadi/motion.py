@@ -16,6 +16,7 @@ import casadi as ca
 from .curves import rows
 from .errors import DeclarationError, one_line
 from .expressions import scalar
+from .kinks import Span, refuse_kinks
 from .parts import Expression
 
 
@@ -85,6 +86,14 @@ def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
         for i, (law, row) in enumerate(zip(laws.values(), smooth, strict=True))
     ]
     return ca.Function("motion", [time, p], _stack(rows, ca.MX), *names)
+
+
+def refuse_kinked(laws: Mapping[str, Motion], parameters: Any, values: Sequence[float], span: Span) -> None:
+    """Raise :class:`DeclarationError` for a law whose value or rate jumps within a span of time, for values of the parameters."""
+    t = ca.SX.sym("t")
+    for joint, law in laws.items():
+        if not law.spline:
+            refuse_kinks(f"the motion of joint '{joint}'", ca.SX(_scalar(joint, law, t, parameters)), t, parameters, values, span)
 
 
 def jerk_function(laws: Mapping[str, Motion], parameters: Any) -> Any:

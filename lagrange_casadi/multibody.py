@@ -88,6 +88,25 @@ class Applied:
 
 
 @dataclass(frozen=True, eq=False)
+class Turned:
+    """An angle that loads and rows see, of an undriven joint or a link, by its name; ``symbol`` stands for it in their expressions.
+
+    ``angle`` is known up to whole turns where loops set it.
+    """
+
+    name: str
+    symbol: Any
+    cosine: Any
+    sine: Any
+    angle: Any
+
+    @property
+    def within(self) -> Any:
+        """The angle between -pi and pi."""
+        return ca.atan2(self.sine, self.cosine)
+
+
+@dataclass(frozen=True, eq=False)
 class RowGraph:
     """A non-holonomic row: its expression at rest, the sum of the sizes of its terms, and its multiplier's symbol."""
 
@@ -115,6 +134,7 @@ class Multibody:
     felt: dict[str, Frame]
     applied: tuple[Applied, ...]
     held: tuple[Applied, ...]
+    turned: tuple[Turned, ...]
     kinetic: Any
     velocities: Velocities
 
@@ -153,6 +173,7 @@ class Multibody:
             velocity_graphs=column(self.velocities.graphs),
             velocity_rates=column(self.velocities.rates),
             velocity_forces=column(self.velocities.forces),
+            time=self.mechanism.time,
         )
 
     def joint_motion(self, joint: Joint) -> tuple[Any, Any, Any]:
@@ -160,25 +181,17 @@ class Multibody:
 
         Where loops set an angle, it is known up to whole turns.
         """
-        return (
-            joint_coordinate(joint, self.frames, self.coordinates, counted=True),
-            *joint_rates(joint, self.frames, self.coordinates),
-        )
+        return joint_coordinate(joint, self.frames, self.coordinates), *joint_rates(joint, self.frames, self.coordinates)
 
 
-def joint_coordinate(joint: Joint, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...], *, counted: bool = False) -> Any:
-    """A joint's coordinate: a driven one counts turns, any other angle does where ``counted``, else it lies in (-pi, pi]."""
+def joint_coordinate(joint: Joint, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]) -> Any:
+    """A joint's coordinate; an angle counts turns, but where loops set it is known up to them only."""
     for coordinate in coordinates:
         if coordinate.joint == joint.name and (coordinate.driven or coordinate.kind == "slide"):
             return coordinate.value
     parent, child = (frames[body.name] for body in joint.bodies)
     if joint.coordinate == "angle":
-        turn = child.rotation.against(parent.rotation)
-        if counted:
-            return ca.SX(turn.angle)
-        # Against minus zero the angle would be -pi.
-        sine = ca.SX(turn.s)
-        return ca.atan2(ca.SX.binary(ca.OP_IF_ELSE_ZERO, sine != 0.0, sine), turn.c)
+        return ca.SX(child.rotation.against(parent.rotation).angle)
     return ca.SX(slide(joint, parent, child)[0])
 
 

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from .backends import follow
 from .codegen.emit import NOT_CONVERGED
 from .density import Array
-from .derive import derive
+from .derive import assembled, derive
 from .errors import DeclarationError
 from .evaluate import evaluate
 from .motion import jerk_function
@@ -167,7 +167,8 @@ class _Cycle:
     def of(cls, scene: Scene, solution: Solution) -> _Cycle:
         mechanism = scene.mechanism
         told = mechanism.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
-        graph = derive(scene, list(dict.fromkeys(_output(name) for name in solution.series)))
+        wanted = list(dict.fromkeys(_output(name) for name in solution.series))
+        graph = derive(assembled(scene, told, wanted), wanted)
         p = np.array(list(told.values()))
         z, _ = follow(graph, solution.t, p)
         cycle = cls(graph, solution, p, z, {name: k for k, name in enumerate(graph.columns)})

@@ -19,6 +19,7 @@ from .errors import AssemblyError
 from .kinematics import passes_dead_centre, where
 from .rung import Rung
 from .scene_graph import SceneGraph
+from .turns import LEAP, REACH
 
 MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
 """How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
@@ -44,6 +45,7 @@ class Status(enum.IntEnum):
     INVALID = 11
     NOT_CLOSED = 12
     UNCERTIFIED = 13
+    TURNED = 14
 
     @property
     def meaning(self) -> str:
@@ -66,6 +68,7 @@ _MEANINGS = {
     Status.INVALID: "a parameter is not finite",
     Status.NOT_CLOSED: "what was found for a loop does not satisfy its equations",
     Status.UNCERTIFIED: "the design was looked at closely, and fails its certificate: others may be wrong as well",
+    Status.TURNED: "an angle that a load sees with its turns might be a turn further",
 }
 
 
@@ -96,6 +99,8 @@ def refusal(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> 
             passed[name] = passes_dead_centre(table.out[k], ends=graph.newton is None)
         elif name.startswith("_gap:"):
             bad |= ~(np.abs(table.out[k]) <= widest)
+        elif name.startswith("_turned:"):
+            bad |= _turned(table.out[k])
         elif name.startswith("_misfit:"):
             bad |= ~(table.out[k] <= misfit)
         elif name.startswith("_row:"):
@@ -114,6 +119,11 @@ def refusal(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> 
     at = f"at t = {t[i]:.6g} s{at}"
     status, why = _why(graph, table, i, at, [name for name in passed if passed[name][i]], widest)
     return Refusal(status, _beyond(graph, p, precision, at) or why)
+
+
+def _turned(swing: Array) -> npt.NDArray[np.bool_]:
+    """Where an angle may have made another turn: too far from the middle of its swing, or about to be as far on the other side."""
+    return ~(np.abs(swing) <= REACH) | (np.abs(np.diff(swing, append=swing[-1:])) > LEAP)
 
 
 def dead_centre(graph: SceneGraph, precision: Precision, closure: str) -> float:
@@ -189,6 +199,15 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]
         if kind == "_misfit" and value > misfit:
             gap = f"a gap of {value:.3g} of the links' length"
             return Status.MISFIT, f"the loops closed by {closed} are over-constrained and do not fit {at}: {gap}"
+        if kind == "_turned" and _turned(table.out[graph.columns.index(name), i : i + 2])[0]:
+            what = f"the angle of '{joint}', which a load sees with its turns,"
+            if abs(value) <= REACH:
+                return Status.TURNED, f"{what} goes most of a turn from the instant {at} to the next: take more instants"
+            swing = f"swings {math.degrees(value):.3g} deg from the middle of its swing over the scene's motion {at}"
+            return (
+                Status.TURNED,
+                f"{what} {swing}: it might be a turn further; take defaults and a motion that show how far it goes",
+            )
         if kind == "_row" and not abs(value) <= misfit * _largest_row(graph, table, name):
             return Status.ROW_VIOLATED, f"the motion violates the non-holonomic row '{joint}' by {value:.6g} {at}"
     if table.status[i] == SLOW:

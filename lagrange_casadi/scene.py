@@ -12,13 +12,15 @@ import numpy as np
 import numpy.typing as npt
 
 from .density import Array, Density
-from .errors import DeclarationError, UnknownNameError
+from .errors import DeclarationError, ParameterError, UnknownNameError
+from .limits import no_sections
 from .mechanism import Mechanism
 from .motion import Motion
 
 Grid = tuple[float, float, int]
 """Start, stop and count; both ends are included."""
 
+_TOLD = 8
 _EXACT = 2**53
 """Up to which doubles hold all whole numbers, so that a quotient of two is rounded once."""
 
@@ -58,6 +60,15 @@ def points(grid: Grid, numbers: npt.NDArray[np.int64] | None = None) -> Array:
         return np.asarray((base + by * numbers) / whole)
     values = numbers * ((stop - start) / max(count - 1, 1)) + start
     return np.asarray(np.where(numbers == count - 1, float(stop), values))
+
+
+def told_parameters(mechanism: Mechanism, values: Mapping[str, float]) -> str:
+    """With which parameters something was found, to end a message with: the defaults, or others; nothing where there are none."""
+    told = values or {name: parameter.default for name, parameter in mechanism.parameters.items()}
+    listed = [f"{name} = {value:.6g}" for name, value in told.items()]
+    if len(listed) > _TOLD:
+        listed = [*listed[:_TOLD], f"{len(listed) - _TOLD} more"]
+    return f"; with the {'' if values else 'default '}parameters {', '.join(listed)}" if listed else ""
 
 
 def checked_ratios(grid: Grid) -> Grid:
@@ -116,13 +127,9 @@ def outputs(mechanism: Mechanism) -> list[str]:
 
 def _refuse_output(mechanism: Mechanism, name: str) -> None:
     kind, _, part = name.partition(":")
-    if kind == "section" and part in mechanism.links:
-        raise DeclarationError(
-            f"output '{name}': link '{part}' is known by its centre of mass and inertia only; a section needs to know how its mass "
-            "lies along it, so give it a mass alone or a density"
-        )
     if kind == "section" and part in mechanism.bodies:
-        raise DeclarationError(f"output '{name}': '{part}' is not a link and has no sections; links: {', '.join(mechanism.links)}")
+        why = no_sections(part, link=part in mechanism.links, links=mechanism.links)
+        raise DeclarationError(f"output '{name}': {why}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,6 +149,8 @@ class Scene:
     posture
         Rough directions of links [rad] and places of slides [m] at the first instant, to choose between the ways in which a loop
         can be assembled.
+    assembly
+        Values of parameters with which loops are first assembled, in place of the defaults: ways to assemble are chosen there.
     """
 
     mechanism: Mechanism
@@ -150,11 +159,12 @@ class Scene:
     t: Grid = (0.0, 1.0, 101)
     xi: Grid = (0.0, 1.0, 101)
     posture: Mapping[str, float] = field(default_factory=dict)
+    assembly: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if not isinstance(self.mechanism, Mechanism):
             raise DeclarationError(f"scene: expected a Mechanism, got {self.mechanism!r}")
-        for what, mapping in (("motion", self.motion), ("posture", self.posture)):
+        for what, mapping in (("motion", self.motion), ("posture", self.posture), ("assembly", self.assembly)):
             if not isinstance(mapping, Mapping):
                 raise DeclarationError(f"{what}: expected a mapping by name, got {mapping!r}")
             object.__setattr__(self, what, MappingProxyType(dict(mapping)))
@@ -180,4 +190,8 @@ class Scene:
         Wanted.of(self.mechanism, self.wanted)
         checked("t", self.t)
         checked_ratios(self.xi)
-        self.mechanism.values()
+        try:
+            self.mechanism.values()
+        except ParameterError as error:
+            raise ParameterError(f"{error}{told_parameters(self.mechanism, {})}") from None
+        self.mechanism.values(self.assembly)

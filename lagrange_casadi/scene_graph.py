@@ -25,10 +25,11 @@ class SceneGraph:
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` a
     column name; ``newton`` where loops must be iterated. Columns that begin with ``_`` are no outputs. They tell whether there is
     a result: ``_closure:JOINT`` (see :mod:`.loops`), ``_gap:JOINT`` and ``_misfit:JOINT`` (see :mod:`.gaps`), ``_row:NAME`` and
-    ``_rowsize:NAME``; whether it is the only one: ``_open:FORCE`` (see :mod:`.determinacy`); or they are what the certificate
-    needs: ``_multiplier:NAME``, where it was not wanted. ``wrapped`` names the angles that loops set, and what they are sums
-    and differences of: by ``pose:BODY:angle`` directions known up to whole turns, and by ``_turns:JOINT`` the whole turns of
-    angles that count them, which are in these columns without them.
+    ``_rowsize:NAME``, and ``_turned:NAME``, how far an angle swings that is seen with its turns (see :mod:`.turns`); whether it is
+    the only one: ``_open:FORCE`` (see :mod:`.determinacy`); or they are what the certificate needs: ``_multiplier:NAME``, where
+    it was not wanted. ``wrapped`` names the angles that loops set, and what they are sums and differences of: by
+    ``pose:BODY:angle`` directions known up to whole turns, and by ``_turns:JOINT`` the whole turns of angles that count them,
+    which are in these columns without them.
     """
 
     scene: Scene

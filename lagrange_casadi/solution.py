@@ -11,8 +11,10 @@ import numpy as np
 
 from .density import Array
 from .description import Description, density_of
-from .errors import LagrangeCasadiError, UnknownNameError
+from .errors import DeclarationError, LagrangeCasadiError, UnknownNameError
 from .grids import require
+from .limits import no_sections
+from .notes import notes
 from .quantities import QUANTITIES, quantity_of
 from .section_law import FORCES, Basis, SectionLaw, StationLoad, made_of
 
@@ -172,14 +174,25 @@ class Solution:
 
     def section(self, link: str) -> Section:
         """Forces inside a link."""
-        if link not in self._sections:
+        if link in self._sections:
+            return self._sections[link]
+        bodies = self.description["bodies"]
+        if link not in bodies:
             raise UnknownNameError("link with sections", link, self._sections)
-        return self._sections[link]
+        if "density" in bodies[link]:
+            raise DeclarationError(f"the sections of link '{link}' were not wanted; want section:{link} too")
+        links = [name for name, body in bodies.items() if body["length"] is not None]
+        raise DeclarationError(no_sections(link, link=link in links, links=links))
 
     @property
     def links_with_sections(self) -> tuple[str, ...]:
         """The links whose sections were wanted."""
         return tuple(self._sections)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is worth a word though all is right: points that slide beyond the end of a link."""
+        return tuple(notes(self.t, self.series, self.description))
 
     def during(self, instants: slice) -> Solution:
         """The same at some of the instants."""
@@ -201,8 +214,8 @@ class Solution:
 
     def unit(self, name: str) -> str:
         """The unit of a quantity by its full name."""
-        if name not in self.series and name not in self.names() and not name.startswith("certificate:"):
-            raise UnknownNameError("quantity", name, self.names())
+        if name not in self.series and not name.startswith("certificate:"):
+            self._of_section(name)
         joint = name.split(":")[1].removesuffix("_rate").removesuffix("_acceleration")
         kind = self.description["joints"].get(joint, {}).get("coordinate") or "angle"
         return quantity_of(name).unit_for(kind)
@@ -211,9 +224,7 @@ class Solution:
         """A quantity by its full name: (t,), or (t, xi) for ``section:LINK:FORCE``."""
         if name in self.series:
             return self.series[name]
-        if name not in self.names():
-            raise UnknownNameError("quantity", name, self.names())
-        _, link, force = name.split(":")
+        link, force = self._of_section(name)
         grid: Array = getattr(self._sections[link], force)
         return grid
 
@@ -221,9 +232,7 @@ class Solution:
         """A quantity at every instant, (t,); of a section force the value largest in size along the link, and its ratio xi/l."""
         if name in self.series:
             return self.series[name], None
-        if name not in self.names():
-            raise UnknownNameError("quantity", name, self.names())
-        _, link, force = name.split(":")
+        link, force = self._of_section(name)
         places, values = self._sections[link].law.extreme(force)
         return values, places
 
@@ -263,6 +272,15 @@ class Solution:
         body = self.description["bodies"][link]
         loads = tuple(StationLoad(name, **members) for name, members in stations.items())
         return Section(SectionLaw(body["length"], density_of(body), law, loads), self.xi)
+
+    def _of_section(self, name: str) -> tuple[str, str]:
+        """The link and the force of a section force's full name."""
+        group, _, rest = name.partition(":")
+        link, _, force = rest.partition(":")
+        if group != "section" or force not in FORCES:
+            raise UnknownNameError("quantity", name, self.names())
+        self.section(link)
+        return link, force
 
     def multiplier(self, name: str) -> Array:
         """Multiplier of a constraint or a non-holonomic row (t,)."""

@@ -19,6 +19,13 @@ class Expressions:
         for symbol, value in zip(_entries(symbols), _entries(values), strict=True):
             self._known[symbol.element_hash()] = symbol, value
 
+    def and_of(self, symbols: Any, values: Any) -> Expressions:
+        """What is known here, and some more."""
+        more = Expressions()
+        more._known = dict(self._known)
+        more.note(symbols, values)
+        return more
+
     def put_into(self, expression: Any) -> Any:
         """An expression with what is known in the place of its symbols."""
         expression = ca.SX(expression)

@@ -18,7 +18,7 @@ import numpy as np
 from .backends import Table, run
 from .codegen import find_compiler
 from .density import Array
-from .derive import derive
+from .derive import assembled, derive
 from .errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
 from .peaks import Shortfall, shortfall
 from .quantities import quantity_of
@@ -126,8 +126,10 @@ def trade(
     Raises :class:`LagrangeCasadiError` where mpmath is not installed, :class:`DeclarationError` for graphs that call functions of
     their own, and what :func:`.evaluate` raises where the scene has no result.
     """
-    values = np.array(list(scene.mechanism.values(parameters).values()))
+    told = scene.mechanism.values(parameters)
+    values = np.array(list(told.values()))
     times = points(checked("t", scene.t if t is None else t))
+    scene = assembled(scene, told, wanted)
     graphs = {iterate: derive(scene, wanted, iterate=iterate) for iterate in (False, True)}
     compared = np.unique(np.linspace(0, times.size - 1, min(times.size, COMPARED)).astype(int))
     truth = _Truth(graphs[False], times, compared, values)

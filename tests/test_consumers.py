@@ -11,6 +11,8 @@ import pytest
 from builders import slider_crank
 from test_codegen import spline_arm
 from test_mobility import truss_platform
+from test_notes import bracket
+from test_turns import DRAG_LINK, sprung
 
 from lagrange_casadi import codegen, evaluate, export, load_case
 from lagrange_casadi.section_law import FORCES
@@ -22,7 +24,12 @@ FEW = 4
 """Units of the last place of the largest value, where the arithmetic is not the same."""
 
 SCENES = {case.name: (lambda case=case: load_case(case).scene) for case in sorted(CASES.iterdir()) if case.is_dir()}
-SCENES |= {"truss_platform": truss_platform, "spline_arm": spline_arm}
+SCENES |= {
+    "truss_platform": truss_platform,
+    "spline_arm": spline_arm,
+    "sprung": lambda: sprung("AC", **DRAG_LINK),
+    "bracket": bracket,
+}
 
 
 def exported(scene, folder, **options):

@@ -96,7 +96,7 @@ def six_bar():
     return Scene(m, {"O": MOTION}, posture={"c": 1.5, "d": 0.0}, t=(INSTANT, 1, 2))
 
 
-def truss_platform():
+def truss_platform(loads=lambda m: None):
     """A triangle of three bars on three legs, one leg's foot driven: no dyad anywhere, six unknown directions at once."""
     m = Mechanism("truss_platform")
     feet = [(0.0, 0.0), (0.6, 0.0), (0.6, 0.7)]
@@ -115,6 +115,7 @@ def truss_platform():
         m.revolute(f"foot{i}", shaft.tip if i == 0 else m.ground.at(x0, y0), leg)
         m.revolute(f"corner{i}", leg.tip, bars[i])
         m.revolute(f"mate{i}", bars[i - 1].tip, bars[i])
+    loads(m)
     return Scene(m, {"O": polynomial(0.0, 0.4, 0.5)}, posture=posture, t=(0.0, 1.0, 21))
 
 

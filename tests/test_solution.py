@@ -69,8 +69,8 @@ def test_angles_are_continuous(slider_crank):
 
 
 def test_unknown_names_list_the_valid(solution, slider_crank):
-    with pytest.raises(UnknownNameError, match="unknown link with sections 'slider'; valid: crank, rod"):
-        solution.section("slider")
+    with pytest.raises(UnknownNameError, match="unknown link with sections 'sider'; valid: crank, rod"):
+        solution.section("sider")
     with pytest.raises(UnknownNameError, match=r"unknown joint with a reaction 'gide' \(did you mean 'guide'\?\)"):
         solution.reaction("gide")
     with pytest.raises(UnknownNameError, match="unknown drive 'A'; valid: O"):

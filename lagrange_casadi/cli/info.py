@@ -64,6 +64,8 @@ def _describe_file(solution: Solution) -> None:
     click.echo(f"backend: {provenance.backend}, {provenance.precision} {provenance.compiler} {provenance.flags}".rstrip())
     click.echo(f"rung: {provenance.rung}")
     click.echo(f"versions: {', '.join(f'{name} {version}' for name, version in provenance.versions.items())}")
+    for note in solution.notes:
+        click.echo(f"note: {note}")
     click.echo("peaks:")
     for name in solution.names():
         click.echo(peak_line(solution, solution.peak(name)))

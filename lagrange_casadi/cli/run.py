@@ -88,6 +88,8 @@ def run(
             draw_with_progress(solution, loaded.figures, draft)
         save(solution, out, dump_specs(loaded.figures))
     _report(solution, refine(loaded.scene, solution, forces(solution)) if refine_peaks else None)
+    for note in solution.notes:
+        click.echo(f"note: {note}")
     if not no_certificate:
         click.echo(summary(solution.certificate))
     click.echo(f"wrote {out}" + (f" and the figures in {folder}/" if folder else ""))

@@ -13,12 +13,14 @@ import numpy as np
 from ..compensated import DTYPES, Precision
 from ..scene_graph import SceneGraph
 from ..stages import Stages
+from ..turns import LEAP
 from .emit import FOLLOW, Parts, dump, emit, following, in_single, work
 
 DESIGNS, BEGIN = "lagrange_casadi_designs", "lagrange_casadi_begin"
-CHECKS = ("CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT")
+CHECKS = ("CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT", "TURNED")
 """What is checked at every instant: a closure, one whose branch iteration may leave, what is left of a loop's equations, beside the
-mechanism's extent, a misfit, a row's residual and its size, and how far a force is open, a moment beside the extent."""
+mechanism's extent, a misfit, a row's residual and its size, and how far a force is open, a moment beside the extent, and the swing
+of an angle."""
 
 INSIDE, ROUNDS = 17, 7
 """Instants at which a dead centre between two others is looked for, and how often, ever closer."""
@@ -102,6 +104,7 @@ def _macros(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan, p
         "ROOT": "sqrtf" if precision == "single" else "sqrt",
         "HALF": "((DESIGNS_REAL) 0.5)",
         "SIXTH": "((DESIGNS_REAL) 1/6)",
+        "LEAP": f"((DESIGNS_REAL) {LEAP:.17g})",
         "CLOSE": f"((DESIGNS_REAL) {8 * float(numbers.eps):.17g})",
         "LARGEST": f"((DESIGNS_REAL) {float(numbers.max):.17g})",
         **{name.upper(): sizes[name] for name in ("nt", "np", "nz", "columns", "constants")},

@@ -145,6 +145,10 @@ static int designs_why(const designs_now* now, casadi_int i) {
       if (x > limit || x < -limit) return DESIGNS_NOT_CLOSED;
     } else if (designs_kind[k] == DESIGNS_IS_MISFIT) {
       if (x > limit) return DESIGNS_MISFIT;
+    } else if (designs_kind[k] == DESIGNS_IS_TURNED) {
+      if (!(x <= limit && x >= -limit)) return DESIGNS_TURNED;
+      x = i + 1 < now->n ? designs_row(now, DESIGNS_CHECKED + k)[i + 1] - x : 0;
+      if (x > DESIGNS_LEAP || x < -DESIGNS_LEAP) return DESIGNS_TURNED;
     } else if (designs_kind[k] == DESIGNS_IS_ROW) {
       if (!((x < 0 ? -x : x) <= limit*designs_most(now, k + 1))) return DESIGNS_ROW_VIOLATED;
     }

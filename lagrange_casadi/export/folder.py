@@ -14,7 +14,7 @@ import numpy as np
 
 from ..certificate import failure
 from ..compensated import Precision
-from ..derive import derive
+from ..derive import assembled, derive
 from ..determinacy import determinate
 from ..errors import CertificateError, DeclarationError, PathError
 from ..evaluate import checked_times, evaluate
@@ -91,6 +91,7 @@ def export(
         check_tools()
     values = scene.mechanism.values(parameters)
     p = np.array(list(values.values()))
+    scene = assembled(scene, values, wanted, iterate=newton is not None)
     graph = derive(scene, wanted, iterate=newton is not None)
     # What rounding alone makes of it: all steps that loops want, and no table.
     enough = None if newton is None else max(newton, _ENOUGH)

@@ -17,6 +17,7 @@ from ..cycle_table import CycleTable
 from ..density import Array, Density
 from ..errors import DeclarationError
 from ..gaps import extent
+from ..limits import margins
 from ..parts import Link, RigidMass
 from ..scene_graph import SceneGraph
 from ..stages import controlled
@@ -80,7 +81,7 @@ def program(
         "count": stages.count,
         "constants_of": constants,
         "matter": _matter(graph, symbols, extent_first=gapped),
-        "sound": _sound(graph, symbols),
+        "sound": _sound(graph, symbols, precision),
     }
     if fixed:
         # They were checked when they were fixed.
@@ -136,7 +137,7 @@ def _lengths(graph: SceneGraph) -> list[Any]:
     return [link.length for link in links if _changes(link.length)]
 
 
-def _sound(graph: SceneGraph, symbols: Any) -> Any:
+def _sound(graph: SceneGraph, symbols: Any, precision: Precision) -> Any:
     """``sound(p)``: the lengths, and what else parameters change and must not be negative for the parts to be possible."""
     mechanism = graph.scene.mechanism
     found: list[Any] = []
@@ -149,8 +150,7 @@ def _sound(graph: SceneGraph, symbols: Any) -> Any:
             found += [body.mass.mass, body.mass.inertia] if isinstance(body.mass, RigidMass) else [body.mass]
     points = [point for joint in mechanism.joints.values() for point in (joint.parent, joint.child)]
     for point in [*points, *(point for load in mechanism.loads.values() for point in load.points)]:
-        if isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None:
-            found += [point.x, point.body.length - point.x]
+        found += margins(point, precision)
     checked = [*_lengths(graph), *(value for value in found if _changes(value))]
     return ca.Function("sound", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *checked))], {"cse": True})
 

@@ -15,6 +15,7 @@ from ..determinacy import open_limits
 from ..mobility import LAW, PLACE_FIRST
 from ..refusal import MISFIT, dead_centre, gap_limit
 from ..rung import Rung
+from ..turns import REACH
 from ..version import __version__
 from .contract import REST, Contract
 from .data import sampled, table_call, table_text
@@ -330,6 +331,8 @@ class Source:
                 least, moment = open_limits(graph, Rung("auto", precision, self.program.newton))[part]
                 limit = f"{number(least)}*model->matter[0]" if moment else number(least)
                 yield f"if (!(y[{k}] <= {limit})) return {P}_UNDETERMINED;"
+            elif kind == "_turned":
+                yield f"if (!({self._function('fabs')}(y[{k}]) <= {number(REACH)})) return {P}_TURNED;"
             elif kind == "_misfit":
                 yield f"if (y[{k}] > {misfit}) return {P}_INCONSISTENT;"
             elif kind == "_row":

@@ -19,4 +19,5 @@ STATUSES = {
     "NOT_CLOSED": "what was found for a loop does not satisfy its equations",
     "UNDETERMINED": "equilibrium does not determine all outputs: the mechanism has more constraints than it needs",
     "NOT_FINITE": "a result is not finite: the mechanism is singular there, or its numbers overflow",
+    "TURNED": "an angle that a load sees with its turns might be a turn further",
 }

@@ -242,5 +242,5 @@ def _evaluate(source: Source, task: Task, told: Mapping[str, Any], p: Array, roo
 
 @functools.lru_cache(maxsize=4)
 def _built(source: Source, task: Task) -> tuple[Scene, Harvest]:
-    scene = source.load()
+    scene = task.scene(source.load())
     return scene, task.harvest(scene)

@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 
 from ..density import Array
+from ..derive import derive
 from ..description import Description, describe
 from ..designs import DesignEngine
-from ..errors import DeclarationError, SizeError
+from ..errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
 from ..fingerprint import fingerprint, sources
 from ..grids import require
 from ..rung import Rung
@@ -35,6 +36,9 @@ MANY = 10**9
 """Designs from which on a sweep must be meant."""
 
 _FEW, _SHARES = 1 << 11, 12
+_TRIED = 64
+"""Designs that are tried where the defaults cannot be assembled."""
+
 _LARGEST = 1 << 31
 """Bytes of a chunk of the file."""
 
@@ -44,13 +48,21 @@ _TIMES = 4
 
 @dataclass(frozen=True)
 class Task:
-    """How the designs of a scene are evaluated, as it is sent to a worker: nothing in it is of the designs themselves."""
+    """How the designs of a scene are evaluated, as it is sent to a worker: nothing in it is of the designs themselves.
+
+    ``assembly`` are parameters with which it is assembled, where its defaults cannot be.
+    """
 
     wanted: tuple[str, ...]
     t: Span
     xi: Span | None
     keep: Keep
     rung: Rung
+    assembly: tuple[tuple[str, float], ...] = ()
+
+    def scene(self, scene: Scene) -> Scene:
+        """The scene, assembled with the task's own parameters where it has some."""
+        return dataclasses.replace(scene, assembly=dict(self.assembly)) if self.assembly else scene
 
     def harvest(self, scene: Scene) -> Harvest:
         """The scene compiled, and what is kept of its outcomes."""
@@ -99,7 +111,10 @@ class Plan:
             raise DeclarationError(f"the grid has {counted(designs.size)}, more than 10^9; if that is meant, say many=True")
         names = _wanted(scene, wanted)
         ratios = None if xi is None else checked_ratios(xi)
-        task = Task(names, checked("t", scene.t if t is None else t), ratios, keep, rung)
+        task = Task(
+            names, checked("t", scene.t if t is None else t), ratios, keep, rung, _assembly(scene, designs, values, names, rung)
+        )
+        scene = task.scene(scene)
         harvest = task.harvest(scene)
         largest = max(harvest.columns, key=lambda column: column.width)
         if largest.width > _LARGEST:
@@ -162,6 +177,29 @@ class Plan:
         }
         told: dict[str, Any] = json.loads(json.dumps(words))
         return told
+
+
+def _assembly(
+    scene: Scene, designs: Designs, values: Mapping[str, float], wanted: Sequence[str], rung: Rung
+) -> tuple[tuple[str, float], ...]:
+    """Parameters to assemble a scene with: none where its own serve, else those of the first of some designs that can be assembled.
+
+    Raises what :func:`.derive` does for the scene's own where there is none.
+    """
+    iterate = rung.newton is not None
+    try:
+        derive(scene, wanted, iterate=iterate)
+    except (AssemblyError, MobilityError):
+        for number in np.unique(np.linspace(0, designs.size - 1, min(designs.size, _TRIED)).astype(np.int64)):
+            row = dict(zip(designs.names, designs.block(int(number), int(number) + 1)[0].tolist(), strict=True))
+            try:
+                tried = dataclasses.replace(scene, assembly={**values, **row})
+                derive(tried, wanted, iterate=iterate)
+            except (AssemblyError, MobilityError, ParameterError):
+                continue
+            return tuple(tried.assembly.items())
+        raise
+    return ()
 
 
 def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:

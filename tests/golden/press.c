@@ -507,6 +507,8 @@ const char* press_message(press_status status) {
     return "equilibrium does not determine all outputs: the mechanism has more constraints than it needs";
   case PRESS_NOT_FINITE:
     return "a result is not finite: the mechanism is singular there, or its numbers overflow";
+  case PRESS_TURNED:
+    return "an angle that a load sees with its turns might be a turn further";
   }
   return "no status of this mechanism";
 }

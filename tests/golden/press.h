@@ -58,7 +58,8 @@ typedef enum {
   PRESS_INCONSISTENT = 12 /* the motion violates a loop that is over-constrained, or a non-holonomic row */,
   PRESS_NOT_CLOSED = 13 /* what was found for a loop does not satisfy its equations */,
   PRESS_UNDETERMINED = 14 /* equilibrium does not determine all outputs: the mechanism has more constraints than it needs */,
-  PRESS_NOT_FINITE = 15 /* a result is not finite: the mechanism is singular there, or its numbers overflow */
+  PRESS_NOT_FINITE = 15 /* a result is not finite: the mechanism is singular there, or its numbers overflow */,
+  PRESS_TURNED = 16 /* an angle that a load sees with its turns might be a turn further */
 } press_status;
 
 /* Numbers that may change without generating anything again. */

@@ -1,0 +1,35 @@
+"""What is worth a word of a solution that is right all the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from .density import Array
+from .description import Description
+
+_EDGE = 1e-9
+"""Of a link's length: what leaves it by so little does so by rounding."""
+
+
+def notes(t: Array, series: Mapping[str, Array], description: Description) -> Iterator[str]:
+    """Each joint whose point slides beyond the end of a link that has sections, with the first instant and how far it goes.
+
+    As far as the motion of the joint, or the sections of the link, are among the outputs.
+    """
+    for name, joint in description["joints"].items():
+        body = description["bodies"].get(joint["parent"]["body"], {})
+        if joint["kind"] not in ("prismatic", "slot") or "density" not in body:
+            continue
+        ratio = series.get(f"section:{joint['parent']['body']}:{name}:station")
+        if ratio is None and f"motion:{name}" in series:
+            ratio = (joint["parent"]["x"] + joint["axis"][0] * series[f"motion:{name}"]) / body["length"]
+        if ratio is None:
+            continue
+        away = np.flatnonzero((ratio < -_EDGE) | (ratio > 1.0 + _EDGE))
+        if away.size:
+            yield (
+                f"joint '{name}' leaves link '{joint['parent']['body']}' at t = {t[away[0]]:.6g} s (xi/l from {ratio.min():.4g} to "
+                f"{ratio.max():.4g}): beyond its ends it loads the link as through a bracket"
+            )

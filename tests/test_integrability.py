@@ -1,0 +1,186 @@
+"""Velocities that an energy may be written in, and those that may not: rates of places, and rates of nothing."""
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from lagrange_casadi import LagrangeSystem
+from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.integrability import Course, no_rates
+
+INERTIA = np.array([0.7, 1.1, 1.6])
+
+
+def symbols(n):
+    return (ca.SX.sym(name, n) for name in ("q", "qd", "qdd"))
+
+
+def course(q, qd, qdd, time=None, tangent=None, drift=None):
+    n = qd.numel()
+    tangent, drift = ca.SX.eye(n) if tangent is None else tangent, ca.SX(q.numel(), 1) if drift is None else drift
+    return Course(q, qd, qdd, ca.SX(0, 1) if time is None else time, tangent, drift)
+
+
+def wrong(graphs, *args, **more):
+    return no_rates(graphs, course(*args, **more), ca.SX(0, 1), ca.SX(0, 1))
+
+
+def axes_of(q):
+    """The axes of a body turned about z, then about its x, then about its z, as the columns of a matrix."""
+
+    def about(axis, angle):
+        c, s = ca.cos(angle), ca.sin(angle)
+        rows = {"x": [[1, 0, 0], [0, c, -s], [0, s, c]], "z": [[c, -s, 0], [s, c, 0], [0, 0, 1]]}[axis]
+        return ca.vertcat(*(ca.horzcat(*row) for row in rows))
+
+    return about("z", q[0]) @ about("x", q[1]) @ about("z", q[2])
+
+
+def turning(q, qd):
+    """A body's rates of turning about its own axes, and the rates of its axes."""
+    axes = axes_of(q)
+    change = ca.reshape(ca.jtimes(ca.vec(axes), q, qd), 3, 3)
+    skew = axes.T @ change
+    return ca.vertcat(skew[2, 1], skew[0, 2], skew[1, 0]), change
+
+
+def test_rates_of_places_are_told_from_others_by_number():
+    q, qd, qdd = symbols(2)
+    place = ca.vertcat(q[0] * ca.cos(q[1]), q[0] * ca.sin(q[1]))
+    graphs = ca.vertcat(
+        ca.jtimes(place, q, qd),  # of a point
+        qd[1],  # of an angle
+        q[0] * qd[1],  # across the radius: of nothing
+        qd[0],
+        qd[0] * qd[1],  # not even linear
+        ca.sqrt(qd[0] ** 2 + q[0] ** 2 * qd[1] ** 2),  # a speed has no direction
+    )
+    assert wrong(graphs, q, qd, qdd) == [3, 5, 6]
+
+
+def test_what_time_itself_moves_must_be_told_so():
+    q, qd, qdd = symbols(2)
+    t = ca.SX.sym("when")
+    angle = q[1] + ca.sin(3 * t)
+    place = ca.vertcat(q[0] * ca.cos(angle), q[0] * ca.sin(angle), q[0] * t)
+    graphs = ca.jtimes(place, ca.vertcat(q, t), ca.vertcat(qd, 1))
+    assert wrong(graphs, q, qd, qdd, time=t) == []
+    assert wrong(graphs, q, qd, qdd) == [0, 1, 2]
+    assert wrong(ca.jtimes(place, q, qd), q, qd, qdd, time=t) == [0, 1, 2]  # what time adds is forgotten
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+def test_neither_scale_nor_company_hides_what_is_wrong(size):
+    """Micrometres beside kilometres, one wrong one among fifty right ones."""
+    q, qd, qdd = symbols(3)
+    places = ca.vertcat(*(10.0 ** (k % 9 - 4) * ca.sin(k * q[0] + q[1] * q[2]) for k in range(50)))
+    graphs = ca.vertcat(ca.jtimes(places, q, qd), size * q[0] * qd[1])
+    assert wrong(graphs, q, qd, qdd) == [50]
+
+
+def test_graphs_may_rely_on_a_cosine_and_a_sine_being_those_of_an_angle():
+    """sqrt(1 - c^2) for |s|: right on the circle, and only there."""
+    p, qd, qdd = ca.SX.sym("p", 3), ca.SX.sym("qd", 2), ca.SX.sym("qdd", 2)
+    c, s, x = ca.vertsplit(p)
+    tangent = ca.blockcat([[-s, 0], [c, 0], [0, 1]])
+    size = ca.sqrt(1 - c**2)  # x |s|, by its rates
+    graph = size * qd[1] + x * c * s / size * qd[0]
+    assert wrong(graph, p, qd, qdd, tangent=tangent) == []
+    assert wrong(graph + 1e-3 * c * qd[1], p, qd, qdd, tangent=tangent) == [0]
+
+
+def test_graphs_that_have_values_rarely_are_checked_there():
+    """Roots of what is mostly negative."""
+    q, qd, qdd = symbols(1)
+    long, short = ca.SX.sym("l"), ca.SX.sym("r")
+    rate = ca.jtimes(ca.sqrt(long**2 - 30.0 * short**2 - ca.sin(q) ** 2), q, qd)
+    assert wrong(rate, q, qd, qdd) == []
+    with pytest.raises(DeclarationError, match="not finite at any of 1000 random points"):
+        wrong(ca.sqrt(-1 - q**2) * qd, q, qd, qdd)
+
+
+def test_along_a_mobility_only_what_depends_on_it_can_be_told():
+    q, qd, qdd = symbols(1)
+    e, ed = ca.SX.sym("e", 2), ca.SX.sym("ed", 2)
+    place = ca.vertcat((1 + e[0]) * ca.cos(q), e[1] + ca.sin(q))
+    right = ca.jtimes(place, ca.vertcat(q, e), ca.vertcat(qd, ed))
+    left_out = ca.substitute(right, e, ca.SX.zeros(2))  # to first order in e, and without it
+    graphs = ca.vertcat(right, left_out, right[0] + e[0] * qd)
+    assert no_rates(graphs, course(q, qd, qdd), e, ed) == [4]
+
+
+def free_body(velocities):
+    """A body that turns in space about its centre, by three angles; its energy over what ``velocities`` makes of them."""
+    q, qd, qdd = symbols(3)
+    about, change = turning(q, qd)
+    w = ca.SX.sym("w", 3 if velocities == "rates" else 9)
+    if velocities == "rates":
+        energy, graphs = ca.dot(INERTIA, w**2) / 2, about
+    else:
+        # E = sum J_k |e_k'|^2 / 2 with J_k = (sum I) / 2 - I_k: what lies along each axis.
+        along = INERTIA.sum() / 2 - INERTIA
+        energy, graphs = sum(along[k // 3] * w[k] ** 2 / 2 for k in range(9)), ca.vec(change)
+    return {
+        "kinetic": energy,
+        "force_function": ca.SX(0),
+        "coordinates": q,
+        "rates": qd,
+        "accelerations": qdd,
+        "velocities": w,
+        "velocity_graphs": graphs,
+    }, (q, qd, qdd, about)
+
+
+def test_the_angular_velocity_of_a_body_in_space_is_refused():
+    fields, _ = free_body("rates")
+    with pytest.raises(
+        DeclarationError, match=r"velocity_graphs: velocities 0, 1, 2 \(counted from 0\) are no rate of a place"
+    ) as told:
+        LagrangeSystem(**fields)
+    assert "take the velocities of points or axes" in str(told.value)
+
+
+def test_the_rates_of_a_body_s_axes_give_euler_s_equations():
+    """I w' + w x I w about the body's axes, and what of it works along each angle: no energy in it."""
+    fields, (q, qd, qdd, about) = free_body("axes")
+    (along, _) = LagrangeSystem(**fields).terms()
+    change = ca.jtimes(about, ca.vertcat(q, qd), ca.vertcat(qd, qdd))
+    couple = INERTIA * change + ca.cross(about, INERTIA * about)
+    f = ca.Function("f", [q, qd, qdd], [along, ca.jacobian(about, qd).T @ couple])
+    for seed in range(5):
+        found, expected = (x.full() for x in f(*np.random.default_rng(seed).normal(size=(3, 3))))
+        np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-13)
+
+
+def test_only_velocities_that_bear_energy_must_be_rates():
+    """A couple works along the body's own rate of turning, whatever that is the rate of."""
+    fields, (q, qd, qdd, about) = free_body("axes")
+    couple = ca.SX.sym("couple", 3)
+    fields |= {
+        "velocities": ca.vertcat(fields["velocities"], ca.SX.sym("own", 3)),
+        "velocity_graphs": ca.vertcat(fields["velocity_graphs"], about),
+        "velocity_forces": ca.vertcat(ca.SX.zeros(9), couple),
+    }
+    without, _ = LagrangeSystem(**free_body("axes")[0]).terms()
+    along, _ = LagrangeSystem(**fields).terms()
+    f = ca.Function("f", [q, qd, qdd, couple], [along, -(ca.jacobian(about, qd).T @ couple)])
+    found, work = (x.full() for x in f([0.3, 0.8, -0.4], 0, 0, [1.0, -2.0, 3.0]))
+    np.testing.assert_allclose(found, work, rtol=1e-12)
+    assert without.numel() == 3
+
+
+def test_rates_of_turning_in_space_are_no_rates_of_coordinates():
+    """Angles by their kinematic equations, q' for the body's rates: Lagrange's equations do not hold for these."""
+    q, w, wd = symbols(3)
+    about, _ = turning(q, w)
+    tangent = ca.inv(ca.jacobian(about, w))
+    with pytest.raises(DeclarationError, match=r"tangent: coordinates 0, 1, 2 \(counted from 0\) are no function"):
+        LagrangeSystem(ca.dot(INERTIA, w**2) / 2, ca.SX(0), q, w, wd, tangent=tangent)
+
+
+def test_a_drift_that_belongs_to_no_motion_is_refused():
+    p, qd, qdd, t = ca.SX.sym("p", 2), ca.SX.sym("qd"), ca.SX.sym("qdd"), ca.SX.sym("t")
+    tangent = ca.vertcat(-p[1], p[0])
+    LagrangeSystem(qd**2, p[0], p, qd, qdd, tangent=tangent, drift=ca.cos(t) * tangent, time=t)
+    with pytest.raises(DeclarationError, match=r"tangent and drift: coordinate 1 \(counted from 0\) is no function"):
+        LagrangeSystem(qd**2, p[0], p, qd, qdd, tangent=tangent, drift=ca.vertcat(1, 0), time=t)
