@@ -188,7 +188,7 @@ class Solution:
 
     def unit(self, name: str) -> str:
         """The unit of a quantity by its full name."""
-        if name not in self.series and name not in self.names() and not name.startswith("certificate:"):
+        if name not in self.series and name not in self._names and not name.startswith("certificate:"):
             raise UnknownNameError("quantity", name, self.names())
         joint = name.split(":")[1].removesuffix("_rate").removesuffix("_acceleration")
         kind = self.description["joints"].get(joint, {}).get("coordinate") or "angle"
@@ -198,7 +198,7 @@ class Solution:
         """A quantity by its full name: (t,), or (t, xi) for ``section:LINK:FORCE``."""
         if name in self.series:
             return self.series[name]
-        if name not in self.names():
+        if name not in self._names:
             raise UnknownNameError("quantity", name, self.names())
         _, link, force = name.split(":")
         grid: Array = getattr(self._sections[link], force)
@@ -208,7 +208,7 @@ class Solution:
         """A quantity at every instant, (t,); of a section force the value largest in size along the link, and its ratio xi/l."""
         if name in self.series:
             return self.series[name], None
-        if name not in self.names():
+        if name not in self._names:
             raise UnknownNameError("quantity", name, self.names())
         _, link, force = name.split(":")
         places, values = self._sections[link].law.extreme(force)
@@ -232,6 +232,10 @@ class Solution:
         }
         coordinates = {"t": ("t", self.t, {"units": "s"}), "xi": ("xi", self.xi, {"units": "1", "long_name": "ratio xi/l"})}
         return xarray.Dataset(data, coordinates, {"case": self.case})
+
+    @cached_property
+    def _names(self) -> frozenset[str]:
+        return frozenset(self.names())
 
     @cached_property
     def _sections(self) -> dict[str, Section]:

@@ -35,7 +35,7 @@ def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: 
         raise DeclarationError("resume and force exclude each other: go on with what is there, or start anew")
     check_names(plan.designs)
     check_writable(target, hdf5=True)
-    folder = Folder(target)
+    folder = Folder.of(target)
     with folder.locked():
         if _settled(folder, plan, resume, force):
             folder.remove()
@@ -100,7 +100,7 @@ def _refuse_other(place: Path, found: str | None) -> None:
 
 def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], None], progress: Progress) -> None:
     """Commit what is missing, and meanwhile join what is there."""
-    parts = {part.start: part for part in folder.parts()}
+    parts = {part.start: part for part in _fitting(folder, plan)}
     done, size = sum(part.stop - part.start for part in parts.values()), sum(part.size for part in parts.values())
     queue = Queue((start, stop) for start, stop, _ in plan.slabs() if start not in parts)
     with telling(folder.target), closing(workers.results(plan, queue)) as blocks, ExitStack() as stack:
@@ -131,9 +131,22 @@ def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], No
         breathe()
         for part in _following(parts, joined):
             append(part.read())
+            joined = part.stop
             breathe()
-            progress("file", part.stop, plan.size)
+            progress("file", joined, plan.size)
+        if joined != plan.size:
+            raise StoreError(f"{folder.path}: no part goes on after {counted(joined)} of {grouped(plan.size)}")
     folder.publish()
+
+
+def _fitting(folder: Folder, plan: Plan) -> Iterator[Part]:
+    """The parts that are blocks of a plan; others are removed, and done again."""
+    stops, columns = {start: stop for start, stop, _ in plan.slabs()}, tuple(column.name for column in plan.columns)
+    for part in folder.parts():
+        if part.columns == columns and stops.get(part.start) == part.stop:
+            yield part
+        else:
+            part.path.unlink()
 
 
 def _following(parts: Mapping[int, Part], after: int) -> Iterator[Part]:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..density import Array
+from ..description import SHAPE as DESCRIPTION
 from ..description import Description, describe
 from ..designs import DesignEngine
 from ..errors import DeclarationError, SizeError
@@ -29,7 +30,21 @@ from .columns import Column, Harvest, Keep, check_keep
 from .engine import Engine
 
 SCHEMA = "lagrange-casadi-sweep"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
+"""Files of version 1 have no seal; they are still read."""
+
+IDENTITY = {
+    "schema_version": int,
+    "case": str,
+    "versions": {str: str},
+    **dict.fromkeys(("sources", "backend", "precision", "compiler", "flags", "rung", "keep", "scene"), str),
+    "wanted": {},
+    "t": [float, float, int],
+    "xi": (None, [float, float, int]),
+    "mechanism": DESCRIPTION,
+    "grid": {str: str},
+}
+"""The shape of :attr:`Plan.identity`, in the words of :mod:`.untrusted`."""
 
 MANY = 10**9
 """Designs from which on a sweep must be meant."""
