@@ -97,13 +97,14 @@ class Seen:
             return False
 
 
-def seal(path: Path, kind: str) -> None:
-    """Put the seal at the end of a file that is otherwise finished. Raises ``OSError``."""
+def seal(path: Path, kind: str) -> Seen:
+    """Put the seal at the end of a file that is otherwise finished, which is as good as verified then. Raises ``OSError``."""
     with path.open("r+b", buffering=0) as file, ThreadPoolExecutor(1) as aside:
         written = aside.submit(os.fsync, file.fileno())  # the disk works meanwhile
         found = Seal.of(file, kind, file.seek(0, os.SEEK_END))
         written.result()
         file.write(found.text)
+        return Seen.of(os.fstat(file.fileno()), sealed=True)
 
 
 def kind_of(path: str | os.PathLike[str]) -> str | None:

@@ -10,11 +10,12 @@ from pathlib import Path
 
 from ..errors import ClusterError, DeclarationError, PathError, SizeError, StoppedError, StoreError
 from ..publish import check_writable, telling, uninterrupted
+from ..seal import Seen, seal
 from .axes import counted, grouped
 from .blocks import Queue
 from .file import check_names, joining
 from .parts import Folder, Part
-from .plan import Plan, difference
+from .plan import SCHEMA, Plan, difference
 from .reading import identity_of
 from .workers import Workers
 
@@ -25,8 +26,8 @@ _CATCHING_UP = 4
 """Parts joined for each that is committed, where there are more."""
 
 
-def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: bool, progress: Progress) -> None:
-    """Carry out a plan into the file ``target``.
+def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: bool, progress: Progress) -> Seen | None:
+    """Carry out a plan into the file ``target``; what was seen of that, unless it was there already.
 
     ``resume`` goes on with what an earlier sweep left, ``force`` starts anew whatever is there. Raises :class:`BusyError`,
     :class:`PathError` or :class:`StoreError` where the file is another sweep's, :class:`StoppedError` after an interrupt.
@@ -39,20 +40,20 @@ def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: 
     with folder.locked():
         if _settled(folder, plan, resume, force):
             folder.remove()
-            return
-        finished = False
+            return None
+        seen = None
         try:
             with uninterrupted() as breathe:
-                _fill(folder, plan, workers, breathe, progress)
-                finished = True
+                seen = _fill(folder, plan, workers, breathe, progress)
         except KeyboardInterrupt:
-            if finished:  # it came when there was nothing left to interrupt
-                return
+            if seen:  # it came when there was nothing left to interrupt
+                return seen
             raise StoppedError(f"stopped; {_kept(folder, plan)}") from None
         except (StoreError, ClusterError, SizeError) as error:
             raise type(error)(f"{error}; {_kept(folder, plan)}") from None
         except MemoryError as error:
             raise SizeError(f"out of memory: {str(error) or 'fewer workers take less'}; {_kept(folder, plan)}") from None
+        return seen
 
 
 def _kept(folder: Folder, plan: Plan) -> str:
@@ -98,8 +99,8 @@ def _refuse_other(place: Path, found: str | None) -> None:
         raise StoreError(f"{place} is of another sweep: {found}; start anew with force=True, or write another file")
 
 
-def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], None], progress: Progress) -> None:
-    """Commit what is missing, and meanwhile join what is there."""
+def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], None], progress: Progress) -> Seen:
+    """Commit what is missing, and meanwhile join what is there; then seal and publish it."""
     parts = {part.start: part for part in _fitting(folder, plan)}
     done, size = sum(part.stop - part.start for part in parts.values()), sum(part.size for part in parts.values())
     queue = Queue((start, stop) for start, stop, _ in plan.slabs() if start not in parts)
@@ -136,7 +137,10 @@ def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], No
             progress("file", joined, plan.size)
         if joined != plan.size:
             raise StoreError(f"{folder.path}: no part goes on after {counted(joined)} of {grouped(plan.size)}")
+    with telling(folder.target):
+        seen = seal(folder.joined, SCHEMA)
     folder.publish()
+    return seen
 
 
 def _fitting(folder: Folder, plan: Plan) -> Iterator[Part]:

@@ -20,7 +20,6 @@ from ..errors import DeclarationError
 from ..publish import PatientFile
 from ..quantities import CONVENTIONS
 from ..scales import LARGE, Scales
-from ..seal import seal
 from .axes import DESIGN, Designs, Grid
 from .blocks import chunk_of, slabs
 from .chunks import FILTERS
@@ -46,7 +45,7 @@ def check_names(designs: Designs) -> None:
 
 @contextmanager
 def joining(plan: Plan, path: Path) -> Iterator[Callable[[Sequence[bytes]], None]]:
-    """The file of a plan at ``path``, to which its blocks are given one by one, in their order; removed on any failure.
+    """The file of a plan at ``path``, not sealed yet, to which its blocks are given in order; removed on any failure.
 
     Raises ``OSError`` where it cannot be written.
     """
@@ -70,7 +69,6 @@ def joining(plan: Plan, path: Path) -> Iterator[Callable[[Sequence[bytes]], None
             yield append
             file.flush()
             file.attrs["complete"] = True
-        seal(path, SCHEMA)
     except BaseException:
         path.unlink(missing_ok=True)
         raise

@@ -56,10 +56,13 @@ class Sweep:
     seen: Seen | None = None
 
     @classmethod
-    def open(cls, path: str | Path, keeper: Any = None) -> Sweep:
-        """Open a file. Raises :class:`PathError` for none, :class:`StoreError` for what is not a whole file of a sweep."""
+    def open(cls, path: str | Path, keeper: Any = None, seen: Seen | None = None) -> Sweep:
+        """Open a file. Raises :class:`PathError` for none, :class:`StoreError` for what is not a whole file of a sweep.
+
+        It is held to its seal, unless it is the one that was ``seen`` already; ``keeper`` is what it lives as long as.
+        """
         _refuse_unfinished(path)
-        seen = verify(path)
+        seen = seen if seen and seen.is_at(path) else verify(path)
         with _reading(path, seen) as file:
             return cls(Path(path), **contents(file, sealed=seen.sealed), keeper=keeper, seen=seen)
 
