@@ -11,6 +11,7 @@ import hashlib
 import os
 import stat
 import threading
+from collections import deque
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -205,9 +206,13 @@ def _digests(file: FileIO, length: int) -> list[bytes]:
     threads = min(cores(), _MOST, 1 + len(sizes) // _FEW)
     if threads == 1:
         work(0)
-    else:
-        with ThreadPoolExecutor(threads) as pool:
+        return found
+    with ThreadPoolExecutor(threads) as pool:
+        try:
             list(pool.map(work, range(threads)))
+        finally:  # after an interrupt or a failure no thread goes on
+            with turn:
+                deque(numbers, 0)
     return found
 
 

@@ -65,6 +65,27 @@ def test_the_digest_is_what_the_documentation_says(tmp_path, length):
     assert seal.verify(path).sealed
 
 
+@pytest.mark.parametrize("error", [OSError("gone"), KeyboardInterrupt()])
+def test_after_a_failure_no_thread_goes_on(monkeypatch, error):
+    """An interrupt does not wait for the rest of a large file."""
+    monkeypatch.setattr(seal, "cores", lambda: 4)
+    asked = []
+
+    class File:
+        def seek(self, place):
+            pass
+
+        def readinto(self, buffer):
+            asked.append(len(buffer))
+            if len(asked) == 5:
+                raise error
+            return len(buffer)
+
+    with pytest.raises(type(error)):
+        seal.Seal.of(File(), "something", 1000 * MIB)
+    assert len(asked) < 100
+
+
 def test_the_documentation_verifies_a_file(run, tmp_path, monkeypatch):
     (block,) = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "schema.md").read_text(), re.DOTALL)
     shutil.copy(run, tmp_path)

@@ -15,8 +15,11 @@ from lagrange_casadi import save
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import PathError, StoreError
 from lagrange_casadi.publish import check_writable, filling, replacing, writing
+from lagrange_casadi.rung import Rung
 from lagrange_casadi.sweep import sweep
 from lagrange_casadi.sweep.parts import Folder
+from lagrange_casadi.trade import Measurement, Trade
+from lagrange_casadi.trade_plot import draw_trade
 
 CASE = str(Path(__file__).parent.parent / "cases" / "slider_crank")
 COLUMN = "peak:effort:O"
@@ -51,7 +54,7 @@ def listen():
 
     def start(path):
         came = []
-        thread = threading.Thread(target=lambda: came.append(path.read_text()), daemon=True)
+        thread = threading.Thread(target=lambda: came.append(path.read_bytes()), daemon=True)
         thread.start()
 
         def heard():
@@ -71,9 +74,18 @@ def test_csv_goes_through_a_pipe(file, pipe, listen, capfd, command):
     main([*command, "--csv", "x.csv"])
     heard = listen(pipe)
     assert main([*command, "--csv", "pipe"]) == 0
-    assert heard() == Path("x.csv").read_text()
+    assert heard() == Path("x.csv").read_bytes()
     assert stat.S_ISFIFO(os.stat(pipe).st_mode)
     assert "wrote pipe: " in capfd.readouterr().out
+
+
+@pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
+def test_a_picture_goes_through_a_pipe(pipe, listen, ending):
+    one = Measurement(Rung("c"), 1e-9, 1e-3, 1e-3, "effort:O")
+    heard = listen(pipe)
+    with writing(pipe) as (opened,):
+        draw_trade(Trade("x", 1, 1, (one,), {}), opened, ending)
+    assert heard()[:5] in (b"\x89PNG\r", b"<?xml", b"%PDF-")
 
 
 @pytest.mark.parametrize("command", TABLES)
@@ -91,7 +103,7 @@ def test_a_pipe_may_be_read_later(pipe, listen):
     with writing(pipe) as (opened,):
         opened.write(b"in the end")
     timer.join()
-    assert heard[0]() == "in the end"
+    assert heard[0]() == b"in the end"
 
 
 def test_a_pipe_that_is_no_longer_read_is_one_line(pipe):
