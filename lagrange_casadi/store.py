@@ -308,8 +308,9 @@ def reading(
     :class:`StoreError` for another file, another version, and one that was not finished or is not as it was written; whatever
     reading it raises becomes a :class:`StoreError`.
     """
-    _refuse_other(path, kind_of(path) or schema, schema, kind)
-    seen = seen if seen and seen.is_at(path) else verify(path)
+    if not seen or not seen.is_at(path):
+        _refuse_other(path, kind_of(path) or schema, schema, kind)
+        seen = verify(path)
     with told_as("damaged", path):
         try:
             file = h5py.File(path, "r")
