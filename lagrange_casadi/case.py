@@ -29,8 +29,8 @@ class Case:
 
     @property
     def name(self) -> str:
-        """The name of its folder, or of its file."""
-        return (self.path.parent if self.path.name == "case.py" else self.path).stem
+        """The name of its folder, or of its file without the ending."""
+        return self.path.parent.name if self.path.name == "case.py" else self.path.stem
 
 
 def load_case(path: str | os.PathLike[str]) -> Case:

@@ -14,6 +14,36 @@ from .parts import Link, Point, PointMass, RigidMass
 
 Description = dict[str, Any]
 
+_PLACE = {"body": str, "x": float, "y": float}
+_BODY = {"length": float, "mass": float}
+SHAPE = {
+    "name": str,
+    "parameters": {str: {"value": float, "unit": str, "low": float, "high": float}},
+    "gravity": [float],
+    "bodies": {
+        str: (
+            {"length": None, "mass": float},
+            _BODY | {"centre": {"x": float, "y": float, "inertia": float}},
+            _BODY | {"density": {"breaks": [float], "cells": [[float]]}},
+        )
+    },
+    "joints": {
+        str: {
+            "kind": str,
+            "coordinate": (str, None),
+            "driven": bool,
+            "parent": _PLACE,
+            "child": _PLACE,
+            "axis": [float],
+            "angle": float,
+        }
+    },
+    "loads": {str: {"kind": str, "points": [_PLACE]}},
+    "rows": {str: str},
+    "constraints": [str],
+}
+"""What every description is like, in the words of :mod:`.untrusted`."""
+
 
 def density_of(body: Description) -> NumericDensity:
     """The density of a described link that has sections."""

@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .errors import DeclarationError, StoreError, UnknownNameError
+from .errors import DeclarationError, StoreError, UnknownNameError, one_line
 from .quantities import quantity_of
 from .section_law import FORCES
 from .solution import Solution
+from .untrusted import parsed
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -173,11 +174,11 @@ def dump_specs(specs: Sequence[Spec]) -> str:
 
 
 def parse_specs(text: str) -> tuple[Spec, ...]:
-    """Specs from a file's text; none from an empty one."""
+    """Specs from a file's text; none from an empty one. Raises :class:`StoreError` for what are none."""
     try:
-        return tuple(_parse(entry) for entry in json.loads(text or "[]"))
-    except (ValueError, TypeError, KeyError) as error:
-        raise StoreError(f"the file's attribute 'figures' is damaged: {error}") from None
+        return tuple(_parse(entry) for entry in parsed(text or "[]", [{"kind": str, "name": str}], "figures"))
+    except (ValueError, TypeError, KeyError, RecursionError) as error:
+        raise StoreError(f"the file's attribute 'figures' is damaged: {one_line(error)}") from None
 
 
 def _parse(entry: dict[str, Any]) -> Spec:

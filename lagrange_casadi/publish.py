@@ -5,60 +5,120 @@ from __future__ import annotations
 import io
 import os
 import signal
+import stat
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
-from .errors import PathError, StoreError, one_line
+from .errors import BusyError, PathError, StoreError, one_line
 from .interrupts import interrupts
-
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+from .seal import SIGNATURE, is_held
+from .streams import SOCKET, open_stream, stream_word
 
 
 def check_writable(target: Path, *, folder: bool = False, hdf5: bool = False) -> None:
     """Raise :class:`PathError` where no file (or folder) can be put at ``target``: said before anything is computed.
 
-    What is no ``hdf5`` file itself replaces none.
+    What is no ``hdf5`` file itself replaces none; and it may go to a device or a pipe, which one of HDF5 may not. Raises
+    :class:`BusyError` for an HDF5 file that another program writes.
     """
     try:
-        taken, whole = target.exists() or target.is_symlink(), target.is_dir()
+        stream, place = stream_word(target), settled(target)
+        taken, whole = place.exists(), place.is_dir()
     except OSError as error:
         raise PathError(f"cannot write {target}: {error.strerror}") from None
+    if stream and (hdf5 or stream == SOCKET):
+        raise PathError(f"cannot write {target}: it is {stream}, not a file")
     if not folder and whole:
         raise PathError(f"cannot write {target}: it is a folder")
-    if folder and taken and not whole:
-        raise PathError(f"cannot write {target}: it is a file, not a folder")
-    if not target.parent.is_dir():
-        lacking = "is a file" if target.parent.exists() else "does not exist"
-        raise PathError(f"cannot write {target}: folder {target.parent} {lacking}")
-    if not folder and not hdf5 and _is_hdf5(target):
+    if folder and (stream or (taken and not whole)):
+        raise PathError(f"cannot write {target}: it is {stream or 'a file'}, not a folder")
+    if stream:
+        if not os.access(target, os.W_OK):
+            raise PathError(f"cannot write {target}: it is not writable")
+        return
+    if not place.parent.is_dir():
+        lacking = "is a file" if place.parent.exists() else "does not exist"
+        raise PathError(f"cannot write {target}: folder {place.parent} {lacking}")
+    if not folder and not hdf5 and is_hdf5(place):
         raise PathError(f"cannot write {target}: it is an HDF5 file; choose another name")
-    for place in (target.parent, *([target] if target.is_dir() else [])):
-        if not os.access(place, os.W_OK):
-            raise PathError(f"cannot write {target}: folder {place} is not writable")
+    if hdf5 and place.is_file() and is_held(place):
+        raise BusyError(f"cannot write {target}: another program has it open to write")
+    for there in (place.parent, *([place] if whole else [])):
+        if not os.access(there, os.W_OK):
+            raise PathError(f"cannot write {target}: folder {there} is not writable")
 
 
-def _is_hdf5(path: Path) -> bool:
+def settled(target: Path) -> Path:
+    """Where a file is put: what a symbolic link leads to, so that the link stays."""
+    return Path(os.path.realpath(target)) if target.is_symlink() else target
+
+
+def is_hdf5(path: Path) -> bool:
+    """Whether there is a file of HDF5, with or without a user block. Raises :class:`PathError` where it cannot be read."""
+    if not path.is_file():
+        return False
     try:
         with path.open("rb") as file:
-            return file.read(len(_SIGNATURE)) == _SIGNATURE
-    except OSError:
-        return False
+            size, place = file.seek(0, os.SEEK_END), 0
+            while place < size:
+                file.seek(place)
+                if file.read(len(SIGNATURE)) == SIGNATURE:
+                    return True
+                place = 2 * place or 512
+            return False
+    except OSError as error:
+        raise PathError(f"cannot write {path}: what is there cannot be read: {error.strerror}") from None
+
+
+def put(draft: Path, target: Path) -> None:
+    """Rename a file over ``target``, where nothing is or another file. Raises :class:`PathError` for anything else, ``OSError``."""
+    _refuse_other(target)
+    os.replace(draft, target)
 
 
 @contextmanager
 def replacing(target: Path, *, hdf5: bool = False) -> Iterator[Path]:
     """A temporary file to write, renamed to ``target`` on success and removed on any failure."""
     check_writable(target, hdf5=hdf5)
-    with telling(target), _beside(target) as work:
-        draft = work / target.name
+    place = settled(target)
+    with telling(target), _beside(place) as work:
+        draft = work / place.name
         yield draft
-        with draft.open("rb") as written:
-            os.fsync(written.fileno())
-        os.replace(draft, target)
+        flush(draft)
+        put(draft, place)
+
+
+@contextmanager
+def writing(*targets: Path) -> Iterator[list[BinaryIO]]:
+    """Files to write, which are put into their places together on success, and are none on any failure.
+
+    What is a device, a pipe, or standard output is written straight to. Raises as :func:`check_writable` does, and
+    :class:`StoreError`.
+    """
+    for target in targets:
+        check_writable(target)
+    with telling(*targets), ExitStack() as stack:
+        files: list[BinaryIO] = []
+        drafts: list[tuple[Path, Path]] = []
+        for target in targets:
+            if stream_word(target):
+                files.append(stack.enter_context(open_stream(target)))
+                continue
+            place = settled(target)
+            draft = stack.enter_context(_beside(place)) / place.name
+            files.append(stack.enter_context(draft.open("wb")))
+            drafts.append((draft, place))
+        yield files
+        for file in files:
+            file.close()
+        for draft, _ in drafts:
+            flush(draft)
+        for draft, place in drafts:
+            put(draft, place)
 
 
 @contextmanager
@@ -125,13 +185,27 @@ class PatientFile(io.FileIO):
 def filling(folder: Path) -> Iterator[Path]:
     """A temporary folder to fill, whose files move into ``folder`` on success and are removed on any failure."""
     check_writable(folder, folder=True)
+    place = settled(folder)
     # What is mounted there takes no file from beside it by a new name.
-    within = folder / folder.name if os.path.ismount(folder) else folder
+    within = place / place.name if os.path.ismount(place) else place
     with telling(folder), _beside(within) as work:
         yield work
+        check_free(work, folder)
         folder.mkdir(exist_ok=True)
         for draft in sorted(work.iterdir()):
-            os.replace(draft, folder / draft.name)
+            put(draft, folder / draft.name)
+
+
+def check_free(work: Path, folder: Path) -> None:
+    """Raise :class:`PathError` where something in ``folder``, such as a folder, bears the name of a file in ``work``."""
+    for name in sorted(draft.name for draft in work.iterdir()):
+        _refuse_other(folder / name)
+
+
+def _refuse_other(target: Path) -> None:
+    """Raise :class:`PathError` for what is there and not a file: a folder, a link, a device, a pipe."""
+    if os.path.lexists(target) and not stat.S_ISREG(os.lstat(target).st_mode):
+        raise PathError(f"cannot write {target}: what is there is not a file")
 
 
 @contextmanager
@@ -141,10 +215,19 @@ def _beside(target: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def telling(target: Path) -> Iterator[None]:
+def telling(*targets: Path) -> Iterator[None]:
     """Say failures of the disk in one line: raise :class:`StoreError` for ``OSError``."""
     try:
         yield
     except OSError as error:
         reason = os.strerror(error.errno) if error.errno else one_line(error)
-        raise StoreError(f"cannot write {target}: {reason}") from None
+        raise StoreError(f"cannot write {' and '.join(map(str, targets))}: {reason}") from None
+
+
+def flush(path: Path) -> None:
+    """Wait until a file, or the names in a folder, are on the disk. Raises ``OSError``."""
+    number = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(number)
+    finally:
+        os.close(number)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import BinaryIO
 
 from .trade import Trade
 
@@ -13,8 +13,8 @@ _OFFSETS = ((0, 6), (0, -14), (0, 17), (0, -25))
 _LEAST = 1e-17
 
 
-def draw_trade(trade: Trade, path: Path) -> None:
-    """Write the picture; its kind is told by the name's ending."""
+def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
+    """Write the picture into a file; its kind is told by a name's ending."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(12, 6.5), layout="constrained")
@@ -37,4 +37,4 @@ def draw_trade(trade: Trade, path: Path) -> None:
     for line, (text, colour) in enumerate(words):
         key.text(0.0, 0.98 - line / max(len(words), 20), text, va="top", fontsize=9, color=colour, family="monospace")
     key.set_title("red: nothing is faster and more accurate", fontsize=9, color="tab:red", loc="left")
-    figure.savefig(path, dpi=150)
+    figure.savefig(file, format=ending.removeprefix("."), dpi=150)

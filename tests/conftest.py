@@ -65,6 +65,15 @@ def solution(slider_crank):
 def pytest_addoption(parser):
     generated = "parts of the documentation, and the golden text of an export"
     parser.addoption("--update", action="store_true", help=f"write anew what is generated: {generated}")
+    parser.addoption("--long", action="store_true", help="also the tests marked long, which take many minutes")
+
+
+def pytest_collection_modifyitems(config, items):
+    """Leave long tests out, unless they are asked for."""
+    left = [] if config.getoption("--long") else [item for item in items if item.get_closest_marker("long")]
+    if left:
+        config.hook.pytest_deselected(items=left)
+        items[:] = [item for item in items if item not in left]
 
 
 @pytest.fixture

@@ -24,6 +24,19 @@ def test_a_folder_or_a_file(tmp_path):
     assert load_case(tmp_path / "arm").figures == ()
 
 
+@pytest.mark.parametrize(
+    ("given", "name"), [("press_1.2", "press_1.2"), ("press_1.3/case.py", "press_1.3"), ("rod.v2.py", "rod.v2"), (".", "here.too")]
+)
+def test_a_name_keeps_what_looks_like_an_ending(tmp_path, monkeypatch, given, name):
+    here = tmp_path / "here.too"
+    for folder in (here, here / "press_1.2", here / "press_1.3"):
+        folder.mkdir()
+        (folder / "case.py").write_text(GOOD)
+    (here / "rod.v2.py").write_text(GOOD)
+    monkeypatch.chdir(here)
+    assert load_case(given).name == name
+
+
 def test_the_paper_says_what_it_wants_drawn(slider_crank):
     assert [spec.name[:5] for spec in slider_crank.figures[:9]] == [f"fig{n:02}" for n in range(6, 15)]
 

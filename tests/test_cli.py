@@ -13,8 +13,9 @@ from pathlib import Path
 
 import h5py
 import pytest
+from forging import forging
 
-from lagrange_casadi import evaluate, load_case
+from lagrange_casadi import evaluate, load, load_case, save
 from lagrange_casadi.cli import main
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
@@ -59,9 +60,45 @@ def test_run_takes_options(here):
 
 
 def test_run_replaces_an_older_file(here):
-    Path("x.h5").write_text("old")
-    assert main(["run", str(CASE), "--t", "0:0.04:5", "--out", "x.h5", "--no-figures"]) == 0
+    Path("x.h5").touch()
+    for count in (5, 9):
+        assert main(["run", str(CASE), "--t", f"0:0.04:{count}", "--out", "x.h5", "--no-figures"]) == 0
+        assert load("x.h5").t.size == count
     assert main(["check", "x.h5"]) == 0
+
+
+PLAIN = f"""
+from lagrange_casadi import load_case
+def scene(): return load_case({str(CASE)!r}).scene
+"""
+
+
+def test_cases_of_two_versions_write_files_of_their_own(here):
+    for version in ("1.2", "1.3"):
+        folder = here / "cases" / f"press_{version}"
+        folder.mkdir(parents=True)
+        (folder / "case.py").write_text(PLAIN)
+        assert main(["run", str(folder), "--t", "0:0.04:5", "--want", "effort"]) == 0
+        assert main(["sweep", str(folder), "--grid", "l=0.2,0.3", "--want", "effort", "--t", "0:0.04:5", "--quiet"]) == 0
+    own = [f"press_{version}{end}" for version in ("1.2", "1.3") for end in (".h5", "_figures", "_sweep.h5")]
+    assert sorted(os.listdir(here)) == ["cases", *own]
+
+
+@pytest.mark.parametrize("figures", ["x.h5", "./x.h5", "y/../x.h5"])
+def test_figures_have_a_place_of_their_own(here, capfd, figures):
+    (here / "y").mkdir()
+    assert main(["run", str(CASE), "--t", "0:0.04:5", "--out", "x.h5", "--figures", figures]) == 2
+    assert capfd.readouterr() == ("", f"error: --figures {Path(figures)}: expected another place than the file's\n")
+    assert os.listdir(here) == ["y"]
+
+
+def test_what_is_in_the_way_of_a_figure_is_told_before_the_file_is_there(here, capfd):
+    (here / "figures" / "effort_O.png").mkdir(parents=True)
+    (here / "case.py").write_text(PLAIN)
+    assert main(["run", "case.py", "--t", "0:0.04:5", "--want", "effort", "--out", "x.h5", "--figures", "figures"]) == 2
+    assert capfd.readouterr().err.endswith("error: cannot write figures/effort_O.png: what is there is not a file\n")
+    assert sorted(path.name for path in here.iterdir() if path.name != "__pycache__") == ["case.py", "figures"]
+    assert os.listdir(here / "figures") == ["effort_O.png"]
 
 
 def test_plot_draws_what_run_drew(here):
@@ -94,7 +131,7 @@ def test_info_of_a_file(here, capsys):
 
 def test_check_fails_a_damaged_file(here, capsys):
     main(["run", str(CASE), "--t", "0:0.08:41", "--no-figures"])
-    with h5py.File("slider_crank.h5", "r+") as h:
+    with forging(Path("slider_crank.h5")) as h:
         h["section/rod/bending"][3, 4] = 7.0
     capsys.readouterr()
     assert main(["check", "slider_crank.h5"]) == 1
@@ -278,14 +315,14 @@ def test_a_file_that_cannot_grow_is_one_line(here, size):
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
-    Path("slider_crank.h5").write_text("of before")
-    evaluate(load_case(CASE).scene, t=(0, 0.08, 2))
+    save(evaluate(load_case(CASE).scene, t=(0, 0.08, 2)), "slider_crank.h5")
+    before = Path("slider_crank.h5").read_bytes()
     command = [sys.executable, "-m", "lagrange_casadi", "run", str(CASE), "--no-figures"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, preexec_fn=limit)
     assert done.returncode == 1
     assert done.stderr == "error: cannot write slider_crank.h5: File too large\n"
     assert os.listdir(here) == ["slider_crank.h5"]
-    assert Path("slider_crank.h5").read_text() == "of before"
+    assert Path("slider_crank.h5").read_bytes() == before
 
 
 def test_no_command_shows_the_help(capsys):

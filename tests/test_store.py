@@ -4,14 +4,19 @@ import errno
 import json
 import re
 import shutil
+import subprocess
+import sys
+from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+import sweeps
 import xarray
+from forging import edit, flip
 
 from lagrange_casadi import check, evaluate, load, save, store
-from lagrange_casadi.errors import DeclarationError, PathError, StoreError
+from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoreError
 from lagrange_casadi.quantities import CONVENTIONS
 
 
@@ -40,7 +45,7 @@ def test_layout(solution, file):
         assert dict(h["t"].attrs)["units"] == "s"
         assert list(h.attrs)[-1] == "complete"
         assert h.attrs["schema"] == "lagrange-casadi"
-        assert h.attrs["schema_version"] == 1
+        assert h.attrs["schema_version"] == 2
         assert h.attrs["case"] == "slider_crank"
         assert h.attrs["conventions"] == CONVENTIONS
         assert h.attrs["backend"] in ("lanes", "c")
@@ -83,11 +88,6 @@ def test_check_passes_a_whole_file(file):
     assert check(file) == []
 
 
-def edit(file, change):
-    with h5py.File(file, "r+") as h:
-        change(h)
-
-
 @pytest.mark.parametrize(
     ("change", "finding"),
     [
@@ -96,10 +96,6 @@ def edit(file, change):
         (lambda h: h["effort/O"].attrs.__setitem__("units", "lbf ft"), "effort/O: units 'lbf ft', expected 'N m'"),
         (lambda h: h["effort/O"].attrs.__setitem__("sign", "whatever"), "effort/O: sign is not the schema's"),
         (lambda h: h["effort/O"].dims[0].detach_scale(h["t"]), "effort/O: axis 0 has no scale /t"),
-        (lambda h: h.__delitem__("section/rod/shear"), "damaged: .*section/rod/shear|damaged: .*shear"),
-        (lambda h: h.attrs.__setitem__("mechanism", "{"), "damaged: "),
-        (lambda h: h.attrs.__delitem__("mechanism"), "damaged: "),
-        (lambda h: h.__delitem__("t"), "damaged: "),
         (lambda h: h.__delitem__("effort"), "effort/O: missing"),
         (lambda h: h["effort/O"].__setitem__(5, 3.0), "power: .*, computed anew, is worse than the tolerance|balance: "),
         (lambda h: h["certificate/power"].__setitem__(5, 0.1), "certificate/power: 0.1 is worse than the tolerance 1e-09"),
@@ -111,29 +107,43 @@ def test_check_names_what_is_wrong(file, change, finding):
     assert re.search(finding, found[0])
 
 
-@pytest.mark.parametrize("name", ["mechanism", "versions", "undetermined"])
-def test_a_damaged_file_is_one_line(file, name):
-    edit(file, lambda h: h.attrs.__setitem__(name, "{"))
+@pytest.mark.parametrize("read", [load, check])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda h: h.attrs.__setitem__("mechanism", "{"),
+        lambda h: h.attrs.__setitem__("versions", "{"),
+        lambda h: h.attrs.__setitem__("undetermined", "{"),
+        lambda h: h.attrs.__delitem__("mechanism"),
+        lambda h: h.__delitem__("t"),
+    ],
+)
+def test_a_damaged_file_is_one_line(file, change, read):
+    edit(file, change)
     with pytest.raises(StoreError, match=r"result\.h5: damaged: "):
-        load(file)
+        read(file)
 
 
-def test_a_flipped_byte_is_found(file):
-    """The checksum of its chunk no longer fits."""
+def test_a_grid_that_is_missing_is_found(file):
+    edit(file, lambda h: h.__delitem__("section/rod/shear"))
+    with pytest.raises(StoreError, match=r"result\.h5: damaged: .*shear"):
+        check(file)
+
+
+@pytest.mark.parametrize("read", [load, check, store.figure_specs])
+def test_a_flipped_byte_is_found(file, read):
     with h5py.File(file) as h:
         chunk = h["section/rod/bending"].id.get_chunk_info(0)
-    data = bytearray(file.read_bytes())
-    data[chunk.byte_offset + 100] ^= 1
-    file.write_bytes(data)
-    (finding,) = check(file)
-    assert finding.startswith("damaged: ")
+    flip(file, chunk.byte_offset + 100)
+    with pytest.raises(StoreError, match=r"result\.h5: damaged: its bytes are not those that were written$"):
+        read(file)
 
 
 @pytest.mark.parametrize("keep", [0.0, 0.3, 0.9, 0.999])
 def test_a_truncated_file_is_refused(file, keep):
     data = file.read_bytes()
     file.write_bytes(data[: int(len(data) * keep)])
-    with pytest.raises(StoreError, match=r"result\.h5: not a whole HDF5 file"):
+    with pytest.raises(StoreError, match=r"result\.h5: not a whole HDF5 file of this package: it "):
         load(file)
 
 
@@ -149,7 +159,7 @@ def test_other_files_are_refused(tmp_path, file):
     with pytest.raises(StoreError, match="not the file of a run, its attribute 'schema' is None"):
         load(tmp_path / "other.h5")
     edit(file, lambda h: h.attrs.__setitem__("schema_version", 99))
-    with pytest.raises(StoreError, match="schema version 99, this program reads version 1"):
+    with pytest.raises(StoreError, match="schema version 99, this program reads versions 1 to 2"):
         load(file)
     with pytest.raises(PathError, match="is a folder, not a file"):
         load(tmp_path)
@@ -203,6 +213,95 @@ def test_no_other_hdf5_file_is_replaced(solution, tmp_path, schema, says):
     with pytest.raises(PathError, match=rf"cannot write .*x\.h5: {says}; choose another name"):
         save(solution, target)
     assert target.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (b"notes", "it is no file of HDF5"),
+        (b"\x89HDF\r\n\x1a\n" + b"damaged" * 100, r"what is there cannot be read \(.*\)"),
+        (b"MATLAB".ljust(512) + b"\x89HDF\r\n\x1a\n" + b"damaged" * 100, r"what is there cannot be read \(.*\)"),
+    ],
+)
+def test_nothing_is_replaced_that_was_not_read_and_found_to_be_a_run(solution, tmp_path, content, says):
+    target = tmp_path / "x.h5"
+    target.write_bytes(content)
+    with pytest.raises(PathError, match=rf"cannot write .*x\.h5: {says}; choose another name"):
+        save(solution, target)
+    assert target.read_bytes() == content
+
+
+@pytest.mark.parametrize("mode", ["r+", "a"])
+def test_a_run_that_another_program_writes_is_left_alone(solution, file, mode):
+    before = file.stat().st_ino
+    program = f"import h5py, sys; h = h5py.File({str(file)!r}, {mode!r}); print('open', flush=True); sys.stdin.read()"
+    with sweeps.process(sys.executable, "-c", program, stdin=subprocess.PIPE) as holder:
+        assert holder.stdout.readline() == "open\n"
+        with pytest.raises(BusyError, match=r"result\.h5: another program has it open to write"):
+            save(solution, file)
+        with pytest.raises(StoreError, match=r"result\.h5: another program has it open to write"):
+            load(file)
+        assert file.stat().st_ino == before
+
+
+def test_a_run_that_another_program_reads_is_replaced(solution, file):
+    with h5py.File(file) as h:
+        save(solution.during(slice(0, 3)), file)
+        assert h["t"].shape == (801,)
+    assert load(file).t.size == 3
+
+
+def test_what_cannot_be_opened_is_left_alone(solution, file, monkeypatch):
+    """Whatever keeps a file from being read: that it is no HDF5 does not follow."""
+    opened = Path.open
+
+    def refuse(path, *arguments, **keywords):
+        if path == file and arguments[:1] in ((), ("rb",)):
+            raise PermissionError(errno.EACCES, "Permission denied")
+        return opened(path, *arguments, **keywords)
+
+    monkeypatch.setattr(Path, "open", refuse)
+    monkeypatch.setattr(store, "kind_of", lambda _: None)
+    with pytest.raises(PathError, match=r"cannot write .*result\.h5: what is there cannot be read: Permission denied"):
+        save(solution, file)
+
+
+@pytest.mark.parametrize("keep", [600, 100_000])
+def test_a_damaged_run_is_left_to_its_owner(solution, file, keep):
+    """It might be what is left of something else."""
+    file.write_bytes(file.read_bytes()[:keep])
+    with pytest.raises(PathError, match=r"cannot write .*result\.h5: what is there cannot be read"):
+        save(solution, file)
+
+
+def test_what_hdf5_refuses_is_one_line(solution, tmp_path, monkeypatch):
+    def refuse(*_):
+        raise RuntimeError("Unspecified error in H5DSattach_scale (return value <0)")
+
+    monkeypatch.setattr(store.Scales, "finish", refuse)
+    with pytest.raises(StoreError, match=r"cannot write .*x\.h5: Unspecified error in H5DSattach_scale"):
+        save(solution, tmp_path / "x.h5")
+    assert not list(tmp_path.iterdir())
+
+
+def test_nothing_is_left_out_without_a_trace(file):
+    """What was not written reads as no number, and whoever reads it here is told."""
+
+    def lose(h):
+        name = "section/rod/bending"
+        attributes, scales, shape = dict(h[name].attrs), [dim[0] for dim in h[name].dims], h[name].shape
+        assert np.isnan(h[name].fillvalue)
+        del h[name]
+        new = h.create_dataset(name, shape, float, chunks=(100, 101), fillvalue=np.nan, fletcher32=True)
+        new[:700] = 0.0
+        for key in ("units", "long_name", "sign"):
+            new.attrs[key] = attributes[key]
+        for dim, scale in zip(new.dims, scales, strict=True):
+            dim.attach_scale(scale)
+
+    edit(file, lose)
+    with pytest.raises(StoreError, match=r"damaged: /section/rod/bending has \d+ bytes of 647208"):
+        check(file)
 
 
 def test_a_file_that_the_disk_has_no_room_for_is_refused(solution, tmp_path, monkeypatch):

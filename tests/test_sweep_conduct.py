@@ -164,6 +164,19 @@ def test_what_is_there_is_not_overwritten(whole, tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["notes.h5", "whole.h5"]
 
 
+def test_a_file_that_another_program_writes_is_left_alone(whole, tmp_path):
+    path = tmp_path / "whole.h5"
+    before = path.stat().st_ino
+    program = f"import h5py, sys; h = h5py.File({str(path)!r}, 'r+'); print('open', flush=True); sys.stdin.read()"
+    with sweeps.process(sys.executable, "-c", program, stdin=subprocess.PIPE) as holder:
+        assert holder.stdout.readline() == "open\n"
+        for keywords in ({}, {"force": True}, {"resume": True}):
+            with pytest.raises(BusyError, match=r"cannot write .*whole\.h5: another program has it open to write"):
+                run(path, **keywords)
+    assert path.stat().st_ino == before
+    assert os.listdir(tmp_path) == ["whole.h5"]
+
+
 @pytest.mark.parametrize(
     ("change", "says"),
     [

@@ -23,7 +23,7 @@ def contents(start, stop):
 def folder(tmp_path):
     folder = Folder(tmp_path / "x.h5")
     with folder.locked():
-        folder.begin({"case": "x"})
+        folder.begin(sweeps.identity())
         yield folder
 
 
@@ -39,7 +39,7 @@ def test_what_is_committed_is_read(folder):
     for part in parts:
         assert part.read() == contents(part.start, part.stop)
         assert part.size == sum(map(len, part.read()))
-    assert folder.identity == {"case": "x"}
+    assert folder.identity == sweeps.identity()
 
 
 @pytest.mark.parametrize("keep", [0.0, 0.02, 0.5, 0.999])
@@ -82,9 +82,9 @@ def test_drafts_and_overlaps_are_cleared(folder):
 
 def test_to_begin_anew_removes_what_is_there(folder):
     commit(folder, (0, 4))
-    folder.begin({"case": "y"})
+    folder.begin(sweeps.identity("y"))
     assert folder.parts() == []
-    assert folder.identity == {"case": "y"}
+    assert folder.identity == sweeps.identity("y")
 
 
 def test_a_damaged_plan_is_one_line(folder):

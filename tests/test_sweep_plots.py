@@ -1,9 +1,9 @@
 """Figures of a sweep: each draws what it says, from the file's arrays, and says what it leaves out."""
 
-import h5py
 import numpy as np
 import pytest
 import sweeps
+from forging import forging
 
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, NoDesignError, UnknownNameError
@@ -32,7 +32,7 @@ def listed(monkeypatch, tmp_path):
 
 def rewritten(found, name, change):
     """The sweep with a column that is changed in its file."""
-    with h5py.File(found.path, "r+") as file:
+    with forging(found.path) as file:
         file[name.replace(":", "/")][...] = change(file[name.replace(":", "/")][()])
     return Sweep.open(found.path)
 

@@ -1,6 +1,8 @@
 """The trade: every rung measured, errors that are true, a front that nothing beats, and recommendations that hold."""
 
+import errno
 import json
+import sys
 from pathlib import Path
 
 import casadi as ca
@@ -10,7 +12,7 @@ from builders import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, motion
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import AccuracyError, DeclarationError
+from lagrange_casadi.errors import AccuracyError, DeclarationError, StoreError
 from lagrange_casadi.rung import Rung
 from lagrange_casadi.trade import COMPARED, RUNGS, Measurement, Trade, trade
 
@@ -105,6 +107,28 @@ def test_the_command(tmp_path, monkeypatch, capfd):
     out, err = capfd.readouterr()
     assert err.startswith("error: no rung of 'slider_crank' keeps 1e-30 of the peak; the best, ")
     assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize("failing", ["draw", "disk"])
+def test_both_files_or_none(tmp_path, monkeypatch, capfd, failing):
+    """Neither a drawing that fails nor a disk that is full at the second file leaves the first."""
+    monkeypatch.chdir(tmp_path)
+    command = sys.modules["lagrange_casadi.cli.trade"]
+    monkeypatch.setattr(command, "measure", lambda *_, **__: Trade("x", 1, 1, (entry(1, 1e-3),), {}))
+    (tmp_path / "x.json").write_text("of before")
+
+    def fail(_trade, file, _ending):
+        if failing == "draw":
+            raise StoreError("cannot be drawn")
+        file.write(b"half")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(command, "draw_trade", fail)
+    assert main(["trade", str(CASES / "slider_crank"), "--out", "x.json", "--figure", "x.png"]) == 1
+    told = {"draw": "cannot be drawn", "disk": "cannot write x.json and x.png: No space left on device"}
+    assert capfd.readouterr() == ("", f"error: {told[failing]}\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["x.json"]
+    assert (tmp_path / "x.json").read_text() == "of before"
 
 
 @pytest.mark.parametrize("words", [["--figure", "x.txt"], ["--out", "x.png"], ["--out", "nowhere/x.json"]])

@@ -9,6 +9,7 @@ import click
 
 from ..errors import NoDesignError
 from ..publish import check_writable
+from ..streams import is_standard_output
 from ..sweep import Sweep
 from ..sweep import best as find
 from ..sweep.axes import DESIGN, counted, grouped
@@ -44,8 +45,9 @@ def best(
             f"{file}: no design has a result and meets the conditions: of {counted(sweep.size)}, {met} meet them, {with_result} of "
             f"these with a result{missed(sweep, where)}"
         )
-    names = list(found[0].values)
-    show(sweep, names, [(design.number, list(design.values.values())) for design in found])
+    names, piped = list(found[0].values), csv is not None and is_standard_output(csv)
+    if not piped:
+        show(sweep, names, [(design.number, list(design.values.values())) for design in found])
     if csv:
         write_csv([DESIGN, *names], ([design.number, *design.values.values()] for design in found), csv)
-        click.echo(f"wrote {csv}: {counted(len(found))}")
+        click.echo(f"wrote {csv}: {counted(len(found))}", err=piped)

@@ -15,8 +15,11 @@ from ..store import figure_specs, load
 from ..sweep import Sweep, is_sweep
 from ..sweep.plots import Spec, draw_sweep
 from ..sweep.usual import default_plots
+from ..untrusted import told_as
 from .drawing import draw_with_progress
 from .options import place
+
+_UNDRAWN = "cannot be drawn"
 
 
 @click.command()
@@ -48,7 +51,7 @@ def plot(file: Path, out: Path, over: Sequence[str], at: Sequence[tuple[str, flo
         raise click.UsageError("--over, --at and --against go with a sweep's file")
     else:
         solution, drawn = load(file), parse_specs(figure_specs(file))
-        with filling(out) as draft:
+        with told_as(_UNDRAWN, file), filling(out) as draft:
             draw_with_progress(solution, drawn, draft)
     click.echo(f"wrote the figures in {out}/")
 
@@ -56,7 +59,7 @@ def plot(file: Path, out: Path, over: Sequence[str], at: Sequence[tuple[str, flo
 def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
     """Draw a sweep; what shows nothing is said. Raises :class:`NoDesignError` where no figure shows anything."""
     skipped = []
-    with filling(out) as draft:
+    with told_as(_UNDRAWN, sweep.path), filling(out) as draft:
         for path, why in tqdm(draw_sweep(sweep, specs, draft), total=len(specs), desc="figures", leave=False, disable=None):
             if why:
                 skipped.append(f"{path.name}: {why}")

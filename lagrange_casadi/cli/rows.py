@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Sequence
+from io import TextIOWrapper
 from pathlib import Path
 
 import click
 
-from ..publish import replacing
+from ..publish import writing
 from ..sweep import Sweep
 from ..sweep.columns import STATUS
 
@@ -31,12 +32,14 @@ def show(sweep: Sweep, names: Sequence[str], rows: Iterable[tuple[int, Sequence[
 def write_csv(names: Sequence[str], rows: Iterable[Sequence[float]], path: Path) -> int:
     """Write rows with every digit they have; how many there were."""
     count = 0
-    with replacing(path) as draft, draft.open("w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
+    with writing(path) as (file,):
+        text = TextIOWrapper(file, encoding="utf-8", newline="")
+        writer = csv.writer(text, lineterminator="\n")
         writer.writerow(names)
         for values in rows:
             writer.writerow([repr(value) for value in values])
             count += 1
+        text.detach()
     return count
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
@@ -15,7 +16,7 @@ from ..errors import CertificateError
 from ..evaluate import evaluate
 from ..figures import dump_specs
 from ..peaks import forces, refine
-from ..publish import check_writable, filling
+from ..publish import check_free, check_writable, filling
 from ..rung import Backend
 from ..scene import Grid
 from ..solution import Peak, Solution
@@ -68,6 +69,8 @@ def run(
     folder = None if no_figures else figures or Path(f"{loaded.name}_figures")
     check_target(out)
     if folder:
+        if os.path.realpath(folder) == os.path.realpath(out):
+            raise click.UsageError(f"--figures {folder}: expected another place than the file's")
         check_writable(folder, folder=True)
     solution = evaluate(
         loaded.scene,
@@ -84,8 +87,9 @@ def run(
         certificate=not no_certificate,
     )
     with filling(folder) if folder else nullcontext() as draft:
-        if draft:
+        if folder and draft:
             draw_with_progress(solution, loaded.figures, draft)
+            check_free(draft, folder)
         save(solution, out, dump_specs(loaded.figures))
     _report(solution, refine(loaded.scene, solution, forces(solution)) if refine_peaks else None)
     for note in solution.notes:

@@ -10,6 +10,7 @@ import click
 
 from ..errors import NoDesignError
 from ..publish import check_writable
+from ..streams import is_standard_output
 from ..sweep import Sweep, chosen
 from ..sweep.axes import counted, grouped
 from ..sweep.best import conditions_in, missed, tally
@@ -46,7 +47,7 @@ def table(file: Path, where: Sequence[str], columns: Sequence[str], rows: int, c
     found = chain([first], found)
     if csv:
         count = write_csv(names, (values for _, values in found), csv)
-        click.echo(f"wrote {csv}: {counted(count, what)}")
+        click.echo(f"wrote {csv}: {counted(count, what)}", err=is_standard_output(csv))
     elif show(sweep, names, islice(found, rows)) == rows:
         met, with_result = tally(sweep, where, along)
         if met > rows:

@@ -11,7 +11,7 @@ from tqdm import tqdm
 
 from ..case import load_case
 from ..errors import DeclarationError
-from ..publish import check_writable, replacing
+from ..publish import check_writable, writing
 from ..rung import Rung
 from ..scene import Grid
 from ..trade import RUNGS, Trade
@@ -55,10 +55,9 @@ def trade(
             bar.update()
 
         found = measure(loaded.scene, parameters=parameters(settings), t=t, wanted=want or None, progress=progress)
-    with replacing(out) as draft:
-        draft.write_text(json.dumps(found.as_dict(), indent=1) + "\n")
-    with replacing(figure) as draft:
-        draw_trade(found, draft)
+    with writing(out, figure) as (numbers, picture):
+        numbers.write(f"{json.dumps(found.as_dict(), indent=1)}\n".encode())
+        draw_trade(found, picture, figure.suffix)
     _print(found)
     click.echo(f"wrote {out} and {figure}")
     if accuracy is not None:

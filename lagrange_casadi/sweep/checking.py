@@ -8,12 +8,14 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from ..errors import StoreError, one_line
+from ..errors import one_line
+from ..untrusted import check_chunks, told_as
 from .axes import counted, grouped, size_of
 from .blocks import slabs
 from .columns import STATUS
+from .contents import Kept
 from .parts import Folder
-from .reading import Kept, Sweep
+from .reading import Sweep
 
 
 def check_sweep(path: str | Path) -> list[str]:
@@ -26,18 +28,18 @@ def check_sweep(path: str | Path) -> list[str]:
     """
     sweep = Sweep.open(path)
     found: list[str] = []
-    with h5py.File(path, "r") as file:
+    with sweep.opened() as file:
         for kept in sweep.columns.values():
             try:
                 found += _check_column(file, sweep, kept)
-            except (OSError, RuntimeError, KeyError) as error:
+            except Exception as error:
                 found.append(f"{kept.name}: damaged: {one_line(error)}")
     return found
 
 
 def unfinished(path: Path) -> Folder | None:
     """The folder of an unfinished sweep, by its own path, or by that of the file that is not there yet; else None."""
-    folder = Folder(path.with_name(path.name.removesuffix(".parts"))) if path.name else None
+    folder = Folder.of(path.with_name(path.name.removesuffix(".parts"))) if path.name else None
     return folder if folder and folder.begun and (path == folder.path or not path.exists()) else None
 
 
@@ -46,10 +48,8 @@ def progress(folder: Folder) -> str:
 
     Raises :class:`StoreError` where its plan cannot be read.
     """
-    try:
+    with told_as("damaged", folder.path):
         size = size_of(folder.identity["grid"])
-    except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
-        raise StoreError(f"{folder.path}: damaged: {one_line(error)}") from None
     return f"unfinished: {grouped(folder.done())} of {counted(size)} done; the same sweep goes on when it is resumed"
 
 
@@ -59,10 +59,7 @@ def _check_column(file: h5py.File, sweep: Sweep, kept: Kept) -> Iterator[str]:
     for axis, name in enumerate(names):
         if file[name] not in dataset.dims[axis].values():
             yield f"{kept.name}: axis {axis} has no scale {name}"
-    expected = tuple(file[name].size for name in names)
-    if dataset.shape != expected:
-        yield f"{kept.name}: shape {dataset.shape}, expected {expected}"
-        return
+    check_chunks(dataset)
     dims = tuple(sweep.dimensions.values())
     missing = surplus = unknown = 0
     for _, _, where in slabs(dims, dataset.chunks[: len(dims)]):

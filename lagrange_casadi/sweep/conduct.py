@@ -10,11 +10,12 @@ from pathlib import Path
 
 from ..errors import ClusterError, DeclarationError, PathError, SizeError, StoppedError, StoreError
 from ..publish import check_writable, telling, uninterrupted
+from ..seal import Seen, seal
 from .axes import counted, grouped
 from .blocks import Queue
 from .file import check_names, joining
 from .parts import Folder, Part
-from .plan import Plan, difference
+from .plan import SCHEMA, Plan, difference
 from .reading import identity_of
 from .workers import Workers
 
@@ -25,8 +26,8 @@ _CATCHING_UP = 4
 """Parts joined for each that is committed, where there are more."""
 
 
-def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: bool, progress: Progress) -> None:
-    """Carry out a plan into the file ``target``.
+def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: bool, progress: Progress) -> Seen | None:
+    """Carry out a plan into the file ``target``; what was seen of that, unless it was there already.
 
     ``resume`` goes on with what an earlier sweep left, ``force`` starts anew whatever is there. Raises :class:`BusyError`,
     :class:`PathError` or :class:`StoreError` where the file is another sweep's, :class:`StoppedError` after an interrupt.
@@ -35,24 +36,24 @@ def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: 
         raise DeclarationError("resume and force exclude each other: go on with what is there, or start anew")
     check_names(plan.designs)
     check_writable(target, hdf5=True)
-    folder = Folder(target)
+    folder = Folder.of(target)
     with folder.locked():
         if _settled(folder, plan, resume, force):
             folder.remove()
-            return
-        finished = False
+            return None
+        seen = None
         try:
             with uninterrupted() as breathe:
-                _fill(folder, plan, workers, breathe, progress)
-                finished = True
+                seen = _fill(folder, plan, workers, breathe, progress)
         except KeyboardInterrupt:
-            if finished:  # it came when there was nothing left to interrupt
-                return
+            if seen:  # it came when there was nothing left to interrupt
+                return seen
             raise StoppedError(f"stopped; {_kept(folder, plan)}") from None
         except (StoreError, ClusterError, SizeError) as error:
             raise type(error)(f"{error}; {_kept(folder, plan)}") from None
         except MemoryError as error:
             raise SizeError(f"out of memory: {str(error) or 'fewer workers take less'}; {_kept(folder, plan)}") from None
+        return seen
 
 
 def _kept(folder: Folder, plan: Plan) -> str:
@@ -98,9 +99,9 @@ def _refuse_other(place: Path, found: str | None) -> None:
         raise StoreError(f"{place} is of another sweep: {found}; start anew with force=True, or write another file")
 
 
-def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], None], progress: Progress) -> None:
-    """Commit what is missing, and meanwhile join what is there."""
-    parts = {part.start: part for part in folder.parts()}
+def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], None], progress: Progress) -> Seen:
+    """Commit what is missing, and meanwhile join what is there; then seal and publish it."""
+    parts = {part.start: part for part in _fitting(folder, plan)}
     done, size = sum(part.stop - part.start for part in parts.values()), sum(part.size for part in parts.values())
     queue = Queue((start, stop) for start, stop, _ in plan.slabs() if start not in parts)
     with telling(folder.target), closing(workers.results(plan, queue)) as blocks, ExitStack() as stack:
@@ -131,9 +132,25 @@ def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], No
         breathe()
         for part in _following(parts, joined):
             append(part.read())
+            joined = part.stop
             breathe()
-            progress("file", part.stop, plan.size)
+            progress("file", joined, plan.size)
+        if joined != plan.size:
+            raise StoreError(f"{folder.path}: no part goes on after {counted(joined)} of {grouped(plan.size)}")
+    with telling(folder.target):
+        seen = seal(folder.joined, SCHEMA)
     folder.publish()
+    return seen
+
+
+def _fitting(folder: Folder, plan: Plan) -> Iterator[Part]:
+    """The parts that are blocks of a plan; others are removed, and done again."""
+    stops, columns = {start: stop for start, stop, _ in plan.slabs()}, tuple(column.name for column in plan.columns)
+    for part in folder.parts():
+        if part.columns == columns and stops.get(part.start) == part.stop:
+            yield part
+        else:
+            part.path.unlink()
 
 
 def _following(parts: Mapping[int, Part], after: int) -> Iterator[Part]:

@@ -18,6 +18,7 @@ import numpy as np
 from ..errors import DeclarationError
 from ..publish import PatientFile
 from ..quantities import CONVENTIONS
+from ..scales import LARGE, Scales
 from .axes import DESIGN, Designs, Grid
 from .blocks import chunk_of, slabs
 from .chunks import FILTERS
@@ -43,14 +44,16 @@ def check_names(designs: Designs) -> None:
 
 @contextmanager
 def joining(plan: Plan, path: Path) -> Iterator[Callable[[Sequence[bytes]], None]]:
-    """The file of a plan at ``path``, to which its blocks are given one by one, in their order; removed on any failure.
+    """The file of a plan at ``path``, not sealed yet, to which its blocks are given in order; removed on any failure.
 
     Raises ``OSError`` where it cannot be written.
     """
     try:
         with PatientFile(path, "w+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
-            _begin(file, plan)
-            datasets = [(_created(file, plan, column), (0,) * len(column.axes)) for column in plan.columns]
+            scales = Scales(file)
+            _begin(file, plan, scales)
+            datasets = [(_created(file, plan, column, scales), (0,) * len(column.axes)) for column in plan.columns]
+            scales.finish()
             slabs = plan.slabs()
 
             def append(contents: Sequence[bytes]) -> None:
@@ -70,7 +73,7 @@ def joining(plan: Plan, path: Path) -> Iterator[Callable[[Sequence[bytes]], None
         raise
 
 
-def _begin(file: h5py.File, plan: Plan) -> None:
+def _begin(file: h5py.File, plan: Plan, scales: Scales) -> None:
     """Scales and attributes."""
     grid = file.create_group("grid", track_order=True)
     parameters = plan.scene.mechanism.parameters
@@ -87,10 +90,10 @@ def _begin(file: h5py.File, plan: Plan) -> None:
             file[name] = scale
             scale.make_scale(name)
         else:
-            scale.dims[0].attach_scale(file[DESIGN])
+            scales.attach(scale, [DESIGN])
     for axis, values in (("t", plan.harvest.t), ("xi", plan.harvest.xi)):
         if any(axis in column.axes for column in plan.columns):
-            scale = file.create_dataset(axis, data=values, fletcher32=True)
+            scale = file.create_dataset(axis, data=values, fletcher32=True, fillvalue=np.nan, **LARGE)
             scale.attrs["units"], scale.attrs["long_name"] = _AXES[axis]
             scale.make_scale(axis)
     file.attrs["schema"] = SCHEMA
@@ -105,19 +108,23 @@ def _begin(file: h5py.File, plan: Plan) -> None:
 def _stream(group: Any, name: str, shape: tuple[int, ...], values: Callable[..., Any], dtype: Any) -> Any:
     """A dataset over one axis, filled in pieces."""
     chunk = chunk_of(shape, _CHUNK)
-    dataset = group.create_dataset(name, shape, dtype, chunks=chunk, **FILTERS)
+    dataset = group.create_dataset(name, shape, dtype, chunks=chunk, fillvalue=_nothing(dtype), **FILTERS, **LARGE)
     for start, stop, where in slabs(shape, chunk):
         dataset[where] = values(start, stop)
     return dataset
 
 
-def _created(file: h5py.File, plan: Plan, column: Column) -> Any:
+def _nothing(dtype: Any) -> Any:
+    """What is read where nothing was written: no number, or one that means nothing."""
+    return np.nan if np.dtype(dtype).kind == "f" else np.iinfo(dtype).min
+
+
+def _created(file: h5py.File, plan: Plan, column: Column, scales: Scales) -> Any:
     """The dataset of a column, empty."""
     shape, chunk = (*plan.dims, *column.lengths), (*plan.chunk, *column.lengths)
-    dataset = file.create_dataset(column.place, shape, column.dtype, chunks=chunk, fillvalue=0, **FILTERS)
+    dataset = file.create_dataset(column.place, shape, column.dtype, chunks=chunk, fillvalue=_nothing(column.dtype), **FILTERS)
     dataset.attrs["units"] = column.unit
     for key, text in column.attributes.items():
         dataset.attrs[key] = text
-    for axis, name in enumerate((*plan.designs.dimensions, *column.axes)):
-        dataset.dims[axis].attach_scale(file[name])
+    scales.attach(dataset, (*plan.designs.dimensions, *column.axes))
     return dataset

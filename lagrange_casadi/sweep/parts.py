@@ -18,25 +18,29 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from ..errors import BusyError, PathError, StoreError, one_line
-from ..publish import telling
+from ..publish import flush, put, settled, telling
+from ..untrusted import parsed
 from .columns import Column
+from .plan import IDENTITY
 
 try:
     import fcntl
 except ImportError:  # where there is none, nothing keeps two sweeps apart
     fcntl = None  # type: ignore[assignment]
 
+_HEAD = {"start": int, "stop": int, "columns": {str: [int, int]}}
 _PLAN, _LOCK, _FORCED, _JOINED, _DRAFT, _PART = "plan.json", "lock", "forced", "joined.h5", ".draft", ".part"
 
 
 @dataclass(frozen=True)
 class Part:
-    """A committed part: its designs, and how many bytes their columns take."""
+    """A committed part: its designs, how many bytes their columns take, and the columns' names."""
 
     path: Path
     start: int
     stop: int
     size: int
+    columns: tuple[str, ...] = ()
 
     def read(self) -> list[bytes]:
         """Its columns. Where one is not what was committed the part is deleted: raises :class:`StoreError`."""
@@ -71,6 +75,11 @@ class Folder:
     """The folder of the parts of the sweep into ``target``."""
 
     target: Path
+
+    @classmethod
+    def of(cls, target: Path) -> Folder:
+        """Where a path leads to, so that a symbolic link stays one."""
+        return cls(settled(target))
 
     @property
     def path(self) -> Path:
@@ -140,9 +149,9 @@ class Folder:
     def identity(self) -> Any:
         """What the parts are of. Raises :class:`StoreError` where that cannot be read."""
         try:
-            return json.loads((self.path / _PLAN).read_text())
-        except (OSError, ValueError) as error:
-            raise StoreError(f"{self.path / _PLAN}: damaged: {error}; start anew with force=True") from None
+            return parsed((self.path / _PLAN).read_text(), IDENTITY, "plan")
+        except (OSError, ValueError, RecursionError) as error:
+            raise StoreError(f"{self.path / _PLAN}: damaged: {one_line(error)}; start anew with force=True") from None
 
     @property
     def forced(self) -> bool:
@@ -159,13 +168,13 @@ class Folder:
 
     def commit(self, start: int, stop: int, columns: Sequence[Column], contents: Sequence[bytes]) -> Part:
         """Commit a block: on return it outlives a kill and a loss of power. Raises :class:`StoreError` where that fails."""
-        name = f"{start:012d}-{stop:012d}{_PART}"
+        name = _name(start, stop)
         sums = {column.name: (len(content), zlib.crc32(content)) for column, content in zip(columns, contents, strict=True)}
         head = json.dumps({"start": start, "stop": stop, "columns": sums}).encode()
         lines = head + b"\n" + hashlib.sha256(head).hexdigest().encode() + b"\n"
         with telling(self.target):
             self._publish(name, [lines, *contents])
-        return Part(self.path / name, start, stop, sum(map(len, contents)))
+        return Part(self.path / name, start, stop, sum(map(len, contents)), tuple(sums))
 
     def parts(self) -> list[Part]:
         """The parts that are whole, in order; what is not is removed. Their columns are checked where they are read."""
@@ -205,9 +214,9 @@ class Folder:
     def publish(self) -> None:
         """Put the joined file into its place, and remove the folder."""
         with telling(self.target):
-            _flush(self.joined)
-            os.replace(self.joined, self.target)
-            _flush(self.target.parent)
+            flush(self.joined)
+            put(self.joined, self.target)
+            flush(self.target.parent)
         self.remove()
 
     def remove(self) -> None:
@@ -235,17 +244,24 @@ class Folder:
             with suppress(OSError):
                 draft.unlink()
             raise
-        _flush(self.path)
+        flush(self.path)
+
+
+def _name(start: int, stop: int) -> str:
+    return f"{start:012d}-{stop:012d}{_PART}"
 
 
 def _whole(path: Path) -> Part | None:
     """A part, unless its head is not what was committed, or its length."""
+    if not path.is_file():
+        return None
     try:
         with path.open("rb") as file:
             told = _head(file)
-            size = sum(length for length, _ in told["columns"].values())
-            whole = os.fstat(file.fileno()).st_size == file.tell() + size
-        return Part(path, told["start"], told["stop"], size) if whole else None
+            start, stop, columns = (told[key] for key in _HEAD)
+            size = sum(length for length, _ in columns.values())
+            whole = os.fstat(file.fileno()).st_size == file.tell() + size and path.name == _name(start, stop)
+        return Part(path, start, stop, size, tuple(columns)) if whole else None
     except (OSError, ValueError):
         return None
 
@@ -255,12 +271,10 @@ def _head(file: BinaryIO) -> Any:
     head, digest = file.readline(), file.readline()
     if hashlib.sha256(head[:-1]).hexdigest().encode() != digest[:-1]:
         raise ValueError("damaged")
-    return json.loads(head)
-
-
-def _flush(path: Path) -> None:
-    number = os.open(path, os.O_RDONLY)
     try:
-        os.fsync(number)
-    finally:
-        os.close(number)
+        told = parsed(head, _HEAD, "head")
+    except RecursionError:
+        raise ValueError("damaged") from None
+    if not 0 <= told["start"] < told["stop"] or any(length < 0 for length, _ in told["columns"].values()):
+        raise ValueError("damaged")
+    return told

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..density import Array
 from ..derive import derive
+from ..description import SHAPE as DESCRIPTION
 from ..description import Description, describe
 from ..designs import DesignEngine
 from ..errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
@@ -30,7 +31,21 @@ from .columns import Column, Harvest, Keep, check_keep
 from .engine import Engine
 
 SCHEMA = "lagrange-casadi-sweep"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
+"""Files of version 1 have no seal; they are still read."""
+
+IDENTITY = {
+    "schema_version": int,
+    "case": str,
+    "versions": {str: str},
+    **dict.fromkeys(("sources", "backend", "precision", "compiler", "flags", "rung", "keep", "scene"), str),
+    "wanted": {},
+    "t": [float, float, int],
+    "xi": (None, [float, float, int]),
+    "mechanism": DESCRIPTION,
+    "grid": {str: str},
+}
+"""The shape of :attr:`Plan.identity`, in the words of :mod:`.untrusted`."""
 
 MANY = 10**9
 """Designs from which on a sweep must be meant."""

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -17,11 +16,12 @@ import numpy.typing as npt
 
 from ..density import Array
 from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, one_line
-from ..store import reading
+from ..seal import Seen, verify
+from ..store import reading, schema_of
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
-from .columns import KINDS, STATUS
-from .file import WORDS
+from .columns import STATUS
+from .contents import Kept, contents
 from .parts import Folder
 from .plan import SCHEMA, SCHEMA_VERSION
 from .selection import matches
@@ -31,20 +31,8 @@ if TYPE_CHECKING:
 
 _BLOCK = 1 << 15
 _UNITS = {"t": "s", "xi": "1"}
-_DAMAGE = (OSError, KeyError, ValueError, TypeError, RuntimeError, AttributeError)
-_NAMED = ("backend", "precision", "compiler", "flags", "rung", "sources", "keep", "scene", "case", "schema_version")
 
 Values = npt.NDArray[Any]
-
-
-@dataclass(frozen=True)
-class Kept:
-    """What a file says of a column: unit, meaning, and its axes beyond those of the designs."""
-
-    name: str
-    unit: str
-    long_name: str
-    axes: tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -53,6 +41,7 @@ class Sweep:
 
     ``dimensions`` are the axes of the designs and their lengths, of parameters, or ``design`` of a list; ``columns`` what is kept
     of each, by full name; ``parameters`` the units of what was swept; ``chosen`` the numbers along axes that :meth:`select` left.
+    All of the file is held to its seal when it is opened, and again only where it is another one since.
     """
 
     path: Path
@@ -64,15 +53,18 @@ class Sweep:
     undetermined: tuple[str, ...] = ()
     chosen: Mapping[str, npt.NDArray[np.int64]] = field(default_factory=dict)
     keeper: Any = None
+    seen: Seen | None = None
 
     @classmethod
-    def open(cls, path: str | Path, keeper: Any = None) -> Sweep:
-        """Open a file. Raises :class:`PathError` for none, :class:`StoreError` for what is not a whole file of a sweep."""
-        with _reading(path) as file:
-            try:
-                return _described(Path(path), file, keeper)
-            except _DAMAGE as error:
-                raise StoreError(f"{path}: damaged: {one_line(error)}") from None
+    def open(cls, path: str | Path, keeper: Any = None, seen: Seen | None = None) -> Sweep:
+        """Open a file. Raises :class:`PathError` for none, :class:`StoreError` for what is not a whole file of a sweep.
+
+        It is held to its seal, unless it is the one that was ``seen`` already; ``keeper`` is what it lives as long as.
+        """
+        _refuse_unfinished(path)
+        seen = seen if seen and seen.is_at(path) else verify(path)
+        with _reading(path, seen) as file:
+            return cls(Path(path), **contents(file, sealed=seen.sealed), keeper=keeper, seen=seen)
 
     def __repr__(self) -> str:
         return f"<Sweep of {self.case}: {counted(self.size)} over {', '.join(self.parameters)}; {', '.join(self.columns)}>"
@@ -94,13 +86,14 @@ class Sweep:
 
     def __getitem__(self, name: str) -> Values:
         """A column (designs' axes, its own axes), a parameter along its axis, or ``t`` [s] or ``xi`` of columns that have them."""
-        with self._opened() as file:
+        if name not in self.parameters and name not in self._over:
+            self.column(name)
+        with self.opened() as file:
             if name in self.parameters:
                 return self._cut(file["grid"][name], (self._axis(name),))
-            if name in ("t", "xi") and name in file:
+            if name in self._over:
                 return _taken(file[name])
-            kept = self.column(name)
-            return self._cut(file[name.replace(":", "/")], (*self.dimensions, *kept.axes))
+            return self._cut(file[name.replace(":", "/")], (*self.dimensions, *self.columns[name].axes))
 
     def column(self, name: str) -> Kept:
         """What a column is. Raises :class:`UnknownNameError`."""
@@ -172,14 +165,14 @@ class Sweep:
     def design(self, number: int) -> dict[str, float]:
         """The values of the swept parameters of a design, by its number. Raises :class:`DeclarationError` where there is none."""
         places = dict(zip(self.dimensions, self._place(number), strict=True))
-        with self._opened() as file:
+        with self.opened() as file:
             return {name: float(_taken(file["grid"][name], places.get(name, number))) for name in self.parameters}
 
     def values(self, number: int, names: str | Sequence[str]) -> dict[str, float]:
         """Columns of a design, by its number. Raises :class:`DeclarationError` for a column with axes of its own."""
         names, place = names_in(names), self._place(number)
         self.check_columns(names)
-        with self._opened() as file:
+        with self.opened() as file:
             return {name: _taken(file[name.replace(":", "/")], place).item() for name in names}
 
     def _place(self, number: int) -> tuple[int, ...]:
@@ -252,7 +245,7 @@ class Sweep:
 
     def _blocks(self, names: Sequence[str], along: Sequence[str]) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
         dims = tuple(self.dimensions.values())
-        with self._opened() as file:
+        with self.opened() as file:
             places = (
                 dict(zip(along, np.meshgrid(*(_taken(file[axis]) for axis in along), indexing="ij"), strict=True)) if along else {}
             )
@@ -294,58 +287,19 @@ class Sweep:
                 values = np.take(values, n - n[0], axis=axis)
         return values
 
-    @contextmanager
-    def _opened(self) -> Iterator[h5py.File]:
-        with _reading(self.path) as file:
-            try:
-                yield file
-            except (OSError, RuntimeError) as error:
-                raise StoreError(f"{self.path}: damaged: {one_line(error)}") from None
+    def opened(self) -> AbstractContextManager[h5py.File]:
+        """Its file, to read. Raises what :meth:`open` does."""
+        return _reading(self.path, self.seen)
 
 
 def is_sweep(path: str | Path) -> bool:
     """Whether a path is that of a sweep's file, whole or not."""
-    try:
-        with h5py.File(path, "r") as file:
-            return bool(file.attrs.get("schema") == SCHEMA)
-    except OSError:
-        return False
+    return schema_of(path) == SCHEMA
 
 
 def identity_of(path: Path) -> dict[str, Any]:
     """What a finished sweep says it is of. Raises what :meth:`Sweep.open` does."""
     return dict(Sweep.open(path).identity)
-
-
-def _described(path: Path, file: h5py.File, keeper: Any) -> Sweep:
-    attributes = file.attrs
-    identity = {key: json.loads(attributes[key]) for key in WORDS} | {key: _plain(attributes[key]) for key in _NAMED}
-    columns: dict[str, Kept] = {}
-    status = file[STATUS]
-    names = [dim[0].name.rpartition("/")[2] for dim in status.dims]
-
-    def visit(place: str, item: Any) -> None:
-        if isinstance(item, h5py.Dataset) and not item.is_scale and not place.startswith("grid/"):
-            axes = tuple(item.dims[axis][0].name.rpartition("/")[2] for axis in range(len(names), item.ndim))
-            name = place.replace("/", ":")
-            columns[name] = Kept(name, str(item.attrs["units"]), str(item.attrs["long_name"]), axes)
-
-    file.visititems(visit)
-    if len(columns) != attributes["columns"]:
-        raise StoreError(f"{path}: damaged: it has {len(columns)} columns of {attributes['columns']}")
-    sentences = json.loads(status.attrs["sentences"])
-    words = zip(sentences.items(), status.attrs["flag_meanings"].split(), strict=True)
-    return Sweep(
-        path,
-        identity,
-        dict(zip(names, status.shape, strict=True)),
-        {name: str(file["grid"][name].attrs["units"]) for name in file["grid"]},
-        {name: columns[name] for name in sorted(columns, key=lambda name: (KINDS.index(name.partition(":")[0]), name))},
-        {int(number): (word, sentence) for (number, sentence), word in words},
-        tuple(json.loads(attributes["undetermined"])),
-        {},
-        keeper,
-    )
 
 
 def _taken(dataset: Any, where: Any = ()) -> Values:
@@ -362,10 +316,6 @@ def _box(numbers: npt.NDArray[np.int64] | None) -> slice:
         return slice(None)
     steps = np.unique(np.diff(numbers))
     return slice(int(numbers[0]), int(numbers[-1]) + 1, int(steps[0]) if steps.size == 1 else 1)
-
-
-def _plain(value: Any) -> Any:
-    return int(value) if isinstance(value, np.integer) else str(value)
 
 
 def names_in(given: str | Sequence[str]) -> list[str]:
@@ -386,7 +336,11 @@ def _along(dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], wher
     return np.broadcast_to(np.reshape(_taken(dataset, where[axis]), shape), kept).ravel()
 
 
-def _reading(path: str | Path) -> AbstractContextManager[h5py.File]:
-    if not Path(path).exists() and Folder(Path(path)).begun:
+def _reading(path: str | Path, seen: Seen | None) -> AbstractContextManager[h5py.File]:
+    return reading(path, SCHEMA, SCHEMA_VERSION, "the file of a sweep", " of sweeps", seen)
+
+
+def _refuse_unfinished(path: str | Path) -> None:
+    """Raise :class:`PathError` where there are parts, and no file yet."""
+    if not Path(path).exists() and Folder.of(Path(path)).begun:
         raise PathError(f"{path}: its sweep is not finished: `lagrange-casadi info` tells how far it is")
-    return reading(path, SCHEMA, SCHEMA_VERSION, "the file of a sweep", " of sweeps")

@@ -100,8 +100,9 @@ def sweep(
     )
     keeper = _Temporary() if out is None else None
     target = keeper.path / "sweep.h5" if keeper else Path(out or "")
-    conduct(plan, target, hired(workers, dask, case), resume=resume, force=force, progress=progress or (lambda *_: None))
-    return Sweep.open(target, keeper)
+    hands = hired(workers, dask, case)
+    seen = conduct(plan, target, hands, resume=resume, force=force, progress=progress or (lambda *_: None))
+    return Sweep.open(target, keeper, seen)
 
 
 class _Temporary:
