@@ -7,6 +7,7 @@ A message is one line: it names the offending part, says what was expected and, 
 from __future__ import annotations
 
 import difflib
+import errno
 from collections.abc import Iterable, Sequence
 
 _LONG = 300
@@ -16,6 +17,11 @@ _LONG = 300
 def one_line(error: BaseException) -> str:
     """What an error says, in one line."""
     return " ".join(str(error).split())
+
+
+def lacking(error: OSError) -> bool:
+    """Whether the system has no more of something for now: descriptors, processes, memory. Nothing is wrong with what was asked."""
+    return error.errno in (errno.EMFILE, errno.ENFILE, errno.EAGAIN, errno.ENOMEM)
 
 
 class LagrangeCasadiError(Exception):

@@ -10,6 +10,7 @@ import ctypes
 import functools
 import math
 import os
+import warnings
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from importlib import resources
@@ -18,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from .codegen import find_compiler
-from .codegen.compiler import built
+from .codegen.compiler import loaded
 from .density import Array
 from .errors import CompilerError, DeclarationError, SizeError
 
@@ -152,9 +153,9 @@ def _compiled() -> Any | None:
         compiler = find_compiler()
         if compiler is None:
             return None
-        with built(source, compiler, _OPTIONS) as path:
-            library = ctypes.CDLL(str(path))
-    except (CompilerError, OSError):
+        library = loaded(source, compiler, _OPTIONS)
+    except CompilerError as error:
+        warnings.warn(f"{error}; NumPy fills the grids", stacklevel=4)
         return None
     integer, number, pointer = ctypes.c_longlong, ctypes.c_int, ctypes.c_void_p
     arguments = {

@@ -16,6 +16,7 @@ from ..errors import LagrangeCasadiError, UnknownNameError, one_line
 from ..interrupts import SENTENCE, STATUS, interrupts
 from ..version import __version__
 from .best import best
+from .cache import cache
 from .check import check
 from .export import export
 from .info import info
@@ -44,7 +45,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (run, sweep, best, table, trade, export, plot, info, check)
+_COMMANDS = (run, sweep, best, table, trade, export, plot, info, check, cache)
 
 
 @click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})

@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import CompilerError
-from .compiler import Compiler, built, statements
+from .compiler import Compiler, broken, loaded, statements
 from .designs import DESIGNS, Plan
 from .emit import EVALUATE, FOLLOW, LANES_PLACE
 
@@ -169,21 +168,13 @@ def load_designs(
 def _loaded(source: str, compiler: Compiler, extra: tuple[str, ...]) -> ctypes.CDLL:
     if compiler.language == "c++":
         source = source.replace(LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1)
-    with built(source, compiler, extra) as path:
-        try:
-            return ctypes.CDLL(str(path))
-        except OSError as error:
-            raise _broken(compiler, error) from None
+    return loaded(source, compiler, extra)
 
 
 def _entry(library: ctypes.CDLL, compiler: Compiler, name: str, numbers: int, arrays: int) -> Any:
     try:
         entry = getattr(library, name)
     except AttributeError as error:
-        raise _broken(compiler, error) from None
+        raise broken(compiler, error) from None
     entry.restype, entry.argtypes = None, [ctypes.c_longlong] * numbers + [ctypes.c_void_p] * arrays
     return entry
-
-
-def _broken(compiler: Compiler, error: Exception) -> CompilerError:
-    return CompilerError(f"the library built by {' '.join(compiler.command)} does not load: {error}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import subprocess
 import tempfile
 import zipfile
 from collections.abc import Iterable, Mapping
@@ -11,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..codegen import find_compiler
-from ..codegen.compiler import Compiler, complaint
+from ..codegen.compiler import Compiler, compiled, complaint
 from ..density import Array
 from ..errors import CompilerError, LagrangeCasadiError, StoreError
 from .contract import REST
@@ -134,9 +133,9 @@ def _built(sources: Mapping[str, str], units: Iterable[str], library: str, compi
     with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as work:
         try:
             for file, text in sources.items():
-                (Path(work) / file).write_text(text)
+                (Path(work) / file).write_text(text, encoding="utf-8")
             command = [*compiler.command, *flags, *units, "-o", library, "-lm"]
-            run = subprocess.run(command, cwd=work, capture_output=True, text=True, check=False)
+            run = compiled(command, Path(work))
             if run.returncode == 0:
                 return (Path(work) / library).read_bytes()
         except OSError as error:
