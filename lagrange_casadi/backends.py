@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import codegen, grids
-from .codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
+from .codegen.emit import NEWTON_STEPS, NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
 from .compensated import DTYPES
 from .cycle_table import CycleTable
 from .density import Array
@@ -135,7 +135,7 @@ def compiled(rung: Rung, build: Callable[[codegen.Compiler], Built]) -> tuple[co
 
 @functools.lru_cache(maxsize=32)
 def _library(graph: SceneGraph, stages: Stages, newton: int | None, flags: str, compiler: codegen.Compiler) -> codegen.Library:
-    return codegen.load(codegen.emit(graph, stages, newton), compiler, tuple(shlex.split(flags)))
+    return codegen.load(codegen.emit(graph, stages, newton), compiler, tuple(shlex.split(flags)), newton or NEWTON_STEPS)
 
 
 def empty_table(graph: SceneGraph, stages: Stages, size: int) -> Table:

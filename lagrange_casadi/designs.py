@@ -18,13 +18,14 @@ import numpy.typing as npt
 from . import codegen
 from .backends import compiled, provenance
 from .compensated import DTYPES
+from .cost import seconds
 from .density import Array
 from .derive import derive
 from .designs_plain import outcome
 from .designs_plan import Kept, stages_of
 from .errors import DeclarationError
 from .evaluate import checked_times, outputs_of
-from .grids import require
+from .room import require
 from .rung import Rung
 from .scene import Grid, Scene, points
 from .scene_graph import SceneGraph
@@ -33,9 +34,6 @@ from .stages import Stages
 
 _LOOKS = 32
 """At about so many more instants is the peak of a quantity sought."""
-
-_RATE, _RATE_INTERPRETED = 3e9, 3e6
-"""Instructions a second of a core."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +81,7 @@ class DesignEngine:
         instants = points(checked_times(scene, t))
         stages = stages_of(graph, rung, instants)
         kept = Kept.of(graph, rung.precision)
+        require("the instants of a design", (kept.plan.rows, instants.size))
         guess = np.array(graph.newton.guess if graph.newton else (), float)
 
         def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:
@@ -126,9 +125,12 @@ class DesignEngine:
     @property
     def cost(self) -> float:
         """Seconds that a core takes for a design, within a factor of three or so: counted, not measured, the same everywhere."""
-        instants = self.t.size + _LOOKS * len(self.quantities)
-        rate = _RATE if self.library is not None else _RATE_INTERPRETED
-        return sum(self.graph.instructions.values()) * instants / rate
+        return seconds(self.graph, self.t.size + _LOOKS * len(self.quantities), self.rung, interpreted=self.library is None)
+
+    @property
+    def room(self) -> int:
+        """Bytes of memory that a core takes while it evaluates."""
+        return 8 * self.kept.plan.rows * self.t.size
 
     def evaluate(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of designs ``p``, (n, parameters), in the order of :attr:`parameters`; with ``histories``, its series too.

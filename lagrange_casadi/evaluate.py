@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -11,20 +12,26 @@ import numpy as np
 from .accuracy import estimate, explained
 from .backends import Table
 from .certificate import Held, certify
+from .codegen import cores
 from .compensated import Precision
+from .cost import seconds
 from .density import Array
 from .derive import derive
 from .description import describe
 from .errors import DeclarationError
-from .grids import require
 from .reading import columns
 from .refusal import refuse
+from .room import MOST_THREADS, in_words, require
 from .rung import Backend, Rung
 from .scene import Grid, Scene, checked, checked_ratios, points
 from .scene_graph import SceneGraph
 from .solution import Solution, in_order
 
-_BESIDE = 8
+_BESIDE, _CHECKED = 8, 2
+"""Rows beside the outputs, and how many times both are in memory while they are checked."""
+
+_LONG = 60.0
+"""Seconds of which nothing need be said."""
 
 
 def evaluate(
@@ -66,15 +73,15 @@ def evaluate(
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"evaluate: expected a Scene, got {scene!r}")
-    if threads is not None and (not isinstance(threads, int) or isinstance(threads, bool) or threads < 1):
-        raise DeclarationError(f"threads: expected a whole number of at least 1, got {threads!r}")
+    if threads is not None and (type(threads) is not int or not 1 <= threads <= MOST_THREADS):
+        raise DeclarationError(f"threads: expected a whole number from 1 to {MOST_THREADS}, got {threads!r}")
     rung = Rung(backend, precision, newton, table, flags)
     values = scene.mechanism.values(parameters)
     start, stop, count = checked_times(scene, t)
     ratios = checked_ratios(scene.xi if xi is None else xi)
     graph = derive(scene, wanted, iterate=newton is not None)
-    require("the outputs over time", (len(graph.columns) + _BESIDE, count))
-    require("the grid of ratios", (ratios[2],))
+    require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, count))
+    _announce(graph, count, rung, threads or cores())
     times, places = points((start, stop, count)), points(ratios)
     p = np.array(list(values.values()))
     found, provenance = columns(graph, times, p, rung, threads)
@@ -89,6 +96,18 @@ def evaluate(
     residuals = certify(solution, _held(graph, found))
     errors = explained(solution, residuals, estimate(graph, found, solution, p))
     return replace(solution, certificate=residuals | _condition(graph, found), errors=errors)
+
+
+def _announce(graph: SceneGraph, count: int, rung: Rung, threads: int) -> None:
+    """Warn of what takes long."""
+    if rung.table is not None:
+        return
+    # Iterated loops are followed by one thread.
+    shared = 1 if graph.newton is not None or rung.backend == "vm" else threads
+    takes = seconds(graph, count, rung, interpreted=rung.backend == "vm") / shared
+    if takes > _LONG:
+        many, each = f"{count:,}".replace(",", " "), "" if rung.newton is None else f" of {rung.newton} Newton steps each"
+        warnings.warn(f"{many} instants{each} take about {in_words(takes)}", stacklevel=3)
 
 
 def checked_times(scene: Scene, t: Grid | None) -> Grid:

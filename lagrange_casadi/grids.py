@@ -9,7 +9,6 @@ from __future__ import annotations
 import ctypes
 import functools
 import math
-import os
 import warnings
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -21,7 +20,8 @@ import numpy as np
 from .codegen import find_compiler
 from .codegen.compiler import loaded
 from .density import Array
-from .errors import CompilerError, DeclarationError, SizeError
+from .errors import CompilerError, DeclarationError
+from .room import require
 
 WORTH_COMPILING = 1 << 14
 """Values from which on compiled code fills a grid."""
@@ -99,18 +99,6 @@ def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
     )
     out[~finite] = np.nan
     return out
-
-
-def require(what: str, shape: tuple[int, ...]) -> None:
-    """Raise :class:`SizeError` where this machine has less memory than an array takes."""
-    try:
-        there = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
-    except (ValueError, OSError, AttributeError):
-        return
-    size = 8.0 * math.prod(shape)
-    if size > there:
-        values = " x ".join(f"{count:,}".replace(",", " ") for count in shape)
-        raise SizeError(f"no room for {what}: {values} values are {size / 1e9:.4g} GB, and this machine has {there / 1e9:.3g} GB")
 
 
 def empty(what: str, shape: tuple[int, ...], dtype: Any = np.float64) -> Array:

@@ -15,9 +15,13 @@ from .density import Array, Density
 from .errors import DeclarationError, UnknownNameError
 from .mechanism import Mechanism
 from .motion import Motion
+from .room import require
 
 Grid = tuple[float, float, int]
 """Start, stop and count; both ends are included."""
+
+_MADE_FROM = 3
+"""How many arrays points are, with what they are made from."""
 
 _EXACT = 2**53
 """Up to which doubles hold all whole numbers, so that a quotient of two is rounded once."""
@@ -46,9 +50,12 @@ def points(grid: Grid, numbers: npt.NDArray[np.int64] | None = None) -> Array:
     """All points of a grid, or those of given numbers, evenly spaced.
 
     Each is rounded once from what the decimals of the ends say, so that 0.2:0.4:3 has 0.3, not 0.30000000000000004; where
-    these take more than the digits of a double, they are those of ``numpy.linspace``.
+    these take more than the digits of a double, they are those of ``numpy.linspace``. Raises :class:`SizeError` for more than
+    memory holds.
     """
     start, stop, count = grid
+    if numbers is None:
+        require(f"the points from {start:g} to {stop:g}", (_MADE_FROM, count))
     numbers = np.arange(count) if numbers is None else numbers
     first, last = (Fraction(repr(float(end))) for end in (start, stop))
     step = (last - first) / max(count - 1, 1)

@@ -15,6 +15,7 @@ import numpy as np
 from . import grids
 from .codegen import cores
 from .density import Array, NumericDensity
+from .room import require
 
 FORCES = ("axial", "shear", "bending")
 Side = Literal["base", "tip"]
@@ -75,7 +76,7 @@ class SectionLaw:
         """
         size = (self.coefficients["n0"].size, xi.u.size if isinstance(xi, Basis) else xi.size)
         if out is None:
-            grids.require(f"a grid of {force}", size)
+            require(f"a grid of {force}", size)
         basis = xi if isinstance(xi, Basis) else self.basis(xi)
         columns, rows = self._terms(force, basis)
         out = grids.empty(f"a grid of {force}", size) if out is None else out

@@ -12,8 +12,8 @@ import numpy as np
 from .density import Array
 from .description import Description, density_of
 from .errors import LagrangeCasadiError, UnknownNameError
-from .grids import require
 from .quantities import QUANTITIES, quantity_of
+from .room import require
 from .section_law import FORCES, Basis, SectionLaw, StationLoad
 
 if TYPE_CHECKING:

@@ -106,6 +106,44 @@ def test_a_sweep_keeps_its_blocks(here, number):
     assert re.fullmatch(KEPT, err)
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
+def test_an_interrupt_comes_through_while_a_long_axis_is_written(here, number):
+    """It takes minutes; the blocks that were committed before stay."""
+    with program(*SWEEP, "--grid", "l=0.11:0.4:200000000", "--out", "x.h5") as stopped:
+        sweeps.wait_for(lambda: [path for path in here.glob("x.h5.parts/joined.h5") if path.stat().st_size > 1_000_000])
+        stopped.send_signal(number)
+        out, err = stopped.communicate(timeout=60)
+    assert (stopped.returncode, out) == (130, "")
+    note, error = err.splitlines(keepends=True)[-2:]
+    assert re.fullmatch(r"note: 200 000 000 designs take about .* of a core and a file of up to \S+ GB\n", note)
+    assert re.fullmatch(KEPT.replace("1 000 000", "200 000 000"), error)
+    assert sorted(path.suffix for path in here.glob("x.h5.parts/*"))[-1] == ".part"
+    assert not list(here.glob("x.h5.parts/joined.h5"))
+
+
+NEWTON = ["--newton", "1000", "--no-figures"]
+STEPPING = {
+    "compiled": ["run", str(CASE), *NEWTON, "--t", "0:0.08:10000001"],
+    "interpreted": ["run", str(CASE), *NEWTON, "--t", "0:0.08:1000001", "--backend", "vm"],
+    "swept": [*SWEEP[:2], "--newton", "1000", "--want", "effort", "--t", "0:0.08:2000001", "--grid", "l=0.2:0.3:50"],
+    "swept-interpreted": [*SWEEP[:2], "--newton", "1000", "--t", "0:0.08:20001", "--grid", "l=0.2:0.3:50", "--backend", "vm"],
+}
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
+@pytest.mark.parametrize("arguments", STEPPING.values(), ids=STEPPING)
+def test_an_interrupt_does_not_wait_for_newtons_steps(here, arguments, number):
+    """The whole takes minutes or hours."""
+    with program(*arguments) as stopped:
+        sweeps.wait_for(lambda: caught(stopped, signal.SIGALRM))
+        time.sleep(2.0)
+        stopped.send_signal(number)
+        out, err = stopped.communicate(timeout=20)
+    assert (stopped.returncode, out) == (130, "")
+    assert re.search(r"error: (interrupted; nothing was left half-written|stopped; nothing was done yet)\n$", err)
+    assert not list(here.iterdir())
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP], ids=lambda number: number.name)
 def test_what_was_ignored_at_the_start_stays_ignored(here, number):
     """As by ``nohup``, and of a script's background jobs."""

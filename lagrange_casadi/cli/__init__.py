@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import signal
 import threading
 import warnings
@@ -28,6 +29,10 @@ from .trade import trade
 
 _OPTIONS = {"resume=True": "--resume", "force=True": "--force", "many=True": "--yes"}
 """What errors call in Python's words, in the command line's."""
+
+
+_MOMENT, _WAITS = 0.01, 50
+"""Seconds that an interrupt waits for CasADi at a time, and how often: some of its calls are long."""
 
 
 class _Interrupted(Exception):  # noqa: N818 - it is no error
@@ -82,12 +87,17 @@ def _insistent() -> Iterator[None]:
     """Make an interrupt arrive: as :class:`_Interrupted`, whatever a library in between makes of it.
 
     CasADi clears exceptions while it tries which of its overloads fits, so an interrupt at that moment is lost, or comes back as
-    another error. It is repeated every second until it arrives, and what fails after it is taken for it.
+    another error. So it waits a little for CasADi to come back, is repeated every second until it arrives, and what fails after it
+    is taken for it.
     """
     seen = threading.Event()
+    waits = itertools.count(1)
 
-    def interrupt(_number: int, _frame: FrameType | None) -> None:
+    def interrupt(_number: int, frame: FrameType | None) -> None:
         seen.set()
+        if _in_casadi(frame) and next(waits) % _WAITS:
+            signal.setitimer(signal.ITIMER_REAL, _MOMENT)
+            return
         signal.setitimer(signal.ITIMER_REAL, 1.0)
         raise KeyboardInterrupt
 
@@ -106,6 +116,15 @@ def _insistent() -> Iterator[None]:
             signal.setitimer(signal.ITIMER_REAL, 0.0)
         for number, handler in before:
             signal.signal(number, handler)
+
+
+def _in_casadi(frame: FrameType | None) -> bool:
+    """Whether what is under way was called by CasADi, or calls it."""
+    while frame is not None:
+        if frame.f_globals.get("__name__", "").partition(".")[0] == "casadi":
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _fail(message: str, status: int) -> int:

@@ -24,7 +24,8 @@ Status = npt.NDArray[np.int32]
 _WORTH_A_THREAD = 1 << 24
 """Statements, those of an instant times the instants: about a millisecond, some times what it takes to start a thread."""
 
-_LONGEST = 128
+_LONGEST, _SLOWER = 128, 4
+"""Into how many threads' worth a call is cut, some tenths of a second; and how much slower is what is done by the instant."""
 _LINE, _SPREAD = 16, 8
 """Values of a cache line of either precision; and into how many parts a thread's share of designs is cut, for they differ."""
 
@@ -36,21 +37,22 @@ _CUT = 64
 class Library:
     """The loaded code of one scene graph. Its calls release the interpreter and allocate nothing.
 
-    ``share`` is how many instants are worth a thread of their own.
+    ``share`` is how many instants are worth a thread of their own, ``reach`` how many are followed in a call.
     """
 
     entry: Any
     entry_follow: Any | None
     flags: tuple[str, ...]
     share: int
+    reach: int
 
     def follow(self, t: Array, p: Array, guess: Array, z: Array, status: Status) -> None:
         """Fill the iterated coordinates ``z`` (k, n), each instant from the one before; ``guess`` (k) begins, and moves along."""
         if self.entry_follow is None:
             status[:] = 0
             return
-        for start in range(0, t.shape[-1], self._stretch):
-            cut = slice(start, start + self._stretch)
+        for start in range(0, t.shape[-1], self.reach):
+            cut = slice(start, start + self.reach)
             self._call(self.entry_follow, t[..., cut], z[:, cut], (p, guess, z[:, cut], status[cut]))
 
     def evaluate(self, t: Array, p: Array, z: Array, out: Array, status: Status, threads: int = 1) -> None:
@@ -79,7 +81,7 @@ class Library:
 
     @property
     def _stretch(self) -> int:
-        """Instants of one call, in some tenths of a second: between calls an interrupt comes through."""
+        """Instants of one call: between calls an interrupt comes through."""
         return _LONGEST * self.share // _CUT * _CUT
 
     @staticmethod
@@ -138,16 +140,17 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def load(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Library:
+def load(source: str, compiler: Compiler, extra: tuple[str, ...] = (), steps: int = 1) -> Library:
     """Build an emitted file, as C or with packs as C++, or take it from the cache, and load it.
 
-    ``extra`` flags come after the package's own. Raises :class:`CompilerError`.
+    ``extra`` flags come after the package's own; loops take up to so many ``steps``. Raises :class:`CompilerError`.
     """
     library = _loaded(source, compiler, extra)
     entry, follow = _entry(library, compiler, EVALUATE, 2, 5), None
     if hasattr(library, FOLLOW):
         follow = _entry(library, compiler, FOLLOW, 2, 5)
-    return Library(entry, follow, (*compiler.flags(source), *extra), max(_CUT, _WORTH_A_THREAD // statements(source)))
+    share, size = max(_CUT, _WORTH_A_THREAD // statements(source)), statements(source) * steps * _SLOWER
+    return Library(entry, follow, (*compiler.flags(source), *extra), share, max(1, _LONGEST * _WORTH_A_THREAD // size))
 
 
 def load_designs(
