@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 import errno
 from collections.abc import Iterable, Sequence
+from pickle import PicklingError
 
 _LONG = 300
 """Characters of names that a message takes at most."""
@@ -62,6 +63,10 @@ def _hint(name: str, names: Sequence[str], many: bool) -> str:
 
 class ParameterError(LagrangeCasadiError):
     """A parameter's value is not a number, is out of its range, or makes a part impossible."""
+
+
+class PickleError(LagrangeCasadiError, PicklingError):
+    """What cannot be sent to another process; the message says what can be sent instead."""
 
 
 class MobilityError(DeclarationError):

@@ -7,12 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from types import MappingProxyType
+from typing import NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
 from .density import Array, Density
-from .errors import DeclarationError, UnknownNameError
+from .errors import DeclarationError, PickleError, UnknownNameError
 from .mechanism import Mechanism
 from .motion import Motion
 from .room import require
@@ -188,3 +189,18 @@ class Scene:
         checked("t", self.t)
         checked_ratios(self.xi)
         self.mechanism.values()
+
+    def __reduce__(self) -> NoReturn:
+        """Raise :class:`PickleError`."""
+        raise PickleError(
+            "a Scene cannot be pickled: its expressions and laws of motion live in this process alone; send a Case from load_case, "
+            "which the other process loads anew, or call there the function that makes the scene"
+        )
+
+    def __copy__(self) -> Scene:
+        """Itself: nothing of it changes."""
+        return self
+
+    def __deepcopy__(self, _memo: object) -> Scene:
+        """Itself: nothing of it changes."""
+        return self

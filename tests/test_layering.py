@@ -11,6 +11,7 @@ import lagrange_casadi
 PACKAGE = Path(lagrange_casadi.__file__).parent
 ORDER = (
     "interrupts",
+    "streams",
     "version",
     "errors",
     "numerals",
@@ -71,6 +72,7 @@ ORDER = (
     "figures",
     "trade",
     "trade_plot",
+    "case_modules",
     "case",
     "sweep",
     "cli",

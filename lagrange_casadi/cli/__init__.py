@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 import signal
 import threading
 import warnings
@@ -61,9 +62,11 @@ def program() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the exit status is 0, 2 for a mistake in what was asked, 1 for a computation that failed."""
+    # Nothing is shown in windows, and what a notebook set is no backend elsewhere.
+    os.environ["MPLBACKEND"] = "agg"
     with warnings.catch_warnings():
         warnings.simplefilter("always", UserWarning)
-        warnings.showwarning = lambda message, *_args, **_kwargs: click.echo(f"note: {message}", err=True)
+        warnings.showwarning = lambda message, *_args, **_kwargs: _say(f"note: {message}")
         try:
             result = program.main(arguments, prog_name="lagrange-casadi", standalone_mode=False)
         except LagrangeCasadiError as error:
@@ -79,6 +82,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _fail(f"out of memory: {str(error) or 'fewer instants or ratios fit'}", 1)
         except OSError as error:  # of standard output, for files fail with an error of ours
             return _fail(one_line(error), 1)
+        except (KeyboardInterrupt, Exception):
+            raise
+        except BaseException as error:  # of a case, whose functions may be called late
+            return _fail(f"{type(error).__name__}: {one_line(error)}", 1)
     return result if isinstance(result, int) else 0
 
 
@@ -91,9 +98,13 @@ def _insistent() -> Iterator[None]:
     is taken for it.
     """
     seen = threading.Event()
-    waits = itertools.count(1)
+    waits, own = itertools.count(1), os.getpid()
 
-    def interrupt(_number: int, frame: FrameType | None) -> None:
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        if os.getpid() != own:  # a case may have others work for it: they end as they would
+            signal.signal(number, signal.SIG_DFL)
+            os.kill(os.getpid(), number)
+            return
         seen.set()
         if _in_casadi(frame) and next(waits) % _WAITS:
             signal.setitimer(signal.ITIMER_REAL, _MOMENT)
@@ -130,6 +141,10 @@ def _in_casadi(frame: FrameType | None) -> bool:
 def _fail(message: str, status: int) -> int:
     for keyword, option in _OPTIONS.items():
         message = message.replace(keyword, option)
-    with suppress(OSError):  # the terminal may be gone
-        click.echo(f"error: {' '.join(message.split())}", err=True)
+    _say(f"error: {' '.join(message.split())}")
     return status
+
+
+def _say(line: str) -> None:
+    with suppress(OSError):  # the terminal may be gone
+        click.echo(line, err=True)
