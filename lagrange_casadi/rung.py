@@ -60,6 +60,8 @@ class Rung:
             )
         try:
             words = shlex.split(self.flags)
+            if "\0" in self.flags:
+                raise ValueError("they hold a null character")
         except (ValueError, AttributeError) as error:
             raise DeclarationError(f"flags: expected words for a compiler, got {self.flags!r}: {error}") from None
         if self.newton is not None and self.table is not None:

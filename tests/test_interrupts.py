@@ -78,6 +78,37 @@ def test_an_interrupt_while_modules_are_imported_is_one_line(here, command, numb
     assert stopped.returncode == 130
 
 
+READY = "print('ready', flush=True); time.sleep(60)"
+WAITS = {
+    "import": f"{READY}\n",
+    "scene": f"def scene():\n    {READY}\n",
+    "another-error": f"def scene():\n    try:\n        {READY}\n    finally:\n        raise ValueError\n",
+    "swallowed": f"try:\n    {READY}\nexcept BaseException:\n    time.sleep(60)\n",
+    "pool": (
+        "import multiprocessing\n"
+        "def scene():\n"
+        "    with multiprocessing.get_context('fork').Pool(2) as pool:\n"
+        "        print('ready', flush=True)\n"
+        "        pool.map(time.sleep, [60, 60, 60])\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
+@pytest.mark.parametrize("text", WAITS.values(), ids=WAITS)
+def test_an_interrupt_in_a_case_is_one_line(here, tmp_path_factory, text, number):
+    """As a terminal sends it: to all processes that were started there."""
+    case = tmp_path_factory.mktemp("waiting") / "case.py"
+    case.write_text(f"import time\n{text}")
+    with program("run", str(case), "--no-figures", start_new_session=True) as stopped:
+        assert stopped.stdout.readline() == "ready\n"
+        time.sleep(0.2)
+        os.killpg(stopped.pid, number)
+        assert stopped.communicate(timeout=20) == ("", LINE)
+    assert stopped.returncode == 130
+    assert not list(here.iterdir())
+
+
 def test_other_programs_keep_their_signals():
     text = (
         "import signal, sys; sys.argv[0] = '-m'; before = [signal.getsignal(n) for n in (2, 15)]; import lagrange_casadi; "

@@ -16,6 +16,7 @@ from ..compensated import Precision
 from ..derive import derive
 from ..errors import DeclarationError, PathError
 from ..evaluate import evaluate
+from ..expressions import check_line
 from ..fingerprint import declaration
 from ..publish import check_writable, filling
 from ..reading import drive_of, table_of
@@ -83,6 +84,7 @@ def export(
     if not isinstance(scene, Scene):
         raise DeclarationError(f"export: expected a Scene, got {scene!r}")
     folder = Path(out)
+    check_line("name", name or scene.mechanism.name)
     rung = Rung("auto", precision, newton, table)
     check_writable(folder, folder=True)
     if fmu:
