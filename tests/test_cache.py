@@ -1,5 +1,6 @@
 """The cache folder: whole or not there, within its limit, and safe for many processes at once."""
 
+import errno
 import os
 import subprocess
 import sys
@@ -154,3 +155,14 @@ def test_processes_share_a_cache_that_holds_too_little(tmp_path):
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path), cache.VARIABLE: "60k"}
     started = [subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True) for _ in range(4)]
     assert [(process.communicate(timeout=120)[1], process.returncode) for process in started] == [("", 0)] * 4
+
+
+def test_a_system_that_is_short_of_something_is_asked_again(fresh_cache, monkeypatch):
+    def refused(**_keywords):
+        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(cache.tempfile, "TemporaryFile", refused)
+        with pytest.warns(UserWarning, match=r"cannot use the cache folder .* now: Too many open files"):
+            assert cache.folder() is None
+    assert cache.folder() == fresh_cache
