@@ -80,7 +80,6 @@ _GRID = (
 _STAGES = """
 import time
 from lagrange_casadi import codegen, derive, load_case
-from lagrange_casadi.codegen.compiler import built
 scene = load_case("cases/{0}").scene
 start = time.perf_counter()
 graph = derive(scene)

@@ -11,6 +11,7 @@ from lagrange_casadi import Mechanism, Scene, codegen, derive, load_case
 from lagrange_casadi.backends import rows, run
 from lagrange_casadi.description import describe
 from lagrange_casadi.motion import polynomial
+from lagrange_casadi.room import cores
 from lagrange_casadi.rung import Backend, Rung
 from lagrange_casadi.scene_graph import SceneGraph
 from lagrange_casadi.section_law import FORCES, SectionLaw
@@ -105,7 +106,7 @@ def _columns(graph: SceneGraph, p: Array, t: Array, backend: Backend, threads: i
         if backend == "vm":
             out[:] = run(graph, t, p, Rung("vm"))[0].out
         else:
-            library.evaluate(t, p, z, out, status, threads or codegen.cores())
+            library.evaluate(t, p, z, out, status, threads or cores())
         return out[first:]
 
     return call

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from lagrange_casadi import codegen, load_case, sweep
+from lagrange_casadi import load_case, sweep
 from lagrange_casadi.designs import DesignEngine
+from lagrange_casadi.room import cores
 
 WANTED = ("effort", "reaction:O", "reaction:A", "reaction:B", "reaction:guide", "section:crank", "section:rod")
 _BLOCK = 8192
@@ -31,7 +32,7 @@ def report(count: int, instants: int, rounds: int) -> str:
     engine.evaluate(p[:64])
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "sweep.h5"
-        for threads in sorted({1, codegen.cores()}):
+        for threads in sorted({1, cores()}):
 
             def loop(threads: int = threads) -> None:
                 for start in range(0, len(p), _BLOCK * threads):

@@ -1,6 +1,6 @@
 """Forces inside a mechanism that must make a given motion: efforts, reactions, and the section forces of every link."""
 
-from . import interrupts  # noqa: F401 - before all that takes long
+from . import interrupts, standard_streams  # noqa: F401 - before all that takes long, or opens a file
 
 # isort: split
 from . import density, figures, motion

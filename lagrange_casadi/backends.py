@@ -16,11 +16,12 @@ import numpy as np
 import numpy.typing as npt
 
 from . import codegen, grids
-from .codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
+from .codegen.emit import NEWTON_STEPS, NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
 from .compensated import DTYPES
 from .cycle_table import CycleTable
 from .density import Array
 from .errors import CompilerError
+from .room import cores
 from .rung import Backend, Rung
 from .scene_graph import SceneGraph
 from .solution import Provenance
@@ -81,7 +82,7 @@ def run(
     if rung.precision == "single":
         t, p = _paired(t, rows(2, t.size, dtype)), _paired(p, np.empty((2, p.size), dtype))
     library.follow(t, p, guess, table.iterated, table.status)
-    library.evaluate(t, p, table.iterated, table.out, table.status, threads or codegen.cores())
+    library.evaluate(t, p, table.iterated, table.out, table.status, threads or cores())
     used = "lanes" if compiler.language == "c++" else "c"
     return table, provenance(used, compiler.version, " ".join(library.flags), rung)
 
@@ -135,7 +136,7 @@ def compiled(rung: Rung, build: Callable[[codegen.Compiler], Built]) -> tuple[co
 
 @functools.lru_cache(maxsize=32)
 def _library(graph: SceneGraph, stages: Stages, newton: int | None, flags: str, compiler: codegen.Compiler) -> codegen.Library:
-    return codegen.load(codegen.emit(graph, stages, newton), compiler, tuple(shlex.split(flags)))
+    return codegen.load(codegen.emit(graph, stages, newton), compiler, tuple(shlex.split(flags)), newton or NEWTON_STEPS)
 
 
 def empty_table(graph: SceneGraph, stages: Stages, size: int) -> Table:

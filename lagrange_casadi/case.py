@@ -1,11 +1,11 @@
 """Cases: a folder with a ``case.py``, or a Python file, whose function ``scene()`` returns a :class:`.Scene`.
 
-A case may also have ``figures()``, which returns how it wants to be drawn, see :mod:`.figures`.
+A case may also have ``figures()``, which returns how it wants to be drawn, see :mod:`.figures`, and modules of its own beside its
+file.
 """
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import traceback
 from collections.abc import Sequence
@@ -14,6 +14,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from . import case_modules
 from .errors import CaseError, LagrangeCasadiError, one_line
 from .figures import Spec
 from .scene import Scene
@@ -32,6 +33,10 @@ class Case:
         """The name of its folder, or of its file without the ending."""
         return self.path.parent.name if self.path.name == "case.py" else self.path.stem
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Sent to another process, a case is loaded there from its file."""
+        return load_case, (self.path,)
+
 
 def load_case(path: str | os.PathLike[str]) -> Case:
     """Load a case's folder or Python file. Raises :class:`CaseError`; an error of a declaration passes as it is."""
@@ -47,11 +52,7 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     if file.suffix != ".py":
         raise CaseError(f"case {given}: expected a folder with a case.py, or a Python file ending in .py")
     file = file.resolve()
-    spec = importlib.util.spec_from_file_location(f"case_{file.stem}_{file.parent.name}", file)
-    assert spec is not None
-    assert spec.loader is not None
-    module, execute = importlib.util.module_from_spec(spec), spec.loader.exec_module
-    _guard(given, file, lambda: execute(module))
+    module = _guard(given, file, lambda: case_modules.load(file))
     scene = _call(given, file, module, "scene")
     if not isinstance(scene, Scene):
         raise CaseError(f"case {given}: scene() returned {type(scene).__name__}, expected a lagrange_casadi.Scene")
@@ -65,16 +66,17 @@ def _call(given: Path, file: Path, module: ModuleType, name: str) -> Any:
     function = getattr(module, name, None)
     if not callable(function):
         raise CaseError(f"case {given}: has no function {name}()")
-    return _guard(given, file, function)
+    with case_modules.beside(module):
+        return _guard(given, file, function)
 
 
 def _guard(given: Path, file: Path, action: Any) -> Any:
     """Run a piece of the case; what it raises becomes one line that names the case's own line."""
     try:
         return action()
-    except LagrangeCasadiError:
+    except (LagrangeCasadiError, KeyboardInterrupt):
         raise
-    except (Exception, SystemExit) as error:
+    except BaseException as error:
         lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(file)]
         if isinstance(error, SyntaxError):
             lines = [error.lineno]

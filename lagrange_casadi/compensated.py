@@ -3,13 +3,13 @@
 An angle of 1e10 rad in a double has lost six digits of its phase, one of 1e3 rad in a single nearly all. Followed as an
 unevaluated sum high + low, with error-free sums and products (Knuth; Dekker, *A floating-point technique for extending the
 available precision*, Numer. Math. 18, 1971), it keeps twice the digits, in arithmetic of the one precision throughout. Compilers
-must not reassociate: ``-ffast-math`` takes the low parts away.
+must not reassociate: ``-ffast-math`` takes the low parts away. Nor must CasADi, which knows that (a + b) - a is b, which is just
+what does not hold here: see :func:`closed`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
@@ -30,15 +30,33 @@ _TURN = (6.283185307179586, 2.4492935982947064e-16, -5.989539619436679e-33)
 """2 pi as the sum of three doubles."""
 
 
-@contextmanager
-def unsimplified() -> Iterator[None]:
-    """Expressions as they are written: CasADi knows that (a + b) - a is b, which is just what does not hold here."""
-    before = ca.GlobalOptions.getSimplificationOnTheFly()
-    ca.GlobalOptions.setSimplificationOnTheFly(False)
-    try:
-        yield
-    finally:
-        ca.GlobalOptions.setSimplificationOnTheFly(before)
+def closed(x: Any) -> Any:
+    """A value that CasADi does not look into where it simplifies: under a sign of its own.
+
+    Its patterns are of operations on operations, and none holds this one. So a value stays as it is written, in every thread and
+    however often the expression is made anew. Emitted C has no trace of it: see :func:`.opened`. A constant is folded.
+    """
+    return ca.copysign(x, x)
+
+
+def _plus(a: Any, b: Any) -> Any:
+    return closed(a + b)
+
+
+def _minus(a: Any, b: Any) -> Any:
+    return closed(a - b)
+
+
+def _times(a: Any, b: Any) -> Any:
+    return closed(a * b)
+
+
+def _over(a: Any, b: Any) -> Any:
+    return closed(a / b)
+
+
+def _negative(a: Any) -> Any:
+    return closed(-a)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,12 +70,12 @@ class Pair:
     @property
     def value(self) -> Any:
         """The one number that is nearest."""
-        return self.high if self.low is None else self.high + self.low
+        return self.high if self.low is None else _plus(self.high, self.low)
 
 
 @dataclass(frozen=True)
 class Pairs:
-    """The arithmetic of pairs in a precision; to be used where CasADi does not simplify (:func:`unsimplified`).
+    """The arithmetic of pairs in a precision, on expressions.
 
     Sums, differences, products, quotients, roots and whole parts keep all digits; a sine, cosine or tangent is that of a pair's
     phase, rounded once. Everything else is done on the nearest single number.
@@ -119,10 +137,10 @@ class Pairs:
         if x.low is None and y.low is None:
             return Pair(total, error)
         if x.low is None or y.low is None:
-            return _normal(total, error + (y.low if x.low is None else x.low))
+            return _normal(total, _plus(error, y.low if x.low is None else x.low))
         lows, rest = _sum(x.low, y.low)
-        first = _normal(total, error + lows)
-        return _normal(first.high, first.low + rest)
+        first = _normal(total, _plus(error, lows))
+        return _normal(first.high, _plus(first.low, rest))
 
     def subtract(self, x: Pair, y: Pair) -> Pair:
         """x - y."""
@@ -130,37 +148,38 @@ class Pairs:
 
     def negate(self, x: Pair) -> Pair:
         """-x."""
-        return Pair(-x.high, None if x.low is None else -x.low, None if x.number is None else -x.number)
+        low, number = (None if x.low is None else _negative(x.low)), (None if x.number is None else -x.number)
+        return Pair(_negative(x.high), low, number)
 
     def multiply(self, x: Pair, y: Pair) -> Pair:
         """x y; a power of two only scales."""
         for one, other in ((x, y), (y, x)):
             if other.number is not None and other.number and np.frexp(abs(other.number))[0] == 0.5:
-                return Pair(one.high * other.high, None if one.low is None else one.low * other.high)
+                return Pair(_times(one.high, other.high), None if one.low is None else _times(one.low, other.high))
         product, error = self._product(x.high, y.high)
         for part in ((x.high, y.low), (x.low, y.high)):
             if part[0] is not None and part[1] is not None:
-                error = error + part[0] * part[1]
+                error = _plus(error, _times(part[0], part[1]))
         return _normal(product, error)
 
     def divide(self, x: Pair, y: Pair) -> Pair:
         """x / y by what a first quotient leaves."""
-        first = x.high / y.high
+        first = _over(x.high, y.high)
         left = self.subtract(x, self.multiply(Pair(first), y))
-        return _normal(first, left.value / y.high)
+        return _normal(first, _over(left.value, y.high))
 
     def root(self, x: Pair) -> Pair:
         """The square root, by what a first root leaves; of zero, zero."""
         first = ca.sqrt(x.high)
         left = self.subtract(x, self.multiply(Pair(first), Pair(first)))
-        return _normal(first, left.value / (2.0 * first + (first == 0.0)))
+        return _normal(first, _over(left.value, _plus(_times(2.0, first), first == 0.0)))
 
     def reduced(self, x: Pair) -> Pair:
         """x less whole turns, between -pi and pi."""
-        turns = ca.floor(x.high * (1.0 / _TURN[0]) + 0.5)
+        turns = ca.floor(_plus(_times(x.high, 1.0 / _TURN[0]), 0.5))
         for part in self._turn():
             product, error = self._product(turns, ca.SX(part))
-            x = self.add(x, Pair(-product, -error))
+            x = self.add(x, Pair(_negative(product), _negative(error)))
         return x
 
     def sine(self, x: Pair) -> Pair:
@@ -169,7 +188,7 @@ class Pairs:
 
     def cosine(self, x: Pair) -> Pair:
         """The cosine of a counted angle."""
-        return self._turning(x, ca.cos, lambda angle: -ca.sin(angle))
+        return self._turning(x, ca.cos, lambda angle: _negative(ca.sin(angle)))
 
     def remainder(self, x: Pair, y: Pair) -> Pair:
         """C's fmod: x less y as often as it goes into x, towards zero."""
@@ -189,7 +208,9 @@ class Pairs:
 
     def _turning(self, x: Pair, function: Any, slope: Any) -> Pair:
         angle = self.reduced(x)
-        return Pair(function(angle.high)) if angle.low is None else Pair(*_sum(function(angle.high), slope(angle.high) * angle.low))
+        if angle.low is None:
+            return Pair(function(angle.high))
+        return Pair(*_sum(function(angle.high), _times(slope(angle.high), angle.low)))
 
     def _turn(self) -> tuple[float, ...]:
         if self.precision == "double":
@@ -203,9 +224,12 @@ class Pairs:
 
     def _product(self, a: Any, b: Any) -> tuple[Any, Any]:
         """a b and its error (Dekker)."""
-        product = a * b
+        product = _times(a, b)
         (ah, al), (bh, bl) = self._split(a), self._split(b)
-        return product, ((ah * bh - product) + ah * bl + al * bh) + al * bl
+        error = _minus(_times(ah, bh), product)
+        for half, other in ((ah, bl), (al, bh), (al, bl)):
+            error = _plus(error, _times(half, other))
+        return product, error
 
     def _split(self, a: Any) -> tuple[Any, Any]:
         """The halves of a number's digits. A constant's are taken here: CasADi would fold them in doubles."""
@@ -214,26 +238,26 @@ class Pairs:
             number, splitter = kind(float(a)), kind(_SPLITTER[self.precision])
             half = splitter * number - (splitter * number - number)
             return ca.SX(float(half)), ca.SX(float(number - half))
-        c = _SPLITTER[self.precision] * a
-        high = c - (c - a)
-        return high, a - high
+        c = _times(_SPLITTER[self.precision], a)
+        high = _minus(c, _minus(c, a))
+        return high, _minus(a, high)
 
 
 def _sum(a: Any, b: Any) -> tuple[Any, Any]:
     """a + b and its error (Knuth)."""
-    total = a + b
-    other = total - a
-    return total, (a - (total - other)) + (b - other)
+    total = _plus(a, b)
+    other = _minus(total, a)
+    return total, _plus(_minus(a, _minus(total, other)), _minus(b, other))
 
 
 def _normal(high: Any, low: Any) -> Pair:
-    total = high + low
-    return Pair(total, low - (total - high))
+    total = _plus(high, low)
+    return Pair(total, _minus(low, _minus(total, high)))
 
 
 def _signed(x: Pair, like: Any) -> Pair:
     sign = ca.copysign(ca.SX(1.0), like)
-    return Pair(x.high * sign, None if x.low is None else x.low * sign)
+    return Pair(_times(x.high, sign), None if x.low is None else _times(x.low, sign))
 
 
 def _size(x: Pair) -> Pair:

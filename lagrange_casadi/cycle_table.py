@@ -10,6 +10,7 @@ from __future__ import annotations
 import ctypes
 import functools
 import math
+import warnings
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from importlib import resources
@@ -19,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .codegen import find_compiler
-from .codegen.compiler import built
+from .codegen.compiler import loaded
 from .density import Array
 from .errors import CompilerError, DeclarationError
 
@@ -264,9 +265,9 @@ def _compiled(dtype: str) -> Any | None:
         compiler = find_compiler()
         if compiler is None:
             return None
-        with built(source, compiler, (*_OPTIONS, f"-DREAL={_REAL[dtype]}")) as path:
-            entry = ctypes.CDLL(str(path)).lagrange_casadi_interpolate
-    except (CompilerError, OSError):
+        entry = loaded(source, compiler, (*_OPTIONS, f"-DREAL={_REAL[dtype]}")).lagrange_casadi_interpolate
+    except CompilerError as error:
+        warnings.warn(f"{error}; NumPy reads the tables", stacklevel=4)
         return None
     size, integer, pointer = ctypes.c_longlong, ctypes.c_int, ctypes.c_void_p
     entry.restype = None

@@ -19,6 +19,7 @@ import numpy.typing as npt
 from . import codegen
 from .backends import compiled, provenance
 from .compensated import DTYPES
+from .cost import seconds
 from .density import Array
 from .derive import derive
 from .designs_plain import outcome
@@ -26,7 +27,7 @@ from .designs_plan import Kept, stages_of
 from .determinacy import determinate, undetermined
 from .errors import DeclarationError
 from .evaluate import checked_laws, checked_times, outputs_of
-from .grids import require
+from .room import cores, require
 from .rung import Rung
 from .scene import Grid, Scene, points
 from .scene_graph import SceneGraph
@@ -37,9 +38,6 @@ from .witness import failures
 
 _LOOKS = 32
 """At about so many more instants is the peak of a quantity sought."""
-
-_RATE, _RATE_INTERPRETED = 3e9, 3e6
-"""Instructions a second of a core."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +90,7 @@ class DesignEngine:
         p = np.array(list(scene.mechanism.values().values()))
         _, left_open = determinate(graph, instants, p)
         kept = Kept.of(graph, rung, left_open)
+        require("the instants of a design", (kept.plan.rows, instants.size))
         guess = np.array(graph.newton.guess if graph.newton else (), float)
 
         def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:
@@ -144,9 +143,12 @@ class DesignEngine:
     @property
     def cost(self) -> float:
         """Seconds that a core takes for a design, within a factor of three or so: counted, not measured, the same everywhere."""
-        instants = self.t.size + _LOOKS * len(self.quantities)
-        rate = _RATE if self.library is not None else _RATE_INTERPRETED
-        return sum(self.graph.instructions.values()) * instants / rate
+        return seconds(self.graph, self.t.size + _LOOKS * len(self.quantities), self.rung, interpreted=self.library is None)
+
+    @property
+    def room(self) -> int:
+        """Bytes of memory that a core takes while it evaluates."""
+        return 8 * self.kept.plan.rows * self.t.size
 
     def evaluate(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of designs ``p``, (n, parameters), in the order of :attr:`parameters`; with ``histories``, its series too.
@@ -166,7 +168,7 @@ class DesignEngine:
         peaks, means = (np.empty((3, n, q)), np.empty((2, n, e)))
         found = Outcome(np.zeros(n, np.int8), peaks[0], peaks[1], peaks[2], means[0], means[1], columns)
         if self.library is not None:
-            self.library.evaluate(p, list(vars(found).values()), threads or codegen.cores())
+            self.library.evaluate(p, list(vars(found).values()), threads or cores())
         else:
             self._interpret(p, found)
         if len(self._shown) < q:

@@ -7,7 +7,9 @@ A message is one line: it names the offending part, says what was expected and, 
 from __future__ import annotations
 
 import difflib
+import errno
 from collections.abc import Iterable, Sequence
+from pickle import PicklingError
 
 _LONG = 300
 """Characters of names that a message takes at most."""
@@ -16,6 +18,11 @@ _LONG = 300
 def one_line(error: BaseException) -> str:
     """What an error says, in one line."""
     return " ".join(str(error).split())
+
+
+def lacking(error: OSError) -> bool:
+    """Whether the system has no more of something for now: descriptors, processes, memory. Nothing is wrong with what was asked."""
+    return error.errno in (errno.EMFILE, errno.ENFILE, errno.EAGAIN, errno.ENOMEM)
 
 
 class LagrangeCasadiError(Exception):
@@ -56,6 +63,10 @@ def _hint(name: str, names: Sequence[str], many: bool) -> str:
 
 class ParameterError(LagrangeCasadiError):
     """A parameter's value is not a number, is out of its range, or makes a part impossible."""
+
+
+class PickleError(LagrangeCasadiError, PicklingError):
+    """What cannot be sent to another process; the message says what can be sent instead."""
 
 
 class MobilityError(DeclarationError):

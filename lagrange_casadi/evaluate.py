@@ -14,23 +14,28 @@ from .accuracy import estimate, explained
 from .backends import Table
 from .certificate import certify, failure, tolerance
 from .compensated import Precision
+from .cost import seconds
 from .density import Array
 from .derive import assembled, derive
 from .description import describe
 from .determinacy import determinate, undetermined
 from .errors import CertificateWarning, DeclarationError
-from .grids import require
 from .motion import refuse_kinked
 from .phases import phases
 from .reading import columns
 from .refusal import refuse
+from .room import MOST_THREADS, cores, in_words, require
 from .rung import Backend, Rung
 from .scene import Grid, Scene, checked, checked_ratios, points
 from .scene_graph import SceneGraph
 from .solution import Solution, in_order
 from .written import written
 
-_BESIDE = 8
+_BESIDE, _CHECKED = 8, 2
+"""Rows beside the outputs, and how many times both are in memory while they are checked."""
+
+_LONG = 60.0
+"""Seconds of which nothing need be said."""
 
 
 def evaluate(
@@ -74,16 +79,16 @@ def evaluate(
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"evaluate: expected a Scene, got {scene!r}")
-    if threads is not None and (not isinstance(threads, int) or isinstance(threads, bool) or threads < 1):
-        raise DeclarationError(f"threads: expected a whole number of at least 1, got {threads!r}")
+    if threads is not None and (type(threads) is not int or not 1 <= threads <= MOST_THREADS):
+        raise DeclarationError(f"threads: expected a whole number from 1 to {MOST_THREADS}, got {threads!r}")
     rung = Rung(backend, precision, newton, table, flags)
     values = scene.mechanism.values(parameters)
     start, stop, count = checked_times(scene, t)
     checked_laws(scene, (start, stop), tuple(values.values()))
     ratios = checked_ratios(scene.xi if xi is None else xi)
     graph = derive(assembled(scene, values, wanted, iterate=newton is not None), wanted, iterate=newton is not None)
-    require("the outputs over time", (len(graph.columns) + _BESIDE, count))
-    require("the grid of ratios", (ratios[2],))
+    require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, count))
+    _announce(graph, count, rung, threads or cores())
     times, places = points((start, stop, count)), points(ratios)
     p = np.array(list(values.values()))
     left_open: tuple[str, ...] = ()
@@ -108,6 +113,18 @@ def evaluate(
     if solution.failed:
         warnings.warn(f"{failure(solution)}; the solution is not certified", CertificateWarning, stacklevel=2)
     return solution
+
+
+def _announce(graph: SceneGraph, count: int, rung: Rung, threads: int) -> None:
+    """Warn of what takes long."""
+    if rung.table is not None:
+        return
+    # Iterated loops are followed by one thread.
+    shared = 1 if graph.newton is not None or rung.backend == "vm" else threads
+    takes = seconds(graph, count, rung, interpreted=rung.backend == "vm") / shared
+    if takes > _LONG:
+        many, each = f"{count:,}".replace(",", " "), "" if rung.newton is None else f" of {rung.newton} Newton steps each"
+        warnings.warn(f"{many} instants{each} take about {in_words(takes)}", stacklevel=3)
 
 
 def checked_times(scene: Scene, t: Grid | None) -> Grid:

@@ -21,6 +21,12 @@ def check_name(kind: str, name: str) -> None:
         raise DeclarationError(f"{kind} name {name!r} must be a letter followed by letters, digits or underscores")
 
 
+def check_line(what: str, text: object) -> None:
+    """Raise :class:`DeclarationError` for what is no line of printable characters: it may stand in files, figures and C."""
+    if not isinstance(text, str) or not text.isprintable():
+        raise DeclarationError(f"{what} must be a line of printable characters, got {text!r}")
+
+
 def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str) -> Expression:
     """A finite float, or an SX scalar in the given symbols. Raises :class:`DeclarationError`, saying what is ``allowed``."""
     if isinstance(value, ca.SX):

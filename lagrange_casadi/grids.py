@@ -9,7 +9,7 @@ from __future__ import annotations
 import ctypes
 import functools
 import math
-import os
+import warnings
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from importlib import resources
@@ -18,9 +18,10 @@ from typing import Any
 import numpy as np
 
 from .codegen import find_compiler
-from .codegen.compiler import built
+from .codegen.compiler import loaded
 from .density import Array
-from .errors import CompilerError, DeclarationError, SizeError
+from .errors import CompilerError, DeclarationError
+from .room import require
 
 WORTH_COMPILING = 1 << 14
 """Values from which on compiled code fills a grid."""
@@ -100,18 +101,6 @@ def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
     return out
 
 
-def require(what: str, shape: tuple[int, ...]) -> None:
-    """Raise :class:`SizeError` where this machine has less memory than an array takes."""
-    try:
-        there = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
-    except (ValueError, OSError, AttributeError):
-        return
-    size = 8.0 * math.prod(shape)
-    if size > there:
-        values = " x ".join(f"{count:,}".replace(",", " ") for count in shape)
-        raise SizeError(f"no room for {what}: {values} values are {size / 1e9:.4g} GB, and this machine has {there / 1e9:.3g} GB")
-
-
 def empty(what: str, shape: tuple[int, ...], dtype: Any = np.float64) -> Array:
     """An array to fill, from the start of a cache line: what crosses lines is stored at half the speed.
 
@@ -152,9 +141,9 @@ def _compiled() -> Any | None:
         compiler = find_compiler()
         if compiler is None:
             return None
-        with built(source, compiler, _OPTIONS) as path:
-            library = ctypes.CDLL(str(path))
-    except (CompilerError, OSError):
+        library = loaded(source, compiler, _OPTIONS)
+    except CompilerError as error:
+        warnings.warn(f"{error}; NumPy fills the grids", stacklevel=4)
         return None
     integer, number, pointer = ctypes.c_longlong, ctypes.c_int, ctypes.c_void_p
     arguments = {

@@ -29,8 +29,14 @@ def interrupts() -> list[signal.Signals]:
     return [number for number in numbers if signal.getsignal(number) not in (signal.SIG_IGN, None)]
 
 
-def _is_program() -> bool:
-    """Whether this process is the command line: the installed script, or ``python -m`` while that looks for the package."""
+def is_program() -> bool:
+    """Whether this process is the command line: the installed script, or ``python -m`` while that looks for the package.
+
+    A process that the program started has the same name.
+    """
+    helpers = sys.modules.get("multiprocessing.process")
+    if helpers is not None and helpers.parent_process() is not None:
+        return False
     name = sys.argv[0] if sys.argv else ""
     return Path(name).stem == "lagrange-casadi" or (name == "-m" and __package__ in sys.orig_argv)
 
@@ -42,6 +48,6 @@ def _end(_number: int, _frame: FrameType | None) -> None:
     os._exit(STATUS)
 
 
-if _is_program():
+if is_program():
     for _signal in interrupts():
         signal.signal(_signal, _end)

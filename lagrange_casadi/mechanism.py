@@ -17,7 +17,7 @@ import casadi as ca
 from . import density as densities
 from .density import Density
 from .errors import DeclarationError
-from .expressions import check_name, scalar, unit_vector
+from .expressions import check_line, check_name, scalar, unit_vector
 from .kinks import refuse_kinks
 from .limits import check_connected, check_parts, parameter_values
 from .measures import Measures
@@ -93,6 +93,7 @@ class Mechanism:
     def parameter(self, name: str, default: float, unit: str = "1", *, low: float = -math.inf, high: float = math.inf) -> Any:
         """Declare a parameter and return its symbol, a ``casadi.SX`` scalar to build lengths, masses and places from."""
         self._add("parameter", name, self.parameters)
+        check_line(f"parameter '{name}': its unit", unit)
         parameter = Parameter(name, float(default), unit, float(low), float(high), ca.SX.sym(name))
         parameter.check(parameter.default)
         self.parameters[name] = parameter

@@ -11,11 +11,11 @@ import casadi as ca
 import numpy as np
 
 from .backends import Table, empty_table, run
-from .codegen import cores
 from .codegen.emit import NOT_FINITE, OK
 from .cycle import TURNS, the_drive
 from .cycle_table import CycleTable
 from .density import Array
+from .room import cores
 from .rung import Rung
 from .scene_graph import SceneGraph
 from .solution import Provenance

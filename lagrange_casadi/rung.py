@@ -13,6 +13,8 @@ Backend = Literal["auto", "lanes", "c", "vm"]
 BACKENDS: tuple[Backend, ...] = ("auto", "lanes", "c", "vm")
 
 FEWEST_NODES = 8
+MOST_STEPS = 1000
+"""Each step squares what a loop still misses: after some ten nothing changes."""
 
 
 @dataclass(frozen=True)
@@ -27,8 +29,9 @@ class Rung:
     precision
         ``double``, or ``single``: every operation, in code without a double; phases are kept all the same.
     newton
-        None solves loops in closed form where there is one, and iterates the others until they are closed. A number takes so many
-        steps of Newton's method for every loop, from the instant before, and no more; at the first instant it is closed.
+        None solves loops in closed form where there is one, and iterates the others until they are closed. A number, at most
+        1000, takes so many steps of Newton's method for every loop, from the instant before, and no more; at the first instant it
+        is closed.
     table
         A whole number of nodes, or a wanted accuracy below 1: outputs are read from a table over the turn of the one drive.
     flags
@@ -47,14 +50,18 @@ class Rung:
         for kind, name, valid in (("backend", self.backend, BACKENDS), ("precision", self.precision, PRECISIONS)):
             if name not in valid:
                 raise UnknownNameError(kind, str(name), valid)
-        if self.newton is not None and (type(self.newton) is not int or self.newton < 1):
-            raise DeclarationError(f"newton: expected a number of steps, at least 1, got {self.newton!r}")
+        if self.newton is not None and (type(self.newton) is not int or not 1 <= self.newton <= MOST_STEPS):
+            raise DeclarationError(
+                f"newton: expected a number of steps, from 1 to {MOST_STEPS} (after some ten nothing changes), got {self.newton!r}"
+            )
         if self.table is not None and not _tabulates(self.table):
             raise DeclarationError(
                 f"table: expected a number of nodes, at least {FEWEST_NODES}, or an accuracy between 0 and 1, got {self.table!r}"
             )
         try:
             words = shlex.split(self.flags)
+            if "\0" in self.flags:
+                raise ValueError("they hold a null character")
         except (ValueError, AttributeError) as error:
             raise DeclarationError(f"flags: expected words for a compiler, got {self.flags!r}: {error}") from None
         if self.newton is not None and self.table is not None:

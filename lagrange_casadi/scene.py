@@ -7,20 +7,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from types import MappingProxyType
+from typing import NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
 from .density import Array, Density
-from .errors import DeclarationError, ParameterError, UnknownNameError
+from .errors import DeclarationError, ParameterError, PickleError, UnknownNameError
 from .limits import no_sections
 from .mechanism import Mechanism
 from .motion import Motion
+from .room import require
 
 Grid = tuple[float, float, int]
 """Start, stop and count; both ends are included."""
 
 _TOLD = 8
+_MADE_FROM = 3
+"""How many arrays points are, with what they are made from."""
+
 _EXACT = 2**53
 """Up to which doubles hold all whole numbers, so that a quotient of two is rounded once."""
 
@@ -48,9 +53,12 @@ def points(grid: Grid, numbers: npt.NDArray[np.int64] | None = None) -> Array:
     """All points of a grid, or those of given numbers, evenly spaced.
 
     Each is rounded once from what the decimals of the ends say, so that 0.2:0.4:3 has 0.3, not 0.30000000000000004; where
-    these take more than the digits of a double, they are those of ``numpy.linspace``.
+    these take more than the digits of a double, they are those of ``numpy.linspace``. Raises :class:`SizeError` for more than
+    memory holds.
     """
     start, stop, count = grid
+    if numbers is None:
+        require(f"the points from {start:g} to {stop:g}", (_MADE_FROM, count))
     numbers = np.arange(count) if numbers is None else numbers
     first, last = (Fraction(repr(float(end))) for end in (start, stop))
     step = (last - first) / max(count - 1, 1)
@@ -195,3 +203,18 @@ class Scene:
         except ParameterError as error:
             raise ParameterError(f"{error}{told_parameters(self.mechanism, {})}") from None
         self.mechanism.values(self.assembly)
+
+    def __reduce__(self) -> NoReturn:
+        """Raise :class:`PickleError`."""
+        raise PickleError(
+            "a Scene cannot be pickled: its expressions and laws of motion live in this process alone; send a Case from load_case, "
+            "which the other process loads anew, or call there the function that makes the scene"
+        )
+
+    def __copy__(self) -> Scene:
+        """Itself: nothing of it changes."""
+        return self
+
+    def __deepcopy__(self, _memo: object) -> Scene:
+        """Itself: nothing of it changes."""
+        return self

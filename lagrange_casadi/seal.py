@@ -19,8 +19,8 @@ from dataclasses import dataclass
 from io import FileIO
 from pathlib import Path
 
-from .codegen import cores
 from .errors import PathError, StoreError, one_line
+from .room import cores
 
 try:
     import fcntl
@@ -200,7 +200,11 @@ def _digests(file: FileIO, length: int) -> list[bytes]:
                 number = next(numbers, None)
                 if number is None:
                     return
-                piece = buffer[: _fill(file, buffer[: sizes[number]])]
+                try:
+                    piece = buffer[: _fill(file, buffer[: sizes[number]])]
+                except BaseException:
+                    deque(numbers, 0)  # no other thread goes on
+                    raise
             found[number] = hashlib.sha256(piece).digest()
 
     threads = min(cores(), _MOST, 1 + len(sizes) // _FEW)
@@ -210,7 +214,7 @@ def _digests(file: FileIO, length: int) -> list[bytes]:
     with ThreadPoolExecutor(threads) as pool:
         try:
             list(pool.map(work, range(threads)))
-        finally:  # after an interrupt or a failure no thread goes on
+        finally:  # nor after an interrupt
             with turn:
                 deque(numbers, 0)
     return found

@@ -13,8 +13,8 @@ from typing import Any, Literal
 import numpy as np
 
 from . import grids
-from .codegen import cores
 from .density import Array, NumericDensity
+from .room import cores, require
 
 FORCES = ("axial", "shear", "bending")
 MEMBERS = {
@@ -82,7 +82,7 @@ class SectionLaw:
         """
         size = (self.coefficients["n0"].size, xi.u.size if isinstance(xi, Basis) else xi.size)
         if out is None:
-            grids.require(f"a grid of {force}", size)
+            require(f"a grid of {force}", size)
         basis = xi if isinstance(xi, Basis) else self.basis(xi)
         columns, rows = self._terms(force, basis)
         out = grids.empty(f"a grid of {force}", size) if out is None else out

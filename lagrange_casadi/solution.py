@@ -12,10 +12,10 @@ import numpy as np
 from .density import Array
 from .description import Description, density_of
 from .errors import DeclarationError, LagrangeCasadiError, UnknownNameError
-from .grids import require
 from .limits import no_sections
 from .notes import notes
 from .quantities import QUANTITIES, quantity_of
+from .room import require
 from .section_law import FORCES, Basis, SectionLaw, StationLoad, made_of
 
 if TYPE_CHECKING:

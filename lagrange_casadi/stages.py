@@ -17,7 +17,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from .compensated import Pair, Pairs, Precision, unsimplified
+from .compensated import Pair, Pairs, Precision
 from .density import Array
 from .interpret import Arithmetic, followable, interpret, numpy_arithmetic
 from .motion import Laws
@@ -64,9 +64,7 @@ def plain(graph: SceneGraph) -> Stages:
 @functools.lru_cache(maxsize=32)
 def compensated(graph: SceneGraph, precision: Precision) -> Stages:
     """The stages of a graph in pairs. Raises :class:`DeclarationError` for a graph that cannot be followed."""
-    laws = graph.laws  # made where CasADi simplifies
-    with unsimplified():
-        return _compensated(graph, laws, precision)
+    return _compensated(graph, graph.laws, precision)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,13 +96,12 @@ def controlled(graph: SceneGraph, precision: Precision) -> Controlled:
         moment = ca.SX.sym("moment", stages.instant.size1_in(0))
         return Controlled(graph.laws.smooth, ca.Function("count", [moment, p], [moment], names, ["counted"]), *_others(stages))
     laws = graph.laws
-    with unsimplified():
-        pairs, rows = Pairs(precision), 1 + len(graph.driven)
-        moment, p = ca.SX.sym("moment", rows, 2), graph.instant.sx_in("p")
-        t, *driven = (Pair(row[0], row[1]) for row in ca.vertsplit(moment))
-        handed, loops, instant = _counted(graph, pairs, t, driven, [Pair(x) for x in _split(p)])
-        count = ca.Function("count", [ca.vec(moment), p], [handed], names, ["counted"], {"cse": True})
-        return Controlled(_paired_law(laws.smooth, pairs, p), count, loops, instant, precision)
+    pairs, rows = Pairs(precision), 1 + len(graph.driven)
+    moment, p = ca.SX.sym("moment", rows, 2), graph.instant.sx_in("p")
+    t, *driven = (Pair(row[0], row[1]) for row in ca.vertsplit(moment))
+    handed, loops, instant = _counted(graph, pairs, t, driven, [Pair(x) for x in _split(p)])
+    count = ca.Function("count", [ca.vec(moment), p], [handed], names, ["counted"], {"cse": True})
+    return Controlled(_paired_law(laws.smooth, pairs, p), count, loops, instant, precision)
 
 
 def _others(stages: Stages) -> tuple[Any | None, Any, Precision]:

@@ -22,7 +22,7 @@ class Formula:
     quantities = ("effort:O", "reaction:A", "reaction:A:fx", "section:rod:axial", "section:rod:shear", "section:rod:bending")
     efforts = ("effort:O",)
     undetermined = doubtful = ()
-    cost = 1 / 15
+    cost, room = 1 / 15, 0
     provenance = Provenance("formula", "double", "", "", "(default)", {"lagrange_casadi": __version__})
 
     def __init__(self, count=7, pause=0.0):

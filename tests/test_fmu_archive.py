@@ -12,6 +12,7 @@ import pytest
 from builders import slider_crank
 from conftest import CASES
 from importer import Instance, robot, windy
+from test_codegen import fake_compiler
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.cli import main
@@ -201,6 +202,22 @@ def test_a_compiler_that_refuses_is_quoted(tmp_path, monkeypatch):
     monkeypatch.setattr(fmu, "wrapper", lambda description: "#error nonsense\n")
     with pytest.raises(CompilerError, match="nonsense"):
         export(slider_crank(), tmp_path / "out", fmu=True)
+
+
+BUILDS = 'test "$1" = --version && exit 0; while [ $# -gt 0 ]; do [ "$1" = -o ] && out=$2; shift; done; '
+OTHERS = {
+    "nothing that loads": "echo nothing > $out",
+    "another library": "echo 'int x;' | {cc} -shared -fPIC -xc - -o $out",
+    "another version": "echo 'const char* fmi2GetVersion(void) {{ return \"3.0\"; }}' | {cc} -shared -fPIC -xc - -o $out",
+}
+
+
+@pytest.mark.parametrize("builds", OTHERS.values(), ids=OTHERS)
+def test_a_binary_that_does_not_load_is_not_shipped(here, tmp_path_factory, monkeypatch, builds):
+    fake_compiler(tmp_path_factory.mktemp("fake"), monkeypatch, BUILDS + builds.format(cc=shutil.which("cc")))
+    with pytest.raises(CompilerError, match=r"the library built by .*fake-cc does not load: "):
+        export(slider_crank(), here / "out", fmu=True, wanted=["effort"])
+    assert not list(here.iterdir())
 
 
 def test_the_command_line(tmp_path, capsys):

@@ -78,6 +78,37 @@ def test_an_interrupt_while_modules_are_imported_is_one_line(here, command, numb
     assert stopped.returncode == 130
 
 
+READY = "print('ready', flush=True); time.sleep(60)"
+WAITS = {
+    "import": f"{READY}\n",
+    "scene": f"def scene():\n    {READY}\n",
+    "another-error": f"def scene():\n    try:\n        {READY}\n    finally:\n        raise ValueError\n",
+    "swallowed": f"try:\n    {READY}\nexcept BaseException:\n    time.sleep(60)\n",
+    "pool": (
+        "import multiprocessing\n"
+        "def scene():\n"
+        "    with multiprocessing.get_context('fork').Pool(2) as pool:\n"
+        "        print('ready', flush=True)\n"
+        "        pool.map(time.sleep, [60, 60, 60])\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
+@pytest.mark.parametrize("text", WAITS.values(), ids=WAITS)
+def test_an_interrupt_in_a_case_is_one_line(here, tmp_path_factory, text, number):
+    """As a terminal sends it: to all processes that were started there."""
+    case = tmp_path_factory.mktemp("waiting") / "case.py"
+    case.write_text(f"import time\n{text}")
+    with program("run", str(case), "--no-figures", start_new_session=True) as stopped:
+        assert stopped.stdout.readline() == "ready\n"
+        time.sleep(0.2)
+        os.killpg(stopped.pid, number)
+        assert stopped.communicate(timeout=20) == ("", LINE)
+    assert stopped.returncode == 130
+    assert not list(here.iterdir())
+
+
 def test_other_programs_keep_their_signals():
     text = (
         "import signal, sys; sys.argv[0] = '-m'; before = [signal.getsignal(n) for n in (2, 15)]; import lagrange_casadi; "
@@ -104,6 +135,44 @@ def test_a_sweep_keeps_its_blocks(here, number):
     assert stopped.returncode == 130
     assert out == ""
     assert re.fullmatch(KEPT, err)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
+def test_an_interrupt_comes_through_while_a_long_axis_is_written(here, number):
+    """It takes minutes; the blocks that were committed before stay."""
+    with program(*SWEEP, "--grid", "l=0.11:0.4:200000000", "--out", "x.h5") as stopped:
+        sweeps.wait_for(lambda: [path for path in here.glob("x.h5.parts/joined.h5") if path.stat().st_size > 1_000_000])
+        stopped.send_signal(number)
+        out, err = stopped.communicate(timeout=60)
+    assert (stopped.returncode, out) == (130, "")
+    note, error = err.splitlines(keepends=True)[-2:]
+    assert re.fullmatch(r"note: 200 000 000 designs take about .* of a core and a file of up to \S+ GB\n", note)
+    assert re.fullmatch(KEPT.replace("1 000 000", "200 000 000"), error)
+    assert sorted(path.suffix for path in here.glob("x.h5.parts/*"))[-1] == ".part"
+    assert not list(here.glob("x.h5.parts/joined.h5"))
+
+
+NEWTON = ["--newton", "1000", "--no-figures"]
+STEPPING = {
+    "compiled": ["run", str(CASE), *NEWTON, "--t", "0:0.08:10000001"],
+    "interpreted": ["run", str(CASE), *NEWTON, "--t", "0:0.08:1000001", "--backend", "vm"],
+    "swept": [*SWEEP[:2], "--newton", "1000", "--want", "effort", "--t", "0:0.08:2000001", "--grid", "l=0.2:0.3:50"],
+    "swept-interpreted": [*SWEEP[:2], "--newton", "1000", "--t", "0:0.08:20001", "--grid", "l=0.2:0.3:50", "--backend", "vm"],
+}
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
+@pytest.mark.parametrize("arguments", STEPPING.values(), ids=STEPPING)
+def test_an_interrupt_does_not_wait_for_newtons_steps(here, arguments, number):
+    """The whole takes minutes or hours."""
+    with program(*arguments) as stopped:
+        sweeps.wait_for(lambda: caught(stopped, signal.SIGALRM))
+        time.sleep(2.0)
+        stopped.send_signal(number)
+        out, err = stopped.communicate(timeout=20)
+    assert (stopped.returncode, out) == (130, "")
+    assert re.search(r"error: (interrupted; nothing was left half-written|stopped; nothing was done yet)\n$", err)
+    assert not list(here.iterdir())
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP], ids=lambda number: number.name)

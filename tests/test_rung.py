@@ -15,9 +15,17 @@ from lagrange_casadi.rung import Rung
 WRONG = [
     ({"backend": "gpu"}, UnknownNameError, "unknown backend 'gpu'; valid: auto, lanes, c, vm"),
     ({"precision": "half"}, UnknownNameError, "unknown precision 'half'; valid: double, single"),
-    ({"newton": 0}, DeclarationError, "newton: expected a number of steps, at least 1, got 0"),
-    ({"newton": 2.0}, DeclarationError, "newton: expected a number of steps, at least 1, got 2.0"),
-    ({"newton": True}, DeclarationError, "newton: expected a number of steps, at least 1, got True"),
+    ({"newton": 0}, DeclarationError, "newton: expected a number of steps, from 1 to 1000 (after some ten nothing changes), got 0"),
+    (
+        {"newton": 2.0},
+        DeclarationError,
+        "newton: expected a number of steps, from 1 to 1000 (after some ten nothing changes), got 2.0",
+    ),
+    (
+        {"newton": True},
+        DeclarationError,
+        "newton: expected a number of steps, from 1 to 1000 (after some ten nothing changes), got True",
+    ),
     ({"table": 3}, DeclarationError, "table: expected a number of nodes, at least 8, or an accuracy between 0 and 1, got 3"),
     ({"table": 1.0}, DeclarationError, "an accuracy between 0 and 1, got 1.0"),
     ({"table": 0.0}, DeclarationError, "an accuracy between 0 and 1, got 0.0"),
@@ -71,7 +79,7 @@ def test_a_rung_as_options(rung, options, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["--newton", "0"], "newton: expected a number of steps, at least 1, got 0"),
+        (["--newton", "0"], "newton: expected a number of steps, from 1 to 1000 (after some ten nothing changes), got 0"),
         (["--newton", "two"], "Invalid value for '--newton': 'two' is not a valid integer"),
         (["--table", "3"], "table: expected a number of nodes, at least 8, or an accuracy between 0 and 1, got 3"),
         (["--table", "2.5"], "an accuracy between 0 and 1, got 2.5"),

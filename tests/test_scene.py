@@ -157,9 +157,9 @@ def test_grids_are_what_their_decimals_say():
     [
         (
             {"t": (0, 1, 10**12)},
-            r"no room for the outputs over time: 51 x 1 000 000 000 000 values are 4.08e\+05 GB, and this machine has",
+            r"no room for the outputs over time: 2 x 51 x 1 000 000 000 000 values are 8.16e\+05 GB, and this machine has",
         ),
-        ({"xi": (0, 1, 10**12)}, r"no room for the grid of ratios: 1 000 000 000 000 values are 8000 GB"),
+        ({"xi": (0, 1, 10**12)}, r"no room for the points from 0 to 1: 3 x 1 000 000 000 000 values are 2\.4e\+04 GB"),
     ],
 )
 def test_what_does_not_fit_into_memory_is_refused_before_it_is_tried(keywords, says):
@@ -172,9 +172,9 @@ def test_what_does_not_fit_into_memory_is_refused_before_it_is_tried(keywords, s
     [
         ({"backend": "gpu"}, "unknown backend 'gpu'; valid: auto, lanes, c, vm"),
         ({"backend": None}, "unknown backend 'None'; valid: auto, lanes, c, vm"),
-        ({"threads": True}, "threads: expected a whole number of at least 1, got True"),
-        ({"threads": 0}, "threads: expected a whole number of at least 1, got 0"),
-        ({"threads": 1.5}, "threads: expected a whole number of at least 1, got 1.5"),
+        ({"threads": True}, "threads: expected a whole number from 1 to 1024, got True"),
+        ({"threads": 0}, "threads: expected a whole number from 1 to 1024, got 0"),
+        ({"threads": 1.5}, "threads: expected a whole number from 1 to 1024, got 1.5"),
     ],
 )
 def test_a_way_to_run_that_there_is_not_is_named(keywords, says):

@@ -104,7 +104,7 @@ MISTAKES = [
     (["--grid", "l=0.2", "--want", "torque"], 2, "unknown output 'torque'"),
     (["--grid", "l=0.2", "--keep", "all"], 2, "'all' is not one of 'peaks', 'laws', 'histories'"),
     (["--grid", "l=0.2", "--table", "128"], 2, "No such option"),
-    (["--grid", "l=0.2", "--workers", "0"], 2, "0 is not in the range x>=1"),
+    (["--grid", "l=0.2", "--workers", "0"], 2, "0 is not in the range 1<=x<=1024"),
     (["--grid", "l=0.2", "--out", "x.txt"], 2, "expected a name that ends in .h5"),
     (["--grid", "l=0.2", "--out", "nowhere/x.h5"], 2, "folder nowhere does not exist"),
     (["--grid", "l=0.2", "--out", "mine.h5"], 2, "mine.h5 exists: --force replaces it, --resume goes on"),

@@ -9,6 +9,7 @@ import signal
 import socket
 import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -35,19 +36,26 @@ def small_blocks():
         yield
 
 
+WITHOUT = "import runpy, sys; sys.modules['lagrange_casadi'] = None; runpy.run_module('dask', run_name='__main__')"
+"""Dask where this package is not."""
+
+
 @contextlib.contextmanager
-def started(folder, workers):
-    """The address of a scheduler, its process, and those of its workers."""
+def started(folder, workers, without=()):
+    """The address of a scheduler, its process, and those of its workers; ``without`` this package those of which it says so."""
     told = folder / "scheduler.json"
-    dask = (sys.executable, "-m", "dask")
+
+    def dask(who):
+        return (sys.executable, "-c", WITHOUT) if who in without else (sys.executable, "-m", "dask")
+
     quiet = {"env": {**os.environ, "DASK_LOGGING__DISTRIBUTED": "critical"}}
     with contextlib.ExitStack() as stack:
         begun = ("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(told))
-        scheduler = stack.enter_context(sweeps.process(*dask, *begun, **quiet))
+        scheduler = stack.enter_context(sweeps.process(*dask("scheduler"), *begun, **quiet))
         sweeps.wait_for(lambda: told.exists() and told.read_text().endswith("}"))
         address = json.loads(told.read_text())["address"]
         begin = ("worker", address, "--nworkers", "1", "--nthreads", "1", "--no-dashboard", "--no-nanny")
-        found = [stack.enter_context(sweeps.process(*dask, *begin, cwd=folder, **quiet)) for _ in range(workers)]
+        found = [stack.enter_context(sweeps.process(*dask(k), *begin, cwd=folder, **quiet)) for k in range(workers)]
         if workers:
             with distributed.Client(address, set_as_default=False) as client:
                 client.wait_for_workers(workers)
@@ -132,6 +140,72 @@ def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, 
     assert capfd.readouterr().err == ""
     assert parts(path) > 0
     assert sweep(slider_crank, GRID, **ASKED, out=path, resume=True).path.read_bytes() == whole
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
+@pytest.mark.parametrize("frozen", ["scheduler", "worker"])
+def test_an_interrupt_does_not_wait_for_what_is_frozen(slider_crank, tmp_path, number, frozen):
+    asked = ["sweep", str(slider_crank.path), "--grid", "l=0.12:0.4:4000", "--grid", "r=0.05:0.1:250", "--t", "0:0.08:21"]
+    with started(tmp_path, 1) as (address, scheduler, (worker,)):
+        command = [sys.executable, "-m", "lagrange_casadi", *asked, "--want", "effort", "--out", "x.h5", "--dask", address]
+        with sweeps.process(*command, cwd=tmp_path) as stopped:
+            sweeps.wait_for(lambda: parts(tmp_path / "x.h5"))
+            stuck = {"scheduler": scheduler, "worker": worker}[frozen]
+            stuck.send_signal(signal.SIGSTOP)
+            time.sleep(0.5)
+            began = time.monotonic()
+            stopped.send_signal(number)
+            out, err = stopped.communicate(timeout=60)
+            assert time.monotonic() - began < 10.0
+        stuck.send_signal(signal.SIGCONT)
+    assert (stopped.returncode, out) == (130, "")
+    assert re.fullmatch(r"error: stopped; [\d ]+ of 1 000 000 designs are kept in x\.h5\.parts: go on with --resume\n", err)
+
+
+def test_a_worker_that_is_frozen_for_a_while_is_waited_for(slider_crank, whole, tmp_path):
+    path, held = tmp_path / "x.h5", []
+    with started(tmp_path, 1) as (address, _, (worker,)):
+
+        def progress(_what, done, _total):
+            if done and not held:
+                worker.send_signal(signal.SIGSTOP)
+                held.append(threading.Timer(1.5, worker.send_signal, (signal.SIGCONT,)))
+                held[0].start()
+
+        assert sweep(slider_crank, GRID, **ASKED, out=path, dask=address, progress=progress).path.read_bytes() == whole
+    assert held
+
+
+def test_workers_without_the_package_are_named_at_once(slider_crank, tmp_path):
+    with started(tmp_path, 2, without=[1]) as (address, *_):
+        with distributed.Client(address, set_as_default=False) as client:
+            lacking = [name for name, there in client.run(eval, cluster._PROBE).items() if not there]
+        assert len(lacking) == 1
+        with pytest.raises(
+            ClusterError, match=rf"^no lagrange_casadi on worker {lacking[0]}: install it there too; nothing was done yet$"
+        ):
+            sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
+    assert not (tmp_path / "x.h5").exists()
+
+
+def test_a_worker_without_the_package_that_comes_later_is_named(slider_crank, tmp_path):
+    asked = {"grid": {"l": (0.12, 0.4, 4000), "r": (0.05, 0.1, 250)}, "t": (0, 0.08, 21), "wanted": ["effort"]}
+    with started(tmp_path, 1) as (address, *_), contextlib.ExitStack() as stack:
+        later = [sys.executable, "-c", WITHOUT, "worker", address, "--nthreads", "1", "--no-dashboard", "--no-nanny"]
+
+        def progress(_what, done, _total, begun=[]):  # noqa: B006
+            if done and not begun:
+                begun.append(stack.enter_context(sweeps.process(*later, cwd=tmp_path)))
+
+        with pytest.raises(
+            ClusterError, match=r"^no lagrange_casadi on worker tcp://\S+: install it there too; [\d ]+ of 1 000 000"
+        ):
+            sweep(slider_crank, **asked, out=tmp_path / "x.h5", dask=address, progress=progress)
+
+
+def test_a_scheduler_needs_nothing_but_dask(slider_crank, whole, tmp_path):
+    with started(tmp_path, 1, without=["scheduler"]) as (address, *_):
+        assert sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address).path.read_bytes() == whole
 
 
 @pytest.mark.parametrize("address", ["", "nonsense", "foo://127.0.0.1:8786", "tcp://127.0.0.1", "tcp://127.0.0.1:22x"])

@@ -161,7 +161,7 @@ def test_what_no_file_keeps_in_one_piece_is_refused(slider_crank, tmp_path):
 
 
 def test_a_design_that_memory_cannot_hold_is_refused(slider_crank, tmp_path, monkeypatch):
-    monkeypatch.setattr("os.sysconf", lambda name: {"SC_PAGE_SIZE": 4096, "SC_PHYS_PAGES": 5_000}[name])
+    monkeypatch.setattr("lagrange_casadi.room.memory", lambda: 2.05e7)
     with pytest.raises(
         SizeError, match=r"no room for a design and what it is made from: 4 x .* GB, and this machine has 0\.0205 GB"
     ):

@@ -14,8 +14,8 @@ import h5py
 import pytest
 import sweeps
 
-from lagrange_casadi.codegen import cores
 from lagrange_casadi.errors import BusyError, DeclarationError, PathError, SizeError, StoppedError, StoreError
+from lagrange_casadi.room import cores
 from lagrange_casadi.sweep import sweep
 from lagrange_casadi.sweep.parts import Folder
 

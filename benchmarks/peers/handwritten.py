@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lagrange_casadi.codegen.compiler import built, find_compiler
+from lagrange_casadi.codegen.compiler import find_compiler, loaded
 
 from .paper_case import Array, SliderCrank, Work
 
@@ -26,8 +26,7 @@ def library(flags: tuple[str, ...]) -> ctypes.CDLL:
     compiler = find_compiler()
     if compiler is None:
         raise RuntimeError("the handwritten peer needs a C compiler")
-    with built(SOURCE.read_text(), compiler, ("-fvisibility=default", *flags)) as path:
-        return ctypes.CDLL(str(path))
+    return loaded(SOURCE.read_text(), compiler, ("-fvisibility=default", *flags))
 
 
 def instants(case: SliderCrank, t: Array, flags: tuple[str, ...] = SCALAR) -> Work:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import os
 import signal
 import threading
 import warnings
@@ -16,6 +18,7 @@ from ..errors import LagrangeCasadiError, UnknownNameError, one_line
 from ..interrupts import SENTENCE, STATUS, interrupts
 from ..version import __version__
 from .best import best
+from .cache import cache
 from .check import check
 from .export import export
 from .info import info
@@ -27,6 +30,10 @@ from .trade import trade
 
 _OPTIONS = {"resume=True": "--resume", "force=True": "--force", "many=True": "--yes"}
 """What errors call in Python's words, in the command line's."""
+
+
+_MOMENT, _WAITS = 0.01, 50
+"""Seconds that an interrupt waits for CasADi at a time, and how often: some of its calls are long."""
 
 
 class _Interrupted(Exception):  # noqa: N818 - it is no error
@@ -44,7 +51,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (run, sweep, best, table, trade, export, plot, info, check)
+_COMMANDS = (run, sweep, best, table, trade, export, plot, info, check, cache)
 
 
 @click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
@@ -55,9 +62,11 @@ def program() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the exit status is 0, 2 for a mistake in what was asked, 1 for a computation that failed."""
+    # Nothing is shown in windows, and what a notebook set is no backend elsewhere.
+    os.environ["MPLBACKEND"] = "agg"
     with warnings.catch_warnings():
         warnings.simplefilter("always", UserWarning)
-        warnings.showwarning = lambda message, *_args, **_kwargs: click.echo(f"note: {message}", err=True)
+        warnings.showwarning = lambda message, *_args, **_kwargs: _say(f"note: {message}")
         try:
             result = program.main(arguments, prog_name="lagrange-casadi", standalone_mode=False)
         except LagrangeCasadiError as error:
@@ -73,6 +82,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _fail(f"out of memory: {str(error) or 'fewer instants or ratios fit'}", 1)
         except OSError as error:  # of standard output, for files fail with an error of ours
             return _fail(one_line(error), 1)
+        except (KeyboardInterrupt, Exception):
+            raise
+        except BaseException as error:  # of a case, whose functions may be called late
+            return _fail(f"{type(error).__name__}: {one_line(error)}", 1)
     return result if isinstance(result, int) else 0
 
 
@@ -81,12 +94,21 @@ def _insistent() -> Iterator[None]:
     """Make an interrupt arrive: as :class:`_Interrupted`, whatever a library in between makes of it.
 
     CasADi clears exceptions while it tries which of its overloads fits, so an interrupt at that moment is lost, or comes back as
-    another error. It is repeated every second until it arrives, and what fails after it is taken for it.
+    another error. So it waits a little for CasADi to come back, is repeated every second until it arrives, and what fails after it
+    is taken for it.
     """
     seen = threading.Event()
+    waits, own = itertools.count(1), os.getpid()
 
-    def interrupt(_number: int, _frame: FrameType | None) -> None:
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        if os.getpid() != own:  # a case may have others work for it: they end as they would
+            signal.signal(number, signal.SIG_DFL)
+            os.kill(os.getpid(), number)
+            return
         seen.set()
+        if _in_casadi(frame) and next(waits) % _WAITS:
+            signal.setitimer(signal.ITIMER_REAL, _MOMENT)
+            return
         signal.setitimer(signal.ITIMER_REAL, 1.0)
         raise KeyboardInterrupt
 
@@ -107,9 +129,22 @@ def _insistent() -> Iterator[None]:
             signal.signal(number, handler)
 
 
+def _in_casadi(frame: FrameType | None) -> bool:
+    """Whether what is under way was called by CasADi, or calls it."""
+    while frame is not None:
+        if frame.f_globals.get("__name__", "").partition(".")[0] == "casadi":
+            return True
+        frame = frame.f_back
+    return False
+
+
 def _fail(message: str, status: int) -> int:
     for keyword, option in _OPTIONS.items():
         message = message.replace(keyword, option)
-    with suppress(OSError):  # the terminal may be gone
-        click.echo(f"error: {' '.join(message.split())}", err=True)
+    _say(f"error: {' '.join(message.split())}")
     return status
+
+
+def _say(line: str) -> None:
+    with suppress(OSError):  # the terminal may be gone
+        click.echo(line, err=True)

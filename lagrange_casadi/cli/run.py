@@ -17,6 +17,7 @@ from ..evaluate import evaluate
 from ..figures import dump_specs
 from ..peaks import forces, refine
 from ..publish import check_free, check_writable, filling
+from ..room import MOST_THREADS
 from ..rung import Backend
 from ..scene import Grid
 from ..solution import Peak, Solution
@@ -35,7 +36,7 @@ from .report import peak_line
 @click.option("--xi", type=grid, metavar=GRID, help="Section ratios xi/l, within 0 and 1; default: the case's.")
 @click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
 @rung
-@click.option("--threads", type=click.IntRange(1), metavar="N", help="Threads; default: one a core.")
+@click.option("--threads", type=click.IntRange(1, MOST_THREADS), metavar="N", help="Threads; default: one a core.")
 @click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>.h5 here.")
 @click.option("--figures", type=click.Path(path_type=Path), help="The figures' folder; default: <case>_figures here.")
 @click.option("--no-figures", is_flag=True, help="Draw nothing.")

@@ -12,6 +12,7 @@ from ..case import load_case
 from ..compensated import Precision
 from ..errors import CertificateError
 from ..refusal import Status
+from ..room import MOST_THREADS
 from ..rung import Backend
 from ..scene import Grid
 from ..sweep import KEEPS, Axis, Keep, Sweep, read_designs
@@ -40,7 +41,7 @@ from .progress import shown
     "--keep", type=click.Choice(KEEPS), default="peaks", show_default=True, help="Peaks; also section laws; also all over time."
 )
 @untabled_rung
-@click.option("--workers", type=click.IntRange(1), metavar="N", help="Threads of this machine; default: one a core.")
+@click.option("--workers", type=click.IntRange(1, MOST_THREADS), metavar="N", help="Threads of this machine; default: one a core.")
 @click.option("--dask", metavar="ADDRESS", help="Evaluate on a cluster: its Dask scheduler, as tcp://HOST:8786.")
 @click.option("--resume", is_flag=True, help="Go on with what is there of the same sweep; start where there is nothing.")
 @click.option("--force", is_flag=True, help="Start anew, and replace what is there.")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
@@ -48,7 +49,7 @@ def table(file: Path, where: Sequence[str], columns: Sequence[str], rows: int, c
     if csv:
         count = write_csv(names, (values for _, values in found), csv)
         click.echo(f"wrote {csv}: {counted(count, what)}", err=is_standard_output(csv))
-    elif show(sweep, names, islice(found, rows)) == rows:
+    elif show(sweep, names, islice(found, min(rows, sys.maxsize))) == rows:
         met, with_result = tally(sweep, where, along)
         if met > rows:
             what = counted(met, what) + (" that meet the conditions" if where else "")

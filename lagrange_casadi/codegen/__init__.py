@@ -3,14 +3,13 @@
 from .compiler import Compiler, Language, find_compiler
 from .designs import emit_designs
 from .emit import emit
-from .library import DesignsLibrary, Library, cores, load, load_designs
+from .library import DesignsLibrary, Library, load, load_designs
 
 __all__ = [
     "Compiler",
     "DesignsLibrary",
     "Language",
     "Library",
-    "cores",
     "emit",
     "emit_designs",
     "find_compiler",

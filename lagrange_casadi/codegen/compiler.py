@@ -1,12 +1,14 @@
 """The compilers: which there are, with what flags, and a cache of what they have built.
 
-A library is named by the hash of its source, of the flags, of the compiler, and of the machine where the code is for this one
-alone. It is built under another name and renamed, so any number of processes may build the same one at once and none ever sees
-half of it; its digest lies beside it, for a truncated library can load and then crash.
+A library is named by the hash of its source, of the flags, of the compiler, and of the machine, of its kind alone where the code
+serves any of that kind. It is built under another name and renamed, so any number of processes may build the same one at once and
+none ever sees half of it; its digest lies beside it, for a truncated library can load and then crash. Whatever of this is not as
+it was left is built again.
 """
 
 from __future__ import annotations
 
+import ctypes
 import functools
 import hashlib
 import importlib.util
@@ -18,14 +20,15 @@ import subprocess
 import sys
 import tempfile
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from .. import cache
-from ..errors import CompilerError
+from ..errors import CompilerError, lacking
+from . import programs
 
 Language = Literal["c", "c++"]
 
@@ -36,6 +39,12 @@ FLAGS: dict[Language, tuple[str, ...]] = {
 }
 """No contraction: a product and a sum round as written. Nobody reads errno; without it a root is an instruction, no call.
 No start files: those that gcc links in where -ffast-math is asked for make the whole process flush to zero what is subnormal."""
+
+_LINE = 300
+"""Characters of a compiler's message that are quoted at most."""
+
+_ANSWER = 20
+"""Into how many parts the time limit is divided for a compiler to tell its version."""
 
 LARGE = 20_000
 """Statements from which on a file is compiled with -O1: see ``docs/speed.md`` for what that saves and costs."""
@@ -70,7 +79,7 @@ def statements(source: str) -> int:
 def find_compiler(language: Language = "c") -> Compiler | None:
     """$CC, else cc, gcc, clang (of C++: $CXX, c++, g++, clang++), else the wheel ziglang; None where there is none.
 
-    Raises :class:`CompilerError` where the variable is set and does not run.
+    Raises :class:`CompilerError` where the variable is set and does not run, or the system starts no program.
     """
     return _find_compiler(language, os.environ.get(_NAMES[language][0], "").strip(), os.environ.get("PATH", ""))
 
@@ -84,46 +93,67 @@ def _find_compiler(language: Language, chosen: str, _path: str) -> Compiler | No
             command = tuple(shlex.split(chosen))
         except ValueError as error:
             raise CompilerError(f"${variable} = {chosen!r} cannot be split into words: {error}") from None
-        version = _version(command)
+        try:
+            version = _version(command)
+        except subprocess.TimeoutExpired as error:
+            raise CompilerError(f"${variable} = {chosen!r} {_silent(error)}") from None
         if version is None:
             raise CompilerError(f"${variable} = {chosen!r} does not run; unset it, or name a compiler such as {', '.join(names)}")
         return Compiler(language, command, version)
     commands: list[tuple[str, ...]] = [(name,) for name in names if shutil.which(name)]
-    if importlib.util.find_spec("ziglang"):
+    if _has_zig():
         # Its C library has no libmvec to link with.
         commands.append((sys.executable, "-m", "ziglang", *(("cc",) if language == "c" else ("c++", "-DLANES_LIBMVEC=0"))))
     for command in commands:
-        version = _version(command)
+        try:
+            version = _version(command)
+        except subprocess.TimeoutExpired as error:
+            warnings.warn(f"the compiler {' '.join(command)} is passed over: it {_silent(error)}", stacklevel=3)
+            continue
         if version is not None:
             return Compiler(language, command, version)
     return None
 
 
-@functools.lru_cache
-def _version(command: tuple[str, ...]) -> str | None:
+def _has_zig() -> bool:
     try:
-        run = subprocess.run([*command, "--version"], capture_output=True, text=True, timeout=60, check=True)
-    except (OSError, subprocess.SubprocessError):
+        return importlib.util.find_spec("ziglang") is not None
+    except OSError:
+        return False
+
+
+def _version(command: tuple[str, ...]) -> str | None:
+    """The first line of a compiler's version, None where it does not run. Raises ``subprocess.TimeoutExpired``."""
+    try:
+        run = programs.run([*command, "--version"], programs.limit() / _ANSWER)
+    except OSError as error:
+        if lacking(error):
+            raise CompilerError(f"cannot start {' '.join(command)}: {error.strerror}") from None
+        return None
+    if run.returncode != 0:
         return None
     return run.stdout.partition("\n")[0].strip() or "unknown version"
 
 
-@contextmanager
-def built(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Iterator[Path]:
-    """The shared library of a source, from the cache or newly built; it need not outlive the block.
+def _silent(error: subprocess.TimeoutExpired) -> str:
+    return f"did not tell its version within {error.timeout:g} s; ${programs.VARIABLE} sets {_ANSWER} times as many"
+
+
+def loaded(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> ctypes.CDLL:
+    """The shared library of a source, from the cache or newly built.
 
     ``extra`` flags come after the package's own. Warns where the cache cannot be used, and where what it held was damaged. Raises
-    :class:`CompilerError` where the compiler refuses the source; its whole message is kept beside the source in the cache.
+    :class:`CompilerError` where the compiler refuses the source, whose whole message is kept beside the source in the cache, does
+    not end in time, or builds what does not load.
     """
     flags = (*compiler.flags(source), *extra)
-    machine = _machine() if "-march=native" in flags else ""
+    machine = _machine() if "-march=native" in flags else platform.machine()
     identity = "\0".join([source, *flags, *compiler.command, compiler.version, machine])
     name = hashlib.sha256(identity.encode()).hexdigest()[:32]
     folder = cache.folder()
     kept = None if folder is None else _kept(folder / f"{name}.so")
     if kept is not None:
-        yield kept
-        return
+        return kept
     with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as work:
         fresh = _compile(source, compiler, flags, Path(work) / name, folder)
         if folder is not None:
@@ -131,16 +161,38 @@ def built(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Itera
                 cache.keep([fresh.with_suffix(suffix) for suffix in (_suffix(compiler), ".sha256", ".so")], folder)
             except OSError as error:
                 warnings.warn(f"cannot keep a library in {folder}: {error.strerror}; compiled for this time only", stacklevel=3)
-        yield fresh
+        try:
+            return ctypes.CDLL(str(fresh))
+        except OSError as error:
+            raise broken(compiler, error) from None
 
 
-def _kept(library: Path) -> Path | None:
-    if not library.exists():
+def broken(compiler: Compiler, error: Exception) -> CompilerError:
+    """What to say of a library that does not load, or has not what it was built for."""
+    return CompilerError(f"the library built by {' '.join(compiler.command)} does not load: {error}")
+
+
+def _kept(library: Path) -> ctypes.CDLL | None:
+    """A library of the cache, unless it is not there, or is not what was put there."""
+    try:
+        seal, content = library.with_suffix(".sha256").read_bytes(), library.read_bytes()
+    except FileNotFoundError:  # also where another process makes room meanwhile
         return None
-    seal = library.with_suffix(".sha256")
-    if seal.exists() and seal.read_bytes() == cache.digest(library.read_bytes()).encode():
-        return library
-    warnings.warn(f"the cached library {library} was damaged and is built again", stacklevel=4)
+    except OSError as error:
+        why = f"cannot be read ({error.strerror})"
+    else:
+        if seal == cache.digest(content).encode():
+            try:
+                found = ctypes.CDLL(str(library))
+                cache.use(library)
+                return found
+            except OSError as error:
+                if not library.exists():
+                    return None
+                why = f"does not load ({error})"
+        else:
+            why = "was damaged"
+    warnings.warn(f"the cached library {library} {why} and is built again", stacklevel=4)
     return None
 
 
@@ -153,8 +205,8 @@ def _compile(source: str, compiler: Compiler, flags: tuple[str, ...], base: Path
     code, library = base.with_suffix(_suffix(compiler)), base.with_suffix(".so")
     command = [*compiler.command, *flags, str(code), "-o", str(library), "-lm"]
     try:
-        code.write_text(source)
-        run = subprocess.run(command, capture_output=True, text=True, check=False)
+        code.write_text(source, encoding="utf-8")
+        run = compiled(command)
     except OSError as error:
         raise CompilerError(f"cannot compile in {base.parent}: {error.strerror}") from None
     if run.returncode != 0 or not library.exists():
@@ -162,7 +214,7 @@ def _compile(source: str, compiler: Compiler, flags: tuple[str, ...], base: Path
         if folder is not None:
             log = base.with_suffix(".log")
             with suppress(OSError):
-                log.write_text(run.stderr)
+                log.write_text(run.stderr, encoding="utf-8")
                 cache.keep([code, log], folder)
                 where = f" (whole message in {folder / log.name})"
         raise CompilerError(f"{complaint(compiler, run)}{where}")
@@ -170,10 +222,20 @@ def _compile(source: str, compiler: Compiler, flags: tuple[str, ...], base: Path
     return library
 
 
+def compiled(command: Sequence[str], folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run a compiler. Raises ``OSError`` where it cannot be started, :class:`CompilerError` where it does not end in time."""
+    try:
+        return programs.run(command, programs.limit(), folder)
+    except subprocess.TimeoutExpired as error:
+        raise CompilerError(
+            f"{command[0]} did not end within {error.timeout:g} s and was stopped; ${programs.VARIABLE} sets another limit"
+        ) from None
+
+
 def complaint(compiler: Compiler, run: subprocess.CompletedProcess[str]) -> str:
     """The first of what a compiler that failed has to say."""
     first = next((line for line in run.stderr.splitlines() if "error" in line.lower()), run.stderr.strip() or "no message")
-    return f"{' '.join(compiler.command)} failed with status {run.returncode}: {first.strip()}"
+    return f"{' '.join(compiler.command)} failed with status {run.returncode}: {first.strip()[:_LINE]}"
 
 
 def _machine() -> str:

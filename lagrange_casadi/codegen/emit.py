@@ -324,8 +324,13 @@ def dump(name: str, functions: list[ca.Function]) -> str:
     text = re.sub(r"\((a\d+)\?(a\d+):0\)", r"lanes_choose(\1,\2)", str(generator.dump()))
     text = re.sub(r"if \(res\[(\d+)\]!=0\) ", "", text)
     text = re.sub(r"arg\[(\d+)\]\? (arg\[\1\]\[\d+\]) : 0", r"\2", text)
-    text = split(text)
+    text = split(opened(text))
     return text.replace("return x<0 ? -1 : x>0 ? 1 : x;", "return lanes_sign(x);")
+
+
+def opened(text: str) -> str:
+    """CasADi's C without the signs that kept its simplifications out: see :func:`.closed`."""
+    return _OWN_SIGN.sub(lambda found: "" if found[1] == found[2] else f"  {found[1]}={found[2]};\n", text)
 
 
 def work(prefix: str, *functions: ca.Function) -> dict[str, int]:
@@ -351,6 +356,7 @@ def _nearest(literal: str) -> str:
     return literal if value == float(literal) else f"{float(value):.8e}"
 
 
+_OWN_SIGN = re.compile(r"^  (a\d+)=copysign\((a\d+),\2\);\n", re.MULTILINE)
 _LITERAL = re.compile(r"(?<![\w.])(?:\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+)(?![\w.])")
 _NAMES = "sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp log log1p expm1 erf sqrt floor ceil fabs fmin fmax fmod"
 _FUNCTION = re.compile(rf"\b({'|'.join(_NAMES.split())}|pow|atan2|copysign|hypot|remainder)\(")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -13,8 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import CompilerError
-from .compiler import Compiler, built, statements
+from .compiler import Compiler, broken, loaded, statements
 from .designs import DESIGNS, Plan
 from .emit import EVALUATE, FOLLOW, LANES_PLACE
 
@@ -25,7 +23,8 @@ Status = npt.NDArray[np.int32]
 _WORTH_A_THREAD = 1 << 24
 """Statements, those of an instant times the instants: about a millisecond, some times what it takes to start a thread."""
 
-_LONGEST = 128
+_LONGEST, _SLOWER = 128, 4
+"""Into how many threads' worth a call is cut, some tenths of a second; and how much slower is what is done by the instant."""
 _LINE, _SPREAD = 16, 8
 """Values of a cache line of either precision; and into how many parts a thread's share of designs is cut, for they differ."""
 
@@ -37,21 +36,22 @@ _CUT = 64
 class Library:
     """The loaded code of one scene graph. Its calls release the interpreter and allocate nothing.
 
-    ``share`` is how many instants are worth a thread of their own.
+    ``share`` is how many instants are worth a thread of their own, ``reach`` how many are followed in a call.
     """
 
     entry: Any
     entry_follow: Any | None
     flags: tuple[str, ...]
     share: int
+    reach: int
 
     def follow(self, t: Array, p: Array, guess: Array, z: Array, status: Status) -> None:
         """Fill the iterated coordinates ``z`` (k, n), each instant from the one before; ``guess`` (k) begins, and moves along."""
         if self.entry_follow is None:
             status[:] = 0
             return
-        for start in range(0, t.shape[-1], self._stretch):
-            cut = slice(start, start + self._stretch)
+        for start in range(0, t.shape[-1], self.reach):
+            cut = slice(start, start + self.reach)
             self._call(self.entry_follow, t[..., cut], z[:, cut], (p, guess, z[:, cut], status[cut]))
 
     def evaluate(self, t: Array, p: Array, z: Array, out: Array, status: Status, threads: int = 1) -> None:
@@ -80,7 +80,7 @@ class Library:
 
     @property
     def _stretch(self) -> int:
-        """Instants of one call, in some tenths of a second: between calls an interrupt comes through."""
+        """Instants of one call: between calls an interrupt comes through."""
         return _LONGEST * self.share // _CUT * _CUT
 
     @staticmethod
@@ -134,21 +134,17 @@ class DesignsLibrary:
             pool.shutdown(cancel_futures=True)
 
 
-def cores() -> int:
-    """How many cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def load(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> Library:
+def load(source: str, compiler: Compiler, extra: tuple[str, ...] = (), steps: int = 1) -> Library:
     """Build an emitted file, as C or with packs as C++, or take it from the cache, and load it.
 
-    ``extra`` flags come after the package's own. Raises :class:`CompilerError`.
+    ``extra`` flags come after the package's own; loops take up to so many ``steps``. Raises :class:`CompilerError`.
     """
     library = _loaded(source, compiler, extra)
     entry, follow = _entry(library, compiler, EVALUATE, 2, 5), None
     if hasattr(library, FOLLOW):
         follow = _entry(library, compiler, FOLLOW, 2, 5)
-    return Library(entry, follow, (*compiler.flags(source), *extra), max(_CUT, _WORTH_A_THREAD // statements(source)))
+    share, size = max(_CUT, _WORTH_A_THREAD // statements(source)), statements(source) * steps * _SLOWER
+    return Library(entry, follow, (*compiler.flags(source), *extra), share, max(1, _LONGEST * _WORTH_A_THREAD // size))
 
 
 def load_designs(
@@ -169,21 +165,13 @@ def load_designs(
 def _loaded(source: str, compiler: Compiler, extra: tuple[str, ...]) -> ctypes.CDLL:
     if compiler.language == "c++":
         source = source.replace(LANES_PLACE, resources.files(__package__).joinpath("lanes.h").read_text(), 1)
-    with built(source, compiler, extra) as path:
-        try:
-            return ctypes.CDLL(str(path))
-        except OSError as error:
-            raise _broken(compiler, error) from None
+    return loaded(source, compiler, extra)
 
 
 def _entry(library: ctypes.CDLL, compiler: Compiler, name: str, numbers: int, arrays: int) -> Any:
     try:
         entry = getattr(library, name)
     except AttributeError as error:
-        raise _broken(compiler, error) from None
+        raise broken(compiler, error) from None
     entry.restype, entry.argtypes = None, [ctypes.c_longlong] * numbers + [ctypes.c_void_p] * arrays
     return entry
-
-
-def _broken(compiler: Compiler, error: Exception) -> CompilerError:
-    return CompilerError(f"the library built by {' '.join(compiler.command)} does not load: {error}")

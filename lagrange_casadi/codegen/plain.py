@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import casadi as ca
 
 from ..compensated import Precision
-from .emit import in_single
+from .emit import in_single, opened
 from .split import split
 
 _ITEM = re.compile(
@@ -30,7 +30,7 @@ def plain(functions: Mapping[str, ca.Function], precision: Precision) -> str:
         generator.add(function)
     called = {function.name(): name for name, function in functions.items()}
     text = re.sub(r"if \(res\[(\d+)\]!=0\) ", "", str(generator.dump()))
-    text = split(re.sub(r"arg\[(\d+)\]\? (arg\[\1\]\[\d+\]) : 0", r"\2", text))
+    text = split(opened(re.sub(r"arg\[(\d+)\]\? (arg\[\1\]\[\d+\]) : 0", r"\2", text)))
     text = re.sub(r"CASADI_PREFIX\((\w+)\)", r"casadi_\1", text).replace("LAGRANGE_CASADI_PART ", "")
     items = {found["name"]: found.group() for found in _ITEM.finditer(text)}
     entries = {found[2]: called[found[1]] for found in _ENTRY.finditer(text) if found[1] in called}

@@ -11,7 +11,7 @@ from .golden import RATIOS
 from .matlab import matlab
 from .program import literal
 from .source import Source
-from .text import template
+from .text import markdown, quoted, template
 
 _ROWS = 12
 """That the example prints."""
@@ -43,9 +43,9 @@ def companions(source: Source) -> dict[str, str]:
             skip=f"    if (k%{steps} != 0) continue; /* the loops are followed in small steps */\n" if steps > 1 else "",
             count=_ROWS * steps,
             coordinate=drive.name,
-            coordinate_unit=drive.unit,
+            coordinate_unit=quoted(drive.unit),
             output=effort.name,
-            output_unit=effort.unit,
+            output_unit=quoted(effort.unit),
             declared=f"  {c.prefix}_forces forces;\n" if link else "",
             section=mid,
             heading=f'"   {link.name}, bending at 0.5 [N m]' + '"' if link else '""',
@@ -53,7 +53,7 @@ def companions(source: Source) -> dict[str, str]:
         "selftest.c": _selftest(source, words),
         "README.md": template(
             "README.md",
-            **words,
+            **words | {"name": markdown(c.name)},
             story=source.story,
             inputs=_table(c.inputs),
             outputs=_table(c.outputs),
@@ -75,20 +75,22 @@ def _example_section(c: Contract) -> str:
 
 
 def _table(members: tuple[Member, ...]) -> str:
-    return "\n".join(f"| `{m.name}` | {m.unit} | {m.meaning} | {'; '.join(x for x in (m.sign, m.range) if x)} |" for m in members)
+    return "\n".join(
+        f"| `{m.name}` | {markdown(m.unit)} | {m.meaning} | {'; '.join(x for x in (m.sign, m.range) if x)} |" for m in members
+    )
 
 
 def _settings(c: Contract) -> str:
     if not c.settings:
         return "There are none: every number of the scene is fixed.\n"
-    rows = "\n".join(f"| `{m.name}` | {m.unit} | {m.range} |" for m in c.settings)
+    rows = "\n".join(f"| `{m.name}` | {markdown(m.unit)} | {m.range} |" for m in c.settings)
     return f"`{c.prefix}_defaults` holds the defaults.\n\n| member | unit | range |\n| --- | --- | --- |\n{rows}\n"
 
 
 def _mapped(c: Contract) -> str:
     if not c.mapped:
         return ""
-    rows = "\n".join(f"| {name} | `{called}` |" for name, called in c.mapped.items())
+    rows = "\n".join(f"| {markdown(name)} | `{called}` |" for name, called in c.mapped.items())
     return f"\nSome names cannot stand in C as they are:\n\n| in the scene | here |\n| --- | --- |\n{rows}\n"
 
 

@@ -15,7 +15,7 @@ from ..mobility import stations_of
 from ..quantities import quantity_of, unit_in
 from ..scene_graph import SceneGraph
 from ..solution import Solution
-from .naming import members, prefix
+from .naming import constants, members, prefix
 
 REST = "rest:"
 """What the full name of a rest begins with."""
@@ -118,7 +118,8 @@ class Contract:
                 own = _short(m.source, kind)
                 if m.name != re.sub(r"\W", "_", own):
                     found[f"{kind} {own}, a rest" if m.rest_of else f"{kind} {own}"] = m.name
-        return found
+        usual = {link.name: f"{self.prefix}_link_{link.name}".upper() for link in self.links}
+        return found | {f"link {link.name}": link.constant for link in self.links if link.constant != usual[link.name]}
 
     def input_of(self, name: str) -> str:
         """The member for the input of a full name, such as ``motion:O_rate`` or ``time``."""
@@ -148,9 +149,8 @@ def contract(
     for key in columns:
         unit = unit_in(mechanism.joints, key)
         largest[unit] = max(largest.get(unit, 0.0), float(np.abs(solution.series[key]).max()))
-    links = []
-    for link in graph.links:
-        links.append(LinkContract(link, f"{prefix(name)}_link_{link}".upper(), stations_of(columns, link)))
+    numbered = constants(f"{prefix(name)}_link", graph.links)
+    links = [LinkContract(link, constant, stations_of(columns, link)) for link, constant in numbered.items()]
     return Contract(
         prefix(name),
         name,

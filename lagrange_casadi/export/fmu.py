@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import ctypes
 import io
-import subprocess
 import tempfile
 import zipfile
 from collections.abc import Iterable, Mapping
@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..codegen import find_compiler
-from ..codegen.compiler import Compiler, complaint
+from ..codegen.compiler import Compiler, broken, compiled, complaint
 from ..density import Array
 from ..errors import CompilerError, LagrangeCasadiError, StoreError
 from .contract import REST
@@ -134,14 +134,27 @@ def _built(sources: Mapping[str, str], units: Iterable[str], library: str, compi
     with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as work:
         try:
             for file, text in sources.items():
-                (Path(work) / file).write_text(text)
+                (Path(work) / file).write_text(text, encoding="utf-8")
             command = [*compiler.command, *flags, *units, "-o", library, "-lm"]
-            run = subprocess.run(command, cwd=work, capture_output=True, text=True, check=False)
+            run = compiled(command, Path(work))
             if run.returncode == 0:
+                _check_loads(Path(work) / library, compiler)
                 return (Path(work) / library).read_bytes()
         except OSError as error:
             raise CompilerError(f"cannot compile in {work}: {error.strerror}") from None
     raise CompilerError(complaint(compiler, run))
+
+
+def _check_loads(library: Path, compiler: Compiler) -> None:
+    """Raise :class:`CompilerError` unless the library loads here and says that it is a unit of FMI 2.0."""
+    try:
+        version = ctypes.CDLL(str(library)).fmi2GetVersion
+        version.restype = ctypes.c_char_p
+        told = version()
+    except (OSError, AttributeError) as error:
+        raise broken(compiler, error) from None
+    if told != b"2.0":
+        raise broken(compiler, ValueError(f"fmi2GetVersion says {told!r}"))
 
 
 def _archive(files: Mapping[str, bytes]) -> bytes:

@@ -18,6 +18,7 @@ from ..derive import assembled, derive
 from ..determinacy import determinate
 from ..errors import CertificateError, DeclarationError, PathError
 from ..evaluate import checked_times, evaluate
+from ..expressions import check_line
 from ..fingerprint import declaration
 from ..publish import check_writable, filling
 from ..reading import drive_of, table_of
@@ -85,6 +86,7 @@ def export(
     if not isinstance(scene, Scene):
         raise DeclarationError(f"export: expected a Scene, got {scene!r}")
     folder = Path(out)
+    check_line("name", name or scene.mechanism.name)
     rung = Rung("auto", precision, newton, table)
     check_writable(folder, folder=True)
     if fmu:

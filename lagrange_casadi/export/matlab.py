@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from .contract import Contract, Member
 from .program import literal
 from .source import Source
-from .text import template
+from .text import octave, octave_printed, template
 
 _RESTS = """
    Numbers are doubles here: what single precision would round off a coordinate or a time is kept, without a member of its own."""
@@ -19,8 +19,8 @@ _WORDS = frozenset(["catch", "classdef", "elseif", "end", "function", "global", 
 def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]:
     """The files by name; the example shows an input and an output."""
     c = source.contract
-    words = source.words | {"coordinate": coordinate.name, "coordinate_unit": coordinate.unit}
-    words |= {"output": output.name, "output_unit": output.unit}
+    words = source.words | {"coordinate": coordinate.name, "coordinate_unit": octave(coordinate.unit)}
+    words |= {"output": output.name, "output_unit": octave(output.unit)}
     words |= {"coordinate_field": _field(coordinate), "output_field": _field(output)}
     start, stop = source.program.graph.scene.t[:2]
     number = literal("double")
@@ -99,5 +99,6 @@ def _more(c: Contract, output: Member) -> Iterable[str]:
         first = c.settings[0]
         yield f"parameters = struct('{first.name}', 1.01*{literal('double')(first.default)});"
         yield f"other = {c.prefix}_mex({c.prefix}_mex('motion', t, parameters), parameters);"
-        yield f"fprintf('{output.name} changes by at most %g {output.unit} where {first.name} is 1 %% larger\\n', ..."
+        unit = octave_printed(output.unit)
+        yield f"fprintf('{output.name} changes by at most %g {unit} where {first.name} is 1 %% larger\\n', ..."
         yield f"        max(abs(other{_field(output)} - outputs{_field(output)})));"

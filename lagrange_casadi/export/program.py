@@ -12,7 +12,7 @@ import numpy as np
 
 from ..codegen.emit import hoisted, newton_rule
 from ..codegen.plain import plain
-from ..compensated import Precision, unsimplified
+from ..compensated import Precision
 from ..cycle_table import CycleTable
 from ..density import Array, Density
 from ..errors import DeclarationError
@@ -86,8 +86,7 @@ def program(
     if fixed:
         # They were checked when they were fixed.
         del functions["sound"]
-        with unsimplified():
-            functions = {name: _fixed(function, p) for name, function in functions.items()}
+        functions = {name: _fixed(function, p) for name, function in functions.items()}
     functions["instant"] = instant
     if stages.loops is not None:
         functions["loops"] = stages.loops

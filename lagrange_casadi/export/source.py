@@ -22,7 +22,7 @@ from .data import sampled, table_call, table_text
 from .golden import Golden
 from .program import Format, Program, literal
 from .statuses import STATUSES
-from .text import indented, template
+from .text import comment, indented, printed, template
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,8 @@ class Source:
     def words(self) -> dict[str, str]:
         """What every template is filled with."""
         return {
-            "name": self.contract.name,
+            "name": comment(self.contract.name),
+            "called": printed(self.contract.name),
             "p": self.contract.prefix,
             "P": self._upper,
             "version": __version__,

@@ -17,9 +17,42 @@ def template(file: str, /, **words: object) -> str:
     return Template(text).substitute({key: str(word) for key, word in words.items()})
 
 
-def member(p: str, name: str, comment: str) -> str:
+def comment(text: str) -> str:
+    """A user's text within a comment of C, CMake or MATLAB: it neither ends that nor begins another."""
+    for before, after in (("??/", "? ?/"), ("\\", "/"), ("*/", "* /"), ("/*", "/ *")):
+        text = text.replace(before, after)
+    return text
+
+
+def quoted(text: str) -> str:
+    """A user's text between the quotes of a string of C, byte by byte the same."""
+    known = {"\\": "\\\\", '"': '\\"', "?": "\\?"}
+    return "".join(known.get(c) or (c if c.isascii() else "".join(f"\\{byte:03o}" for byte in c.encode())) for c in text)
+
+
+def printed(text: str) -> str:
+    """The same where the string is a format of printf's."""
+    return quoted(text).replace("%", "%%")
+
+
+def octave(text: str) -> str:
+    """A user's text between the quotes of a string of MATLAB and Octave."""
+    return text.replace("'", "''")
+
+
+def octave_printed(text: str) -> str:
+    """The same where the string is a format of fprintf's."""
+    return octave(text).replace("\\", "\\\\").replace("%", "%%")
+
+
+def markdown(text: str) -> str:
+    """A user's text in Markdown, also in a table: what would be taken for markup is shown."""
+    return re.sub(r"([\\`*{}\[\]<>#|&!~$])", r"\\\1", text)
+
+
+def member(p: str, name: str, about: str) -> str:
     """A member of a struct of numbers."""
-    return f"  {p}_real {name}; /* {comment} */"
+    return f"  {p}_real {name}; /* {comment(about)} */"
 
 
 def indented(lines: Iterable[str]) -> str:
@@ -29,6 +62,6 @@ def indented(lines: Iterable[str]) -> str:
 
 def wrapped(text: str, before: str = "") -> str:
     """Text within a comment."""
-    lines = textwrap.wrap(re.sub(r"\*/", "* /", text), WIDTH - 3, break_long_words=False, break_on_hyphens=False)
+    lines = textwrap.wrap(comment(text), WIDTH - 3, break_long_words=False, break_on_hyphens=False)
     indented = "\n   ".join(lines)
     return f"{before}   {indented}" if before else indented

@@ -6,6 +6,7 @@ import asyncio
 import functools
 import importlib
 import logging
+import pickle
 import re
 import tempfile
 import threading
@@ -24,15 +25,20 @@ from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_li
 from ..scene import Scene
 from .blocks import Queue
 from .columns import Harvest
+from .crew import Crew
 from .plan import Plan, Task, difference, signature
-from .workers import Blocks
+from .workers import PATIENCE, PULSE, Blocks
 
 _PATIENCE = 10.0
 """Seconds in which a scheduler must answer."""
 
 _ADDRESS = re.compile(r"(tcp|tls|ws|wss|ucx)://\S+:\d{1,5}/?")
-_PULSE, _GLANCE = 1.0, 2e-3
-"""Seconds after which whoever waits for a block hears that none came, and between looks."""
+_GLANCE, _ROLL, _PROBED, _GOODBYE = 2e-3, 1.0, 3.0, 0.3
+"""Seconds between looks for a block, and between questions who the workers are; in which these must say what they have; and in
+which the scheduler is told that all is over."""
+
+_PROBE = "__import__('importlib.util').util.find_spec('lagrange_casadi') is not None"
+"""What a worker is asked, in words that need nothing of this package."""
 
 _AHEAD = 2
 """Blocks sent out for each thread of the cluster."""
@@ -63,8 +69,9 @@ class Source:
 class Cluster:
     """The workers of the Dask scheduler at ``address``, all of which load ``case`` themselves.
 
-    A block whose worker dies is sent to another one. Raises :class:`ClusterError` where Dask is not installed, the scheduler cannot
-    be reached or is lost, or workers fail or have other versions.
+    A block whose worker dies is sent to another one. Nobody waits for what does not answer, a scheduler or a worker that is frozen,
+    after an interrupt. Raises :class:`ClusterError` where Dask is not installed, the scheduler cannot be reached or is lost, or
+    workers fail, have not this package, or other versions.
     """
 
     address: str
@@ -82,43 +89,62 @@ class Cluster:
         with _silenced():
             connecting = _connecting(self.address)
             try:
-                while not wait([connecting], _PULSE).done:
+                while not wait([connecting], PULSE).done:
                     yield None
                     if queue.stopped:
                         return
-                yield from self._served(self._connected(connecting), plan, queue, source, told)
+                client = self._connected(connecting)
+                yield from self._served(client, _Roll(client), plan, queue, source, told)
             finally:
                 connecting.add_done_callback(_let_go)
 
-    def _served(self, client: Any, plan: Plan, queue: Queue, source: Source, told: Mapping[str, Any]) -> Blocks:
+    def _served(self, client: Any, roll: _Roll, plan: Plan, queue: Queue, source: Source, told: Mapping[str, Any]) -> Blocks:
         waiting = _dask().as_completed(loop=client.loop)
         blocks: dict[Any, tuple[int, int]] = {}
+        end = 0.0
 
         def send() -> None:
-            most = max(1, _AHEAD * self._threads(client))
+            most = max(1, _AHEAD * roll.threads)
             while len(blocks) < most and (block := queue.take()):
-                future = client.submit(_evaluate, source, plan.task, told, plan.block(*block), plan.room, pure=False)
+                # As bytes: a scheduler needs to know Dask alone.
+                asked = pickle.dumps(_Asked((source, plan.task, told, plan.block(*block), plan.room)))
+                future = client.submit(pickle.loads, asked, pure=False)
                 blocks[future] = block
                 waiting.add(future)
 
-        if not self._threads(client):
+        def pause() -> bool:
+            """Whether nothing more is waited for, after an interrupt. Raises for what cannot go on."""
+            nonlocal end
+            if client.status != "running" or roll.lost:
+                raise self._lost()
+            self._refuse(roll)
+            end = end or (time.monotonic() + PATIENCE if queue.stopped else 0.0)
+            return queue.stopped and (not roll.threads or time.monotonic() > end)
+
+        while not roll.ready:
+            yield None
+            if pause():
+                return
+        if not roll.threads:
             warnings.warn(f"the scheduler at {self.address} has no workers yet; waiting for some", stacklevel=2)
         send()
         while blocks:
             future = _first(waiting)
             if future is None:
                 yield None
-                if client.status != "running":
-                    raise self._lost()
-                if queue.stopped and not self._threads(client):
+                if pause():
                     return
                 continue
+            coming = Crew.alone(future.result)
+            while not wait([coming], PULSE).done:
+                yield None
+                if pause():
+                    return
             start, stop = blocks.pop(future)
-            columns = self._result(future, start, stop)
-            yield start, stop, columns
-            del future, columns
-            if client.status != "running":
-                raise self._lost()
+            yield start, stop, self._result(coming, roll, start, stop)
+            del future, coming
+            if pause():
+                return
             send()
 
     def _connected(self, connecting: Future[Any]) -> Any:
@@ -132,10 +158,10 @@ class Cluster:
             why = one_line(error) if known else "what is there says nothing that a scheduler says"
         raise ClusterError(f"no Dask scheduler answers at {self.address}: {why}")
 
-    def _result(self, future: Any, start: int, stop: int) -> list[bytes]:
+    def _result(self, coming: Future[Any], roll: _Roll, start: int, stop: int) -> list[bytes]:
         dask = _dask()
         try:
-            columns: list[bytes] = future.result()
+            columns: list[bytes] = coming.result()
         except ClusterError:
             raise
         except dask.KilledWorker:
@@ -143,15 +169,16 @@ class Cluster:
         except (dask.CancelledError, OSError):
             raise self._lost() from None
         except Exception as error:
+            roll.settle()
+            self._refuse(roll)
             raise ClusterError(f"a worker failed: {type(error).__name__}: {one_line(error)}") from None
         return columns
 
-    def _threads(self, client: Any) -> int:
-        """How many threads the workers have; workers come and go."""
-        try:
-            return sum(client.nthreads().values())
-        except (_dask().CancelledError, OSError):
-            raise self._lost() from None
+    def _refuse(self, roll: _Roll) -> None:
+        """Raise :class:`ClusterError` for workers without this package."""
+        if roll.without:
+            names = ", ".join(sorted(roll.without))
+            raise ClusterError(f"no lagrange_casadi on worker{'s' if len(roll.without) > 1 else ''} {names}: install it there too")
 
     def _lost(self) -> ClusterError:
         return ClusterError(f"the Dask scheduler at {self.address} was lost")
@@ -187,15 +214,58 @@ async def _greet(address: str) -> None:
         raise OSError(f"it is a {kind.lower()}")
 
 
+class _Roll:
+    """Who the workers are, asked again and again by a thread of its own: one that does not answer holds nobody up.
+
+    ``threads`` is how many they have, which come and go; ``without`` are those that have not this package.
+    """
+
+    def __init__(self, client: Any) -> None:
+        self.threads, self.lost = 0, False
+        self.without: set[str] = set()
+        self._client, self._asked = client, dict[str, Future[Any]]()
+        self._known, self._again, self._until = threading.Event(), threading.Event(), time.monotonic() + _PROBED
+        Crew.alone(self._ask)
+
+    @property
+    def ready(self) -> bool:
+        """Whether it is known who there is, and what they have; or would be, if all answered."""
+        return (self._known.is_set() and all(map(Future.done, list(self._asked.values())))) or time.monotonic() > self._until
+
+    def settle(self) -> None:
+        """Ask once more, and wait a little for what they say."""
+        self._known.clear()
+        self._again.set()
+        self._known.wait(PATIENCE)
+        wait(list(self._asked.values()), PATIENCE)
+
+    def _ask(self) -> None:
+        while self._client.status == "running":
+            try:
+                counts = self._client.nthreads()
+            except Exception:
+                self.lost = self._client.status == "running"
+                return
+            for address in counts.keys() - self._asked.keys():
+                self._asked[address] = Crew.alone(self._probe, address)
+            self.threads = sum(counts.values())
+            self._known.set()
+            self._again.wait(_ROLL)
+            self._again.clear()
+
+    def _probe(self, address: str) -> None:
+        if self._client.run(eval, _PROBE, workers=[address], on_error="ignore").get(address) is False:
+            self.without.add(address)
+
+
 def _let_go(client: Future[Any]) -> None:
     if client.exception() is None:
-        with suppress(Exception):
-            client.result().close(timeout=2)
+        wait([Crew.alone(client.result().close, 2)], _GOODBYE)
 
 
 def _first(waiting: Any) -> Any | None:
     """One that is done, or None where none is after a while."""
-    end = time.monotonic() + _PULSE
+    end = time.monotonic() + PULSE
     while not waiting.has_ready():
         if time.monotonic() > end:
             return None
@@ -222,6 +292,17 @@ def _silenced() -> Iterator[None]:
     finally:
         for logger, disabled in before:
             logger.disabled = disabled
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """A block that becomes what it evaluates to where it is read."""
+
+    arguments: tuple[Any, ...]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """The call that reading it is."""
+        return _evaluate, self.arguments
 
 
 def _evaluate(source: Source, task: Task, told: Mapping[str, Any], p: Array, room: int) -> list[bytes]:

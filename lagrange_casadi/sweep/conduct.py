@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator, Mapping
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
-from itertools import chain, islice
+from itertools import islice
 from pathlib import Path
 
 from ..errors import ClusterError, DeclarationError, PathError, SizeError, StoppedError, StoreError
@@ -104,32 +105,37 @@ def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], No
     parts = {part.start: part for part in _fitting(folder, plan)}
     done, size = sum(part.stop - part.start for part in parts.values()), sum(part.size for part in parts.values())
     queue = Queue((start, stop) for start, stop, _ in plan.slabs() if start not in parts)
+    append: Callable[[Sequence[bytes]], None] | None = None
+    joined = 0
     with telling(folder.target), closing(workers.results(plan, queue)) as blocks, ExitStack() as stack:
-        joined = 0
+        _require_room(folder, plan.axes_size)
+        if words := plan.takes(done):
+            warnings.warn(words, stacklevel=5)
         progress("designs", done, plan.size)
-        first = next(blocks, None)
-        # While the file is laid out, other blocks are evaluated.
-        append = stack.enter_context(joining(plan, folder.joined))
-        for block in chain([first], blocks):
-            if block is not None:
+        for block in blocks:
+            if block:
                 start, stop, contents = block
                 parts[start] = folder.commit(start, stop, plan.columns, contents)
                 done, size = done + stop - start, size + parts[start].size
                 progress("designs", done, plan.size)
                 _require_room(folder, size / done * (2 * plan.size - done - joined))
-                if start == joined:
-                    append(contents)
-                    joined = stop
-            for part in islice(_following(parts, joined), _CATCHING_UP):
-                append(part.read())
-                joined = part.stop
             try:
+                if (block or append) and not queue.stopped:
+                    # While the file is laid out, other blocks are evaluated.
+                    append = append or stack.enter_context(joining(plan, folder.joined, breathe))
+                    if block and start == joined:
+                        append(contents)
+                        joined = stop
+                    for part in islice(_following(parts, joined), _CATCHING_UP):
+                        append(part.read())
+                        joined = part.stop
                 breathe()
             except KeyboardInterrupt:
                 if not queue.stopped:
                     progress("stopping", done, plan.size)
                 queue.stop()
         breathe()
+        append = append or stack.enter_context(joining(plan, folder.joined, breathe))
         for part in _following(parts, joined):
             append(part.read())
             joined = part.stop
@@ -145,8 +151,10 @@ def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], No
 
 def _fitting(folder: Folder, plan: Plan) -> Iterator[Part]:
     """The parts that are blocks of a plan; others are removed, and done again."""
-    stops, columns = {start: stop for start, stop, _ in plan.slabs()}, tuple(column.name for column in plan.columns)
-    for part in folder.parts():
+    there, columns = list(folder.parts()), tuple(column.name for column in plan.columns)
+    starts = {part.start for part in there}
+    stops = {start: stop for start, stop, _ in plan.slabs() if start in starts} if there else {}
+    for part in there:
         if part.columns == columns and stops.get(part.start) == part.stop:
             yield part
         else:

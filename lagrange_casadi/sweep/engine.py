@@ -42,6 +42,10 @@ class Engine(Protocol):
         """Seconds that a core takes for a design, about: counted, not measured, so that it is the same everywhere."""
 
     @property
+    def room(self) -> int:
+        """Bytes of memory that a core takes while it evaluates."""
+
+    @property
     def provenance(self) -> Provenance:
         """How the numbers are made."""
 

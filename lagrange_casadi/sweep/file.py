@@ -43,15 +43,17 @@ def check_names(designs: Designs) -> None:
 
 
 @contextmanager
-def joining(plan: Plan, path: Path) -> Iterator[Callable[[Sequence[bytes]], None]]:
+def joining(plan: Plan, path: Path, breathe: Callable[[], None]) -> Iterator[Callable[[Sequence[bytes]], None]]:
     """The file of a plan at ``path``, not sealed yet, to which its blocks are given in order; removed on any failure.
 
-    Raises ``OSError`` where it cannot be written.
+    ``breathe`` lets an interrupt through, while long axes are written. Raises ``OSError`` where the file cannot be written.
     """
     try:
         with PatientFile(path, "w+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
             scales = Scales(file)
-            _begin(file, plan, scales)
+            _begin(file, plan, scales, breathe)
+            if bytes_.failure:
+                raise bytes_.failure
             datasets = [(_created(file, plan, column, scales), (0,) * len(column.axes)) for column in plan.columns]
             scales.finish()
             slabs = plan.slabs()
@@ -73,18 +75,18 @@ def joining(plan: Plan, path: Path) -> Iterator[Callable[[Sequence[bytes]], None
         raise
 
 
-def _begin(file: h5py.File, plan: Plan, scales: Scales) -> None:
+def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], None]) -> None:
     """Scales and attributes."""
     grid = file.create_group("grid", track_order=True)
     parameters = plan.scene.mechanism.parameters
     designs = plan.designs
     if not isinstance(designs, Grid):
-        scale = _stream(file, DESIGN, (designs.size,), lambda start, stop: np.arange(start, stop), np.int64)
+        scale = _stream(file, DESIGN, (designs.size,), lambda start, stop: np.arange(start, stop), np.int64, breathe)
         scale.make_scale(DESIGN)
         scale.attrs["units"], scale.attrs["long_name"] = "1", "number of the design"
     for name in designs.names:
         length = designs.dimensions.get(name, designs.size)
-        scale = _stream(grid, name, (length,), lambda start, stop, name=name: designs.scale(name, start, stop), np.float64)
+        scale = _stream(grid, name, (length,), lambda start, stop, name=name: designs.scale(name, start, stop), np.float64, breathe)
         scale.attrs["units"], scale.attrs["long_name"] = parameters[name].unit, f"parameter {name}"
         if isinstance(designs, Grid):
             file[name] = scale
@@ -105,12 +107,15 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales) -> None:
     file.attrs["columns"] = len(plan.columns)
 
 
-def _stream(group: Any, name: str, shape: tuple[int, ...], values: Callable[..., Any], dtype: Any) -> Any:
+def _stream(
+    group: Any, name: str, shape: tuple[int, ...], values: Callable[..., Any], dtype: Any, breathe: Callable[[], None]
+) -> Any:
     """A dataset over one axis, filled in pieces."""
     chunk = chunk_of(shape, _CHUNK)
     dataset = group.create_dataset(name, shape, dtype, chunks=chunk, fillvalue=_nothing(dtype), **FILTERS, **LARGE)
     for start, stop, where in slabs(shape, chunk):
         dataset[where] = values(start, stop)
+        breathe()
     return dataset
 
 

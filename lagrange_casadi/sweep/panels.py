@@ -193,4 +193,4 @@ def label(sweep: Sweep, name: str, sized: bool = False) -> str:
 
 
 def _unit(unit: str, pattern: str) -> str:
-    return "" if unit == "1" else pattern.format(unit.replace("^2", "²"))
+    return "" if unit == "1" else pattern.format(unit.replace("^2", "²").replace("$", r"\$"))

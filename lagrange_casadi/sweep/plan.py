@@ -20,7 +20,7 @@ from ..description import Description, describe
 from ..designs import DesignEngine
 from ..errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
 from ..fingerprint import fingerprint, sources
-from ..grids import require
+from ..room import in_words, require
 from ..rung import Rung
 from ..scene import Grid as Span
 from ..scene import Scene, Wanted, checked, checked_ratios, outputs, points
@@ -47,8 +47,11 @@ IDENTITY = {
 }
 """The shape of :attr:`Plan.identity`, in the words of :mod:`.untrusted`."""
 
-MANY = 10**9
-"""Designs from which on a sweep must be meant."""
+MANY, MOST = 10**9, 10**12
+"""Designs beyond which a sweep must be meant, and beyond which it cannot be."""
+
+_LONG, _LARGE = 600.0, 10**10
+"""Seconds of a core, and bytes, of which nothing need be said."""
 
 _FEW, _SHARES = 1 << 11, 12
 _TRIED = 64
@@ -122,6 +125,8 @@ class Plan:
         check_keep(keep)
         check_designs(designs, scene.mechanism, fixed)
         values = scene.mechanism.values(fixed)
+        if designs.size > MOST:
+            raise DeclarationError(f"the grid has {counted(designs.size)}, and a sweep at most 10^12")
         if designs.size > MANY and not many:
             raise DeclarationError(f"the grid has {counted(designs.size)}, more than 10^9; if that is meant, say many=True")
         names = _wanted(scene, wanted)
@@ -147,6 +152,23 @@ class Plan:
     def columns(self) -> tuple[Column, ...]:
         """What is kept of each."""
         return self.harvest.columns
+
+    @property
+    def axes_size(self) -> int:
+        """Bytes of the values along the designs' axes."""
+        return 8 * sum(self.designs.dimensions.values())
+
+    @property
+    def most(self) -> int:
+        """Bytes of the file, at most; columns are smaller where they deflate."""
+        return self.axes_size + self.size * sum(column.width for column in self.columns)
+
+    def takes(self, done: int) -> str:
+        """What is still to be done after so many designs, in words; nothing where that is little."""
+        time = (self.size - done) * self.harvest.engine.cost
+        if time < _LONG and self.most < _LARGE:
+            return ""
+        return f"{counted(self.size - done)} take about {in_words(time)} of a core and a file of up to {self.most / 1e9:.3g} GB"
 
     @property
     def dims(self) -> tuple[int, ...]:

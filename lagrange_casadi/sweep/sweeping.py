@@ -13,6 +13,7 @@ from typing import Any
 from ..case import Case
 from ..compensated import Precision
 from ..errors import DeclarationError
+from ..room import MOST_THREADS
 from ..rung import Backend, Rung
 from ..scene import Grid as Span
 from ..scene import Scene
@@ -114,9 +115,9 @@ class _Temporary:
 
 
 def hired(workers: int | None, dask: str | None, case: Case | None) -> Workers:
-    """Who evaluates. Raises :class:`DeclarationError` for a count below 1, both at once, or a cluster without a case."""
-    if workers is not None and (type(workers) is not int or workers < 1):
-        raise DeclarationError(f"workers: expected a whole number of at least 1, got {workers!r}")
+    """Who evaluates. Raises :class:`DeclarationError` for a count that no machine has, both, or a cluster without a case."""
+    if workers is not None and (type(workers) is not int or not 1 <= workers <= MOST_THREADS):
+        raise DeclarationError(f"workers: expected a whole number from 1 to {MOST_THREADS}, got {workers!r}")
     if dask is None:
         return Threads(workers)
     if workers is not None:

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 static int failed(${p}_status status) {
-  fprintf(stderr, "$name: %s\n", ${p}_message(status));
+  fprintf(stderr, "$called: %s\n", ${p}_message(status));
   return 1;
 }
 

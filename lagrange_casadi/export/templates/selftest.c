@@ -103,6 +103,6 @@ int main(void) {
     check_outputs(&outputs, outputs_at[k]);
 $check_sections  }
   check_misuse();
-  printf("$name: %d numbers at %d instants, the worst off by %.2g of what is allowed; %d wrong\n", compared, INSTANTS, worst, complaints);
+  printf("$called: %d numbers at %d instants, the worst off by %.2g of what is allowed; %d wrong\n", compared, INSTANTS, worst, complaints);
   return complaints != 0;
 }

@@ -1,0 +1,32 @@
+"""``lagrange-casadi cache``: what is kept of what was derived and compiled."""
+
+from __future__ import annotations
+
+import click
+
+from .. import cache as kept
+from ..errors import StoreError
+from ..sweep.axes import counted
+
+
+@click.command()
+@click.option("--clear", is_flag=True, help="Remove all of it.")
+def cache(clear: bool) -> None:
+    """Show how much is kept of what was derived and compiled, where, and how much that may be; or remove it."""
+    place, most = kept.place(), kept.limit()
+    try:
+        entries = list(kept.entries(place).values()) if place.exists() else []
+    except OSError as error:
+        raise StoreError(f"cannot read {place}: {error.strerror}") from None
+    names = [file.suffix for entry in entries for file in entry.files]
+    size = sum(entry.size for entry in entries)
+    libraries = counted(names.count(".so"), "library").replace("librarys", "libraries")
+    what = f"{counted(names.count('.graph'), 'graph')}, {libraries}, {size / 1e6:.3g} MB"
+    if not clear:
+        click.echo(f"{place}: {what} in {counted(len(names), 'file')}")
+        click.echo(f"limit: {most / 1e6:g} MB, of which what was used longest ago goes first; ${kept.VARIABLE} sets another")
+        return
+    removed = kept.remove(entries)
+    if removed < size:
+        raise StoreError(f"cannot remove all that is kept in {place}: {(size - removed) / 1e6:.3g} MB are left")
+    click.echo(f"{place}: removed {what}")

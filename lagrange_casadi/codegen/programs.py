@@ -1,0 +1,76 @@
+"""Programs that are started here, compilers all: within a time limit, and ended with all that they started in turn."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from ..errors import CompilerError
+from ..numerals import real
+from ..publish import uninterrupted
+
+VARIABLE = "LAGRANGE_CASADI_COMPILER_TIMEOUT"
+"""The variable that sets another time limit, in seconds."""
+
+_LIMIT, _LONGEST = 600.0, 1e6
+_GRACE = 0.5
+"""Seconds in which a program may tidy up after it was asked to end."""
+
+
+def limit() -> float:
+    """Seconds that a compiler may take for one file. Raises :class:`CompilerError` where the variable is no number above 0."""
+    text = os.environ.get(VARIABLE, "").strip()
+    try:
+        seconds = real(text) if text else _LIMIT
+        if not seconds > 0.0:
+            raise ValueError
+    except ValueError:
+        raise CompilerError(
+            f"${VARIABLE} = '{text}': expected a number of seconds above 0; without it they are {_LIMIT:g}"
+        ) from None
+    return min(seconds, _LONGEST)
+
+
+def run(command: Sequence[str], seconds: float, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run a program to its end, in a folder; what it says is read as UTF-8, whatever it is.
+
+    Raises ``OSError`` where it cannot be started, ``subprocess.TimeoutExpired`` where it has not ended in time.
+    """
+    process = None
+    try:
+        with uninterrupted():  # else one may have been started that nobody knows of
+            process = subprocess.Popen(
+                command,
+                cwd=folder,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                encoding="utf-8",
+                errors="replace",
+                start_new_session=True,
+            )
+        out, err = process.communicate(timeout=seconds)
+    except BaseException:
+        if process:
+            _end(process)
+        raise
+    return subprocess.CompletedProcess(command, process.returncode, out, err)
+
+
+def _end(process: subprocess.Popen[str]) -> None:
+    """End a program and what it started: a compiler's driver has others do its work, which hold its pipes open."""
+    for number in (signal.SIGTERM, getattr(signal, "SIGKILL", signal.SIGTERM)):
+        with suppress(OSError):
+            if hasattr(os, "killpg"):
+                os.killpg(process.pid, number)
+            else:
+                process.kill()
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(_GRACE)
+    for pipe in (process.stdout, process.stderr):
+        if pipe:
+            pipe.close()

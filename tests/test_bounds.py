@@ -1,0 +1,131 @@
+"""Numbers without bound: said before anything starts, and refused where they cannot be meant."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import sweeps
+from builders import slider_crank
+
+from lagrange_casadi import evaluate, room, sweep
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import DeclarationError, SizeError
+from lagrange_casadi.scene import points
+from lagrange_casadi.sweep import plan, workers
+
+CASE = str(Path(__file__).parent.parent / "cases" / "slider_crank")
+HUGE = "99999999999999999999999"
+STEPS = r"newton: expected a number of steps, from 1 to 1000 \(after some ten nothing changes\), got "
+THREADS = "is not in the range 1<=x<=1024"
+GRID = ["--grid", "l=0.2:0.3:3"]
+FREE = r"GB, and this machine has \S+ GB free"
+
+REFUSED = {
+    "newton": (["run", CASE, "--newton", "1000000000"], 2, STEPS + "1000000000"),
+    "newton-huge": (["run", CASE, "--newton", HUGE], 2, STEPS + HUGE),
+    "newton-exported": (["export", CASE, "--out", "x", "--newton", "1000000000"], 2, STEPS + "1000000000"),
+    "newton-swept": (["sweep", CASE, *GRID, "--newton", "1001"], 2, STEPS + "1001"),
+    "t": (["run", CASE, "--t", "0:0.08:100000000000"], 1, f"no room for the outputs over time: .* {FREE}"),
+    "t-huge": (["run", CASE, "--t", f"0:0.08:{HUGE}"], 1, f"no room for the outputs over time: .* {FREE}"),
+    "t-swept": (["sweep", CASE, *GRID, "--t", "0:0.08:100000000000"], 1, f"no room for the points from 0 to 0.08: .* {FREE}"),
+    "t-swept-huge": (["sweep", CASE, *GRID, "--t", f"0:0.08:{HUGE}"], 1, f"no room for the points from 0 to 0.08: .* {FREE}"),
+    "t-traded": (["trade", CASE, "--t", "0:0.08:100000000000"], 1, f"no room for .* {FREE}"),
+    "xi": (["run", CASE, "--xi", "0:1:100000000000", "--t", "0:0.08:9"], 1, f"no room for the points from 0 to 1: .* {FREE}"),
+    "xi-swept": (["sweep", CASE, *GRID, "--xi", "0:1:100000000000"], 1, f"no room for the points from 0 to 1: .* {FREE}"),
+    "table": (["run", CASE, "--table", "1000000000"], 2, "table: expected a whole number of nodes from 8 to 16384"),
+    "table-exported": (
+        ["export", CASE, "--out", "x", "--table", HUGE],
+        2,
+        "table: expected a whole number of nodes from 8 to 16384",
+    ),
+    "threads": (["run", CASE, "--threads", "1000000000"], 2, THREADS),
+    "workers": (["sweep", CASE, *GRID, "--workers", "1000000000"], 2, THREADS),
+    "grid-unmeant": (
+        ["sweep", CASE, "--grid", "l=0.2:0.3:2000000000"],
+        2,
+        "2 000 000 000 designs, more than 10\\^9; if that is meant, say --yes",
+    ),
+    "grid-huge": (["sweep", CASE, "--yes", "--grid", f"l=0.2:0.3:{HUGE}"], 2, "99 999 .* designs, and a sweep at most 10\\^12"),
+    "grid-product": (
+        ["sweep", CASE, "--yes", "--grid", "l=0.2:0.3:10000000", "--grid", "r=0.05:0.1:10000000"],
+        2,
+        "100 000 000 000 000 designs, and a sweep at most 10\\^12",
+    ),
+    "grid-no-disk": (
+        ["sweep", CASE, "--yes", "--grid", "l=0.2:0.3:1000000000000"],
+        1,
+        r"takes about 8e\+03 GB, and the disk has \S+ GB left",
+    ),
+}
+
+LIMITED = """
+import resource, sys
+from lagrange_casadi.cli import main
+resource.setrlimit(resource.RLIMIT_AS, (8 << 30, 8 << 30))
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.parametrize(("arguments", "status", "says"), REFUSED.values(), ids=REFUSED)
+def test_a_number_that_cannot_be_meant_is_one_line(here, arguments, status, says):
+    """Within a minute and 8 GB of addresses, of which what computes would take more."""
+    done = subprocess.run([sys.executable, "-c", LIMITED, *arguments], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == status, done.stderr
+    *notes, error = done.stderr.splitlines()
+    assert re.search(says, error), error
+    assert error.startswith("error: ")
+    assert all(note.startswith("note: ") for note in notes)
+    assert list(here.iterdir()) == []
+
+
+@pytest.mark.parametrize("keywords", [{"threads": 1025}, {"threads": 10**30}, {"newton": 10**30}])
+def test_python_refuses_them_too(keywords):
+    with pytest.raises(DeclarationError, match="expected a "):
+        evaluate(slider_crank(), **keywords)
+    with pytest.raises(DeclarationError, match="workers: expected a whole number from 1 to 1024, got 1025"):
+        sweep(slider_crank(), {"l": (0.2, 0.3, 3)}, workers=1025)
+
+
+@pytest.mark.parametrize(
+    "command", [["table", "x.h5", "--rows", HUGE], ["best", "x.h5", "--minimise", "peak:effort:O", "--count", HUGE]]
+)
+def test_more_rows_than_there_are_are_all(here, capsys, command):
+    sweep(slider_crank(), {"l": (0.2, 0.3, 25)}, t=(0, 0.08, 5), wanted=["effort"], out="x.h5")
+    assert main(command) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 26
+
+
+def test_points_are_refused_before_they_are_made(monkeypatch):
+    monkeypatch.setattr(room, "memory", lambda: 2e7)
+    assert points((0.0, 1.0, 100)).size == 100
+    with pytest.raises(SizeError, match=r"no room for the points from 0 to 1: 3 x 1 000 000 values are 0\.024 GB"):
+        points((0.0, 1.0, 10**6))
+
+
+def test_what_takes_long_is_said_before_it_starts(monkeypatch):
+    module = sys.modules["lagrange_casadi.evaluate"]
+    monkeypatch.setattr(module, "_LONG", 1e-9)
+    with pytest.warns(UserWarning, match=r"^1 001 instants of 5 Newton steps each take about \S+ s$"):
+        evaluate(slider_crank(), t=(0, 1, 1001), newton=5)
+    monkeypatch.setattr(module, "_LONG", 60.0)
+    evaluate(slider_crank(), t=(0, 1, 1001), newton=5)
+
+
+def test_so_is_a_sweep_that_takes_long_or_much(monkeypatch, tmp_path):
+    asked = {"t": (0, 1, 9), "wanted": ["effort"], "force": True, "out": tmp_path / "x.h5"}
+    sweep(slider_crank(), {"l": (0.2, 0.3, 30)}, **asked)
+    for name in ("_LONG", "_LARGE"):
+        with monkeypatch.context() as patch:
+            patch.setattr(plan, name, 0)
+            with pytest.warns(UserWarning, match=r"^30 designs take about \S+ s of a core and a file of up to \S+ GB$"):
+                sweep(slider_crank(), {"l": (0.2, 0.3, 30)}, **asked)
+
+
+def test_fewer_threads_share_what_memory_holds_but_once(monkeypatch):
+    engine = sweeps.use(monkeypatch)
+    engine.room = 10**9
+    monkeypatch.setattr(workers, "memory", lambda: 2.5e9)
+    sweep(sweeps.scene(), {"l": (0.2, 0.3, 500), "r": [0.05, 0.1]}, workers=8)
+    assert len({thread for _, thread in engine.calls}) <= 2

@@ -1,0 +1,168 @@
+"""The cache folder: whole or not there, within its limit, and safe for many processes at once."""
+
+import errno
+import os
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from lagrange_casadi import cache
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import DeclarationError
+
+NAMES = [f"{k:032x}" for k in range(12)]
+
+
+def put(folder, name, size, age):
+    """Something that was built, and last used so many seconds ago."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for suffix, part in ((".c", size // 4), (".sha256", 64), (".so", size - size // 4 - 64)):
+        file = folder / f"{name}{suffix}"
+        file.write_bytes(b"x" * part)
+        os.utime(file, (time.time() - age,) * 2)
+
+
+def left(folder):
+    return sorted({path.name.partition(".")[0] for path in folder.iterdir()})
+
+
+def test_what_was_used_longest_ago_goes_first(fresh_cache, monkeypatch):
+    monkeypatch.setenv(cache.VARIABLE, "5k")
+    for k, name in enumerate(NAMES[:5]):
+        put(fresh_cache, name, 1000, 1000 - k)
+    cache.use(fresh_cache / f"{NAMES[0]}.so")
+    cache.write(f"{NAMES[5]}.graph", "y" * 900)
+    assert left(fresh_cache) == sorted([NAMES[0], *NAMES[2:6]])
+    cache.write(f"{NAMES[6]}.graph", "y" * 2900)
+    assert left(fresh_cache) == sorted([NAMES[0], *NAMES[5:7]])
+    assert cache.read(f"{NAMES[6]}.graph") == "y" * 2900
+
+
+def test_reading_is_using(fresh_cache, monkeypatch):
+    for name in NAMES[:3]:
+        cache.write(f"{name}.graph", "y" * 1000)
+    for k, name in enumerate(NAMES[:3]):
+        os.utime(fresh_cache / f"{name}.graph", (1e9 + k,) * 2)
+    assert cache.read(f"{NAMES[0]}.graph") == "y" * 1000
+    monkeypatch.setenv(cache.VARIABLE, "2.5k")
+    cache.write(f"{NAMES[3]}.graph", "y" * 100)
+    assert left(fresh_cache) == [NAMES[0], NAMES[3]] or left(fresh_cache) == [NAMES[0], NAMES[2], NAMES[3]]
+    assert cache.read(f"{NAMES[1]}.graph") is None
+
+
+def test_what_is_larger_than_the_limit_is_kept_alone(fresh_cache, monkeypatch):
+    put(fresh_cache, NAMES[0], 1000, 5)
+    monkeypatch.setenv(cache.VARIABLE, "100")
+    cache.write(f"{NAMES[1]}.graph", "y" * 1000)
+    assert left(fresh_cache) == [NAMES[1]]
+
+
+def test_nothing_is_kept_where_nothing_may_be(fresh_cache, monkeypatch):
+    monkeypatch.setenv(cache.VARIABLE, "0")
+    cache.write(f"{NAMES[1]}.graph", "text")
+    assert not fresh_cache.exists()
+    assert cache.read(f"{NAMES[1]}.graph") is None
+
+
+@pytest.mark.parametrize(
+    ("text", "size"), [("", cache.LIMIT), ("12", 12), ("1.5k", 1500), ("200M", 200_000_000), ("2 GB", 2 * 10**9), ("1T", 10**12)]
+)
+def test_the_limit_is_read_as_people_write_it(monkeypatch, text, size):
+    monkeypatch.setenv(cache.VARIABLE, text)
+    assert cache.limit() == size
+
+
+@pytest.mark.parametrize("text", ["much", "-1", "1_0", "1e400", "5 apples", "nan", "..", "200m"])
+def test_a_limit_that_is_none_is_refused(monkeypatch, text):
+    monkeypatch.setenv(cache.VARIABLE, text)
+    with pytest.raises(DeclarationError, match=r"\$LAGRANGE_CASADI_CACHE_SIZE = .*: expected bytes, as in 200000000, 200M or 2G"):
+        cache.limit()
+
+
+def test_what_is_not_ours_stays(fresh_cache, monkeypatch, capsys):
+    put(fresh_cache, NAMES[0], 1000, 5)
+    (fresh_cache / "notes.txt").write_text("mine")
+    (fresh_cache / f"{NAMES[1]}.txt").write_text("mine too")
+    assert main(["cache", "--clear"]) == 0
+    assert f"{fresh_cache}: removed 0 graphs, 1 library, 0.001 MB\n" == capsys.readouterr().out
+    assert left(fresh_cache) == [NAMES[1], "notes"]
+
+
+def test_the_command_shows_what_is_kept(fresh_cache, monkeypatch, capsys):
+    assert main(["cache"]) == 0
+    assert capsys.readouterr().out == (
+        f"{fresh_cache}: 0 graphs, 0 libraries, 0 MB in 0 files\n"
+        "limit: 500 MB, of which what was used longest ago goes first; $LAGRANGE_CASADI_CACHE_SIZE sets another\n"
+    )
+    assert not fresh_cache.exists()
+    put(fresh_cache, NAMES[0], 300_000, 5)
+    put(fresh_cache, NAMES[1], 900_000, 5)
+    cache.write(f"{NAMES[2]}-iterated.graph", "y" * 34_000)
+    monkeypatch.setenv(cache.VARIABLE, "3M")
+    assert main(["cache"]) == 0
+    assert capsys.readouterr().out.startswith(f"{fresh_cache}: 1 graph, 2 libraries, 1.23 MB in 7 files\nlimit: 3 MB, ")
+    monkeypatch.setenv(cache.VARIABLE, "x")
+    assert main(["cache"]) == 2
+    assert capsys.readouterr().err.startswith("error: $LAGRANGE_CASADI_CACHE_SIZE = 'x': expected bytes")
+
+
+def test_folders_of_who_was_killed_go_in_time(fresh_cache):
+    cache.write(f"{NAMES[0]}.graph", "text")
+    for name, age in (("build-old", 1e6), ("build-new", 60.0)):
+        (fresh_cache / name).mkdir()
+        (fresh_cache / name / "half.so").write_text("half")
+        os.utime(fresh_cache / name, (time.time() - age,) * 2)
+    cache.write(f"{NAMES[1]}.graph", "text")
+    assert left(fresh_cache) == [*NAMES[:2], "build-new"]
+
+
+def test_many_at_once_keep_within_the_limit(fresh_cache, monkeypatch):
+    """Some write, some read, some clear: what is read is whole or not there, and nobody fails."""
+    monkeypatch.setenv(cache.VARIABLE, "6k")
+
+    def work(k):
+        for turn in range(30):
+            name = f"{NAMES[(k + turn) % len(NAMES)]}.graph"
+            if k % 4 == 3:
+                cache.remove(cache.entries(cache.folder()).values())
+            elif k % 2:
+                assert cache.read(name) in (None, "y" * 1000)
+            else:
+                cache.write(name, "y" * 1000)
+
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(work, range(8)))
+    cache.write(f"{NAMES[0]}.graph", "y")
+    assert sum(entry.size for entry in cache.entries(fresh_cache).values()) <= 6000
+
+
+PROGRAM = """
+import sys
+sys.path.insert(0, {tests!r})
+import threaded
+from lagrange_casadi import evaluate
+for own in range(4):
+    evaluate(threaded.press(own), backend="c", flags="-O0", t=(0, 1, 9), certificate=False)
+"""
+
+
+def test_processes_share_a_cache_that_holds_too_little(tmp_path):
+    """Each removes what another one is about to load."""
+    command = [sys.executable, "-W", "error", "-c", PROGRAM.format(tests=os.path.dirname(__file__))]
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path), cache.VARIABLE: "60k"}
+    started = [subprocess.Popen(command, env=environment, stderr=subprocess.PIPE, text=True) for _ in range(4)]
+    assert [(process.communicate(timeout=120)[1], process.returncode) for process in started] == [("", 0)] * 4
+
+
+def test_a_system_that_is_short_of_something_is_asked_again(fresh_cache, monkeypatch):
+    def refused(**_keywords):
+        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(cache.tempfile, "TemporaryFile", refused)
+        with pytest.warns(UserWarning, match=r"cannot use the cache folder .* now: Too many open files"):
+            assert cache.folder() is None
+    assert cache.folder() == fresh_cache
