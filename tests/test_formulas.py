@@ -97,7 +97,9 @@ def test_a_reference_has_the_digits_that_are_asked_for():
     graph = derive(scene, ["effort"])
     z = np.array(graph.newton.guess)[:, None]
     rows = {digits: reference(graph, [scene.t[0]], [], z=z, digits=digits)[0] for digits in (25, 60)}
-    for few, many in zip(rows[25], rows[60], strict=True):
+    for name, few, many in zip(graph.columns, rows[25], rows[60], strict=True):
+        if name.startswith("_gap:"):  # which is nothing but what the digits leave
+            continue
         with MP.workdps(60):
             assert MP.mpf(10) ** -50 < abs(few / many - 1) < MP.mpf(10) ** -19
 

@@ -19,6 +19,7 @@ from lagrange_casadi import Mechanism, Scene, codegen, cycle_table, derive, load
 from lagrange_casadi.codegen.compiler import FLAGS
 from lagrange_casadi.cycle import Cycle
 from lagrange_casadi.cycle_table import CycleTable
+from lagrange_casadi.determinacy import determinate
 from lagrange_casadi.errors import DeclarationError
 
 RATES = (60.0, 900.0)
@@ -29,7 +30,13 @@ def case(name):
 
 
 def made(scene, table=1e-9, wanted=None, rates=RATES):
-    return tabulate.tabulate(derive(scene, wanted), values(scene), table, rates)
+    return tabulate.tabulate(graph_of(scene, wanted), values(scene), table, rates)
+
+
+def graph_of(scene, wanted=None):
+    """The graph of a scene, of what equilibrium determines."""
+    graph = derive(scene, wanted)
+    return determinate(graph, np.linspace(*scene.t), values(scene))[0]
 
 
 def values(scene):
@@ -46,7 +53,7 @@ def some_motion(n=500, turns=3.0, seed=1):
 
 def directly(scene, angle, rate, acceleration, wanted=None):
     """Every column by CasADi's virtual machine; iterated loops are followed from angle to angle."""
-    graph, p = derive(scene, wanted), values(scene)
+    graph, p = graph_of(scene, wanted), values(scene)
     places = np.zeros((len(graph.newton.guess) if graph.newton else 0, angle.size))
     for side in (1, -1) if graph.newton else ():
         z, at = np.array(graph.newton.guess), float(graph.motion(scene.t[0], p)[0])
@@ -69,7 +76,7 @@ def worst_gap(scene, table, angle, rate, acceleration, wanted=None):
     found = np.full((len(table.columns), angle.size), np.nan, table.dtype)
     table.evaluate(*(row.astype(table.dtype) for row in (angle, rate, acceleration)), found)
     gap = found - directly(scene, angle, rate, acceleration, wanted)
-    loose = whole_turns_apart(derive(scene, wanted))
+    loose = whole_turns_apart(graph_of(scene, wanted))
     gap[loose] -= math.tau * np.rint(gap[loose] / math.tau)
     # A table has whole turns in the angles themselves.
     gap[[name.startswith("_turns:") for name in table.columns]] = 0.0
@@ -417,11 +424,12 @@ def test_where_a_block_is_cut_changes_no_bit():
 def test_what_is_no_number_gives_none_and_reads_nothing_else(compiled, monkeypatch):
     table = made(case("slider_crank"), 64, ["effort"])
     rows = np.array([[math.nan, math.inf, -math.inf, 1e300, 0.3, 0.3, 0.3], [1.0] * 4 + [math.nan, 1, 1], [1.0] * 6 + [math.inf]])
-    out = read(table, rows, np.zeros((2, 7)), compiled, monkeypatch)
-    assert np.isnan(out[:, :3]).all()
-    assert np.isnan(out[1, 4])
+    out = read(table, rows, np.zeros((3, 7)), compiled, monkeypatch)
+    assert table.columns == ("_closure:guide", "_gap:guide", "effort:O")
+    assert np.isnan(out[[0, 2], :3]).all()
+    assert np.isnan(out[2, 4])
     assert np.isfinite(out[:, 5]).all()
-    assert np.isinf(out[1, 6])
+    assert np.isinf(out[2, 6])
 
 
 def test_rows_of_another_layout_are_filled_too():
@@ -482,19 +490,19 @@ def test_the_reader_is_pedantically_clean(real, tmp_path):
 def test_arrays_that_do_not_fit_are_refused():
     table = made(case("slider_crank"), 64, ["effort"])
     row = np.zeros(5)
-    with pytest.raises(DeclarationError, match=r"out: expected an array of float64 of shape \(2, 5\), got float64 of \(3, 5\)"):
-        table.evaluate(row, row, row, np.zeros((3, 5)))
-    with pytest.raises(DeclarationError, match=r"out: expected an array of float64 of shape \(2, 5\), got float32 of \(2, 5\)"):
-        table.evaluate(row, row, row, np.zeros((2, 5), np.float32))
+    with pytest.raises(DeclarationError, match=r"out: expected an array of float64 of shape \(3, 5\), got float64 of \(2, 5\)"):
+        table.evaluate(row, row, row, np.zeros((2, 5)))
+    with pytest.raises(DeclarationError, match=r"out: expected an array of float64 of shape \(3, 5\), got float32 of \(3, 5\)"):
+        table.evaluate(row, row, row, np.zeros((3, 5), np.float32))
     with pytest.raises(DeclarationError, match=r"expected three rows of one length, got \(5,\), \(4,\) and \(5,\)"):
-        table.evaluate(row, row[:4], row, np.zeros((2, 5)))
+        table.evaluate(row, row[:4], row, np.zeros((3, 5)))
 
 
 @pytest.mark.parametrize(
     ("change", "message"),
     [
         ({"turns": 0}, "turns: expected at least 1, got 0"),
-        ({"kept": np.ones((4, 3), dtype=bool)}, r"kept: expected the shape \(4, 2\), got \(4, 3\)"),
+        ({"kept": np.ones((4, 2), dtype=bool)}, r"kept: expected the shape \(4, 3\), got \(4, 2\)"),
         ({"coefficients": np.zeros((12, 4))}, r"coefficients: expected at least 13 rows of 4, got \(12, 4\)"),
         ({"coefficients": np.zeros((69, 5))}, r"coefficients: expected at least 13 rows of 4, got \(69, 5\)"),
         (
@@ -502,8 +510,8 @@ def test_arrays_that_do_not_fit_are_refused():
             r"coefficients: expected contiguous rows of float64 or float32, got int64",
         ),
         ({"coefficients": np.zeros((4, 69)).T}, r"coefficients: expected contiguous rows"),
-        ({"drift": np.zeros(3)}, r"drift: expected one of each column, 2, got \(3,\)"),
-        ({"peaks": np.zeros(1)}, r"peaks: expected one of each column, 2, got \(1,\)"),
+        ({"drift": np.zeros(2)}, r"drift: expected one of each column, 3, got \(2,\)"),
+        ({"peaks": np.zeros(1)}, r"peaks: expected one of each column, 3, got \(1,\)"),
     ],
 )
 def test_a_table_of_parts_that_do_not_fit_is_refused(change, message):
