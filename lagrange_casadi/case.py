@@ -28,6 +28,9 @@ class Case:
     scene: Scene
     figures: Sequence[Spec]
 
+    def __repr__(self) -> str:
+        return f"<Case {self.name}: {self.scene!r}>"
+
     @property
     def name(self) -> str:
         """The name of its folder, or of its file without the ending."""

@@ -70,6 +70,10 @@ class Mechanism:
         check_name("mechanism", self.name)
         self.bodies[_GROUND] = Ground(_GROUND)
 
+    def __repr__(self) -> str:
+        names = ", ".join(body.name for body in self.moving)
+        return f"<Mechanism {self.name}: {names or 'no body yet'}; joints: {', '.join(self.joints) or 'none yet'}>"
+
     @property
     def ground(self) -> Ground:
         """The fixed frame; ``ground.at(x, y)`` is a point of it, ``ground`` itself its origin."""
@@ -347,13 +351,8 @@ class Mechanism:
         return joint
 
     def _point(self, what: str, place: Body | Point) -> Point:
-        if isinstance(place, Link):
-            point = place.base
-        elif isinstance(place, Body):
-            point = Point(place, 0.0, 0.0)
-        elif isinstance(place, Point):
-            point = place
-        else:
+        point = place.base if isinstance(place, Link) else Point(place, 0.0, 0.0) if isinstance(place, Body) else place
+        if not isinstance(point, Point):
             raise DeclarationError(f"{what}: expected a link, a point mass, the ground or a point of one, got {place!r}")
         if self.bodies.get(point.body.name) is not point.body:
             raise DeclarationError(f"{what}: '{point.body.name}' is of another mechanism than '{self.name}'")

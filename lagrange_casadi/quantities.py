@@ -18,6 +18,9 @@ CONVENTIONS = (
     "along its coordinate"
 )
 
+CF = "CF-1.8"
+"""What programs may expect of units, names and scales in files: the climate and forecast metadata conventions."""
+
 FORCE, MOMENT, LENGTH, ANGLE = "N", "N m", "m", "rad"
 
 

@@ -204,6 +204,12 @@ class Scene:
             raise ParameterError(f"{error}{told_parameters(self.mechanism, {})}") from None
         self.mechanism.values(self.assembly)
 
+    def __repr__(self) -> str:
+        start, stop, count = self.t
+        motion = ", ".join(self.motion) or "nothing"
+        wanted = ", ".join(self.wanted)
+        return f"<Scene of {self.mechanism.name}: drives {motion}, wants {wanted}, {count} instants from {start} to {stop} s>"
+
     def __reduce__(self) -> NoReturn:
         """Raise :class:`PickleError`."""
         raise PickleError(

@@ -79,6 +79,9 @@ class Section:
     law: SectionLaw
     xi: Array
 
+    def __repr__(self) -> str:
+        return f"<Section of a link of {self.law.length:g} m: {self.law.coefficients['n0'].size} instants, {self.xi.size} ratios>"
+
     @cached_property
     def axial(self) -> Array:
         """Axial force (t, xi) [N], tension positive."""
@@ -152,7 +155,9 @@ class Solution:
         return any(name != "condition" for name in self.certificate) and not self.failed
 
     def __repr__(self) -> str:
-        return f"<Solution of {self.case}: {self.t.size} instants, {self.xi.size} ratios, {', '.join(self.names())}>"
+        many = sum(1 for _ in self.names())
+        word = "certified" if self.certified else "its certificate fails" if self.failed else "no certificate"
+        return f"<Solution of {self.case}: {self.t.size} instants, {self.xi.size} ratios, {many} quantities, {word}>"
 
     def effort(self, joint: str) -> Array:
         """Effort of the drive at a joint (t,) [N m or N], positive along the joint's coordinate."""

@@ -25,7 +25,7 @@ from .density import Array
 from .description import SHAPE as DESCRIPTION
 from .errors import DeclarationError, PathError, StoreError, one_line
 from .publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
-from .quantities import CONVENTIONS, QUANTITIES, quantity_of
+from .quantities import CF, CONVENTIONS, QUANTITIES, quantity_of
 from .scales import LARGE, Scales
 from .seal import Seen, kind_of, seal, verify
 from .section_law import FORCES
@@ -214,7 +214,7 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     file.attrs["schema"] = SCHEMA
     file.attrs["schema_version"] = SCHEMA_VERSION
     file.attrs["case"] = solution.case
-    file.attrs["conventions"] = CONVENTIONS
+    file.attrs["Conventions"], file.attrs["conventions"] = CF, CONVENTIONS
     file.attrs["mechanism"] = json.dumps(solution.description)
     file.attrs["parameters"] = json.dumps({k: v["value"] for k, v in solution.description["parameters"].items()})
     file.attrs["certified"] = solution.certified

@@ -1,9 +1,11 @@
 """Solutions: names, peaks, xarray."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from lagrange_casadi import evaluate
+from lagrange_casadi import Mechanism, evaluate
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.quantities import quantity_of
 
@@ -97,5 +99,15 @@ def test_to_xarray(solution):
 
 
 def test_repr_is_short(solution):
-    assert repr(solution).startswith("<Solution of slider_crank: 801 instants, 101 ratios, motion:O,")
-    assert len(repr(solution)) < 2000
+    assert repr(solution) == "<Solution of slider_crank: 801 instants, 101 ratios, 32 quantities, certified>"
+    assert repr(solution.section("rod")) == "<Section of a link of 0.2 m: 801 instants, 101 ratios>"
+    assert "no certificate" in repr(replace(solution, certificate={}))
+    assert "its certificate fails" in repr(replace(solution, certificate={"balance": np.ones(801)}))
+
+
+def test_what_is_declared_is_shown_in_a_line(slider_crank):
+    scene = "<Scene of slider_crank: drives O, wants all, 801 instants from 0 to 0.08 s>"
+    assert repr(slider_crank.scene.mechanism) == "<Mechanism slider_crank: crank, rod, slider; joints: O, A, B, guide>"
+    assert repr(slider_crank.scene) == scene
+    assert repr(slider_crank) == f"<Case slider_crank: {scene}>"
+    assert repr(Mechanism("new")) == "<Mechanism new: no body yet; joints: none yet>"

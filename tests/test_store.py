@@ -48,6 +48,7 @@ def test_layout(solution, file):
         assert h.attrs["schema_version"] == 2
         assert h.attrs["case"] == "slider_crank"
         assert h.attrs["conventions"] == CONVENTIONS
+        assert h.attrs["Conventions"] == "CF-1.8"
         assert h.attrs["backend"] in ("lanes", "c")
         assert h.attrs["precision"] == "double"
         assert "-ffp-contract=off" in h.attrs["flags"]

@@ -34,6 +34,7 @@ def test_layout(file):
         assert list(attributes)[-1] == "complete"
         assert attributes["schema"] == "lagrange-casadi-sweep"
         assert attributes["conventions"] == CONVENTIONS
+        assert attributes["Conventions"] == "CF-1.8"
         assert json.loads(attributes["grid"]) == {"l": "0.15:0.4:6", "r": "0.05,0.1,0.07"}
         assert json.loads(attributes["parameters"])["m1"] == 0.1
         count = 0

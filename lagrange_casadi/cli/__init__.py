@@ -19,6 +19,7 @@ from ..interrupts import SENTENCE, STATUS, interrupts
 from ..version import __version__
 from .best import best
 from .cache import cache
+from .cases import cases
 from .check import check
 from .export import export
 from .info import info
@@ -51,7 +52,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (run, sweep, best, table, trade, export, plot, info, check, cache)
+_COMMANDS = (run, sweep, best, table, trade, export, plot, info, check, cases, cache)
 
 
 @click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..errors import DeclarationError
 from ..publish import PatientFile
-from ..quantities import CONVENTIONS
+from ..quantities import CF, CONVENTIONS
 from ..scales import LARGE, Scales
 from .axes import DESIGN, Designs, Grid
 from .blocks import chunk_of, slabs
@@ -101,7 +101,7 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
     file.attrs["schema"] = SCHEMA
     for key, value in plan.identity.items():
         file.attrs[key] = json.dumps(value) if key in WORDS else value
-    file.attrs["conventions"] = CONVENTIONS
+    file.attrs["Conventions"], file.attrs["conventions"] = CF, CONVENTIONS
     file.attrs["parameters"] = json.dumps(dict(plan.values))
     file.attrs["undetermined"] = json.dumps(plan.harvest.engine.undetermined)
     file.attrs["columns"] = len(plan.columns)
