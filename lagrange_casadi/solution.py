@@ -124,7 +124,7 @@ def in_order(series: Mapping[str, Array], description: Description) -> dict[str,
 class Solution:
     """The outputs of a scene over its instants.
 
-    ``series`` holds every array over time by full name (``effort:O``, ``reaction:guide:fy``, ``section:rod:law:n0``, ...), each of
+    ``series`` holds every array over time by full name (``effort:O``, ``reaction:guide:fy``, ``section:link:law:n0``, ...), each of
     shape (t,); :mod:`.quantities` says what each means. ``xi`` are the ratios of the section grids. ``undetermined`` names what
     equilibrium does not determine, because the mechanism is over-constrained: its values are NaN. ``certificate`` holds the
     residuals of :mod:`.certificate`, and how singular the loops are; a residual above ``tolerance`` means that the solution is
