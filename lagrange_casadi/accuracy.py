@@ -9,10 +9,8 @@ show, times what they do to each output.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -21,46 +19,58 @@ from .certificate import blur
 from .compensated import DTYPES, ROUNDING
 from .cycle_table import CycleTable
 from .density import Array
-from .interpret import Arithmetic, followable, interpret, numpy_arithmetic
+from .disturbed import Instants, effects, openness
 from .scene_graph import SceneGraph
-from .section_law import FORCES, SectionLaw
+from .section_law import FORCES
 from .solution import Solution
-from .stages import Stages, compensated
 
-TRIALS = 8
 INSTANTS = 48
+_MANY, _FIRST, _WORST = 2000, 10, 30
+_CLOSED = 10.0
 _FORCES = ("effort:", "reaction:", "multiplier:", "section:")
 _UNEXPLAINED = 100.0
 _SUMS = 64.0
 _ALONG = np.linspace(0.0, 1.0, 5)
-_STEPS, _CLOSED = 20, 1e-6
 
 
 def estimate(graph: SceneGraph, table: Table, solution: Solution, p: Array) -> dict[str, float]:
     """How far each quantity of a solution may be off, by full name, in its unit: the largest error over the instants.
 
-    ``table`` are the columns that the solution was made of. Section forces are looked at from base to tip. Empty where the graphs
-    call functions that cannot be followed.
+    ``table`` are the columns that the solution was made of. Section forces are looked at from base to tip, either side of a station
+    by itself, and so is either side of a jump. Empty where the graphs call functions that cannot be followed.
     """
     if table.cycle is not None:
         return _of_cycle(graph, table.cycle, solution)
-    chosen = _chosen(graph, table)
-    found = disturbed(graph, table.stages, solution.t[chosen], p, table.iterated[:, chosen])
-    if found is None:
+    instants = Instants(table.stages, solution.t, p, np.asarray(table.iterated, float))
+    if not instants.followable:
         return {}
-    rough = np.concatenate([found[0], np.asarray(table.out[:, chosen], float)[:, None]], axis=1)
-    after, before = ({n: x[k] for k, n in enumerate(graph.columns) if not n.startswith("_")} for x in (rough, found[1]))
-    errors = {name: _worst(after[name] - before[name], name in graph.wrapped) for name in after}
-    exact = replace(solution, series=before, t=solution.t[chosen])
-    rows = replace(solution, series={name: x.ravel() for name, x in after.items()})
+    found, angles = [], np.array([name in graph.wrapped for name in graph.columns])
+    for some in instants.blocks(np.union1d(_chosen(graph, table), _open(instants))):
+        found.append(_worst(graph, solution, *effects(instants.at(some), np.asarray(table.out[:, some], float), angles)))
+    largest = {name: max(errors[name] for errors in found) for name in found[0]}
+    # What was exact at all these instants may be rounded once at others; and what underflows is in no trial.
+    once, least = ROUNDING[table.stages.precision], float(np.finfo(DTYPES[table.stages.precision]).tiny)
+    return {name: max(least, error or once * abs(solution.peak(name).value)) for name, error in largest.items()}
+
+
+def _worst(graph: SceneGraph, solution: Solution, changes: Array, columns: Array) -> dict[str, float]:
+    """The largest changes, (columns, trials, n), of columns (columns, n) by the quantities of a solution.
+
+    A trial that came to nothing, as a root of less than zero does, says nothing.
+    """
+    change, at = (dict(zip(graph.columns, rows, strict=True)) for rows in (changes, columns))
+    names = [name for name in graph.columns if not name.startswith("_")]
+    errors = {name: _largest(change[name]) for name in names}
     for link in solution.links_with_sections:
-        for force in FORCES:
-            if solution.determined(f"section:{link}:{force}"):
-                off, true = (_along(of.section(link).law, force).reshape(-1, chosen.size, _ALONG.size) for of in (rows, exact))
-                errors[f"section:{link}:{force}"] = _worst(off - true)
-    # What underflows is in no trial.
-    least = float(np.finfo(DTYPES[table.stages.precision]).tiny)
-    return {name: max(error, least) for name, error in errors.items() if solution.determined(name)}
+        law = solution.section(link).law
+        for force, (gaps, sizes) in law.of(link, at).changed(law.of(link, change), _ALONG).items():
+            # A force is itself a sum that is rounded, in doubles always.
+            errors[f"section:{link}:{force}"] = max(_largest(gaps), ROUNDING["double"] * _largest(sizes))
+    return {name: error for name, error in errors.items() if solution.determined(name)}
+
+
+def _largest(values: Array) -> float:
+    return float(np.fmax.reduce(np.abs(values), axis=None, initial=0.0))
 
 
 def explained(solution: Solution, residuals: Mapping[str, Array], errors: Mapping[str, float]) -> dict[str, float]:
@@ -107,71 +117,12 @@ def _chosen(graph: SceneGraph, table: Table) -> Array:
     return np.unique([*spread, *peaks])
 
 
-def _along(law: SectionLaw, force: str) -> Array:
-    return law.at(force, np.tile(_ALONG, (law.coefficients["n0"].size, 1)))
+def _open(instants: Instants) -> Array:
+    """The instants at which iterated loops are open furthest; none where no more than rounding is left of what they want.
 
-
-def _worst(gaps: Array, angle: bool = False) -> float:
-    """The largest size; a trial that came to nothing, as a root of less than zero does, says nothing."""
-    if angle:
-        gaps = gaps - math.tau * np.rint(gaps / math.tau)
-    return float(np.fmax.reduce(np.abs(gaps), axis=None, initial=0.0))
-
-
-def disturbed(graph: SceneGraph, stages: Stages, t: Array, p: Array, z: Array) -> tuple[Array, Array] | None:
-    """The columns at instants ``t`` with errors put in, (columns, trials, n), and in doubles without them, (columns, n).
-
-    ``z`` (k, n) are the iterated coordinates there. None where the graphs call functions that cannot be followed.
+    Steps that are too few leave most anywhere: the first instant is closed, so the second may be the worst.
     """
-    if not all(followable(function) for function in (stages.instant, *([stages.loops] if stages.loops else []))):
-        return None
-    noise = _Noise(ROUNDING[stages.precision], np.random.default_rng(0), (TRIALS, t.size))
-    rough, known = noise.arithmetic(DTYPES[stages.precision].type), compensated(graph, "double") if stages.compensated else stages
-    values = [float(DTYPES[stages.precision].type(value)) for value in p]
-    with np.errstate(all="ignore"):
-        (before,) = interpret(known.instant, [*_driven(known, t, p), list(z), list(p)], numpy_arithmetic())
-        if not stages.compensated and followable(stages.drive):
-            driven = interpret(stages.drive, [[t], values], rough)
-        else:
-            trials = [_driven(stages, noise.paired(t), noise.paired(p)) for _ in range(TRIALS)]
-            driven = [[noise.rounded(np.array(values)) for values in zip(*rows, strict=True)] for rows in zip(*trials, strict=True)]
-        at = list(z)
-        for _ in range(_STEPS if stages.loops else 0):
-            correction, (size,) = interpret(stages.loops, [at, driven[0], values], rough)
-            at = [noise.rounded(a + b) for a, b in zip(at, correction, strict=True)]
-            if np.max(size) < _CLOSED:
-                break
-        (after,) = interpret(stages.instant, [*driven, at, values], rough)
-    return _stack(after, (TRIALS, t.size)), _stack(before, (t.size,))
-
-
-def _driven(stages: Stages, t: Array, p: Array) -> list[list[Array]]:
-    """What the drive hands on at instants, in doubles."""
-    if stages.precision == "single":
-        pair = np.float32
-        t, p = (np.concatenate([pair(x)[None], pair(x - pair(x))[None]]).astype(float) for x in (t, p))
-        p = p.ravel()
-    return [list(np.atleast_2d(row.full())) for row in stages.drive(t if t.ndim == 2 else t[None], p)]
-
-
-def _stack(rows: list[Any], shape: tuple[int, ...]) -> Array:
-    return np.array([np.broadcast_to(row, shape) for row in rows]).reshape(-1, *shape)
-
-
-class _Noise:
-    """Random errors as large as roundings."""
-
-    def __init__(self, unit: float, generator: np.random.Generator, shape: tuple[int, ...]) -> None:
-        self.unit, self.generator, self.shape = unit, generator, shape
-
-    def rounded(self, value: Any, roundings: float = 1.0) -> Any:
-        """A value with an error of up to so many roundings."""
-        return value + value * (self.generator.random(self.shape) * (2.0 * roundings * self.unit) - roundings * self.unit)
-
-    def paired(self, values: Array) -> Array:
-        """Values with errors as large as those of a pair of numbers."""
-        return values + values * (self.generator.random(values.shape) * 2.0 - 1.0) * self.unit**2
-
-    def arithmetic(self, kind: Any) -> Arithmetic:
-        """NumPy's operations with such errors, on constants of a kind."""
-        return replace(numpy_arithmetic(self.rounded), constant=lambda value: float(kind(value)))
+    n = instants.t.size
+    looked_at = np.unique([*range(min(n, _FIRST)), *np.linspace(0, n - 1, min(n, _MANY)).astype(int)])
+    left = openness(instants.at(looked_at))
+    return looked_at[np.argsort(left)[-_WORST:]] if np.fmax.reduce(left) > _CLOSED else looked_at[:0]

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from .compensated import ROUNDING
+from .compensated import DTYPES, ROUNDING, Precision
 from .density import Array
 from .description import Description, density_of
 from .placing import Complex, Moving, axis_of, measured, oriented, place
@@ -34,12 +34,23 @@ TOLERANCE, LOOSE = 1e-9, 1e-3
 
 @dataclass(eq=False)
 class _Tally:
-    """Forces on the bodies: what they sum to, about each centre, and how large they are."""
+    """Forces on the bodies: what they sum to, about each centre, their power, and how large all these are.
+
+    ``pushes`` and ``twists`` are all forces and couples added up, ``flow`` the powers, none against another.
+    """
 
     force: dict[str, Complex] = field(default_factory=dict)
     moment: dict[str, Array] = field(default_factory=dict)
     size: Array | float = 0.0
+    pushes: Array | float = 0.0
+    twists: Array | float = 0.0
     power: Array | float = 0.0
+    flow: Array | float = 0.0
+
+    def bear(self, push: Array, twist: Array, size: float) -> None:
+        """Take a force and a couple into the sizes; ``size`` is the mechanism's."""
+        self.size = np.maximum(self.size, push + twist / size)
+        self.pushes, self.twists = self.pushes + push, self.twists + twist
 
 
 def certify(
@@ -88,7 +99,7 @@ def _residuals(solution: Solution, turned: Solution, equations: Sequence[Written
         tally = _tally(solution, bodies, acting, matter)
         found["balance"], found["power"] = _balance(solution, bodies, tally, matter)
         if solution.links_with_sections:
-            found["ends"] = _ends(solution, bodies, acting)
+            found["ends"] = _ends(solution, bodies, acting, matter)
     return found
 
 
@@ -135,11 +146,31 @@ def _matter(body: Description) -> _Matter:
     if "centre" in body:
         return mass, body["centre"]["x"] + 1j * body["centre"]["y"], body["centre"]["inertia"]
     _, first, second = (float(tail[0]) for tail in density_of(body).tails(np.zeros(1)))
-    return mass, first / mass * length + 0j, (second - first**2 / mass) * length**2
+    middle = first / mass
+    return mass, middle * length + 0j, (second - first * middle) * length**2
 
 
 def _size(solution: Solution) -> float:
     return sum(body["length"] or 0.0 for body in solution.description["bodies"].values()) or 1.0
+
+
+def _extent(solution: Solution) -> float:
+    """The size of the mechanism, and how far from the origin it stands: the largest of places."""
+    joints = solution.description["joints"].values()
+    points = [joint[side] for joint in joints for side in ("parent", "child")]
+    points += [point for load in solution.description["loads"].values() for point in load["points"]]
+    return _size(solution) + max((abs(p[k]) for p in points if p["body"] == "ground" for k in "xy"), default=0.0)
+
+
+def _least(solution: Solution) -> float:
+    """The force beside which what underflows is as small as a rounding."""
+    precision: Precision = "single" if solution.provenance.precision == "single" else "double"
+    return float(np.finfo(DTYPES[precision]).tiny) / ROUNDING[precision]
+
+
+def _coarseness(solution: Solution) -> float:
+    """What a rounding is of the least that fails."""
+    return _ROUNDINGS * _rounding(solution) / (LOOSE if solution.provenance.precision == "single" else TOLERANCE)
 
 
 def _closure(solution: Solution, bodies: dict[str, Moving], equations: Sequence[Written]) -> Array:
@@ -224,39 +255,70 @@ def _tally(solution: Solution, bodies: dict[str, Moving], acting: Sequence[_Acti
         moment = (np.conj(at - middle) * force).imag + couple
         tally.force[body] = tally.force.get(body, 0j) + force
         tally.moment[body] = tally.moment.get(body, 0.0) + moment
-        tally.size = np.maximum(tally.size, np.abs(force) + np.abs(couple) / _size(solution))
+        tally.bear(np.abs(force), np.abs(couple), _size(solution))
         if works:
             local = (at - motion.at) * np.exp(-1j * motion.angle)
-            tally.power = tally.power + (np.conj(motion.point(local.real, local.imag)[1]) * force).real + couple * motion.rate
+            speed = motion.point(local.real, local.imag)[1]
+            tally.power = tally.power + (np.conj(speed) * force).real + couple * motion.rate
+            tally.flow = tally.flow + np.abs(speed) * np.abs(force) + np.abs(couple * motion.rate)
     return tally
+
+
+def _weight(solution: Solution, motion: Moving, mass: float, reach: float) -> Array:
+    """The inertia of a body and its weight [N], none against another: of its origin, and of what turns about it."""
+    turning = motion.rate**2 + np.abs(motion.acceleration)
+    return np.asarray(mass * (np.abs(motion.change) + turning * reach + abs(complex(*solution.description["gravity"]))))
 
 
 def _balance(
     solution: Solution, bodies: dict[str, Moving], tally: _Tally, matter: Mapping[str, _Matter]
 ) -> tuple[tuple[Array, float], tuple[Array, float]]:
-    """Newton-Euler for every body, beside the largest force; and power, beside the largest of force times speed."""
-    gravity = complex(*solution.description["gravity"])
+    """Newton-Euler for every body, beside the largest force; and power, beside all that flows.
+
+    And beside what reported digits leave open: those of places, which give arms, and of the joints' rates, of which the rates of
+    bodies are sums and differences.
+    """
+    gravity, size = complex(*solution.description["gravity"]), _size(solution)
     worst, power = np.zeros_like(solution.t), np.zeros_like(solution.t)
-    largest = np.zeros_like(solution.t)
     for name, body in solution.description["bodies"].items():
         mass, centre, inertia = matter[name]
         motion = bodies[name]
         _, speed, change = motion.point(centre.real, centre.imag)
         inertial = mass * (change - gravity)
         turning = inertia * motion.acceleration
-        tally.size = np.maximum(tally.size, np.abs(inertial))
+        weight = _weight(solution, motion, mass, abs(centre))
+        tally.bear(weight, np.abs(turning), size)
         worst = np.maximum(worst, np.abs(tally.force.get(name, 0j) - inertial))
         if body["length"] is not None:
-            worst = np.maximum(worst, np.abs(tally.moment.get(name, 0.0) - turning) / _size(solution))
-        used = (np.conj(speed) * inertial).real + turning * motion.rate
-        power = power + used
-        largest = np.maximum(largest, np.abs(speed) * np.abs(inertial) + np.abs(turning * motion.rate))
-    return (worst, float(np.max(tally.size))), (np.abs(tally.power - power), float(np.max(largest + np.abs(tally.power))))
+            worst = np.maximum(worst, np.abs(tally.moment.get(name, 0.0) - turning) / size)
+        power = power + (np.conj(speed) * inertial).real + turning * motion.rate
+        tally.flow = tally.flow + np.abs(speed) * weight + np.abs(turning * motion.rate)
+    turned, fastest = _rates(solution, bodies)
+    least, part = _least(solution), _coarseness(solution)
+    largest = tally.size * (1.0 + part * _extent(solution) / size)
+    flow = tally.flow + least * fastest + part * (tally.pushes * fastest + tally.twists * turned)
+    return (worst, max(float(np.max(largest)), least)), (np.abs(tally.power - power), float(np.max(flow)))
 
 
-def _ends(solution: Solution, bodies: dict[str, Moving], acting: Sequence[_Action]) -> tuple[Array, float]:
-    """A link's section at its base is the opposite of all that acts on it there; beside the largest force on a link."""
-    worst, scale = np.zeros_like(solution.t), 0.0
+def _rates(solution: Solution, bodies: dict[str, Moving]) -> tuple[Array, Array]:
+    """The largest rate of turning at each instant, of joints too, and a speed that none exceeds."""
+    turning = [np.abs(motion.rate) for motion in bodies.values()]
+    for name, joint in solution.description["joints"].items():
+        if joint["coordinate"] == "angle":
+            turning.append(np.abs(solution.motion(name).rate))
+    turned = np.max(turning, axis=0)
+    return turned, np.max([np.abs(motion.speed) for motion in bodies.values()], axis=0) + turned * _extent(solution)
+
+
+def _ends(
+    solution: Solution, bodies: dict[str, Moving], acting: Sequence[_Action], matter: Mapping[str, _Matter]
+) -> tuple[Array, float]:
+    """A link's section at its base is the opposite of all that acts on it there; beside the largest force on a link.
+
+    And beside what the rounding of places leaves open, which turns short links most.
+    """
+    worst, scale = np.zeros_like(solution.t), _least(solution)
+    size, blurred = _size(solution), _coarseness(solution) * _extent(solution)
     base = np.zeros((solution.t.size, 1))
     for link in solution.links_with_sections:
         law = solution.section(link).law
@@ -265,9 +327,12 @@ def _ends(solution: Solution, bodies: dict[str, Moving], acting: Sequence[_Actio
         axial, shear, bending = (law.at(force, base)[:, 0] for force in ("axial", "shear", "bending"))
         own = [part for part in acting if part[0] == link]
         force, moment = _before(bodies[link], own, _EDGE * law.length)
-        worst = np.maximum(worst, np.abs(force + axial + 1j * shear))
-        worst = np.maximum(worst, np.abs(moment + bending) / _size(solution))
-        scale = max(scale, *(float(np.max(np.abs(push) + np.abs(couple) / _size(solution))) for _, _, push, couple, _ in own))
+        flow = _weight(solution, bodies[link], matter[link][0], law.length)
+        for _, _, push, couple, _ in own:
+            flow = np.maximum(flow, np.abs(push) + np.abs(couple) / size)
+        worst = np.maximum(worst, np.abs(force + axial + 1j * shear) / (1.0 + blurred / law.length))
+        worst = np.maximum(worst, np.abs(moment + bending) / (size + blurred))
+        scale = max(scale, float(np.max(flow)))
     return worst, scale
 
 

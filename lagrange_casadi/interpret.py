@@ -1,7 +1,7 @@
 """An SX function followed instruction by instruction, in any arithmetic.
 
 CasADi's own machine knows doubles. Here the same instructions run on whatever an :class:`Arithmetic` computes with: numbers of many
-digits, arrays with an error put on every operation, or expressions that become another function.
+digits, arrays with errors put on operations, or expressions that become another function.
 """
 
 from __future__ import annotations
@@ -54,7 +54,6 @@ def steps(function: Any) -> tuple[Step, ...]:
 
 
 @functools.lru_cache(maxsize=64)
-@functools.lru_cache(maxsize=64)
 def followable(function: Any) -> bool:
     """Whether a function is written in scalars, calls no other, and does nothing that is unknown here."""
     return bool(function.is_a("SXFunction")) and all(step.operation in _KNOWN for step in steps(function))
@@ -87,18 +86,10 @@ def _name(operation: int) -> str:
     return next((name for name in dir(ca) if name.startswith("OP_") and getattr(ca, name) == operation), str(operation))
 
 
-def numpy_arithmetic(rounded: Callable[[Any, float], Any] | None = None) -> Arithmetic:
-    """NumPy's arithmetic on doubles and arrays of them.
-
-    ``rounded(value, roundings)`` has the last word on what an operation rounds, by how many roundings it may be off.
-    """
-
-    def of(function: Callable[..., Any], roundings: float) -> Callable[..., Any]:
-        return function if rounded is None else lambda *values: rounded(function(*values), roundings)
-
-    known = {code: of(function, 1.0) for code, function in _ROUNDED.items()}
-    known |= {code: of(function, _FUNCTION) for code, function in _FUNCTIONS.items()}
-    return Arithmetic(np.float64, known | _EXACT | {code: _truth(function) for code, function in _TRUTHS.items()})
+def numpy_arithmetic() -> Arithmetic:
+    """NumPy's arithmetic on doubles and arrays of them."""
+    known = _ROUNDED | _FUNCTIONS | _EXACT
+    return Arithmetic(np.float64, known | {code: _truth(function) for code, function in _TRUTHS.items()})
 
 
 def _truth(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -114,9 +105,6 @@ def _remainder(x: Any, y: Any) -> Any:
     left = left - y * (above & (2 * left >= y))
     return np.where(np.signbit(x), -left, left)
 
-
-_FUNCTION = 2.0
-"""Roundings that a function such as a sine may be off: libraries differ."""
 
 _EXACT: dict[int, Callable[..., Any]] = {
     ca.OP_NEG: np.negative,
@@ -168,4 +156,7 @@ _FUNCTIONS |= {
     getattr(ca, f"OP_{name.upper()}"): getattr(np, name)
     for name in ["sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "log1p", "expm1"]
 }
+ROUNDINGS: Mapping[int, float] = dict.fromkeys(_ROUNDED, 1.0) | dict.fromkeys(_FUNCTIONS, 2.0)
+"""By how many roundings an operation may be off: functions such as a sine by two, for libraries differ. Others round nothing."""
+
 _KNOWN = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, *_EXACT, *_TRUTHS, *_ROUNDED, *_FUNCTIONS}

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -24,13 +24,20 @@ _STEPS = 30
 
 
 def reference(
-    graph: SceneGraph, t: Sequence[Any], p: Sequence[Any], *, z: Array | None = None, digits: int = DIGITS
+    graph: SceneGraph,
+    t: Sequence[Any],
+    p: Sequence[Any],
+    *,
+    z: Array | None = None,
+    digits: int = DIGITS,
+    following: Callable[[Arithmetic], Arithmetic] = lambda arithmetic: arithmetic,
 ) -> list[list[Any]]:
     """Every column of a graph at instants ``t``, a row an instant, as mpmath numbers of so many digits.
 
     Times and parameters are doubles, taken as exact, or mpmath numbers. Iterated loops start from ``z`` (k, n), and are closed to
-    all digits. A motion by samples is read in doubles. Raises :class:`LagrangeCasadiError` where mpmath is not installed,
-    :class:`AssemblyError` where a loop does not close, and :class:`DeclarationError` for graphs that call functions of their own.
+    all digits. A motion by samples is read in doubles. ``following`` has the last word on the arithmetic of an instant. Raises
+    :class:`LagrangeCasadiError` where mpmath is not installed, :class:`AssemblyError` where a loop does not close, and
+    :class:`DeclarationError` for graphs that call functions of their own.
     """
     mp = _mpmath()
     with mp.workdps(digits):
@@ -44,7 +51,7 @@ def reference(
             driven = _driven(graph, time, values)
             guess = [] if z is None else [mp.mpf(float(x)) for x in z[:, i]]
             inner = _closed(graph, guess, time, driven[0], values, mp.mpf(10) ** (4 - digits))
-            (out,) = interpret(graph.instant, [[time], *driven, inner, values], known)
+            (out,) = interpret(graph.instant, [[time], *driven, inner, values], following(known))
             rows.append(out)
     return rows
 

@@ -98,7 +98,7 @@ def refusal(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> 
             bad |= ~(table.out[k] > dead_centre(graph, precision, name))
             passed[name] = passes_dead_centre(table.out[k], ends=graph.newton is None)
         elif name.startswith("_gap:"):
-            bad |= ~(np.abs(table.out[k]) <= widest)
+            bad |= ~(np.abs(table.out[k].astype(float)) <= widest)
         elif name.startswith("_turned:"):
             bad |= _turned(table.out[k])
         elif name.startswith("_misfit:"):

@@ -25,6 +25,7 @@ MEMBERS = {
 """The coefficients of a force, and what of the loads at stations goes into it."""
 
 Side = Literal["base", "tip"]
+_SIDES: tuple[Side, ...] = ("tip", "base")
 
 _HALVINGS = 60
 _BLOCK = 1 << 15
@@ -110,6 +111,42 @@ class SectionLaw:
             station = _column(load.station, u)
             values = values + self._beyond(force, load, u, _seen(u, station, side))
         return values
+
+    def of(self, link: str, columns: Mapping[str, Array]) -> SectionLaw:
+        """The law of the same link with other numbers in it, (..., t), of columns by full name."""
+
+        def of_part(part: str, members: Iterable[str]) -> list[Array]:
+            return [columns[f"section:{link}:{part}:{member}"] for member in members]
+
+        coefficients = dict(zip(self.coefficients, of_part("law", self.coefficients), strict=True))
+        loads = tuple(StationLoad(load.name, *of_part(load.name, ("station", "n", "f", "m"))) for load in self.loads)
+        return replace(self, coefficients=coefficients, loads=loads)
+
+    def changed(self, changes: SectionLaw, xi: Array) -> dict[str, tuple[Array, Array]]:
+        """By how much every force changes with its coefficients, loads and stations, and the sizes of all its terms added up.
+
+        ``changes`` has the changes in the places of the numbers, each (..., t). They are looked at at ratios ``xi`` (n,) and at
+        every station, from both sides: (..., t, n + stations, sides). The sizes are (t, n + stations, sides). A section sees what
+        it saw before the change: that a station moves is no change by itself.
+        """
+        stations = [np.clip(load.station, 0.0, 1.0) for load in self.loads]
+        u = np.stack([*(np.full_like(self.coefficients["n0"], ratio) for ratio in xi), *stations], axis=-1)
+        seen = [[_seen(u, load.station[:, None], side) for side in _SIDES] for load in self.loads]
+        basis, found = self.basis(u), {}
+        for force in FORCES:
+            columns, rows = self._terms(force, basis)
+            gaps = sum(change[..., None] * row for change, row in zip(changes._terms(force, basis)[0], rows, strict=True))
+            sizes = sum(np.abs(column[:, None] * row) for column, row in zip(columns, rows, strict=True))
+            gaps, sizes = (np.repeat(values[..., None], len(_SIDES) if self.loads else 1, axis=-1) for values in (gaps, sizes))
+            for load, change, there in zip(self.loads, changes.loads, seen, strict=True):
+                station, constant, slope = (values[:, None] for values in self._acting(force, load))
+                moved, more, steeper = (values[..., None] for values in self._acting(force, change))
+                gap, size = more + steeper * (station + moved - u) + slope * moved, np.abs(constant) + np.abs(slope * (station - u))
+                for k, visible in enumerate(there):
+                    gaps[..., k] += np.where(visible, gap, 0.0)
+                    sizes[..., k] += np.where(visible, size, 0.0)
+            found[force] = gaps, sizes
+        return found
 
     def along(self, force: str, xi: Any, side: Side = "tip") -> Array:
         """The derivative of a force by the ratio, at ratios of shape (t, ...)."""

@@ -10,7 +10,7 @@ from extremes import EXTREMES, PRECISIONS, RATE, SINGULAR, four_bar, slider_cran
 from mpmath import mp
 
 from lagrange_casadi import derive, evaluate
-from lagrange_casadi.errors import AssemblyError
+from lagrange_casadi.errors import AssemblyError, CertificateWarning
 from lagrange_casadi.reference import reference
 
 ROUNDINGS = 100
@@ -130,7 +130,9 @@ def test_lengths_beyond_numbers_are_named(precision):
 def test_a_lost_phase_is_in_the_estimate(scene):
     """5e12 rad are more than pairs of singles hold."""
     t = (1e6, 1e6 + 0.08, 9)
-    exact, lost = (evaluate(scene(), t=t, precision=precision) for precision in PRECISIONS)
+    exact = evaluate(scene(), t=t)
+    with pytest.warns(CertificateWarning, match="closure"):
+        lost = evaluate(scene(), t=t, precision="single")
     for name in ("pose:b:x", "effort:O") if scene is four_bar else ("pose:slider:x", "effort:O"):
         gap = np.max(np.abs(lost.series[name] - exact.series[name]))
         assert gap > 1e-3 * np.max(np.abs(exact.series[name]))

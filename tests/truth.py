@@ -1,63 +1,87 @@
-"""How far a solution really is off: its outputs against the scene's graphs in fifty digits."""
+"""How far a solution really is off: its outputs against the scene's graphs in fifty digits, on the side of a jump that it took."""
 
 from __future__ import annotations
 
 import itertools
-import math
+from dataclasses import dataclass, replace
 
+import casadi as ca
 import mpmath
 import numpy as np
 
 from lagrange_casadi import derive
 from lagrange_casadi.backends import run
-from lagrange_casadi.reference import reference
+from lagrange_casadi.reference import DIGITS, reference
 from lagrange_casadi.rung import Rung
 from lagrange_casadi.section_law import FORCES
 
 MP = mpmath.mp
 RATIOS = (0.0, 0.31, 0.64, 1.0)
+NEAR = 1e-3
+"""How near to a jump a result may be on its other side, of the largest of what is compared."""
+
+MOST = 4
+"""Of so many jumps that are near at an instant every choice of sides is tried, of more the first ones'."""
 
 
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """What a scene has at some instants: for each the columns by name, and those on the other side of every jump that is near."""
+
+    mechanism: object
+    values: dict
+    sides: list
+
+
+@MP.workdps(DIGITS)
 def truth(scene, t, parameters=None):
-    """Every output at instants ``t`` by full name, one after the other in time, of loops that are closed: numbers of fifty digits.
-
-    Those under ``section:LINK:FORCE`` are rows over :data:`RATIOS`.
-    """
-    m = scene.mechanism
-    values = m.values(parameters)
+    """What a scene has at instants ``t``, one after the other in time, of loops that are closed: numbers of fifty digits."""
+    values = scene.mechanism.values(parameters)
     graph, p = derive(scene), list(values.values())
     z = None
     if graph.newton is not None:
         grid = np.unique([*np.linspace(*scene.t[:2], 200), *t])
         z = run(graph, grid, np.array(p), Rung("vm"))[0].iterated[:, np.searchsorted(grid, t)]
-    columns = [dict(zip(graph.columns, row, strict=True)) for row in reference(graph, t, p, z=z)]
-    found = {name: [row[name] for row in columns] for name in graph.columns if not name.startswith("_")}
-    for link in m.links:
-        if f"section:{link}:law:n0" in found:
-            rows = [[section(row, m, values, link, ratio) for ratio in RATIOS] for row in columns]
-            for k, force in enumerate(FORCES):
-                found[f"section:{link}:{force}"] = [[at_ratio[k] for at_ratio in row] for row in rows]
-    return found
+    decisions = [[] for _ in t]
+    rest = iter(decisions)
+    rows = reference(graph, t, p, z=z, following=lambda arithmetic: _listening(arithmetic, next(rest)))
+    sides = []
+    for i, (row, others) in enumerate(zip(rows, _others(decisions), strict=True)):
+        found = [row]
+        for taken in others:
+            at = None if z is None else z[:, i : i + 1]
+            found += reference(graph, t[i : i + 1], p, z=at, following=lambda arithmetic, taken=taken: _taking(arithmetic, taken))
+        sides.append([dict(zip(graph.columns, one, strict=True)) for one in found])
+    return Truth(scene.mechanism, values, sides)
 
 
+@MP.workdps(DIGITS)
 def true_errors(solution, exact):
-    """The largest error of every output over the instants, by full name; angles up to whole turns."""
-    errors, joints = {}, solution.description["joints"]
-    for name, rows in exact.items():
-        group, part, *member = name.split(":")
-        if group == "section" and name not in solution.series:
-            mine = solution.section(part).law.at(member[0], np.tile(RATIOS, (solution.t.size, 1)))
-        else:
-            mine = solution.series[name]
-        gaps = np.abs((np.array(rows) - mine).astype(float))
-        if member == ["angle"] or (group == "motion" and joints.get(part, {}).get("coordinate") == "angle"):
-            gaps = np.abs(gaps - math.tau * np.rint(gaps / math.tau))
-        errors[name] = float(np.max(gaps))
-    return errors
+    """The largest error of every output over the instants, by full name; angles up to whole turns.
+
+    A section force is looked at at :data:`RATIOS` and on both sides of stations, where each station is seen as in the solution.
+    """
+    names = [name for name in exact.sides[0][0] if name in solution.series and solution.determined(name)]
+    angles = {name for name in names if _is_angle(solution, name)}
+    size = {name: float(np.max(np.abs(solution.series[name]))) or 1.0 for name in names}
+    gaps, looked = {}, {link: _looked_at(solution.section(link).law) for link in solution.links_with_sections}
+    for i, sides in enumerate(exact.sides):
+        found = [{name: _gap(row[name], solution.series[name][i], name in angles) for name in names} for row in sides]
+        best = min(range(len(sides)), key=lambda k: max((found[k][name] / size[name] for name in names), default=0.0))
+        for name, gap in found[best].items():
+            gaps.setdefault(name, []).append(gap)
+        for link, found in looked.items():
+            for force, gap in _section_gaps(exact, found, i, sides[best], link):
+                if solution.determined(f"section:{link}:{force}"):
+                    gaps.setdefault(f"section:{link}:{force}", []).append(gap)
+    return {name: max(found) for name, found in gaps.items()}
 
 
-def section(columns, mechanism, values, link, ratio):
-    """Axial, shear and bending of a link at a ratio, from its law and stations, by the moments as they are defined."""
+def section(columns, mechanism, values, link, ratio, seen=None):
+    """Axial, shear and bending of a link at a ratio, from its law and stations, by the moments as they are defined.
+
+    ``seen`` says of each station whether the section sees it, by default where it lies between the section and the tip.
+    """
     body, u = mechanism.links[link], MP.mpf(ratio)
     l = MP.mpf(mechanism.number(body.length, values))
     mu = [MP.mpf(0)] * 3
@@ -72,6 +96,99 @@ def section(columns, mechanism, values, link, ratio):
     for name in columns:
         if name.startswith(f"section:{link}:") and name.endswith(":station"):
             n, f, m, station = (columns[name.removesuffix("station") + member] for member in ("n", "f", "m", "station"))
-            if u < station or u == 1 <= station:
+            there = u < station or u == 1 <= station if seen is None else seen[name.split(":")[2]]
+            if there:
                 axial, shear, bending = axial + n, shear + f, bending + m + f * (station - u) * l
     return axial, shear, bending
+
+
+def _looked_at(law):
+    """A law's stations by name, the ratios to look at, (t, n), and the forces there by side, each (t, n)."""
+    stations = {load.name: load.station for load in law.loads}
+    ratios = np.tile(RATIOS, (law.coefficients["n0"].size, 1))
+    ratios = np.column_stack([ratios, *(np.clip(station, 0.0, 1.0) for station in stations.values())])
+    forces = {side: [law.at(force, ratios, side) for force in FORCES] for side in (("tip", "base") if stations else ("tip",))}
+    return stations, ratios, forces
+
+
+def _section_gaps(exact, looked, i, columns, link):
+    stations, ratios, forces = looked
+    for (k, u), (side, mine) in itertools.product(enumerate(ratios[i]), forces.items()):
+        there = ((name, float(station[i])) for name, station in stations.items())
+        seen = {name: u < station or (side == "base" and u == station) or u == 1 <= station for name, station in there}
+        true = section(columns, exact.mechanism, exact.values, link, u, seen)
+        for force, value, own in zip(FORCES, true, mine, strict=True):
+            yield force, float(abs(value - MP.mpf(float(own[i, k]))))
+
+
+def _is_angle(solution, name):
+    group, part, *member = name.split(":")
+    return member == ["angle"] or (group == "motion" and solution.description["joints"].get(part, {}).get("coordinate") == "angle")
+
+
+def _gap(true, mine, angle):
+    gap = true - MP.mpf(float(mine))
+    return abs(float(gap - 2 * MP.pi * MP.nint(gap / (2 * MP.pi)) if angle else gap))
+
+
+COMPARISONS = {ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE}
+PERIODIC = {ca.OP_FMOD, ca.OP_REMAINDER}
+WHOLE = {ca.OP_FLOOR, ca.OP_CEIL}
+DECIDING = COMPARISONS | PERIODIC | WHOLE | {ca.OP_SIGN, ca.OP_ATAN2, ca.OP_COPYSIGN}
+
+
+def _numbered(arithmetic, apply):
+    """An arithmetic whose operations are handed on with their number and code."""
+    count = itertools.count()
+
+    def rule(code, operation):
+        return lambda *values: apply(next(count), code, values, operation(*values))
+
+    return replace(arithmetic, operations={code: rule(code, operation) for code, operation in arithmetic.operations.items()})
+
+
+def _listening(arithmetic, decisions):
+    """What decides is noted: number, code, operands, result."""
+
+    def apply(k, code, values, result):
+        if code in DECIDING:
+            decisions.append((k, code, values, result))
+        return result
+
+    return _numbered(arithmetic, apply)
+
+
+def _taking(arithmetic, taken):
+    """Results by number in place of what an operation gives."""
+    return _numbered(arithmetic, lambda k, code, values, result: taken.get(k, result))
+
+
+def _others(decisions):
+    """For every instant the ways in which decisions that are near a jump there may be taken otherwise."""
+    sizes = {}
+    for at_instant in decisions:
+        for k, code, values, _ in at_instant:
+            compared = values[1:] if code == ca.OP_COPYSIGN else values
+            sizes[k] = max(sizes.get(k, MP.mpf(0)), *map(abs, compared))
+    for at_instant in decisions:
+        near = [(k, found) for k, *decision in at_instant if (found := _otherwise(*decision, NEAR * sizes[k]))][:MOST]
+        choices = itertools.product(*([(k, None), *((k, result) for result in found)] for k, found in near))
+        yield [taken for choice in choices if (taken := {k: result for k, result in choice if result is not None})]
+
+
+def _otherwise(code, values, result, near):
+    """The results of an operation beyond a jump, where that is near."""
+    x = values[0]
+    if code in COMPARISONS:
+        return [1 - result] if abs(x - values[1]) <= near else []
+    if code == ca.OP_SIGN:
+        return [sign for sign in (-1, 1) if sign != result] if abs(x) <= near else []
+    if code == ca.OP_COPYSIGN:
+        return [-result] if abs(values[1]) <= near else []
+    if code in WHOLE:
+        return [other for other in (result - 1, result + 1) if abs(x - MP.nint(x)) <= near and abs(other - x) <= 1 + near]
+    period = abs(values[1]) if code in PERIODIC else 2 * MP.pi
+    edges = (0, period) if code == ca.OP_FMOD else (period / 2,)
+    if min(abs(abs(result) - edge) for edge in edges) > (near if code in PERIODIC else NEAR):
+        return []
+    return [other for other in (result - period, result + period) if abs(other) <= period + near]

@@ -1,0 +1,103 @@
+"""How estimates of errors compare with the errors, which fifty digits tell.
+
+``python tests/estimates.py`` prints the table of the cases, ``python tests/estimates.py SCENES`` that of so many random scenes of
+every kind, in docs/accuracy.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import kinds
+import numpy as np
+from test_stages import kind
+from truth import true_errors, truth
+
+from lagrange_casadi import evaluate, load_case
+from lagrange_casadi.compensated import DTYPES, ROUNDING
+from lagrange_casadi.errors import AssemblyError
+from lagrange_casadi.scene import points
+
+FACTOR = 10.0
+MOST = 0.8
+# Compiled in half the time; not a bit depends on it.
+RUNGS = {
+    "lanes": {"flags": "-O1"},
+    "c": {"backend": "c", "flags": "-O1"},
+    "single": {"backend": "c", "precision": "single", "flags": "-O1"},
+    "newton 1": {"backend": "c", "newton": 1, "flags": "-O1"},
+    "newton 2": {"backend": "c", "newton": 2, "flags": "-O1"},
+    "newton 3": {"backend": "c", "newton": 3, "flags": "-O1"},
+}
+OPTIONS = {"lanes": "--backend lanes", "c": "--backend c", "single": "--backend c --precision single"}
+CASES = Path(__file__).parent.parent / "cases"
+
+
+def ratios(solution, exact):
+    """Estimate over true error by quantity, where there is an error; what has none is estimated to have none to speak of."""
+    true = true_errors(solution, exact)
+    assert set(true) == set(solution.errors)
+    precision = "single" if solution.provenance.precision == "single" else "double"
+    unit, least = ROUNDING[precision], float(np.finfo(DTYPES[precision]).tiny)
+    size = {}
+    for name in solution.series:
+        size[kind(name)] = max(size.get(kind(name), 0.0), float(np.max(np.abs(solution.series[name]))))
+    found = {}
+    for name, error in true.items():
+        scale = max(size.get(kind(name), 0.0), 0.0 if name in solution.series else abs(solution.peak(name).value))
+        if error > unit**2 * scale:
+            found[name] = solution.errors[name] / error
+        else:
+            assert solution.errors[name] <= 100 * unit * scale + least, name
+    return found
+
+
+def assert_near(found):
+    """Most estimates within a factor of ten, none below a tenth."""
+    worst = min(found, key=lambda name: found[name])
+    assert found[worst] > 1 / FACTOR, (worst, found[worst])
+    assert np.mean([value < FACTOR for value in found.values()]) >= MOST
+
+
+def looked_at(scene, words):
+    """Estimates over true errors of a scene on a rung; none where it is refused: steps may be too few for any solution."""
+    try:
+        solution = evaluate(scene, **words)
+    except AssemblyError:
+        return []
+    return list(ratios(solution, truth(scene, points(scene.t))).values())
+
+
+def row(name, found):
+    """A row of a table."""
+    parts = [np.min(found), *np.quantile(found, (0.05, 0.5, 0.95))]
+    near = np.mean([1 / FACTOR < value < FACTOR for value in found])
+    return f"| {name} | {len(found)} | {' | '.join(f'{part:.2g}' for part in parts)} | {100 * near:.3g} % |"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("scenes", nargs="?", type=int, help="random scenes of every kind, in place of the cases")
+    parser.add_argument("--rung", choices=RUNGS, action="append", help="only these; default: all")
+    parser.add_argument("--kind", action="append", help="only these; default: all")
+    told = parser.parse_args()
+    print(f"| {'kind, rung' if told.scenes else 'rung'} | quantities | least | 5 % | median | 95 % | within a factor of ten |")
+    print("| --- | --- | --- | --- | --- | --- | --- |")
+    for rung in told.rung or RUNGS:
+        option, every = f"`{OPTIONS.get(rung, f'--{rung}')}`", []
+        if told.scenes:
+            for one in kinds.KINDS:
+                if told.kind is None or one.__name__ in told.kind:
+                    drawn = [kinds.closing(one, [seed]) for seed in range(told.scenes)]
+                    found = [value for scene in drawn for value in looked_at(scene, RUNGS[rung])]
+                    print(row(f"{one.__name__.replace('_', ' ')}, {option}", found), flush=True)
+                    every += found
+        else:
+            for name in sorted(path.name for path in CASES.iterdir()):
+                every += looked_at(load_case(CASES / name).scene, RUNGS[rung])
+        print(row(option if not told.scenes else f"all, {option}", every), flush=True)
+
+
+if __name__ == "__main__":
+    main()
