@@ -12,6 +12,7 @@ from .evaluate import evaluate
 from .export import export
 from .lagrange import LagrangeSystem
 from .mechanism import Mechanism
+from .peaks import refine
 from .scene import Scene
 from .solution import Peak, Solution
 from .store import check, load, save
@@ -39,6 +40,7 @@ __all__ = [
     "load_case",
     "motion",
     "read_designs",
+    "refine",
     "save",
     "sweep",
     "table",

@@ -18,7 +18,6 @@ import numpy.typing as npt
 
 from . import codegen
 from .backends import compiled, provenance
-from .compensated import DTYPES
 from .cost import seconds
 from .density import Array
 from .derive import derive
@@ -32,6 +31,7 @@ from .rung import Rung
 from .scene import Grid, Scene, points
 from .scene_graph import SceneGraph
 from .section_law import made_of
+from .sharpness import bent, with_watched
 from .solution import Provenance
 from .stages import Stages
 from .witness import failures
@@ -86,17 +86,20 @@ class DesignEngine:
         graph = derive(scene, wanted, iterate=rung.newton is not None)
         instants = points(checked_times(scene, t))
         checked_laws(scene, (float(instants[0]), float(instants[-1])), tuple(scene.mechanism.values().values()))
-        stages = stages_of(graph, rung, instants)
         p = np.array(list(scene.mechanism.values().values()))
         _, left_open = determinate(graph, instants, p)
         kept = Kept.of(graph, rung, left_open)
         require("the instants of a design", (kept.plan.rows, instants.size))
+        watched = with_watched(graph, kept.sharpness)
+        stages = stages_of(watched, rung, instants)
         guess = np.array(graph.newton.guess if graph.newton else (), float)
 
         def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:
-            source = codegen.emit_designs(graph, stages, rung.newton, kept.plan)
-            flags = tuple(shlex.split(rung.flags))
-            return codegen.load_designs(source, compiler, flags, kept.plan, instants, guess, DTYPES[rung.precision])
+            source = codegen.emit_designs(watched, stages, rung.newton, kept.plan)
+            hidden = bent(graph, kept.sharpness, instants, p)
+            return codegen.load_designs(
+                source, compiler, tuple(shlex.split(rung.flags)), kept.plan, instants, guess, hidden, rung.precision
+            )
 
         found = compiled(rung, build)
         if found is None:

@@ -25,6 +25,7 @@ from .refusal import MISFIT, Status, dead_centre, gap_limit
 from .rung import Rung
 from .scene_graph import SceneGraph
 from .section_law import FORCES, made_of
+from .sharpness import Sharpness
 from .stages import Stages, compensated, counts, plain
 from .turns import REACH
 
@@ -60,6 +61,7 @@ class Kept:
     efforts: tuple[str, ...]
     links: tuple[str, ...]
     plan: Plan
+    sharpness: Sharpness
 
     @classmethod
     def of(cls, graph: SceneGraph, rung: Rung, left_open: Collection[str] = ()) -> Kept:
@@ -84,6 +86,9 @@ class Kept:
         efforts = tuple(name for name in names if name.startswith("effort:"))
         along = tuple(_along(link, at) for link in links)
         matter, positive, margins = _matter(mechanism, links, along, rung.precision)
+        columns = {column for columns in chosen.values() for column in columns}
+        columns |= {column for link in along for column in (*link.law, *(k for station in link.stations for k in station))}
+        sharpness = Sharpness.of(graph, sorted(columns))
         checks = _checks(graph, rung, at)
         doubted = {k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")}
         made = {name: _made_of(graph, name) for name in names}
@@ -100,8 +105,10 @@ class Kept:
             margins=margins,
             near=NEAR,
             statuses={status.name: int(status) for status in Status},
+            watches=sharpness.watches,
+            knots=sharpness.knots,
         )
-        return cls(tuple(names), units, efforts, tuple(link.name for link in links), plan)
+        return cls(tuple(names), units, efforts, tuple(link.name for link in links), plan, sharpness)
 
 
 def _unit(mechanism: Mechanism, name: str) -> str:

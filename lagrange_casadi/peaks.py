@@ -1,7 +1,7 @@
-"""Peaks between instants: where the time derivative of a quantity, by automatic differentiation, is zero or jumps.
+"""Peaks between instants: where a quantity is largest over all times of a solution's span.
 
-A peak of sampled values falls short of the true one by a part that goes with the square of the step. Here the instants only tell
-between which of them to look.
+A peak of sampled values falls short of the true one by a part that goes with the square of the step. :mod:`.summits` searches
+between them; here the time derivatives that automatic differentiation gives then say at which time a smooth peak is.
 """
 
 from __future__ import annotations
@@ -10,30 +10,26 @@ import functools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
 from .backends import follow
-from .codegen.emit import NOT_CONVERGED
 from .density import Array
 from .derive import assembled, derive
 from .errors import DeclarationError
 from .evaluate import evaluate
+from .mobility import LAW, PLACE_FIRST
 from .motion import jerk_function
 from .reciprocals import differentiable
 from .scene import Scene, checked
 from .scene_graph import SceneGraph
-from .section_law import SectionLaw, StationLoad
+from .section_law import SectionLaw, Side, StationLoad
+from .sharpness import Sharpness
+from .signals import Quantity, SectionForce, Signals
 from .solution import Peak, Solution
-
-_CLOSE = 1e-12
-"""How closely a peak is enclosed, over the step between instants."""
-
-_ROUNDING = 1e-13
-"""By how much of the largest value others must differ to count as larger or smaller."""
+from .stages import Stages, compensated, counts, plain
+from .summits import Peaks
 
 _SAME = 1e-6
 """How closely a graph must give what a solution has, over the largest value of the same unit."""
@@ -41,22 +37,25 @@ _SAME = 1e-6
 _NOTHING = 1e-12
 """What is zero but for rounding, over what is largest."""
 
-_TRIALS, _TRIALS_BY_LINE = 150, 8
+_NEAR, _LESS = 1e-4, 1e-13
+"""How near to where it was found a smooth peak is, in steps between instants, and how much lower rounding may put it, of itself."""
+
+_TRIALS = 5
 
 
 def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None) -> list[Peak]:
     """The peaks of quantities of a solution, by full name, or of all: as :meth:`.Solution.peak`, but over all times of its span.
 
-    A peak is sought next to every instant at which the quantity is larger than at its neighbours and from which it could rise
-    above all instants; what rises and falls again wholly between two instants is not seen. A smooth peak is exact to rounding, its
-    time to 1e-12 of the step or the derivative's rounding, and so is one at a kink or on the higher side of a jump. Where a
-    quantity grows without bound, as where the drive that a row replaces could do nothing, the peak is infinite. No peak is below
-    that of the instants, and what equilibrium does not determine is NaN here too.
+    A smooth peak is exact to rounding, its time to 1e-12 of the step or the derivative's rounding, and so is one at a kink or on
+    the higher side of a jump. Where a quantity grows without bound, as where the drive that a row replaces could do nothing, the
+    peak is infinite. No peak is below that of the instants. Of several that are as large but for rounding the first is told.
+
+    Where more hides between the instants than is worth the search, a peak is not told: its value is NaN, and ``least`` the largest
+    that was found; more instants may help. What equilibrium does not determine is NaN here too, without a ``least``.
 
     Raises :class:`DeclarationError` where the solution is not of this scene, :class:`UnknownNameError` for a name that is none.
     """
-    cycle = _Cycle.of(scene, solution)
-    return [cycle.peak(name) for name in (solution.names() if names is None else names)]
+    return _Cycle.of(scene, solution).peaks(list(solution.names() if names is None else names))
 
 
 @dataclass(frozen=True)
@@ -79,9 +78,9 @@ def shortfall(
     """How far peaks fall short where the scene's own span of time is cut into so many instants, a row for each of ``counts``.
 
     ``names`` are full names of quantities; by default all efforts, reactions and section forces that are wanted and determined.
-    Those that are zero but for rounding, or grow without bound, are left out. The true peaks are the largest refined ones, of all
-    counts and of twice as many instants. Raises :class:`DeclarationError` for no counts or where no quantity is left, and what
-    :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
+    Those that are zero but for rounding, grow without bound or are not told are left out. The true peaks are the largest refined
+    ones, of all counts and of twice as many instants. Raises :class:`DeclarationError` for no counts or where no quantity is left,
+    and what :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
     """
     start, stop, own = checked("t", scene.t)
     if not counts:
@@ -135,29 +134,12 @@ def rates(graph: SceneGraph) -> ca.Function:
     return both if any(laws[joint].spline for joint in graph.driven) else both.expand("rates", {"cse": True})
 
 
-class _Points(NamedTuple):
-    """A quantity at some times: its value, the ratio where it is taken, and its size and the time derivative of that."""
-
-    t: Array
-    value: Array
-    xi: Array
-    size: Array
-    slope: Array
-
-    def at(self, which: Any) -> _Points:
-        """Some of the times."""
-        return _Points(*(values[which] for values in self))
-
-    def choose(self, where: npt.NDArray[np.bool_], other: _Points) -> _Points:
-        """These where told, else the others."""
-        return _Points(*(np.where(where, mine, others) for mine, others in zip(self, other, strict=True)))
-
-
 @dataclass(frozen=True, eq=False)
 class _Cycle:
     """A solution, and what its quantities and their time derivatives are at any time of its span."""
 
     graph: SceneGraph
+    stages: Stages
     solution: Solution
     p: Array
     z: Array
@@ -170,8 +152,9 @@ class _Cycle:
         wanted = list(dict.fromkeys(_output(name) for name in solution.series))
         graph = derive(assembled(scene, told, wanted), wanted)
         p = np.array(list(told.values()))
-        z, _ = follow(graph, solution.t, p)
-        cycle = cls(graph, solution, p, z, {name: k for k, name in enumerate(graph.columns)})
+        stages = compensated(graph, "double") if counts(graph, solution.t, p) else plain(graph)
+        z, _ = follow(graph, solution.t, p, stages=stages)
+        cycle = cls(graph, stages, solution, p, z, {name: k for k, name in enumerate(graph.columns)})
         if not cycle.agrees():
             raise DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{mechanism.name}'")
         return cycle
@@ -184,7 +167,7 @@ class _Cycle:
             return False
         names = [name for name in names if name not in self.graph.wrapped]
         some = np.array([0, solution.t.size // 2, solution.t.size - 1])
-        out, _ = self._columns(solution.t[some], some)
+        out = self.stages.instant(*self.stages.drive(solution.t[None, some], self.p), self.z[:, some], self.p).full()
         sizes = dict.fromkeys(map(solution.unit, names), 0.0)
         for name in names:
             sizes[solution.unit(name)] = max(sizes[solution.unit(name)], float(np.max(np.abs(solution.series[name]))))
@@ -193,122 +176,122 @@ class _Cycle:
         limits = [_SAME * sizes[solution.unit(name)] + rounding for name in names]
         return bool(np.all([gap <= limit for gap, limit in zip(gaps, limits, strict=True)], axis=0).any())
 
-    def peak(self, name: str) -> Peak:
-        """The peak of a quantity over all times."""
+    def peaks(self, names: Sequence[str]) -> list[Peak]:
+        """The peaks of quantities over all times."""
         solution = self.solution
-        if not solution.determined(name):
-            return solution.peak(name)
-        t, (values, places) = solution.t, solution.extremes(name)
-        sizes = np.abs(values)
-        best = sizes.max()
-        first = _summits(sizes)
-        tops = self._points(name, t[first], first)
-        second = first + np.sign(tops.slope).astype(int)
-        rising = (second != first) & (second >= 0) & (second < t.size)
-        first, second, tops = first[rising], second[rising], tops.at(rising)
-        # A tangent bounds an arc that is concave.
-        worth = tops.size + np.abs(tops.slope * (t[second] - t[first])) > best * (1.0 + _ROUNDING)
-        if not worth.any():
-            return solution.peak(name)
-        found = self._enclose(name, first[worth], second[worth])
-        k = int(np.argmax(found.size))
-        if not found.size[k] > best:
-            return solution.peak(name)
-        xi = None if places is None else float(found.xi[k])
-        return Peak(name, float(found.value[k]), solution.unit(name), float(found.t[k]), xi)
+        found = {name: solution.peak(name) for name in names}
+        sought = [name for name in found if solution.determined(name)]
+        if not sought or solution.t.size == 1:
+            return [found[name] for name in names]
+        signals = self.signals(sought)
+        units, scales = self.scales(sought)
+        searched = signals.peaks(units, scales)
+        value, t, xi = self.timed(signals, sought, searched)
+        for k, name in enumerate(sought):
+            sampled = found[name]
+            along = None if sampled.xi is None else float(xi[k])
+            if not searched.told[k]:
+                least = max(abs(sampled.value), float(abs(value[k])))
+                found[name] = Peak(name, math.nan, sampled.unit, float(t[k]), along, least)
+            elif abs(value[k]) > abs(sampled.value):
+                found[name] = Peak(name, float(value[k]), sampled.unit, float(t[k]), along)
+        return [found[name] for name in names]
 
-    def _enclose(self, name: str, first: Any, second: Any) -> _Points:
-        """The peaks between pairs of instants, from the first of which a quantity, larger there, rises towards the second."""
-        t = self.solution.t
-        low, high = (self._points(name, t[ends], first) for ends in (np.minimum(first, second), np.maximum(first, second)))
-        close = np.maximum(_CLOSE * (high.t - low.t), 4.0 * np.spacing(np.maximum(np.abs(low.t), np.abs(high.t))))
-        weights, before = np.ones((2, first.size)), np.full(first.size, np.nan)
-        for trial in range(_TRIALS):
-            if np.all(high.t - low.t <= close):
-                break
-            middle = self._points(name, _between(low, high, weights, close, trial), first)
-            # A peak lies between the larger end and whatever is below it, whichever way that slopes: it may be beyond a jump.
-            larger = np.maximum(low.size, high.size)
-            left = np.where(middle.size < larger * (1.0 - _ROUNDING), low.size < high.size, middle.slope > 0.0)
-            stays = np.where(left == before, 0.5, 1.0)
-            weights = np.where(left, [np.ones_like(stays), weights[1] * stays], [weights[0] * stays, np.ones_like(stays)])
-            low, high, before = middle.choose(left, low), high.choose(left, middle), left.astype(float)
-        found = low.choose(low.size >= high.size, high)
-        # At a pole a value goes on growing however near it is.
-        endless = np.abs(found.slope) * (high.t - low.t) > found.size / 10
-        return found._replace(
-            value=np.where(endless, np.copysign(np.inf, found.value), found.value), size=np.where(endless, np.inf, found.size)
-        )
+    def signals(self, names: Sequence[str]) -> Signals:
+        """Quantities as curves over time."""
+        quantities = [self.quantity(name) for name in names]
+        columns = {k for quantity in quantities for k in _columns(quantity)}
+        sharpness = Sharpness.of(self.graph, sorted(columns))
+        turned = {k: self.solution.series[name] for k, name in enumerate(names) if name in self.graph.wrapped}
+        return Signals(self.graph, self.stages, sharpness, quantities, self.solution.t, self.p, self.z, turned=turned)
 
-    def _points(self, name: str, t: Array, near: Any) -> _Points:
-        """A quantity at times each of which is next to an instant, given by its number.
+    def quantity(self, name: str) -> Quantity:
+        """Where a quantity is among the columns."""
+        if not name.startswith("section:"):
+            return (self.rows[name],)
+        _, link, force = name.split(":")
+        law, start = self.solution.section(link).law, f"section:{link}"
+        stations = tuple(tuple(self.rows[f"{start}:{load.name}:{member}"] for member in PLACE_FIRST) for load in law.loads)
+        coefficients = tuple(self.rows[f"{start}:law:{member}"] for member in LAW)
+        return SectionForce(force, coefficients, stations, law.length, law.density)
+
+    def scales(self, names: Sequence[str]) -> tuple[list[int], list[float]]:
+        """The units of quantities, by number, and the largest size of anything that has each."""
+        solution = self.solution
+        units = {unit: k for k, unit in enumerate(dict.fromkeys(map(solution.unit, names)))}
+        scales = [0.0] * len(units)
+        for name in solution.names():
+            if name in solution.series and solution.determined(name) and solution.unit(name) in units:
+                k = units[solution.unit(name)]
+                scales[k] = max(scales[k], float(np.abs(solution.series[name]).max()))
+        return [units[solution.unit(name)] for name in names], scales
+
+    def timed(self, signals: Signals, names: Sequence[str], peaks: Peaks) -> tuple[Array, Array, Array]:
+        """Values, times and ratios of peaks, the smooth ones at the times where their derivative is zero, by the secant method."""
+        value, t, xi, instants = peaks.value.copy(), peaks.t.copy(), peaks.xi.copy(), self.solution.t
+        reach = _NEAR * (instants[-1] - instants[0]) / (instants.size - 1)
+        some = np.flatnonzero(np.isfinite(value) & ~np.isin(t, instants)).tolist()
+        if not some or any(law.spline and not law.knots for law in self.graph.scene.motion.values()):
+            return value, t, xi
+        chosen, first = [names[k] for k in some], t[some]
+        before, now = first, np.clip(first + reach / 2, instants[0], instants[-1])
+        _, _, slope_first = self.slopes(signals, chosen, first)
+        slope_before = slope_first
+        for _ in range(_TRIALS):
+            _, _, slope = self.slopes(signals, chosen, now)
+            with np.errstate(all="ignore"):
+                ahead = now - slope * ((now - before) / (slope - slope_before))
+            going = np.abs(ahead - first) < reach
+            before, slope_before = np.where(going, now, before), np.where(going, slope, slope_before)
+            now = np.where(going, ahead, now)
+        sizes, places, slope = self.slopes(signals, chosen, now)
+        better = (np.abs(sizes) >= np.abs(value[some]) * (1.0 - _LESS)) & (np.abs(slope) < np.abs(slope_first))
+        t[some], xi[some] = np.where(better, now, first), np.where(better, places, xi[some])
+        value[some] = np.where(better & (np.abs(sizes) > np.abs(value[some])), sizes, value[some])
+        return value, t, xi
+
+    def slopes(self, signals: Signals, names: Sequence[str], t: Array) -> tuple[Array, Array, Array]:
+        """Of each quantity, at a time of its own: value, ratio, and the time derivative of its size.
 
         Where along a link a force is largest moves, but for the rate of its size only at a station does that count.
         """
-        out, out_rate = self._columns(t, near)
-        if not name.startswith("section:"):
-            value, rate = out[self.rows[name]], out_rate[self.rows[name]]
-            if name in self.graph.wrapped:
-                value = value + math.tau * np.round((self.solution.series[name][near] - value) / math.tau)
-            xi = np.zeros_like(t)
-        else:
-            _, link, force = name.split(":")
-            law, law_rate = self._law(link, out), self._law(link, out_rate)
-            xi, value = law.extreme(force)
-            places = xi[:, None]
-            tip, base = (law.at(force, places, side)[:, 0] for side in ("tip", "base"))
-            beyond, before = (law.rate(force, law_rate, places, side)[:, 0] for side in ("tip", "base"))
-            rate = np.where(np.abs(base) > np.abs(tip), before, beyond)
-        size = np.where(np.isfinite(value), np.abs(value), -np.inf)
-        return _Points(t, value, xi, size, np.nan_to_num(np.sign(value) * rate))
+        near = signals.near(t)
+        z, _ = signals.closed(t, near)
+        out, out_rate = (x.full() for x in rates(self.graph)(np.vstack([t, z]), self.p))
+        found = np.full((3, len(names)), np.nan)
+        for k, name in enumerate(names):
+            columns, changes = out[:, [k]], out_rate[:, [k]]
+            if name.startswith("section:"):
+                _, link, force = name.split(":")
+                law, law_rate = self.law(link, columns), self.law(link, changes)
+                place, value = law.extreme(force)
+                sides: tuple[Side, Side] = ("tip", "base")
+                sizes = [abs(law.at(force, place[:, None], side)[0, 0]) for side in sides]
+                rate = law.rate(force, law_rate, place[:, None], sides[int(np.argmax(sizes))])[0, 0]
+                found[:, k] = value[0], place[0], np.sign(value[0]) * rate
+            else:
+                value = columns[self.rows[name], 0]
+                if name in self.graph.wrapped:
+                    value += math.tau * np.round((self.solution.series[name][near[k]] - value) / math.tau)
+                found[:, k] = value, np.nan, np.sign(value) * changes[self.rows[name], 0]
+        return found[0], found[1], found[2]
 
-    def _columns(self, t: Array, near: Any) -> tuple[Array, Array]:
-        """The columns of the graph and their time derivatives; NaN where iterated loops do not close."""
-        z = np.zeros((self.z.shape[0], t.size))
-        failed = np.zeros(t.size, dtype=bool)
-        for i in range(t.size if self.graph.newton else 0):
-            at, status = follow(self.graph, t[i : i + 1], self.p, self.z[:, near[i]])
-            z[:, i], failed[i] = at[:, 0], status[0] == NOT_CONVERGED
-        out, out_rate = (np.where(failed, np.nan, x.full()) for x in rates(self.graph)(np.vstack([t, z]), self.p))
-        return out, out_rate
-
-    def _law(self, link: str, columns: Array) -> SectionLaw:
+    def law(self, link: str, columns: Array) -> SectionLaw:
         """A link's law with columns of the graph, or of their rates, for its coefficients, loads and stations."""
-        law = self.solution.section(link).law
-
-        def row(member: str) -> Array:
-            return np.asarray(columns[self.rows[f"section:{link}:{member}"]])
-
-        coefficients = {name: row(f"law:{name}") for name in law.coefficients}
-        loads = (StationLoad(load.name, *(row(f"{load.name}:{m}") for m in ("station", "n", "f", "m"))) for load in law.loads)
+        law, start = self.solution.section(link).law, f"section:{link}"
+        coefficients = {name: columns[self.rows[f"{start}:law:{name}"]] for name in law.coefficients}
+        loads = (
+            StationLoad(load.name, *(columns[self.rows[f"{start}:{load.name}:{member}"]] for member in PLACE_FIRST))
+            for load in law.loads
+        )
         return replace(law, coefficients=coefficients, loads=tuple(loads))
 
 
-def _summits(sizes: Array) -> npt.NDArray[np.intp]:
-    """Where values are larger than the one before and not smaller than the one after; an end has no neighbour there."""
-    around = np.concatenate([[-np.inf], sizes, [-np.inf]])
-    return np.flatnonzero((sizes > around[:-2]) & (sizes >= around[2:]))
-
-
-def _between(low: _Points, high: _Points, weights: Array, close: Array, trial: int) -> Array:
-    """Times to try: where a line through the slopes is zero; later in turn that, where the tangents meet, and the middle.
-
-    The line finds a smooth peak, with the slope of an end that stays weighted down (the Illinois method); tangents meet at a kink;
-    and halving, which serves too where the ends do not both rise inward, ends the search wherever there is a jump or a pole.
-    """
-    width = high.t - low.t
-    up, down = low.slope, high.slope
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        if trial < _TRIALS_BY_LINE or trial % 3 == 0:
-            ahead = width * weights[0] * up / (weights[0] * up - weights[1] * down)
-        elif trial % 3 == 1:
-            ahead = (high.size - low.size - down * width) / (up - down)
-        else:
-            ahead = width / 2
-        inside = (up >= 0.0) & (down <= 0.0) & (ahead >= 0.0) & (ahead <= width)
-    # A little off the ends, so that the other end comes near too.
-    off = np.minimum(close, width) / 2
-    return np.asarray(low.t + np.clip(np.where(inside, ahead, width / 2), off, width - off))
+def _columns(quantity: Quantity) -> set[int]:
+    """The columns that a quantity is made of."""
+    if isinstance(quantity, SectionForce):
+        return {*quantity.law, *(column for station in quantity.stations for column in station)}
+    return set(quantity)
 
 
 def _output(name: str) -> str:

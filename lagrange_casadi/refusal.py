@@ -46,6 +46,7 @@ class Status(enum.IntEnum):
     NOT_CLOSED = 12
     UNCERTIFIED = 13
     TURNED = 14
+    PEAK_NOT_TOLD = 15
 
     @property
     def meaning(self) -> str:
@@ -69,6 +70,7 @@ _MEANINGS = {
     Status.NOT_CLOSED: "what was found for a loop does not satisfy its equations",
     Status.UNCERTIFIED: "the design was looked at closely, and fails its certificate: others may be wrong as well",
     Status.TURNED: "an angle that a load sees with its turns might be a turn further",
+    Status.PEAK_NOT_TOLD: "a peak is not told: too much hides between the instants; more instants may help",
 }
 
 

@@ -6,7 +6,8 @@ link beyond it: at the tip (n0, f0, m0), and at stations in between, each seen b
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import functools
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -185,15 +186,32 @@ class SectionLaw:
         return np.concatenate([place for place, _ in blocks]), np.concatenate([value for _, value in blocks])
 
     def _extreme(self, force: str) -> tuple[Array, Array]:
-        places = [np.zeros_like(self.coefficients["n0"]), np.ones_like(self.coefficients["n0"]), *self._stationary(force)]
-        stacked = np.stack(places, axis=1)
-        stacked = np.where((stacked > 0.0) & (stacked < 1.0), stacked, np.where(stacked >= 1.0, 1.0, 0.0))
-        values = self.at(force, stacked)
-        if self.loads:
-            before = self.at(force, stacked, side="base")
-            values = np.where(np.abs(before) > np.abs(values), before, values)
+        places, values = self.curves(force)
         best = np.argmax(np.abs(values), axis=1)[:, None]
-        return np.take_along_axis(stacked, best, 1)[:, 0], np.take_along_axis(values, best, 1)[:, 0]
+        return np.take_along_axis(places, best, 1)[:, 0], np.take_along_axis(values, best, 1)[:, 0]
+
+    def curves(self, force: str) -> tuple[Array, Array]:
+        """Ratios among which a force is largest in size at every instant, and the force there, both of shape (t, k).
+
+        They are those of the base, the tip, every station, once for each of its sides, and between two stations that at which the
+        force turns along the link, or else the end that is next to that. So each is a smooth curve over time, as long as no station
+        passes another one.
+        """
+        still = np.zeros_like(self.coefficients["n0"])
+        stations = [np.clip(load.station, 0.0, 1.0) for load in self.loads]
+        places = np.stack([still, still + 1.0, *(station for station in stations for _ in range(2))], axis=1)
+        values = self.at(force, places)
+        values[:, 3::2] = self.at(force, places[:, 3::2], side="base")
+        inner = np.sort(np.stack([still, *stations, still + 1.0], axis=1), axis=1)
+        low, high = inner[:, :-1], inner[:, 1:]
+        seen = [low + high < 2 * station[:, None] for station in stations]
+
+        def within(name: str, u: Array) -> Array:
+            beyond = (self._beyond(name, load, u, mask) for load, mask in zip(self.loads, seen, strict=True))
+            return np.asarray(self._smooth(name, u) + sum(beyond))
+
+        found = self._turning(force, functools.partial(within, "shear"), low, high)
+        return np.hstack([places, *found]), np.hstack([values, *(within(force, place) for place in found)])
 
     def _terms(self, force: str, basis: Basis) -> tuple[list[Array], Array]:
         return [self.coefficients[name] for name in MEMBERS[force][0]], basis.bending if force == "bending" else basis.force
@@ -213,45 +231,47 @@ class SectionLaw:
         station, constant, slope = (_column(values, u) for values in self._acting(force, load))
         return np.where(seen, constant + slope * (station - u), 0.0)
 
-    def _stationary(self, force: str) -> list[Array]:
-        """Where the force may peak inside: at the stations, and where its derivative along the link is zero."""
+    def _turning(self, force: str, shear: Callable[[Array], Array], low: Array, high: Array) -> list[Array]:
+        """Where between two stations the force's derivative along the link is zero, or nearest to it: of bending, first where the
+        shear rises through zero, then where it falls.
+        """
         c, l = self.coefficients, self.length
-        stations = [load.station for load in self.loads]
+        first, second = ("n1", "n2") if force == "axial" else ("f1", "f2")
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            if force == "axial":
-                return [*stations, -c["n1"] / (c["n2"] * l)]
-            turning = -c["f1"] / (c["f2"] * l)
-            if force == "shear":
-                return [*stations, turning]
-            if self.density.uniform and not self.loads:
-                return self._zeros_of_uniform_shear()
-        return [*stations, *self._zeros_of_shear(np.where(np.isfinite(turning), turning, 0.0))]
+            turning = -c[first] / (c[second] * l)
+            if force == "bending" and self.density.uniform and not self.loads:
+                return [np.clip(np.where(np.isnan(zero), 0.0, zero)[:, None], 0.0, 1.0) for zero in self._zeros_of_uniform_shear()]
+        middle = np.clip(np.where(np.isnan(turning), 0.0, turning)[:, None], low, high)
+        return [middle] if force != "bending" else self._zeros_of_shear(shear, low, middle, high)
 
     def _zeros_of_uniform_shear(self) -> list[Array]:
         """f0 + b v + a v^2 = 0 with v = 1 - u; the root that would cancel comes from the other one."""
         c, l, m = self.coefficients, self.length, self.density.cells[0][0]
         a, b = -c["f2"] * m * l / 2, c["f1"] * m + c["f2"] * m * l
-        q = -(b + np.copysign(np.sqrt(b * b - 4.0 * a * c["f0"]), b)) / 2
-        return [1.0 - q / a, 1.0 - c["f0"] / q]
+        q = -(b + np.copysign(np.sqrt(np.maximum(b * b - 4.0 * a * c["f0"], 0.0)), b)) / 2
+        rising, falling = q / a, c["f0"] / q
+        return [1.0 - np.where(b < 0.0, falling, rising), 1.0 - np.where(b < 0.0, rising, falling)]
 
-    def _zeros_of_shear(self, turning: Array) -> list[Array]:
-        """Shear is monotonic between neighbouring stations and its turning point, whatever the density: halve each interval."""
-        marks = np.stack([np.zeros_like(turning), np.ones_like(turning), turning, *(load.station for load in self.loads)], axis=1)
-        marks = np.sort(np.clip(marks, 0.0, 1.0), axis=1)
-        low, high = marks[:, :-1].copy(), marks[:, 1:].copy()
-        middle = (low + high) / 2
-        seen = [middle < load.station[:, None] for load in self.loads]
+    @staticmethod
+    def _zeros_of_shear(shear: Callable[[Array], Array], low: Array, middle: Array, high: Array) -> list[Array]:
+        """Shear is monotonic on either side of its turning point, whatever the density: halve that.
 
-        def shear(u: Array) -> Array:
-            beyond = (self._beyond("shear", load, u, mask) for load, mask in zip(self.loads, seen, strict=True))
-            return np.asarray(self._smooth("shear", u) + sum(beyond))
-
-        rising = shear(low) <= 0.0
-        for _ in range(_HALVINGS):
-            middle = (low + high) / 2
-            lower = (shear(middle) <= 0.0) == rising
-            low, high = np.where(lower, middle, low), np.where(lower, high, middle)
-        return list(((low + high) / 2).T)
+        Where it has no zero there, that end is taken at which it is nearer to zero.
+        """
+        places = [low, middle, high]
+        ends = [shear(u) for u in places]
+        zeros = []
+        for k in (0, 1):
+            a, b = places[k : k + 2]
+            negative, nearer = ends[k] <= 0.0, np.where(np.abs(ends[k]) <= np.abs(ends[k + 1]), a, b)
+            none = negative == (ends[k + 1] <= 0.0)
+            for _ in range(_HALVINGS):
+                half = (a + b) / 2
+                lower = (shear(half) <= 0.0) == negative
+                a, b = np.where(lower, half, a), np.where(lower, b, half)
+            zeros.append(np.where(none, nearer, (a + b) / 2))
+        rises = (ends[1] > ends[0]) | ((ends[1] == ends[0]) & (ends[2] < ends[1]))
+        return [np.where(rises, zeros[0], zeros[1]), np.where(rises, zeros[1], zeros[0])]
 
 
 def made_of(columns: Iterable[str], link: str, force: str) -> list[str]:

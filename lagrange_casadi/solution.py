@@ -36,13 +36,17 @@ class Provenance:
 
 @dataclass(frozen=True)
 class Peak:
-    """The value largest in size of a quantity, with its sign, and where it is; ``xi`` is a ratio, None off a link."""
+    """The value largest in size of a quantity, with its sign, and where it is; ``xi`` is a ratio, None off a link.
+
+    ``value`` is NaN where it could not be told between the instants, and ``least`` then the largest size that was found.
+    """
 
     name: str
     value: float
     unit: str
     t: float
     xi: float | None = None
+    least: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,7 +246,10 @@ class Solution:
         return values, places
 
     def peak(self, name: str) -> Peak:
-        """The value of a quantity that is largest in size, over the instants; along a link exactly, whatever the grid of xi."""
+        """The value of a quantity that is largest in size, over the instants; along a link exactly, whatever the grid of xi.
+
+        Between the instants it may be larger: :func:`.refine` gives the largest over all times.
+        """
         values, places = self.extremes(name)
         i = int(np.argmax(np.abs(values)))
         return Peak(name, float(values[i]), self.unit(name), float(self.t[i]), None if places is None else float(places[i]))

@@ -1,6 +1,7 @@
 """The command line: what it writes, and the one line and status of every mistake."""
 
 import errno
+import math
 import os
 import re
 import resource
@@ -15,8 +16,9 @@ import h5py
 import pytest
 from forging import forging
 
-from lagrange_casadi import evaluate, load, load_case, save
+from lagrange_casadi import Peak, evaluate, load, load_case, save
 from lagrange_casadi.cli import main
+from lagrange_casadi.cli.report import peak_line
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
 
@@ -46,6 +48,14 @@ def test_run_refines_peaks(here, capsys):
     value = f"effort:O                    {solution.peak('effort:O').value:>13.6g} +- "
     assert value in refined
     assert value not in plain
+
+
+def test_a_peak_that_is_not_told_is_no_number(slider_crank):
+    solution = evaluate(slider_crank.scene, wanted=["effort"], t=(0, 0.08, 9))
+    line = peak_line(solution, Peak("effort:O", math.nan, "N m", 0.02, None, 7.5))
+    assert "not told" in line
+    assert "7.5 N m was found at t = 0.02 s" in line
+    assert "nan" not in line
 
 
 def test_run_takes_options(here):

@@ -249,7 +249,9 @@ def test_the_shortfall_of_instants_falls_with_the_square_of_the_step(slider_cran
 def test_misuse_is_named(slider_crank):
     scene = slider_crank.scene
     solution = vm(scene, t=(0, 0.08, 5), wanted=["effort"])
-    with pytest.raises(UnknownNameError, match="unknown quantity 'section:rod:bending'; valid: effort:O"):
+    with pytest.raises(UnknownNameError, match=r"unknown quantity 'effort:none' \(did you mean 'effort:O'\?\); valid: effort:O"):
+        refine(scene, solution, ["effort:none"])
+    with pytest.raises(DeclarationError, match="the sections of link 'rod' were not wanted"):
         refine(scene, solution, ["section:rod:bending"])
     other = Scene(scene.mechanism, {"O": motion.polynomial(0, 1.0)}, posture=scene.posture)
     with pytest.raises(DeclarationError, match="the solution of 'slider_crank' is not one of this scene of 'slider_crank'"):

@@ -30,28 +30,25 @@ static int designs_one(designs_now* now, const double* p, const double* guess, d
   designs_sample(now, history);
   why = designs_refused(now);
   if (why != DESIGNS_OK) return why;
-  designs_peaks(now, value, t, xi);
+  if (!designs_peaks(now, value, t, xi)) return DESIGNS_PEAK_NOT_TOLD;
   for (k = 0; k < DESIGNS_EFFORTS; ++k) {
-    mean[k] = designs_mean(now, designs_effort[k], 0);
-    rms[k] = sqrt(designs_mean(now, designs_effort[k], 1));
-  }
-  for (k = 0; k < DESIGNS_DOUBTS; ++k) {
-    if (!designs_is_open(now, designs_doubted[k])) continue;
-    value[designs_doubtful[k]] = t[designs_doubtful[k]] = xi[designs_doubtful[k]] = NAN;
-    for (j = 0; j < DESIGNS_EFFORTS; ++j) {
-      if (designs_effort[j] == designs_doubtful[k]) mean[j] = rms[j] = NAN;
-    }
+    const int open = value[designs_effort[k]] != value[designs_effort[k]];
+    mean[k] = open ? NAN : designs_mean(now, designs_effort[k], 0);
+    rms[k] = open ? NAN : sqrt(designs_mean(now, designs_effort[k], 1));
   }
   return DESIGNS_OK;
 }
 
 /* So many designs, rows of parameters p, over n instants t. value, t_peak and xi become rows of quantities, mean and rms of efforts,
-   and history, unless it is NULL, columns by instants; of a design without a result all is NaN. Of the room there are
-   DESIGNS_ROOM rows of stride values, of which the first is zero, and of the status stride integers that are zero. */
+   and history, unless it is NULL, outputs by instants; of a design without a result all is NaN. bent tells after which instants the
+   motion bends more than they show. Of the room there are DESIGNS_ROOM rows of stride values, of which the first is zero, and as many
+   panels of DESIGNS_STRIDE values a row as may lie within each other; of the status stride integers that are zero, and of hiding
+   twice as many. */
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(casadi_int designs, casadi_int n, casadi_int stride, const double* t,
-                                                    const double* p, const double* guess, DESIGNS_REAL* room, int* statuses,
-                                                    signed char* status, double* value, double* t_peak, double* xi, double* mean,
-                                                    double* rms, double* history) {
+                                                    const double* p, const double* guess, const signed char* bent,
+                                                    DESIGNS_REAL* room, int* statuses, signed char* hiding, signed char* status,
+                                                    double* value, double* t_peak, double* xi, double* mean, double* rms,
+                                                    double* history) {
   designs_now now;
   designs_real moment[DESIGNS_NT];
   casadi_int i, d;
@@ -62,22 +59,23 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(casadi_int designs, casadi_i
   now.times = room;
   now.z = room + DESIGNS_NT*stride;
   now.rows = now.z + DESIGNS_NZ*stride;
+  now.inner = now.rows + (DESIGNS_CHECKED + DESIGNS_CHECKS + 1 + DESIGNS_WATCHES)*stride;
   now.status = statuses;
+  now.bent = bent;
+  now.hiding = hiding;
+  now.half = n > 1 ? (t[n - 1] - t[0])/(double) (2*(n - 1)) : 1;
   for (i = 0; i < stride; ++i) {
     designs_split(t[i < n ? i : n - 1], moment);
     for (k = 0; k < DESIGNS_NT; ++k) room[k*stride + i] = moment[k];
   }
-  for (k = 0; k < DESIGNS_QUANTITIES; ++k) {
-    designs_row(&now, k)[-1] = designs_row(&now, k)[n + LANES - 1 - (n + LANES - 1) % LANES] = DESIGNS_LARGEST;
-  }
   for (d = 0; d < designs; ++d) {
     double *values = value + d*DESIGNS_QUANTITIES, *times = t_peak + d*DESIGNS_QUANTITIES, *places = xi + d*DESIGNS_QUANTITIES;
     double *means = mean + d*DESIGNS_EFFORTS, *squares = rms + d*DESIGNS_EFFORTS;
-    double* whole = history ? history + d*DESIGNS_COLUMNS*n : 0;
+    double* whole = history ? history + d*DESIGNS_OUTPUTS*n : 0;
     status[d] = (signed char) designs_one(&now, p + d*DESIGNS_NP, guess, values, times, places, means, squares, whole);
     if (status[d] == DESIGNS_OK) continue;
     for (k = 0; k < DESIGNS_QUANTITIES; ++k) values[k] = times[k] = places[k] = NAN;
     for (k = 0; k < DESIGNS_EFFORTS; ++k) means[k] = squares[k] = NAN;
-    for (i = 0; whole && i < DESIGNS_COLUMNS*n; ++i) whole[i] = NAN;
+    for (i = 0; whole && i < DESIGNS_OUTPUTS*n; ++i) whole[i] = NAN;
   }
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,8 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from .. import between, summits
 from ..compensated import DTYPES, Precision
 from ..scene_graph import SceneGraph
+from ..sharpness import Kind, Watch
 from ..stages import Stages
 from ..turns import LEAP
 from .emit import FOLLOW, Parts, dump, emit, following, in_single, work
@@ -25,19 +28,20 @@ of an angle."""
 INSIDE, ROUNDS = 17, 7
 """Instants at which a dead centre between two others is looked for, and how often, ever closer."""
 
-POLE = 1e3
-"""How many times its instants a value must grow to be at a pole, and no noise."""
-
-NOTHING = 1e-12
-"""What is zero but for rounding, over the largest of its unit."""
-
-ROUNDING: dict[Precision, float] = {"double": 1e-13, "single": 1e-6}
+ROUNDING: dict[Precision, float] = {"double": summits.ROUNDING, "single": 1e-6}
 """By how much of itself a peak may be off: less is not worth another look."""
 
-_BESIDE = 1e-2
-_CUTS: dict[Precision, int] = {"double": 20, "single": 8}
-_CLOSEST = 1e-13
-_FILES = ("instants.c", "fits.c", "summits.c", "designs.c")
+NOISE: dict[Precision, float] = {"double": summits.NOISE, "single": 1e-2}
+"""Of itself: how far rounding may throw a quantity and be no more than that."""
+
+DEEPEST: dict[Precision, int] = {"double": summits.DEEPEST, "single": 8}
+"""Panels within each other."""
+
+STRIDE = 64
+"""Values of a row of a panel inside a step: its times, and two packs beside them."""
+
+_LAST: dict[Precision, float] = {"double": summits.LAST, "single": 1e-5}
+_FILES = ("instants.c", "between.c", "fits.c", "summits.c", "designs.c")
 
 
 @dataclass(frozen=True)
@@ -49,6 +53,23 @@ class Along:
     breaks: tuple[float, ...]
     terms: int
 
+    @property
+    def uniform(self) -> bool:
+        """Whether nothing but its own even mass acts between its ends."""
+        return not self.stations and len(self.breaks) == 2 and self.terms == 1
+
+    @property
+    def places(self) -> tuple[tuple[int | str, ...], ...]:
+        """Of each curve of each force, where along the link it is: a row of places, ``BASE`` or ``TIP``. See ``sections.c``."""
+        parts, stations = len(self.stations) + 1, len(self.stations)
+        ends: tuple[int | str, ...] = ("BASE", "TIP", *(4 * parts + k for k in range(stations) for _ in range(2)))
+        return (*ends, *range(parts)), (*ends, *range(parts, 2 * parts)), (*ends, *range(2 * parts, 4 * parts))
+
+    @property
+    def rows(self) -> int:
+        """How many rows of places there are."""
+        return 4 + 5 * len(self.stations)
+
 
 @dataclass(frozen=True, eq=False)
 class Plan:
@@ -58,7 +79,8 @@ class Plan:
     numbers the units of all of them, ``efforts`` says which have means. ``checks`` are columns with a kind of :data:`CHECKS` and a
     limit, ``doubts`` the checks that leave a quantity open, by number of both. ``matter(p)`` gives first ``margins`` numbers that
     must not be negative, ``positive`` of them not zero either: the first is the mechanism's extent [m]. Then comes what
-    ``sections.c`` takes for each link.
+    ``sections.c`` takes for each link. ``watches`` are what the last columns are watched for, ``knots`` times of kinks: see
+    :class:`.Sharpness`.
     """
 
     quantities: tuple[tuple[int, ...], ...]
@@ -72,11 +94,35 @@ class Plan:
     margins: int
     near: float
     statuses: Mapping[str, int]
+    watches: tuple[Watch, ...]
+    knots: tuple[float, ...]
+
+    @property
+    def curves(self) -> list[tuple[int, int, int | str]]:
+        """Of each curve: its quantity, its link or -1, and where along that it is: a row of places, ``BASE``, ``TIP``, ``OFF``."""
+        found: list[tuple[int, int, int | str]] = [(q, -1, "OFF") for q in range(len(self.quantities))]
+        q, first = len(self.quantities), 0
+        for k, link in enumerate(self.links):
+            for places in link.places:
+                found += [(q, k, place if isinstance(place, str) else first + place) for place in places]
+                q += 1
+            first += link.rows
+        return found
+
+    @property
+    def places(self) -> int:
+        """Rows of places along links."""
+        return sum(link.rows for link in self.links)
 
     @property
     def rows(self) -> int:
         """Rows of one design that are kept while it is evaluated, beside those of times and iterated coordinates."""
-        return len(self.quantities) + 6 * len(self.links) + len(self.checks) + 1
+        return self.inner + len(self.checks) + 1
+
+    @property
+    def inner(self) -> int:
+        """Rows of a panel inside a step."""
+        return len(self.curves) + self.places + len(self.watches)
 
 
 def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan) -> str:
@@ -89,53 +135,84 @@ def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, plan: Pl
     text = emit(graph, stages, newton) + (in_single(text) if single else text)
     text += _defined(_macros(graph, stages, newton, plan, parts)) + _tables(plan) + _source("sections.c")
     text += _WORK.format(**parts.sizes | work("", *parts.wide, *parts.narrow, plan.matter), drive=parts.drive)
-    text += _quantities(plan)
+    text += _curves(plan)
     return text + "".join(_source(name) for name in _FILES)
 
 
 def _macros(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan, parts: Parts) -> dict[str, object]:
     sizes, precision = parts.sizes, stages.precision
-    plain, links, checks = len(plan.quantities), len(plan.links), len(plan.checks)
+    plain, links, checks, curves = len(plan.quantities), len(plan.links), len(plan.checks), len(plan.curves)
     numbers = np.finfo(DTYPES[precision])
     loops = "(n, stride, t, p, guess, z, status)"
     return {
         "REAL": sizes["real"],
         "SOME(count)": "((count) > 0 ? (count) : 1)",
         "ROOT": "sqrtf" if precision == "single" else "sqrt",
+        "FABS": "fabsf" if precision == "single" else "fabs",
         "HALF": "((DESIGNS_REAL) 0.5)",
         "SIXTH": "((DESIGNS_REAL) 1/6)",
-        "LEAP": f"((DESIGNS_REAL) {LEAP:.17g})",
-        "CLOSE": f"((DESIGNS_REAL) {8 * float(numbers.eps):.17g})",
-        "LARGEST": f"((DESIGNS_REAL) {float(numbers.max):.17g})",
+        "LEAP": _real(LEAP),
+        "CLOSE": _real(8 * float(numbers.eps)),
+        "LARGEST": _real(float(numbers.max)),
+        "LEAST": _real(float(numbers.tiny)),
         **{name.upper(): sizes[name] for name in ("nt", "np", "nz", "columns", "constants")},
         "PLACE": sizes["nt"] + sizes["nc"] + 2 * sizes["nd"],
         "INPUTS": sizes["nt"] + sizes["nc"] + 2 * sizes["nd"] + sizes["nz"],
         "MATTER": max(1, plan.matter.size1_out(0)),
         "MARGINS": plan.margins,
         "POSITIVE": plan.positive,
-        "PLAIN": plain,
         "QUANTITIES": plain + 3 * links,
-        "PLACES": 3 * links,
-        "CHECKED": plain + 6 * links,
+        "CURVES": curves,
+        "PLACES": plan.places,
+        "CHECKED": curves + plan.places,
+        "WATCHES": len(plan.watches),
+        "OUTPUTS": sizes["columns"] - len(plan.watches),
+        "KNOTS": len(plan.knots),
+        "AT_BASE": -1,
+        "AT_TIP": -2,
+        "AT_OFF": -3,
         "CHECKS": checks,
         "DOUBTS": len(plan.doubts),
         "UNITS": max(plan.units) + 1,
         "EFFORTS": len(plan.efforts),
-        "NEAR": f"((DESIGNS_REAL) {plan.near:.17g})",
+        "NEAR": _real(plan.near),
         "INSIDE": INSIDE,
         "ROUNDS": ROUNDS,
-        "ROUNDING": f"((DESIGNS_REAL) {ROUNDING[precision]:.17g})",
-        "BESIDE": f"((DESIGNS_REAL) {_BESIDE:.17g})",
-        "NOTHING": f"((DESIGNS_REAL) {NOTHING:.17g})",
-        "POLE": f"((DESIGNS_REAL) {POLE:.17g})",
-        "CUT_ROUNDS": _CUTS[precision],
-        "CLOSEST": f"{_CLOSEST:.17g}",
-        "SPACING": f"{4 * float(np.finfo(float).eps):.17g}",
+        **{name: _real(value) for name, value in _numbers(precision).items()},
+        "INNER": summits.INNER,
+        "STRIDE": STRIDE,
+        "DEEPEST": DEEPEST[precision],
+        "PANELS": summits.PANELS,
+        "SPACING": f"{summits.SPACING:.17g}",
+        "RATE": f"{between.RATE:.17g}",
+        **{f"IS_{kind.name}": int(kind) for kind in Kind},
         f"FOLLOW{loops}": f"{FOLLOW}{loops}" if stages.loops else "((void) 0)",
         f"BEGIN{loops}": f"{BEGIN}{loops}" if stages.loops and newton is not None else "((void) 0)",
         **{f"IS_{kind}": k for k, kind in enumerate(CHECKS)},
         **plan.statuses,
     }
+
+
+def _numbers(precision: Precision) -> dict[str, float]:
+    """What the search takes for small, and for far."""
+    return {
+        "ROUNDING": ROUNDING[precision],
+        "NOISE": NOISE[precision],
+        "LAST": _LAST[precision],
+        "BESIDE": summits.BESIDE,
+        "NOTHING": summits.NOTHING,
+        "ENDLESS": summits.ENDLESS,
+        "RAGGED": summits.RAGGED,
+        "TURN": math.tau,
+        "DIP": between.DIP,
+        "CHANGE": between.CHANGE,
+        "RISE": between.RISE,
+        "NEGLIGIBLE": between.NEGLIGIBLE,
+    }
+
+
+def _real(value: float) -> str:
+    return f"((DESIGNS_REAL) {value:.17g})"
 
 
 def _defined(macros: Mapping[str, object]) -> str:
@@ -144,7 +221,9 @@ def _defined(macros: Mapping[str, object]) -> str:
 
 def _tables(plan: Plan) -> str:
     columns, kinds, limits = zip(*plan.checks, strict=True) if plan.checks else ((0,), ("CLOSURE",), (0.0,))
-    others = [(k, link.breaks) for k, link in enumerate(plan.links) if not _uniform(link)]
+    quantities, on, places = zip(*plan.curves, strict=True)
+    firsts = [quantities.index(q) for q in range(quantities[-1] + 1)] + [len(quantities)]
+    others = [(k, link.breaks) for k, link in enumerate(plan.links) if not link.uniform]
     breaks = [_table("DESIGNS_REAL", f"designs_breaks{k}", map(_number, ratios)) for k, ratios in others]
     return "".join(
         (
@@ -152,6 +231,14 @@ def _tables(plan: Plan) -> str:
             _table("int", "designs_kind", (f"DESIGNS_IS_{kind}" for kind in kinds)),
             _table("DESIGNS_REAL", "designs_limit", map(_number, limits)),
             _table("int", "designs_unit", plan.units),
+            _table("int", "designs_first", firsts),
+            _table("int", "designs_of", quantities),
+            _table("int", "designs_link_of", on),
+            _table("int", "designs_placed", (place if isinstance(place, int) else f"DESIGNS_AT_{place}" for place in places)),
+            _table("int", "designs_watch", (int(watch.kind) for watch in plan.watches or (Watch(Kind.RATE),))),
+            _table("int", "designs_watch_first", itertools.accumulate((len(watch.at) for watch in plan.watches), initial=0)),
+            _table("DESIGNS_REAL", "designs_watch_at", [_number(x) for watch in plan.watches for x in watch.at] or (0,)),
+            _table("double", "designs_knot", [_number(x) for x in plan.knots] or (0,)),
             _table("int", "designs_effort", plan.efforts or (0,)),
             _table("int", "designs_doubted", [check for check, _ in plan.doubts] or (0,)),
             _table("int", "designs_doubtful", [quantity for _, quantity in plan.doubts] or (0,)),
@@ -168,19 +255,21 @@ def _number(value: float) -> str:
     return f"(DESIGNS_REAL) {value:.17g}"
 
 
-def _quantities(plan: Plan) -> str:
-    """The function that makes quantities of columns."""
+def _curves(plan: Plan) -> str:
+    """The function that makes curves of columns."""
     lines = []
     for k, columns in enumerate(plan.quantities):
         squares = " + ".join(f"y[{c}]*y[{c}]" for c in columns)
         lines.append(f"  value[{k}] = {f'DESIGNS_ROOT({squares})' if len(columns) > 1 else f'y[{columns[0]}]'};\n")
-    first, offset = len(plan.quantities), plan.margins
+    value, place, offset = len(plan.quantities), 0, plan.margins
     for k, link in enumerate(plan.links):
-        lines.append(_along(k, link, f"value + {first + 3 * k}, place + {3 * k}", offset))
-        offset += 1 + (1 if _uniform(link) else (len(link.breaks) - 1) * (3 + link.terms))
+        lines.append(_along(k, link, f"value + {value}, place + {place}", offset))
+        value += sum(map(len, link.places))
+        place += link.rows
+        offset += 1 + (1 if link.uniform else (len(link.breaks) - 1) * (3 + link.terms))
     return f"""
-static void designs_quantities(const casadi_real* y, const casadi_real* matter, unsigned long long need, casadi_real* value,
-                               casadi_real* place) {{
+static void designs_curves(const casadi_real* y, const casadi_real* matter, unsigned long long need, casadi_real* value,
+                           casadi_real* place) {{
   (void) matter; (void) need; (void) place;
 {"".join(lines)}}}
 """
@@ -190,7 +279,7 @@ def _along(number: int, link: Along, into: str, offset: int) -> str:
     loads = [column for station in link.stations for column in station]
     taken = "".join(f"    law[{i}] = y[{column}];\n" for i, column in enumerate(link.law))
     taken += "".join(f"    loads[{i}] = y[{column}];\n" for i, column in enumerate(loads))
-    if _uniform(link):
+    if link.uniform:
         inner = f"    casadi_real law[7];\n{taken}    designs_uniform(matter + {offset}, law, {into});\n"
     else:
         sizes = f"{len(link.breaks) - 1}, {link.terms}, {len(link.stations)}"
@@ -201,13 +290,9 @@ def _along(number: int, link: Along, into: str, offset: int) -> str:
     return f"  if (need >> {min(number, 63)} & 1) {{\n{inner}  }}\n"
 
 
-def _uniform(link: Along) -> bool:
-    return not link.stations and len(link.breaks) == 2 and link.terms == 1
-
-
 def matter_of(link: Along, length: Any, cells: Sequence[Sequence[Any]]) -> list[Any]:
     """What ``sections.c`` takes for a link, of its length [m] and its cells [kg], filled up to as many terms: see there."""
-    if _uniform(link):
+    if link.uniform:
         return [length, cells[0][0]]
     beyond: tuple[Any, Any, Any] = (0.0, 0.0, 0.0)
     found: list[list[Any]] = []

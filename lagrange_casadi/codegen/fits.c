@@ -3,7 +3,11 @@
 /* What a polynomial may miss, of its curve, in its middle and near its ends: where it misses more, its slope may be off by other things
    as well. */
 #define DESIGNS_TRUST ((designs_real) 1e-5)
-#define DESIGNS_TRUST_ASIDE ((designs_real) 1e-7)
+#define DESIGNS_TRUST_ASIDE ((designs_real) 1e-6)
+/* Of its curve: how large the sixth difference of a polynomial may be that is believed. */
+#define DESIGNS_ROUGH ((designs_real) 0.1)
+/* How far from a kink, in steps, both its sides are looked at. */
+#define DESIGNS_ASIDE ((designs_real) 1e-2)
 
 /* Seven values at equal steps, where to begin, and bounds, in steps from the middle one; then what a polynomial through them says. */
 typedef struct {
@@ -11,13 +15,15 @@ typedef struct {
   designs_real size[LANES], slope[LANES], curve[LANES], steep[LANES], rough[LANES];
 } designs_fit;
 
-/* Where to look next for a summit, and what is expected there: its size, and the size's slope and curve by steps of time. What a
-   polynomial misses there bends its slope by steep times that; its sixth difference tells how rough it is. */
+/* A value of a panel beside which a curve may rise: where to look, and what is expected there: its size, and the size's slope and
+   curve by steps of time. What a polynomial misses there bends its slope by steep times that; its sixth difference tells how rough it
+   is. kink_t and kink_size are the times at which to look for a kink, if any, and the sizes expected there. */
 typedef struct {
-  int summit, last;
-  double t, step;
-  designs_real size, slope, curve, steep, rough, trust, found, place;
-} designs_look;
+  int curve, closed, again, kinked;
+  casadi_int at;
+  double t, kink_t[3];
+  designs_real sign, size, slope, curve_there, steep, rough, trust, kink_size[3];
+} designs_summit;
 
 static void designs_solve(designs_fit* fit) {
   casadi_real y[DESIGNS_FIT], a[DESIGNS_FIT], d[4], o[4], x, low, high, slope, curve, square;
@@ -57,7 +63,12 @@ static void designs_solve(designs_fit* fit) {
   memcpy(fit->rough, y + 2, sizeof x);
 }
 
-/* Begin at value j of seven, or of as many as there are, of which the first of the seven is told; an end keeps a little inside. */
+/* The first of seven values around value j of count, as far in the middle as there are. */
+static casadi_int designs_window(casadi_int j, casadi_int count) {
+  return j < 3 ? 0 : j > count - 4 ? count - DESIGNS_FIT : j - 3;
+}
+
+/* Begin at value j of count, around which the first of the seven is told; an end keeps a little inside. */
 static void designs_begin(designs_fit* fit, int lane, casadi_int j, casadi_int first, casadi_int count) {
   const designs_real from = (designs_real) (j - first - 3), off = (designs_real) 1e-5;
   fit->x[lane] = from;
@@ -65,40 +76,32 @@ static void designs_begin(designs_fit* fit, int lane, casadi_int j, casadi_int f
   fit->high[lane] = j == count - 1 ? from - off : from + 1;
 }
 
-static casadi_int designs_window(casadi_int j, casadi_int count) {
-  return j < 3 ? 0 : j > count - 4 ? count - DESIGNS_FIT : j - 3;
-}
-
-static void designs_from_fit(const designs_fit* fit, int lane, int summit, double start, double step, designs_look* look) {
-  look->summit = summit;
-  look->last = 0;
-  look->t = start + step*(double) (fit->x[lane] + 3);
-  look->step = step;
-  look->size = fit->size[lane];
-  look->slope = fit->slope[lane];
-  look->curve = fit->curve[lane];
-  look->steep = fit->steep[lane];
-  look->rough = fit->rough[lane];
-  look->trust = fit->x[lane] > -2 && fit->x[lane] < 2 ? DESIGNS_TRUST : DESIGNS_TRUST_ASIDE;
-  look->found = 0;
-}
-
-/* Where two parabolas through three values on either side of value j meet, in steps from it: a kink, if they are steep there. */
-static int designs_kink(const designs_real* y, designs_real* x, designs_real* size) {
-  const designs_real a1 = y[-1] - y[-2], a2 = (y[-1] - 2*y[-2] + y[-3])/2, b1 = y[1] - y[2], b2 = (y[1] - 2*y[2] + y[3])/2;
+/* Where two parabolas through three sizes on either side of value j meet in a tip, if they do, and their sizes there; and a little
+   before it and after it, for only there does each show what it is worth. */
+static void designs_kink(const designs_real* row, designs_summit* summit, double t, double step) {
+  const designs_real s = summit->sign;
+  const designs_real a1 = s*(row[-1] - row[-2]), a2 = s*(row[-1] - 2*row[-2] + row[-3])/2;
+  const designs_real b1 = s*(row[1] - row[2]), b2 = s*(row[1] - 2*row[2] + row[3])/2;
   const designs_real bend = 2*((a2 < 0 ? -a2 : a2) + (b2 < 0 ? -b2 : b2));
-  designs_real left, right, up, down, at = 0;
-  int trial;
+  designs_real left, right, up, down, x = 0;
+  int trial, k;
+  summit->kinked = 0;
+  if (!(a1 + (a2 < 0 ? a2 : 5*a2) > bend && b1 + (b2 < 0 ? b2 : 5*b2) > bend)) return;
   for (trial = 0;; ++trial) {
-    left = y[-1] + (at + 1)*(a1 + (at + 2)*a2);
-    right = y[1] + (1 - at)*(b1 + (2 - at)*b2);
-    up = a1 + (2*at + 3)*a2;
-    down = b1 + (3 - 2*at)*b2;
+    left = s*row[-1] + (x + 1)*(a1 + (x + 2)*a2);
+    right = s*row[1] + (1 - x)*(b1 + (2 - x)*b2);
+    up = a1 + (2*x + 3)*a2;
+    down = b1 + (3 - 2*x)*b2;
+    if (!(up > 0 && down > 0)) return;
     if (trial == 4) break;
-    at -= (left - right)/(up + down);
-    at = at > -1 ? (at < 1 ? at : 1) : -1;
+    x -= (left - right)/(up + down);
+    x = x > -1 ? (x < 1 ? x : 1) : -1;
   }
-  *x = at;
-  *size = left;
-  return up > bend && down > bend;
+  if (!(up > bend && down > bend && x > -1 && x < 1 && left >= s*row[0])) return;
+  summit->kinked = 1;
+  for (k = 0; k < 3; ++k) {
+    const designs_real at = k == 0 ? x : k == 1 ? x - DESIGNS_ASIDE : x + DESIGNS_ASIDE;
+    summit->kink_t[k] = t + step*(double) at;
+    summit->kink_size[k] = k < 2 ? s*row[-1] + (at + 1)*(a1 + (at + 2)*a2) : s*row[1] + (1 - at)*(b1 + (2 - at)*b2);
+  }
 }

@@ -4,13 +4,28 @@
    designs_columns, designs_quantities, tables, and sizes as macros. */
 typedef DESIGNS_REAL designs_real;
 
+/* The largest size of a quantity that is known, and at the instants; and the first that is as large but for rounding: its size, with
+   its sign, its time and its ratio xi/l. going is its size where it grows on and no end of that is found. What equilibrium leaves
+   open is not searched. */
 typedef struct {
-  casadi_int n, stride;
+  double t;
+  designs_real best, rounding, limit, sampled, size, place, sign, going;
+  int open;
+} designs_peak;
+
+typedef struct {
+  casadi_int n, stride, left, hidden;
   const double* t;
   const designs_real* p;
-  designs_real *times, *rows, *z;
-  int* status;
+  designs_real *times, *rows, *z, *inner, *scale;
+  designs_peak* peaks;
+  double half;
+  int *status, untold;
+  const signed char* bent;
+  signed char zigzags[DESIGNS_CURVES];
+  signed char* hiding;
   casadi_real parameters[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], constants[DESIGNS_SOME(DESIGNS_CONSTANTS)], matter[DESIGNS_MATTER];
+  casadi_real most[DESIGNS_CURVES];
 } designs_now;
 
 static designs_real designs_lane(const casadi_real* pack, int lane) {
@@ -44,28 +59,36 @@ static void designs_at(const designs_now* now, const double* t, const casadi_int
   designs_columns(now->parameters, now->constants, now->p, at, y);
 }
 
-/* All instants, as rows of quantities, of their places along links, of what is checked, and of a sum that is finite if all is. */
-static void designs_sample(const designs_now* now, double* history) {
-  casadi_real at[DESIGNS_INPUTS], y[DESIGNS_COLUMNS], value[DESIGNS_QUANTITIES], place[DESIGNS_SOME(DESIGNS_PLACES)], sum[4];
+/* All instants, as rows of curves, of their places along links, of what is checked, of a sum that is finite if all is, and of what is
+   watched. */
+static void designs_sample(designs_now* now, double* history) {
+  casadi_real at[DESIGNS_INPUTS], y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)], sum[4];
   casadi_int i, j;
   int k;
+  for (k = 0; k < DESIGNS_CURVES; ++k) now->most[k] = 0;
   for (i = 0; i < now->n; i += LANES) {
     for (k = 0; k < DESIGNS_NT; ++k) memcpy(at + k, now->times + k*now->stride + i, sizeof *at);
     for (k = 0; k < DESIGNS_NZ; ++k) memcpy(at + DESIGNS_PLACE + k, now->z + k*now->stride + i, sizeof *at);
     designs_columns(now->parameters, now->constants, now->p, at, y);
-    designs_quantities(y, now->matter, ~0, value, place);
-    for (k = 0; k < DESIGNS_QUANTITIES; ++k) memcpy(designs_row(now, k) + i, value + k, sizeof *value);
-    for (k = 0; k < DESIGNS_PLACES; ++k) memcpy(designs_row(now, DESIGNS_QUANTITIES + k) + i, place + k, sizeof *place);
+    designs_curves(y, now->matter, ~0ull, value, place);
+    for (k = 0; k < DESIGNS_CURVES; ++k) {
+      memcpy(designs_row(now, k) + i, value + k, sizeof *value);
+      now->most[k] = designs_larger(now->most[k], designs_size(value[k]));
+    }
+    for (k = 0; k < DESIGNS_PLACES; ++k) memcpy(designs_row(now, DESIGNS_CURVES + k) + i, place + k, sizeof *place);
     for (k = 0; k < DESIGNS_CHECKS; ++k) memcpy(designs_row(now, DESIGNS_CHECKED + k) + i, y + designs_checked[k], sizeof *y);
     for (k = 0; k < 4; ++k) sum[k] = 0;
-    for (k = 0; k + 4 <= DESIGNS_COLUMNS; k += 4) {
+    for (k = 0; k + 4 <= DESIGNS_OUTPUTS; k += 4) {
       for (j = 0; j < 4; ++j) sum[j] = sum[j] + y[k + j];
     }
-    for (; k < DESIGNS_COLUMNS; ++k) sum[0] = sum[0] + y[k];
+    for (; k < DESIGNS_OUTPUTS; ++k) sum[0] = sum[0] + y[k];
     sum[0] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
     memcpy(designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS) + i, sum, sizeof *sum);
+    for (k = 0; k < DESIGNS_WATCHES; ++k) {
+      memcpy(designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS + 1 + k) + i, y + DESIGNS_OUTPUTS + k, sizeof *y);
+    }
     if (history) {
-      for (k = 0; k < DESIGNS_COLUMNS; ++k) {
+      for (k = 0; k < DESIGNS_OUTPUTS; ++k) {
         for (j = 0; j < LANES && i + j < now->n; ++j) history[k*now->n + i + j] = designs_lane(y + k, (int) j);
       }
     }

@@ -77,9 +77,17 @@ LANES_INLINE lanes_pack operator*(lanes_pack a, lanes_pack b) { return a.v * b.v
 LANES_INLINE lanes_pack operator/(lanes_pack a, lanes_pack b) { return a.v / b.v; }
 LANES_INLINE lanes_pack operator-(lanes_pack a) { return -a.v; }
 
-LANES_INLINE lanes_pack lanes_pick(lanes_mask where, lanes_pack a, lanes_pack b) {
+/* The bits of a where told, else those of b. */
+LANES_INLINE lanes_pack lanes_bits(lanes_mask where, lanes_pack a, lanes_pack b) {
   return (lanes_vector)((where & (lanes_mask)a.v) | (~where & (lanes_mask)b.v));
 }
+
+/* The lanes of a where told, else those of b; of a comparison gcc makes one instruction so, of the above three. */
+#ifdef __clang__
+LANES_INLINE lanes_pack lanes_pick(lanes_mask where, lanes_pack a, lanes_pack b) { return lanes_bits(where, a, b); }
+#else
+LANES_INLINE lanes_pack lanes_pick(lanes_mask where, lanes_pack a, lanes_pack b) { return (lanes_vector)(where ? a.v : b.v); }
+#endif
 
 /* As in C, a comparison is one or zero. */
 LANES_INLINE lanes_pack lanes_truth(lanes_mask where) { return lanes_pick(where, lanes_real(1), lanes_real(0)); }
@@ -101,27 +109,54 @@ LANES_INLINE lanes_real lanes_sign(lanes_real x) { return x < 0 ? -1 : x > 0 ? 1
 
 /* a where x < y, else b; and whether x < y in any lane. */
 LANES_INLINE lanes_pack lanes_less(lanes_pack x, lanes_pack y, lanes_pack a, lanes_pack b) { return lanes_pick(x.v < y.v, a, b); }
-LANES_INLINE int lanes_any_less(lanes_pack x, lanes_pack y) {
-  const lanes_mask where = x.v < y.v;
+/* Whether any lane of a comparison is true. */
+LANES_INLINE int lanes_any(lanes_mask where) {
 #if LANES_BYTES == 64
-  typedef long long half __attribute__((vector_size(32)));
-  half halves[2];
+  typedef long long lanes_half __attribute__((vector_size(32)));
+  lanes_half halves[2];
   memcpy(halves, &where, 64);
   halves[0] |= halves[1];
 #else
   const lanes_mask* halves = &where;
 #endif
-  long long words[LANES_BYTES > 32 ? 4 : LANES_BYTES / 8], any = 0;
+#if LANES_BYTES >= 32
+  /* A lane of a comparison has all its bits set, or none: whether it holds floats or doubles, signs of floats tell. */
+  typedef float lanes_signs __attribute__((vector_size(32)));
+  return __builtin_ia32_movmskps256((lanes_signs)halves[0]) != 0;
+#else
+  long long words[LANES_BYTES / 8], any = 0;
   memcpy(words, halves, sizeof words);
   for (unsigned i = 0; i < sizeof words / 8; ++i) any |= words[i];
   return any != 0;
+#endif
 }
+LANES_INLINE int lanes_any_less(lanes_pack x, lanes_pack y) { return lanes_any(x.v < y.v); }
+LANES_INLINE int lanes_any_nan(lanes_pack x) { return lanes_any(x.v != x.v); }
+
+/* Each lane of two packs, one after the other, that is before one of the second, and after one of the first. */
+#ifdef __clang__
+LANES_INLINE lanes_pack lanes_window(lanes_pack a, lanes_pack b, int first) {
+  lanes_real both[2*LANES];
+  memcpy(both, &a, sizeof a);
+  memcpy(both + LANES, &b, sizeof b);
+  memcpy(&a, both + first, sizeof a);
+  return a;
+}
+#else
+LANES_INLINE lanes_pack lanes_window(lanes_pack a, lanes_pack b, int first) {
+  lanes_mask which;
+  for (int i = 0; i < LANES; ++i) which[i] = first + i;
+  return __builtin_shuffle(a.v, b.v, which);
+}
+#endif
+LANES_INLINE lanes_pack lanes_before(lanes_pack a, lanes_pack b) { return lanes_window(a, b, LANES - 1); }
+LANES_INLINE lanes_pack lanes_after(lanes_pack a, lanes_pack b) { return lanes_window(a, b, 1); }
 
 LANES_INLINE lanes_pack LANES_OF(fmin)(lanes_pack a, lanes_pack b) { return lanes_pick((a.v < b.v) | (b.v != b.v), a, b); }
 LANES_INLINE lanes_pack LANES_OF(fmax)(lanes_pack a, lanes_pack b) { return lanes_pick((a.v > b.v) | (b.v != b.v), a, b); }
 LANES_INLINE lanes_pack LANES_OF(copysign)(lanes_pack a, lanes_pack b) {
   const lanes_mask sign = (lanes_mask)lanes_pack(-lanes_real(0)).v;
-  return lanes_pick(sign, b, a);
+  return lanes_bits(sign, b, a);
 }
 LANES_INLINE lanes_pack LANES_OF(fabs)(lanes_pack a) { return LANES_OF(copysign)(a, lanes_real(1)); }
 

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..compensated import DTYPES, Precision
 from .compiler import Compiler, broken, loaded, statements
-from .designs import DESIGNS, Plan
+from .designs import DEEPEST, DESIGNS, STRIDE, Plan
 from .emit import EVALUATE, FOLLOW, LANES_PLACE
 
 Array = npt.NDArray[Any]
@@ -101,7 +102,8 @@ class DesignsLibrary:
     plan: Plan
     t: npt.NDArray[np.float64]
     guess: npt.NDArray[np.float64]
-    dtype: Any
+    bent: npt.NDArray[np.bool_]
+    precision: Precision
 
     def evaluate(self, p: npt.NDArray[np.float64], results: Sequence[npt.NDArray[Any] | None], threads: int = 1) -> None:
         """Fill ``results`` for designs ``p``, (n, parameters): as :data:`DESIGNS` wants them, None for no histories.
@@ -112,13 +114,16 @@ class DesignsLibrary:
         shares = max(1, min(threads, n // self.share))
         size = max(1, min(_LONGEST * self.share, -(-n // (_SPREAD * shares)) if shares > 1 else n))
         stride = (-(-self.t.size // _LINE) | 1) * _LINE + 2 * _LINE
+        inner = DEEPEST[self.precision] * self.plan.inner * STRIDE
+        bent = np.zeros(stride, np.int8)
+        bent[: self.bent.size] = self.bent
 
         def run(start: int) -> None:
-            room = np.zeros((self.plan.rows + self.guess.size + 2) * stride + _LINE, self.dtype)
+            room = np.zeros((self.plan.rows + self.guess.size + 2) * stride + inner + _LINE, DTYPES[self.precision])
             room = room[-room.ctypes.data // room.itemsize % _LINE :]
-            status = np.zeros(stride, np.int32)
+            status, hiding = np.zeros(stride, np.int32), np.zeros(2 * stride, np.int8)
             rows = [None if array is None else array[start : start + size] for array in results]
-            given = (self.t, p[start : start + size], self.guess, room, status, *rows)
+            given = (self.t, p[start : start + size], self.guess, bent, room, status, hiding, *rows)
             pointers = (None if array is None else array.ctypes.data for array in given)
             self.entry(min(size, n - start), self.t.size, stride, *pointers)
 
@@ -154,12 +159,16 @@ def load_designs(
     plan: Plan,
     t: npt.NDArray[np.float64],
     guess: npt.NDArray[np.float64],
-    dtype: Any,
+    bent: npt.NDArray[np.bool_],
+    precision: Precision,
 ) -> DesignsLibrary:
-    """The same of a file for many designs over instants ``t``, whose iterated loops begin from ``guess``."""
-    entry = _entry(_loaded(source, compiler, extra), compiler, DESIGNS, 3, 12)
+    """The same of a file for many designs over instants ``t``, whose iterated loops begin from ``guess``.
+
+    ``bent`` tells in which steps between the instants the motion bends more than they show.
+    """
+    entry = _entry(_loaded(source, compiler, extra), compiler, DESIGNS, 3, 14)
     share = max(1, _WORTH_A_THREAD // (statements(source) * t.size))
-    return DesignsLibrary(entry, (*compiler.flags(source), *extra), share, plan, t, guess, dtype)
+    return DesignsLibrary(entry, (*compiler.flags(source), *extra), share, plan, t, guess, bent, precision)
 
 
 def _loaded(source: str, compiler: Compiler, extra: tuple[str, ...]) -> ctypes.CDLL:

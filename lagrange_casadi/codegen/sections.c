@@ -1,38 +1,41 @@
-/* Where along a link its forces are largest in size, for a pack of instants: exactly, for they are polynomials between stations.
+/* The forces of a link as curves over time, for a pack of instants: among them are those that are largest in size along the link, for
+   the forces are polynomials between stations.
 
-   law holds n0, n1, n2, f0, f1, f2, m0; value and place become the three forces, with their signs, and the ratios u = xi/l. */
+   law holds n0, n1, n2, f0, f1, f2, m0. value becomes, of the axial force, the shear and the bending moment in turn, the force at the
+   base, at the tip, at each station as it is on the tip's side and on the base's, and where it turns between two stations, or next to
+   that: the bending moment where the shear rises through zero, then where it falls. place becomes the ratios u = xi/l of where the
+   forces turn, in that order, and of the stations. */
 #ifdef __cplusplus
 #define DESIGNS_INLINE LANES_INLINE
 #else
 #define DESIGNS_INLINE static inline
 #define lanes_less(x, y, a, b) ((x) < (y) ? (a) : (b))
 #define lanes_any_less(x, y) ((x) < (y))
+#define lanes_any_nan(x) ((x) != (x))
+#define lanes_before(x, y) (x)
+#define lanes_after(x, y) (y)
 #endif
 
-DESIGNS_INLINE casadi_real designs_size(casadi_real x) { return lanes_less(x, 0, -x, x); }
+DESIGNS_INLINE casadi_real designs_size(casadi_real x) { return DESIGNS_FABS(x); }
+
+DESIGNS_INLINE casadi_real designs_larger(casadi_real x, casadi_real y) { return lanes_less(x, y, y, x); }
 
 /* A ratio on the link; 0 for what is none. */
-DESIGNS_INLINE casadi_real designs_inside(casadi_real u) { return lanes_less(0, u, lanes_less(u, 1, u, 1), 0); }
-
-DESIGNS_INLINE void designs_take(casadi_real u, casadi_real x, casadi_real* value, casadi_real* place) {
-  const casadi_real before = designs_size(*value), now = designs_size(x);
-  *place = lanes_less(before, now, u, *place);
-  *value = lanes_less(before, now, x, *value);
-}
+DESIGNS_INLINE casadi_real designs_on_link(casadi_real u) { return lanes_less(0, u, lanes_less(u, 1, u, 1), 0); }
 
 /* Of a uniform link without stations, whose matter is its length and its mass. */
 DESIGNS_INLINE void designs_uniform(const casadi_real* matter, const casadi_real* law, casadi_real* value, casadi_real* place) {
   const casadi_real l = matter[0], m = matter[1];
-  casadi_real u, v, a, b, q, half, first, second;
+  casadi_real u, v, a, b, q, half, first, second, rising, falling;
   int k;
   for (k = 0; k < 2; ++k) {
     first = law[3*k + 1]*m;
     second = law[3*k + 2]*(DESIGNS_HALF*l*m);
-    value[k] = law[3*k] + (first + second);
-    place[k] = 0;
-    designs_take(1, law[3*k], value + k, place + k);
-    u = designs_inside(-law[3*k + 1]/(law[3*k + 2]*l));
-    designs_take(u, law[3*k] + (first + second*(1 + u))*(1 - u), value + k, place + k);
+    u = designs_on_link(-law[3*k + 1]/(law[3*k + 2]*l));
+    value[3*k] = law[3*k] + (first + second);
+    value[3*k + 1] = law[3*k];
+    value[3*k + 2] = law[3*k] + (first + second*(1 + u))*(1 - u);
+    place[k] = u;
   }
   /* With v = 1 - u the shear is f0 + b v + a v^2; the root that would cancel comes from the other one. */
   first = law[4]*m;
@@ -40,17 +43,20 @@ DESIGNS_INLINE void designs_uniform(const casadi_real* matter, const casadi_real
   half = DESIGNS_HALF*second;
   a = -half;
   b = first + second;
-  q = DESIGNS_ROOT(b*b - 4*a*law[3]);
+  q = b*b - 4*a*law[3];
+  q = DESIGNS_ROOT(lanes_less(q, 0, 0, q));
   q = -DESIGNS_HALF*(b + lanes_less(b, 0, -q, q));
+  rising = q/a;
+  falling = law[3]/q;
+  place[2] = designs_on_link(1 - lanes_less(b, 0, falling, rising));
+  place[3] = designs_on_link(1 - lanes_less(b, 0, rising, falling));
   first = DESIGNS_HALF*first;
   second = DESIGNS_SIXTH*second;
-  value[2] = law[6] + l*(law[3] + (first + half - second));
-  place[2] = 0;
-  designs_take(1, law[6], value + 2, place + 2);
+  value[6] = law[6] + l*(law[3] + (first + half - second));
+  value[7] = law[6];
   for (k = 0; k < 2; ++k) {
-    u = designs_inside(1 - (k == 0 ? q/a : law[3]/q));
-    v = 1 - u;
-    designs_take(u, law[6] + l*v*(law[3] + v*(first + half - second*v)), value + 2, place + 2);
+    v = 1 - place[2 + k];
+    value[8 + k] = law[6] + l*v*(law[3] + v*(first + half - second*v));
   }
 }
 
@@ -91,48 +97,55 @@ DESIGNS_INLINE casadi_real designs_shear(const designs_link* link, int cell, cas
   return law[3] + law[4]*tail[0] + law[5]*(link->matter[0]*(u*tail[0] + tail[1]));
 }
 
-/* Try all forces at a ratio, on both sides of a station that is there. */
-static inline void designs_consider(const designs_link* link, casadi_real u, casadi_real* value, casadi_real* place) {
+/* All forces at a ratio, but for what acts at stations. */
+static inline void designs_smooth(const designs_link* link, casadi_real u, casadi_real* force) {
   const casadi_real l = link->matter[0], *law = link->law;
-  casadi_real tail[3], other[3], smooth[3], sides[2][3];
-  int k, s, side;
+  casadi_real tail[3], other[3];
+  int k, s;
   designs_tails(link, 0, u, tail);
   for (k = 1; k < link->cells; ++k) {
     designs_tails(link, k, u, other);
     for (s = 0; s < 3; ++s) tail[s] = lanes_less(u, link->breaks[k], tail[s], other[s]);
   }
-  for (k = 0; k < 2; ++k) smooth[k] = law[3*k] + law[3*k + 1]*tail[0] + law[3*k + 2]*(l*(u*tail[0] + tail[1]));
-  smooth[2] = law[6] + law[3]*(l*(1 - u)) + law[4]*(l*tail[1]) + law[5]*(l*l*(u*tail[1] + tail[2]));
-  for (k = 0; k < 3; ++k) sides[0][k] = sides[1][k] = smooth[k];
+  for (k = 0; k < 2; ++k) force[k] = law[3*k] + law[3*k + 1]*tail[0] + law[3*k + 2]*(l*(u*tail[0] + tail[1]));
+  force[2] = law[6] + law[3]*(l*(1 - u)) + law[4]*(l*tail[1]) + law[5]*(l*l*(u*tail[1] + tail[2]));
+}
+
+/* And what a load does at a ratio, if it is seen there. */
+static inline void designs_act(const designs_link* link, int station, casadi_real u, casadi_real seen, casadi_real* force) {
+  const casadi_real* load = link->loads + 4*station;
+  force[0] = force[0] + lanes_less(0, seen, load[1], 0);
+  force[1] = force[1] + lanes_less(0, seen, load[2], 0);
+  force[2] = force[2] + lanes_less(0, seen, load[3] + load[2]*(link->matter[0]*(load[0] - u)), 0);
+}
+
+/* All forces at a ratio, as they are on the tip's side of a station that is there, and on the base's. */
+static inline void designs_beside(const designs_link* link, casadi_real u, casadi_real sides[2][3]) {
+  casadi_real station, at_tip;
+  int k, s;
+  designs_smooth(link, u, sides[0]);
+  for (k = 0; k < 3; ++k) sides[1][k] = sides[0][k];
   for (s = 0; s < link->stations; ++s) {
-    const casadi_real *load = link->loads + 4*s, station = load[0];
-    const casadi_real at_tip = lanes_less(u, 1, 0, lanes_less(station, 1, 0, 1));
-    casadi_real acting[3], seen[2];
-    acting[0] = load[1];
-    acting[1] = load[2];
-    acting[2] = load[3] + load[2]*(l*(station - u));
-    seen[0] = lanes_less(u, station, 1, at_tip);
-    seen[1] = lanes_less(station, u, at_tip, 1);
-    for (side = 0; side < 2; ++side) {
-      for (k = 0; k < 3; ++k) sides[side][k] = sides[side][k] + lanes_less(0, seen[side], acting[k], 0);
-    }
-  }
-  for (side = 0; side < 2; ++side) {
-    for (k = 0; k < 3; ++k) designs_take(u, sides[side][k], value + k, place + k);
+    station = link->loads[4*s];
+    at_tip = lanes_less(u, 1, 0, lanes_less(station, 1, 0, 1));
+    designs_act(link, s, u, lanes_less(u, station, 1, at_tip), sides[0]);
+    designs_act(link, s, u, lanes_less(station, u, at_tip, 1), sides[1]);
   }
 }
 
-/* The zero of the shear in a part of a cell where it is monotonic, by Newton's method kept within what encloses it; whether any
-   instant has one. */
-static inline int designs_zero(const designs_link* link, int cell, casadi_real low, casadi_real high, casadi_real* zero) {
-  const casadi_real *density = designs_cell(link, cell) + 3, *law = link->law, middle = DESIGNS_HALF*(low + high);
-  casadi_real acting = 0, u = middle, begin, end, now, next, slope, p;
-  int j, s, trial;
-  for (s = 0; s < link->stations; ++s) acting = acting + lanes_less(middle, link->loads[4*s], link->loads[4*s + 2], 0);
-  begin = lanes_less(designs_shear(link, cell, low) + acting, 0, -1, 1);
-  end = lanes_less(designs_shear(link, cell, high) + acting, 0, -1, 1);
-  high = lanes_less(begin*end, 0, high, low);
-  if (!lanes_any_less(low, high)) return 0;
+/* All forces at a ratio between two stations, of which the middle is told. */
+static inline void designs_within(const designs_link* link, casadi_real u, casadi_real middle, casadi_real* force) {
+  int s;
+  designs_smooth(link, u, force);
+  for (s = 0; s < link->stations; ++s) designs_act(link, s, u, lanes_less(middle, link->loads[4*s], 1, 0), force);
+}
+
+/* The zero of the shear in a part of a cell where it is monotonic and has one, by Newton's method kept within what encloses it. */
+static inline casadi_real designs_zero(const designs_link* link, int cell, casadi_real acting, casadi_real low, casadi_real high,
+                                       casadi_real begin) {
+  const casadi_real *density = designs_cell(link, cell) + 3, *law = link->law;
+  casadi_real u = DESIGNS_HALF*(low + high), now, next, slope, end, p;
+  int j, trial;
   for (trial = 0; trial < 60; ++trial) {
     now = designs_shear(link, cell, u) + acting;
     p = 0;
@@ -147,23 +160,53 @@ static inline int designs_zero(const designs_link* link, int cell, casadi_real l
     u = next;
     if (!lanes_any_less(DESIGNS_CLOSE, lanes_less(low, high, p, 0))) break;
   }
-  *zero = u;
-  return 1;
+  return u;
 }
 
-/* Of any link: its ends, its stations, where the first two forces turn, and where the shear is zero. */
+/* The zero of the shear where it is monotonic, or else the end at which it is nearer to zero. Of the shear become at both ends. */
+static inline casadi_real designs_zero_between(const designs_link* link, casadi_real acting, casadi_real low, casadi_real high,
+                                               casadi_real* first, casadi_real* last) {
+  casadi_real zero, from, to, begin, end, ends[2];
+  int k, j;
+  for (j = 0; j < 2; ++j) {
+    const casadi_real u = j ? high : low;
+    ends[j] = designs_shear(link, 0, u);
+    for (k = 1; k < link->cells; ++k) ends[j] = lanes_less(u, link->breaks[k], ends[j], designs_shear(link, k, u));
+    ends[j] = ends[j] + acting;
+  }
+  *first = ends[0];
+  *last = ends[1];
+  zero = lanes_less(designs_size(ends[1]), designs_size(ends[0]), high, low);
+  for (k = 0; k < link->cells; ++k) {
+    from = link->breaks[k];
+    to = link->breaks[k + 1];
+    from = lanes_less(from, low, low, from);
+    to = lanes_less(high, to, high, to);
+    to = lanes_less(from, to, to, from);
+    begin = lanes_less(designs_shear(link, k, from) + acting, 0, -1, 1);
+    end = lanes_less(designs_shear(link, k, to) + acting, 0, -1, 1)*begin;
+    to = lanes_less(end, 0, to, from);
+    if (!lanes_any_less(from, to)) continue;
+    zero = lanes_less(from, to, designs_zero(link, k, acting, from, to, begin), zero);
+  }
+  return zero;
+}
+
+/* Of any link. */
 static inline void designs_along(const designs_link* link, casadi_real* marks, casadi_real* value, casadi_real* place) {
   const casadi_real *law = link->law, l = link->matter[0];
-  const int count = link->stations + 1;
-  casadi_real low, high, swap, u;
-  int k, s;
-  for (k = 0; k < 3; ++k) value[k] = place[k] = 0;
-  designs_consider(link, 0, value, place);
-  designs_consider(link, 1, value, place);
-  designs_consider(link, designs_inside(-law[1]/(law[2]*l)), value, place);
-  marks[0] = designs_inside(-law[4]/(law[5]*l));
-  for (s = 0; s < link->stations; ++s) marks[s + 1] = designs_inside(link->loads[4*s]);
-  for (s = 0; s < count; ++s) designs_consider(link, marks[s], value, place);
+  const int count = link->stations, parts = count + 1, many = 3 + 3*count;
+  casadi_real *bending = value + 2*many, sides[2][3], force[3], swap, low, high, middle, acting, zero[2], ends[4], turn[2], u, rises;
+  int k, j, s;
+  for (s = -2; s < count; ++s) {
+    u = s == -2 ? 0 : 1;
+    if (s >= 0) u = marks[s] = place[4*parts + s] = designs_on_link(link->loads[4*s]);
+    designs_beside(link, u, sides);
+    for (k = 0; k < 3; ++k) {
+      for (j = 0; j < (s < 0 ? 1 : 2); ++j) value[k*many + (s < 0 ? s + 2 : 2 + 2*s + j)] = sides[j][k];
+    }
+  }
+  for (k = 0; k < 2; ++k) turn[k] = designs_on_link(-law[3*k + 1]/(law[3*k + 2]*l));
   for (s = count - 1; s > 0; --s) {
     for (k = 0; k < s; ++k) {
       swap = lanes_less(marks[k + 1], marks[k], marks[k + 1], marks[k]);
@@ -171,14 +214,26 @@ static inline void designs_along(const designs_link* link, casadi_real* marks, c
       marks[k] = swap;
     }
   }
-  for (k = 0; k < link->cells; ++k) {
-    for (s = 0; s <= count; ++s) {
-      low = link->breaks[k];
-      high = link->breaks[k + 1];
-      if (s > 0) low = lanes_less(low, marks[s - 1], marks[s - 1], low);
-      if (s < count) high = lanes_less(marks[s], high, marks[s], high);
-      if (!lanes_any_less(low, high)) continue;
-      if (designs_zero(link, k, low, lanes_less(low, high, high, low), &u)) designs_consider(link, u, value, place);
+  for (s = 0; s < parts; ++s) {
+    low = 0;
+    high = 1;
+    if (s > 0) low = marks[s - 1];
+    if (s < count) high = marks[s];
+    middle = DESIGNS_HALF*(low + high);
+    acting = 0;
+    for (k = 0; k < count; ++k) acting = acting + lanes_less(middle, link->loads[4*k], link->loads[4*k + 2], 0);
+    for (k = 0; k < 2; ++k) {
+      u = place[k*parts + s] = lanes_less(turn[k], low, low, lanes_less(high, turn[k], high, turn[k]));
+      designs_within(link, u, middle, force);
+      value[k*many + 2 + 2*count + s] = force[k];
+    }
+    zero[0] = designs_zero_between(link, acting, low, u, ends, ends + 1);
+    zero[1] = designs_zero_between(link, acting, u, high, ends + 2, ends + 3);
+    rises = lanes_less(ends[0], ends[1], 1, lanes_less(ends[1], ends[0], 0, lanes_less(ends[3], ends[1], 1, 0)));
+    for (k = 0; k < 2; ++k) {
+      u = place[(2 + k)*parts + s] = lanes_less(0, rises, zero[k], zero[1 - k]);
+      designs_within(link, u, middle, force);
+      bending[2 + 2*count + k*parts + s] = force[2];
     }
   }
 }

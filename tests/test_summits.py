@@ -1,0 +1,170 @@
+"""The search for peaks between instants, on signals of every kind: by CasADi's virtual machine, in C, and in both precisions."""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from test_peaks import pendulum
+
+from lagrange_casadi import evaluate, motion
+from lagrange_casadi.designs import DesignEngine
+from lagrange_casadi.peaks import refine
+from lagrange_casadi.refusal import Status
+from lagrange_casadi.rung import Rung
+
+STEP = 0.04
+GRID = (0.0, 2.0, 51)
+NAME = "load:push:fx"
+RUNGS = [(Rung("lanes"), 1e-11), (Rung("vm"), 1e-11)]
+OTHERS = [(Rung("c"), 1e-11), (Rung("lanes", "single"), 4e-6), (Rung("c", "single"), 4e-6)]
+
+
+def signal(law, grid=GRID):
+    """A scene of which one quantity is a function of time."""
+    return pendulum(motion.polynomial(0.0, 1.0), load=law, t=grid, wanted=["load:push"])
+
+
+def true(law, grid=GRID, places=()):
+    """The largest size, by 200 001 times and by some places of which it is known that they matter."""
+    x = ca.SX.sym("x")
+    times = np.append(np.linspace(*grid[:2], 200_001), places)
+    values = np.abs(ca.Function("law", [x], [law(x)])(times[None]).full())
+    return np.nanmax(values[np.isfinite(values)])
+
+
+def searched(scene, rungs=RUNGS):
+    """What each way says of the one quantity: its tolerance, and its value, NaN where it is not told."""
+    solution = evaluate(scene, backend="vm", certificate=False)
+    (peak,) = refine(scene, solution, [NAME])
+    assert not abs(peak.value) < abs(solution.peak(NAME).value)
+    yield 1e-11, peak.value
+    for rung, tolerance in rungs:
+        designs = DesignEngine.of(scene, rung=rung)
+        outcome = designs.evaluate(np.zeros((1, 0)))
+        value = outcome.value[0, designs.quantities.index(NAME)]
+        assert (outcome.status[0] == Status.PEAK_NOT_TOLD) == math.isnan(value)
+        yield tolerance, value
+
+
+def bell(x, place, width):
+    return ca.exp(-(((x - place) / width) ** 2))
+
+
+def tent(x, place, width):
+    return ca.fmax(0.0, 1 - ca.fabs(x - place) / width)
+
+
+SIGNALS = {
+    "in the first interval": (lambda x: bell(x, 0.3 * STEP, 0.6 * STEP) + 0.5 * ca.cos(x), []),
+    "in the last interval": (lambda x: bell(x, 2 - 0.3 * STEP, 0.6 * STEP) + 0.5 * ca.cos(x), []),
+    "at an end": (lambda x: ca.sqrt(x), []),
+    "a spike of a tenth of a step": (lambda x: 3 * bell(x, 1.013, 0.1 * STEP) + 0.5 * ca.cos(x), [1.013]),
+    "one downwards, of a hundredth": (lambda x: -3 * bell(x, 1.013, 0.01 * STEP) + 0.5 * ca.cos(x), [1.013]),
+    "beside ordinary data": (lambda x: 1 / (1 + ((x - 0.513) / (0.05 * STEP)) ** 2) + ca.sin(7 * x), [0.513]),
+    "forty equal summits": (lambda x: ca.sin(64 * x), []),
+    "as fast as the instants": (lambda x: ca.sin(50 * math.pi * x + 0.3) * (1 + 1e-3 * ca.sin(3.3 * x)), []),
+    "ever faster": (lambda x: x * ca.sin(30 * x * x), []),
+    "a plateau": (lambda x: ca.fmin(1.0, 3 * ca.sin(x)), []),
+    "a kink": (lambda x: 1 - ca.fabs(x - 1.013), [1.013]),
+    "a narrow kink": (lambda x: tent(x, 1.013, 0.1 * STEP) + 0.2 * ca.cos(x), [1.013]),
+    "two kinks between two instants": (lambda x: tent(x, 1.013, 4e-3) + 1.1 * tent(x, 1.023, 4e-3) + 0.2 * x, [1.013, 1.023]),
+    "a jump": (lambda x: x * (x < 1.0137), [np.nextafter(1.0137, 0)]),
+    "two jumps between two instants": (lambda x: (x > 1.013) * (x < 1.0133) + 0.1 * ca.cos(x), []),
+    "the sign of a rate": (lambda x: (1 + 0.3 * x) * ca.sign(ca.sin(5 * x - 1.3)), []),
+    "steps": (lambda x: ca.floor(30 * x) * (1 - 0.03 * x) - ca.floor(20 * x), []),
+    "nearly a pole": (lambda x: 1 / ((x - 1.0137) ** 2 + 1e-6), [1.0137]),
+    "nearly one, on both sides": (lambda x: (x - 1.0137) / ((x - 1.0137) ** 2 + 1e-5) + 0.2 * ca.cos(x), []),
+    "a steep change and back": (lambda x: ca.tanh((x - 1.013) / 1e-3) - ca.tanh((x - 1.0135) / 1e-3) + 0.2 * ca.cos(x), []),
+    "a high power": (lambda x: ca.cos(x - 1.0137) ** 1000 + 0.2 * ca.cos(x), [1.0137]),
+    "constant": (lambda x: 3.0 + 0 * x, []),
+    "nothing": (lambda x: 0 * x, []),
+}
+
+
+def assert_found(name, rungs):
+    law, places = SIGNALS[name]
+    largest = true(law, places=places)
+    for tolerance, value in searched(signal(law), rungs):
+        assert abs(value) >= largest * (1 - tolerance)
+        assert abs(value) <= largest * (1 + max(1e-6, tolerance))
+
+
+@pytest.mark.parametrize("name", SIGNALS)
+def test_the_largest_is_found(name):
+    assert_found(name, RUNGS)
+
+
+@pytest.mark.parametrize("name", ["in the first interval", "a spike of a tenth of a step", "a kink", "a jump", "a plateau"])
+def test_other_rungs_search_alike(name):
+    """Singles come in other packs: a jump between the lanes of one must be seen too."""
+    assert_found(name, OTHERS)
+
+
+@pytest.mark.parametrize("count", [211, 1500])
+def test_a_hundred_summits(count):
+    """All but as high as each other; of few instants each has at most two."""
+
+    def law(x):
+        return ca.sin(100 * math.pi * x) * (1 + 1e-3 * ca.sin(3.3 * x))
+
+    largest = true(law)
+    for tolerance, value in searched(signal(law, (0.0, 2.0, count))):
+        assert abs(value) == pytest.approx(largest, rel=max(1e-8, tolerance))
+        assert abs(value) >= largest * (1 - tolerance)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 7, 8, 9])
+def test_few_instants(count):
+    """However few the instants are, the peak is that of all times between the first and the last."""
+
+    def law(x):
+        return ca.sin(3 * x) + 0.3 * ca.cos(8 * x)
+
+    grid = (0.0, 2.0, count) if count > 1 else (0.5, 0.5, 1)
+    largest = true(law, grid)
+    for tolerance, value in searched(signal(law, grid)):
+        assert abs(value) == pytest.approx(largest, rel=max(1e-8, tolerance))
+
+
+@pytest.mark.parametrize("law", [lambda x: 1 / (x - 1.0137), lambda x: ca.tan(x), lambda x: 1 / ca.sqrt(ca.fabs(x - 1.0137))])
+def test_poles_are_infinite(law):
+    assert all(math.isinf(value) for _, value in searched(signal(law)))
+
+
+def test_what_grows_without_an_end_too_slowly_is_not_told():
+    """A logarithm has no bound, and no number of times shows that."""
+    law = lambda x: ca.log(ca.fabs(x - 1.0137))  # noqa: E731
+    assert all(math.isnan(value) for _, value in searched(signal(law)))
+
+
+def test_what_takes_too_many_times_is_not_told():
+    """Of 200 000 teeth each is a little larger than the one before; that of the instants must not pass for the peak."""
+    law = lambda x: ca.fmod(x, 1e-5) * (1 + x)  # noqa: E731
+    scene = signal(law)
+    (peak,) = refine(scene, evaluate(scene, backend="vm", certificate=False), [NAME])
+    assert math.isnan(peak.value)
+    assert 0 < peak.least < 3e-5
+    assert all(math.isnan(value) for _, value in searched(scene))
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    st.lists(st.tuples(st.floats(-1, 1), st.floats(0, 60), st.floats(0, 6)), min_size=1, max_size=4),
+    st.tuples(st.floats(0, 2), st.floats(1e-4, 1.0), st.floats(-3, 3)),
+    st.integers(2, 60),
+)
+def test_any_signal(waves, hump, count):
+    """Waves and a bell of any width, at any number of instants: no peak is short, but it may say that it cannot be told."""
+    place, width, height = hump
+
+    def law(x):
+        return sum(a * ca.sin(w * x + phase) for a, w, phase in waves) + height * bell(x, place, width)
+
+    scene = signal(law, (0.0, 2.0, count))
+    (peak,) = refine(scene, evaluate(scene, backend="vm", certificate=False), [NAME])
+    largest = true(law, places=[place])
+    assert abs(peak.value) >= largest * (1 - 1e-11) - 1e-13
+    assert abs(peak.value) <= largest * (1 + 1e-3) + 1e-13
