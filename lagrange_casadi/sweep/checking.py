@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from ..errors import one_line
+from ..refusal import Status
 from ..untrusted import check_chunks, told_as
 from .axes import counted, grouped, size_of
 from .blocks import slabs
@@ -22,7 +23,7 @@ def check_sweep(path: str | Path) -> list[str]:
     """What is wrong with a file, one line each; nothing where it is whole and consistent.
 
     Every dataset is read, so every checksum is verified; every axis must have its scale, and where a design has a result, and only
-    there, its columns must have numbers, but for what equilibrium leaves open.
+    there, its columns must have numbers, but for what equilibrium leaves open; and no design may fail its certificate.
 
     Raises :class:`StoreError` for what is not a whole file of a sweep, :class:`PathError` for none.
     """
@@ -61,17 +62,20 @@ def _check_column(file: h5py.File, sweep: Sweep, kept: Kept) -> Iterator[str]:
             yield f"{kept.name}: axis {axis} has no scale {name}"
     check_chunks(dataset)
     dims = tuple(sweep.dimensions.values())
-    missing = surplus = unknown = 0
+    missing = surplus = unknown = wrong = 0
     for _, _, where in slabs(dims, dataset.chunks[: len(dims)]):
         values, states = np.asarray(dataset[where]), np.asarray(status[where])
         if kept.name == STATUS:
             unknown += int(np.sum(~np.isin(states, list(sweep.statuses))))
+            wrong += int(np.sum(states == Status.UNCERTIFIED))
             continue
         there = ~np.isnan(values).any(axis=tuple(range(states.ndim, values.ndim)))
         missing += int(np.sum(~there & (states == 0)))
         surplus += int(np.sum(there & (states != 0)))
     if unknown:
         yield f"{kept.name}: {unknown} of the designs have a status that is none"
+    if wrong:
+        yield f"{counted(wrong)}, of those that were looked at closely, without a certificate: others may be wrong as well"
     if missing and "missing" not in dataset.attrs and not _open(sweep, kept.name):
         yield f"{kept.name}: {missing} of the designs that have a result lack it"
     if surplus:
