@@ -16,7 +16,7 @@
    for: there NaN is not told from a number. Ranges "over the scene's motion" are what its author saw, no limits.
 
    In double precision; options of the export: (default). Its outputs are off by about 3e-15 of their largest values over the
-   scene's motion at most (section_rod_f0).
+   scene's motion at most (effort_O).
 
    Conventions: SI units; plane x-y; angles in rad, counter-clockwise; a link's axis e runs from its base (xi = 0) to its tip
    (xi = 1), n is 90 deg counter-clockwise of e; section forces are the action of the part towards the tip on the part towards
