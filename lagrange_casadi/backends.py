@@ -35,6 +35,9 @@ _NEEDS = {
 }
 _TRIED = "c++, g++, clang++, cc, gcc, clang, ziglang"
 _VM_BLOCK = 4096
+_FEWEST_STEPS, _MOST_STEPS = 50, 5000
+"""From the scene's start to an evaluation that begins elsewhere."""
+
 Built = TypeVar("Built")
 
 
@@ -89,14 +92,20 @@ def run(
 
 @functools.lru_cache(maxsize=256)
 def _begin(graph: SceneGraph, counted: bool, t: float, p: tuple[float, ...]) -> tuple[float, ...]:
-    """The iterated coordinates that the first instant begins from: closed there where steps are ``counted``."""
-    stages, values = plain(graph), np.array(p)
-    if graph.newton is None or stages.loops is None:
+    """The iterated coordinates that the first instant begins from: closed there where steps are ``counted``.
+
+    The motion is followed from the scene's own start, as far from which another branch may be nearer; by many steps, unless they
+    were too many.
+    """
+    if graph.newton is None:
         return ()
-    if not counted:
+    start, stop, count = graph.scene.t
+    if t == start and not counted:
         return graph.newton.guess
-    moment = stages.drive(t, values)[0].full().ravel()
-    return tuple(_iterate(graph, stages.loops, np.array(graph.newton.guess), moment, values, newton_rule("double", None))[0])
+    wanted = max(abs(t - start) / (stop - start) * (count - 1), _FEWEST_STEPS) if stop > start else math.inf
+    steps = math.ceil(wanted) if t != start and wanted <= _MOST_STEPS else 1
+    z, status = follow(graph, np.linspace(start, t, steps + 1)[1:], np.array(p))
+    return tuple(z[:, -1]) if counted or status[-1] != NOT_CONVERGED else graph.newton.guess
 
 
 def _paired(values: Array, out: Array) -> Array:

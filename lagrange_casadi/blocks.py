@@ -24,6 +24,9 @@ from .sampling import drawn
 _STEPS = 200
 _CLOSED = 1e-11
 _DEPENDENT = 1e-9
+_NO_SLOPE = 1e-14
+"""A coordinate's slopes that are smaller are rounding, though they be all that it has: a guide that is there twice."""
+
 _ABSENT = 1e-13
 """Of the largest slope of an equation: what stands in it by rounding alone, as a line that a link slides along may."""
 
@@ -256,5 +259,6 @@ def _ranks(multibody: Multibody, start: Mapping[str, Any]) -> tuple[int, int] | 
 
 
 def _rank(slope: Array) -> int:
-    scaled = slope / (np.linalg.norm(slope, axis=0) + 1e-300)
+    lengths = np.linalg.norm(slope, axis=0)
+    scaled = slope / np.where(lengths > _NO_SLOPE, lengths, 1.0)
     return int(np.linalg.matrix_rank(scaled, tol=_DEPENDENT)) if scaled.size else 0

@@ -174,7 +174,8 @@ def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str |
 def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str], widest: float) -> tuple[Status, str]:
     if table.status[i] == NOT_CONVERGED:
         assert graph.newton is not None
-        return Status.NOT_CONVERGED, f"the loops closed by {graph.newton.joints} did not converge {at}"
+        cause = "their links do not reach, or the instant before is too far off"
+        return Status.NOT_CONVERGED, f"the loops closed by {graph.newton.joints} did not converge {at}: {cause}"
     precision = table.stages.precision
     values = dict(zip(graph.columns, table.out[:, i], strict=True))
     misfit = MISFIT[precision]
@@ -214,6 +215,7 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]
             return Status.ROW_VIOLATED, f"the motion violates the non-holonomic row '{joint}' by {value:.6g} {at}"
     if table.status[i] == SLOW:
         assert graph.newton is not None
-        return Status.SLOW, f"the loops closed by {graph.newton.joints} converge slowly {at}: they are near a dead centre"
+        cause = "they are near a dead centre, or the instant before is too far off"
+        return Status.SLOW, f"the loops closed by {graph.newton.joints} converge slowly {at}: {cause}"
     name = next(name for name, value in values.items() if not math.isfinite(value))
     return Status.NOT_FINITE, f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"

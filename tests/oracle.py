@@ -1,9 +1,12 @@
 """An independent solution: vector Newton-Euler on free bodies in absolute coordinates.
 
 It imports nothing of the package. Every body has a place (x, y) and a direction; every joint is written as gaps between bodies;
-Newton's method finds the postures, and truncated power series in time (:class:`Jet`) give rates and accelerations. The forces
+Newton's method finds the postures, and truncated power series in time (:mod:`jets`) give rates and accelerations. The forces
 are the unknowns of the balance of force and moment of every body, all solved at once; a section's forces are the balance of
 the piece towards the tip. It shares no formula with an energy method. The numbers are those of an :mod:`arithmetic`.
+
+It also tells where there is no one answer: how far the slope of the gaps is from singular, and, by the null space of the balance,
+which forces equilibrium leaves open.
 """
 
 from __future__ import annotations
@@ -14,29 +17,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from arithmetic import DOUBLE, Digits, Double
+from jets import Jet
+
+_LEAST = 1e-9
+LEAST_STEADY = 1e-7
+_SAME_SLOPE = 1e-4
+_VAGUE = (1e-11, 1e-5)
+_OPEN = 1e-7
+FORCES = ("fx", "fy", "mz")
 
 
-@dataclass(frozen=True)
-class Jet:
-    """A number with its first and second derivative by time."""
-
-    v: float
-    d: float = 0.0
-    a: float = 0.0
-
-    def __add__(self, o):
-        return Jet(self.v + o.v, self.d + o.d, self.a + o.a) if isinstance(o, Jet) else Jet(self.v + o, self.d, self.a)
-
-    def __sub__(self, o):
-        return Jet(self.v - o.v, self.d - o.d, self.a - o.a) if isinstance(o, Jet) else Jet(self.v - o, self.d, self.a)
-
-    def __mul__(self, o):
-        if not isinstance(o, Jet):
-            return Jet(self.v * o, self.d * o, self.a * o)
-        return Jet(self.v * o.v, self.d * o.v + self.v * o.d, self.a * o.v + 2 * self.d * o.d + self.v * o.a)
-
-    __radd__ = __add__
-    __rmul__ = __mul__
+class OpenLoopError(AssertionError):
+    """No posture near the guess closes all gaps."""
 
 
 @dataclass(frozen=True)
@@ -107,9 +99,20 @@ class Extra:
 
 @dataclass
 class Result:
-    """Everything at one instant; ``reactions`` are (fx, fy, mz) of the parent on the child, mz about the child's point."""
+    """Everything at one instant; ``reactions`` are (fx, fy, mz) of the parent on the child, mz about the child's point.
+
+    ``steadiness`` is the least singular value of the gaps' slope, its rows of length one: about the sine of a transmission angle;
+    ``softest`` is that slope, and its singular vectors there. ``open`` names what equilibrium leaves open, ``open_sections`` tells
+    it of a link's forces at a ratio; ``vague`` where a singular value of either is neither zero nor clearly another number. They
+    are known in doubles only.
+    """
 
     q: dict[str, tuple[Jet, Jet, Jet]]
+    steadiness: float = 0.0
+    softest: tuple | None = None
+    vague: bool = False
+    open: set[str] = field(default_factory=set)
+    open_sections: dict[str, Callable[[float], tuple[bool, ...]]] = field(default_factory=dict)
     efforts: dict[str, float] = field(default_factory=dict)
     reactions: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     multipliers: dict[str, float] = field(default_factory=dict)
@@ -133,34 +136,68 @@ class Oracle:
 
     def solve(self, drives: dict[str, tuple[float, float, float]], guess: dict[str, tuple[float, float, float]]) -> Result:
         """The instant at which the driven joints have the given (coordinate, rate, acceleration), from a rough posture."""
-        names, a = [b.name for b in self.bodies], self.arithmetic
-        drives = {joint: tuple(map(a.number, drive)) for joint, drive in drives.items()}
-        q = a.array([a.number(x) for n in names for x in guess[n]])
-        rest = np.zeros_like(q)
-        for _ in range(50):
-            step = a.solve(self._slope(q, drives), -self._gaps(q, rest, drives)[0], 1e-9)
-            q = q + step
-            left, size = np.max(np.abs(step)), 1 + np.max(np.abs(q))
-            if left < a.tolerance * size:
-                break
-        left = max(left, np.max(np.abs(self._gaps(q, rest, drives)[0])))
-        assert left < 1000 * a.tolerance * size, "the oracle does not close its loops"
-        slope = self._slope(q, drives)
-        rate = a.solve(slope, -self._gaps(q, rest, drives)[1], 1e-9)
-        acceleration = a.solve(slope, -self._gaps(q, rate, drives)[2], 1e-9)
-        jets = [Jet(*x) for x in zip(q, rate, acceleration, strict=True)]
-        result = Result({n: tuple(jets[3 * i : 3 * i + 3]) for i, n in enumerate(names)})
-        self._balance(result, drives)
+        drives = self._numbers(drives)
+        result = self.move(drives, guess)
+        self.balance(result, drives)
         return result
 
-    def _frames(self, q):
+    def move(
+        self, drives: dict[str, tuple[float, float, float]], guess: dict[str, tuple[float, float, float]], steps: int = 50
+    ) -> Result:
+        """The motion alone. Raises :class:`OpenLoopError` where Newton's method closes nothing in so many steps."""
+        names, a, drives = [b.name for b in self.bodies], self.arithmetic, self._numbers(drives)
+        q = a.array([a.number(x) for n in names for x in guess[n]])
+        rest, left = np.zeros_like(q), None
+        for _ in range(steps):
+            # Near the end the slope is as good as before.
+            if left is None or left > _SAME_SLOPE:
+                slope = self.slope(q, drives)
+            step = a.solve(slope, -self.gaps(q, rest, drives)[0], _LEAST)
+            q, before = q + step, left
+            left, size = np.max(np.abs(step)), 1 + np.max(np.abs(q))
+            if left < a.tolerance * size or (before is not None and before / 2 < left < 1000 * a.tolerance * size):
+                break
+        left = max(left, np.max(np.abs(self.gaps(q, rest, drives)[0]), initial=0.0))
+        if not left < 1000 * a.tolerance * size:
+            raise OpenLoopError("the oracle does not close its loops")
+        slope = self.slope(q, drives)
+        rate = a.solve(slope, -self.gaps(q, rest, drives)[1], _LEAST)
+        acceleration = a.solve(slope, -self.gaps(q, rate, drives)[2], _LEAST)
+        jets = [Jet(*x) for x in zip(q, rate, acceleration, strict=True)]
+        result = Result({n: tuple(jets[3 * i : 3 * i + 3]) for i, n in enumerate(names)})
+        if a is DOUBLE:
+            scaled = self.scaled(slope)
+            left, values, right = np.linalg.svd(scaled, full_matrices=False)
+            if scaled.shape[0] >= scaled.shape[1]:
+                result.steadiness, result.vague = float(values[-1]), _vague(values)
+                result.softest = (scaled, left[:, -1], right[-1])
+        return result
+
+    def scaled(self, slope):
+        """The gaps' slope by places in units of the mechanism's size and by angles, its rows of length one."""
+        scaled = slope * np.tile([self.size, self.size, 1.0], len(self.bodies))
+        return scaled / np.linalg.norm(scaled, axis=1, keepdims=True)
+
+    def places(self, result: Result):
+        """The places of bodies' points, and the bodies' directions, as jets."""
+        frames = self.frames(result.q)
+        return lambda point: place_in(frames, point)
+
+    @property
+    def size(self) -> float:
+        """The longest body's length, by which places and angles, forces and moments are compared."""
+        return max((float(b.length) for b in self.bodies), default=0.0) or 1.0
+
+    def _numbers(self, drives):
+        return {joint: tuple(map(self.arithmetic.number, drive)) for joint, drive in drives.items()}
+
+    def frames(self, q):
         """Of every body, and the ground, the place of its base, its direction, and the direction's cosine and sine."""
         zero, one = self.arithmetic.number(0), self.arithmetic.number(1)
         frames = {"ground": (Jet(zero), Jet(zero), Jet(zero), Jet(one), Jet(zero))}
         for name, (x, y, phi) in q.items():
             c, s = self.arithmetic.cos(phi.v), self.arithmetic.sin(phi.v)
-            cosine = Jet(c, -s * phi.d, -s * phi.a - c * phi.d * phi.d)
-            frames[name] = (x, y, phi, cosine, Jet(s, c * phi.d, c * phi.a - s * phi.d * phi.d))
+            frames[name] = (x, y, phi, phi.through(c, -s, -c), phi.through(s, c, -s))
         return frames
 
     def _oriented(self, name):
@@ -170,8 +207,8 @@ class Oracle:
         return joint.kind in ("prismatic", "weld") and self._oriented(joint.child[0])
 
     def _joint_gaps(self, frames, joint, drives):
-        px, py, pphi = _place(frames, joint.parent)
-        cx, cy, cphi = _place(frames, joint.child)
+        px, py, pphi = place_in(frames, joint.parent)
+        cx, cy, cphi = place_in(frames, joint.child)
         gaps = [cx - px, cy - py]
         if joint.slides:
             ax, ay = _along(frames, joint)
@@ -183,28 +220,27 @@ class Oracle:
             gaps.append(coordinate - Jet(*drives[joint.name]))
         return gaps
 
-    def _gaps(self, q, rate, drives):
+    def gaps(self, q, rate, drives):
         """Gaps with their first and second derivative, all accelerations of q at zero: (3, gaps)."""
-        jets = [Jet(*x) for x in zip(q, rate, np.zeros_like(q), strict=True)]
-        frames = self._frames({b.name: tuple(jets[3 * i : 3 * i + 3]) for i, b in enumerate(self.bodies)})
-        found = [g for j in self.joints for g in self._joint_gaps(frames, j, drives)]
-        found += [extra.gap(lambda point: _place(frames, point)) for extra in self.extras if extra.gap]
-        found += [frames[b.name][2] for b in self.bodies if not b.oriented]
-        return self.arithmetic.array([(g.v, g.d, g.a) for g in found]).T
+        found = self._gap_jets([Jet(*x) for x in zip(q, rate, np.zeros_like(q), strict=True)], drives)
+        return self.arithmetic.array([(g.v, g.d, g.a) for g in found]).reshape(-1, 3).T
 
-    def _slope(self, q, drives):
+    def slope(self, q, drives):
         """Slope of the gaps by q."""
         still = {joint: (coordinate, 0, 0) for joint, (coordinate, *_) in drives.items()}
-        rest = self._gaps(q, np.zeros_like(q), still)[1]
-        return np.column_stack([self._gaps(q, e, still)[1] - rest for e in np.eye(q.size, dtype=q.dtype)])
+        rest = self.gaps(q, np.zeros_like(q), still)[1]
+        along = self._gap_jets([Jet(x, row) for x, row in zip(q, np.eye(q.size, dtype=q.dtype), strict=True)], still)
+        return np.array([np.broadcast_to(g.d, q.size) - x for g, x in zip(along, rest, strict=True)]).reshape(-1, q.size)
 
-    def _balance(self, result, drives):
+    def _gap_jets(self, jets, drives):
+        frames = self.frames({b.name: tuple(jets[3 * i : 3 * i + 3]) for i, b in enumerate(self.bodies)})
+        found = [g for j in self.joints for g in self._joint_gaps(frames, j, drives)]
+        found += [extra.gap(lambda point: place_in(frames, point)) for extra in self.extras if extra.gap]
+        return found + [frames[b.name][2] for b in self.bodies if not b.oriented]
+
+    def balance(self, result, drives):
         """Force and moment balance of every body, for all joint forces, efforts and multipliers together."""
-        frames = self._frames(result.q)
-
-        def place(point):
-            return _place(frames, point)
-
+        frames, place = self.frames(result.q), self.places(result)
         labels, unknowns = [], []  # an unknown is what a unit of it does: a list of (point, fx, fy, mz)
 
         def pair(joint, label, force, moment):
@@ -230,7 +266,7 @@ class Oracle:
         matrix = np.column_stack([self._on_bodies(frames, parts) for parts in unknowns])
         inertia = []
         for b in self.bodies:
-            cx, cy, phi = _place(frames, (b.name, *b.centre))
+            cx, cy, phi = place_in(frames, (b.name, *b.centre))
             inertia += [b.mass * (cx.a - self.gravity[0]), b.mass * (cy.a - self.gravity[1]), b.inertia * phi.a]
         right = self.arithmetic.array(inertia) - self._on_bodies(frames, given)
         keep = np.array([b.oriented or k < 2 for b in self.bodies for k in range(3)])
@@ -244,10 +280,40 @@ class Oracle:
                 result.reactions[name] = (before[0] + x * fx, before[1] + x * fy, before[2] + x * mz)
             else:
                 (result.efforts if label == "effort" else result.multipliers)[name] = x
-        acting = [(p, x * fx, x * fy, x * mz) for parts, x in zip(unknowns, found, strict=True) for p, fx, fy, mz in parts]
+        acting = _times(unknowns, found)
         for b in self.bodies:
             if b.density is not None:
                 result.sections[b.name] = self._section(frames, b, acting + given)
+        if self.arithmetic is DOUBLE:
+            self._find_open(
+                result, frames, labels, unknowns, matrix / np.array([1.0, 1.0, self.size] * len(self.bodies))[keep, None]
+            )
+
+    def _find_open(self, result, frames, labels, unknowns, matrix):
+        """What the null space of the balance changes: forces and moments that hold each other, whatever is given."""
+        lengths = np.linalg.norm(matrix, axis=0)
+        lengths[lengths == 0.0] = 1.0
+        _, values, basis = np.linalg.svd(matrix / lengths)
+        values = np.concatenate([values, np.zeros(basis.shape[0] - values.size)])
+        result.vague |= _vague(values)
+        null = (basis[values < _LEAST] / lengths).T
+        own: dict[str, np.ndarray] = {}
+        for (name, label, parts), row in zip(labels, null, strict=True):
+            for member, part in zip(FORCES, parts, strict=True) if label == "reaction" else [("", 1.0)]:
+                full = f"{label}:{name}:{member}".rstrip(":")
+                own[full] = own.get(full, 0.0) + row * part / (self.size if member == "mz" else 1.0)
+        result.open = {name for name, row in own.items() if np.linalg.norm(row) > _OPEN}
+        alone = [_times(unknowns, column) for column in null.T]
+        for b in self.bodies:
+            if b.density is not None:
+                result.open_sections[b.name] = self._open_section([self._section(frames, b, parts, weight=0) for parts in alone])
+
+    def _open_section(self, laws):
+        def at(ratio: float) -> tuple[bool, ...]:
+            sizes = np.linalg.norm(np.array([law(ratio) for law in laws]).reshape(-1, 3), axis=0)
+            return tuple(sizes / [1.0, 1.0, self.size] > _OPEN)
+
+        return at
 
     def _on_bodies(self, frames, parts):
         """Force and moment about each body's centre, stacked."""
@@ -257,29 +323,32 @@ class Oracle:
             if name == "ground":
                 continue
             body = next(b for b in self.bodies if b.name == name)
-            at, centre = _place(frames, (name, px, py)), _place(frames, (name, *body.centre))
+            at, centre = place_in(frames, (name, px, py)), place_in(frames, (name, *body.centre))
             arm = (at[0].v - centre[0].v, at[1].v - centre[1].v)
             stacked[row[name] : row[name] + 3] += [fx, fy, arm[0] * fy - arm[1] * fx + mz]
         return stacked
 
-    def _section(self, frames, body, acting):
-        """Action of the piece towards the tip on the piece towards the base: (axial, shear, bending) at a ratio xi/l."""
+    def _section(self, frames, body, acting, weight=1):
+        """Action of the piece towards the tip on the piece towards the base: (axial, shear, bending) at a ratio xi/l.
+
+        With no ``weight`` the piece's own matter is left out.
+        """
 
         def at(ratio: float) -> tuple[float, float, float]:
             ratio, l, near = self.arithmetic.number(ratio), body.length, 100 * self.arithmetic.tolerance * body.length
             phi, c, s = frames[body.name][2], frames[body.name][3].v, frames[body.name][4].v
-            cut = _place(frames, (body.name, ratio * l, 0.0))
+            cut = place_in(frames, (body.name, ratio * l, 0.0))
             fx = fy = mz = 0.0  # what acts on the piece towards the tip
             for (name, px, py), gx, gy, couple in acting:
                 # At the very tip of the link what acts there still acts beyond the section.
                 if name == body.name and (px > ratio * l + near or (ratio == 1 and abs(px - l) < near)):
-                    point = _place(frames, (name, px, py))
+                    point = place_in(frames, (name, px, py))
                     arm = (point[0].v - cut[0].v, point[1].v - cut[1].v)
                     fx, fy, mz = fx + gx, fy + gy, mz + arm[0] * gy - arm[1] * gx + couple
             mass, first, second = _moments(self.arithmetic, body.density, body.breaks, ratio)
-            if mass:
+            if mass and weight:
                 middle = first / mass
-                centre = _place(frames, (body.name, middle * l, 0.0))
+                centre = place_in(frames, (body.name, middle * l, 0.0))
                 gx, gy = mass * (self.gravity[0] - centre[0].a), mass * (self.gravity[1] - centre[1].a)
                 arm = (centre[0].v - cut[0].v, centre[1].v - cut[1].v)
                 fx, fy = fx + gx, fy + gy
@@ -289,10 +358,29 @@ class Oracle:
         return at
 
 
-def _place(frames, point):
+def passed(before: Result, after: Result) -> bool:
+    """Whether the least singular value of the gaps' slope, with its sign, went through zero from one motion to the next."""
+    if before.softest is None or after.softest is None:
+        return False
+    (_, left, right), (slope, *_) = before.softest, after.softest
+    return bool(left @ slope @ right <= 0.0)
+
+
+def _vague(values):
+    return bool(np.any((values > _VAGUE[0]) & (values < _VAGUE[1])))
+
+
+def _times(unknowns, values):
+    """What unknowns do at points, for values of them."""
+    return [(p, x * fx, x * fy, x * mz) for parts, x in zip(unknowns, values, strict=True) for p, fx, fy, mz in parts]
+
+
+def place_in(frames, point):
     """The place of a body's point, and the body's direction."""
     name, x, y = point
     bx, by, phi, c, s = frames[name]
+    if not (x or y):
+        return bx, by, phi
     # The jets first: mpmath would try to read one as a number.
     return bx + c * x - s * y, by + s * x + c * y, phi
 

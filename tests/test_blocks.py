@@ -83,3 +83,17 @@ def test_a_pin_driven_against_slides_is_refused():
     m.prismatic("T", m.ground.at(0.3, 0.1), b, axis=(0, 1))
     with pytest.raises(MobilityError, match=r"has 0 degree\(s\) of freedom .* and 1 drive"):
         evaluate(Scene(m, {"P": polynomial(0.0, 1.0)}, t=(0, 1, 5)))
+
+
+@pytest.mark.parametrize("way", [-2.575, -1.6435, 0.3, 3.1045])
+def test_two_guides_of_an_inclined_line_leave_a_freedom(way):
+    """The second guide's slopes are rounding alone, and of no rank."""
+    m = Mechanism("guided")
+    bar = m.link("bar", length=0.8, mass=1.0)
+    along = 1.8321
+    m.prismatic("first", m.ground, bar, axis=(math.cos(along), math.sin(along)), angle=way)
+    back = along - way
+    m.prismatic("second", bar, m.ground, axis=(3 * math.cos(back), 3 * math.sin(back)), angle=-way)
+    solution = evaluate(Scene(m, {"first": polynomial(0.1, 0.2)}, t=(0, 1, 3)), backend="vm")
+    assert solution.motion("second").value == pytest.approx([-0.1, -0.2, -0.3])
+    assert "effort:first" not in solution.undetermined

@@ -194,6 +194,56 @@ def test_a_jump_of_branch_is_named(backend):
         evaluate(double_crank(2.3), backend=backend)
 
 
+@pytest.mark.parametrize("keywords", [{"backend": "c"}, {"backend": "vm"}, {"backend": "vm", "newton": 4}])
+@pytest.mark.parametrize("begin", [2.4, 3.5])
+def test_a_part_of_the_motion_is_on_the_branch_of_the_whole(begin, keywords):
+    """Instants that begin far from the scene's own are led there, whatever lies nearer to its posture."""
+    scene = double_crank(0.2)
+    whole = evaluate(scene, **keywords, t=(0, begin + 0.4, 401))
+    part = evaluate(scene, **keywords, t=(begin, begin + 0.4, 5))
+    for name in ("b", "c"):
+        off = part.pose(name).angle[-1] - whole.pose(name).angle[-1]
+        assert math.remainder(off, math.tau) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "guides",
+    [
+        1,
+        pytest.param(
+            2, marks=pytest.mark.xfail(reason="of one unknown and more equations the volume is one, however steep they are")
+        ),
+    ],
+)
+def test_a_dead_centre_is_passed_in_no_silence_however_often_a_guide_is_declared(guides):
+    """Scott and Russell's bar upright: its foot may go on to the other side, or stay at the crank's pivot."""
+    m = Mechanism("scott_russell")
+    crank, bar, foot = m.link("crank", length=0.2, mass=1.0), m.link("bar", length=0.4, mass=1.0), m.point_mass("foot", 0.1)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, bar.at(0.2))
+    m.revolute("B", bar, foot)
+    for k in range(guides):
+        m.prismatic(f"X{k}", m.ground, foot, axis=(1, 0))
+    scene = Scene(m, {"O": polynomial(1.0, 1.0)}, posture={"bar": 2.14, "X0": 0.2}, t=(0, 1, 101))
+    with pytest.raises(AssemblyError, match=r"passes a dead centre after t = 0\.57 s"):
+        evaluate(scene, backend="vm")
+
+
+def test_instants_too_far_apart_are_a_cause_that_is_told():
+    """The third crank holds the others at their dead centre: enough instants are all it takes."""
+    m, r = Mechanism("cranks"), 0.2
+    bar = m.link("bar", length=1.0, mass=1.0)
+    for k, (x, y) in enumerate([(0.0, 0.0), (0.4, 0.0), (0.76, 0.28)]):
+        crank = m.link(f"crank{k}", length=r, mass=0.1)
+        m.revolute(f"O{k}", m.ground.at(x, y), crank)
+        m.revolute(f"A{k}", crank.tip, bar.at(x, y) if x else bar)
+    posture = {"bar": 0.0, "crank1": 1.0, "crank2": 1.0}
+    scene = Scene(m, {"O0": polynomial(1.0, 4.0)}, posture=posture, t=(0, 1.5, 201))
+    assert evaluate(scene, backend="vm").certified
+    with pytest.raises(AssemblyError, match=r"did not converge at t = 1 s.*, or the instant before is too far off"):
+        evaluate(scene, t=(0, 1.5, 4), backend="vm")
+
+
 @pytest.mark.parametrize("n", [1, 2, 3, 5])
 def test_linear_systems(n):
     rng = np.random.default_rng(n)

@@ -1,0 +1,114 @@
+"""Loads of random mechanisms: how they are declared, and what they do to the oracle's bodies."""
+
+from __future__ import annotations
+
+import functools
+import math
+
+import oracle
+from random_draft import Draft, Spot
+from random_formula import Formula, joint_coordinate
+from random_growth import anything
+
+
+def load(d: Draft) -> None:
+    """A force, a torque, a spring or a damper, somewhere."""
+    kind = d.choose("force", "torque", "spring", "damper", "torsion", weights=[4, 3, 2, 1, 1])
+    size = 10.0 ** d.choose(0, 1, 2, 4, 6, weights=[3, 3, 3, 1, 1])
+    turning = [name for name in d.bodies if d.bodies[name].oriented]
+    if kind == "force":
+        spot = d.spot(d.choose(*d.bodies))
+        turns = d.bodies[spot.body].oriented and d.chance(0.3)
+        x, y = _amount(d, size), _amount(d, size)
+        name = d.new("f")
+        d.lines.append(f'm.force("{name}", {spot.text}, x={x.text}, y={y.text}{", turning=True" if turns else ""})')
+        d.loads[name] = functools.partial(_force, spot=spot, x=x, y=y, turns=turns)
+    elif kind == "torque" and turning:
+        spot, other = d.spot(d.choose(*turning)), d.spot(d.choose("ground", *turning))
+        value, name = _amount(d, size), d.new("f")
+        if other.body == spot.body:
+            return
+        against = "" if other.body == "ground" else f", against={other.text}"
+        d.lines.append(f'm.torque("{name}", {spot.text}, {value.text}{against})')
+        d.loads[name] = functools.partial(_torque, spot=spot, other=other, value=value)
+    elif kind in ("spring", "damper"):
+        first, second = d.spot(anything(d)), d.spot(d.choose(*d.bodies))
+        if first.body == second.body or math.dist(d.place(first), d.place(second)) < 0.1:
+            return
+        stiffness, length = (0.0, 0.0) if kind == "damper" else (d.between(1, 50) * size, d.between(0.0, 0.5))
+        damping = d.choose(0.0, d.between(0.1, 5.0)) if kind == "spring" else d.between(0.1, 5.0)
+        numbers = f"stiffness={stiffness!r}, length={length!r}, damping={damping!r}" if kind == "spring" else f"damping={damping!r}"
+        name = d.new("f")
+        d.lines.append(f'm.{kind}("{name}", {first.text}, {second.text}, {numbers})')
+        numbers = {"stiffness": stiffness, "length": length, "damping": damping}
+        d.loads[name] = functools.partial(_spring, first=first, second=second, **numbers)
+    elif kind == "torsion":
+        joints = [j for j in d.movable() if not d.joints[j].slides and abs(d.coordinate(j)) < 2.0]
+        if not joints:
+            return
+        joint, stiffness, angle, damping = d.choose(*joints), d.between(0.1, 5), d.between(-1, 1), d.choose(0.0, d.between(0.01, 1))
+        numbers = f"stiffness={stiffness!r}, angle={angle!r}, damping={damping!r}"
+        name = d.new("f")
+        d.lines.append(f'm.torsion_spring("{name}", {joint}, {numbers})')
+        numbers = {"stiffness": stiffness, "angle": angle, "damping": damping}
+        d.loads[name] = functools.partial(_coil, joint=d.joints[joint], **numbers)
+
+
+def _amount(d: Draft, size: float) -> Formula:
+    """A load by numbers, time, places, rates, coordinates or parameters."""
+    value = repr(d.between(-1.0, 1.0) * size)
+    kinds = ("number", "time", "velocity", "place", "rate", "coordinate", "direction", "table", "parameter")
+    kind = d.choose(*kinds, weights=[5, 2, 1, 1, 1, 1, 1, 1, 1])
+    joints = d.movable()
+    if kind == "time":
+        return d.formula(f"{value} * {d.choose('sin(5.0 * t)', 't', 'cos(t) * t')}", {})
+    if kind in ("velocity", "place"):
+        names = d.measured("place", d.spot(d.choose(*d.bodies)), rate=kind == "velocity")
+        return d.formula(f"{value} * {d.choose(*names)}", names)
+    if kind in ("rate", "coordinate") and joints:
+        joint = d.choose(*joints)
+        names = d.measured("coordinate", joint, rate=kind == "rate")
+        (name,) = names
+        turns = kind == "coordinate" and not d.joints[joint].slides
+        return d.formula(f"{value} * sin({name})" if turns else f"{value} * {name}", names)
+    turning = [name for name in d.bodies if d.bodies[name].oriented]
+    if kind == "direction" and turning:
+        (name,) = names = d.measured("direction", d.choose(*turning))
+        return d.formula(f"{value} * cos({name})", names)
+    if kind == "table":
+        names = d.measured("place", d.spot(d.choose(*d.bodies)))
+        low = d.between(-0.6, 0.2)
+        places, values = [low, low + 0.237, low + 0.551], [d.between(-1, 1) for _ in range(3)]
+        return d.formula(f"{value} * table({d.choose(*names)}, {places}, {values})", names)
+    if kind == "parameter" and d.parametric:
+        number = d.number(float(value), 0.5)
+        return d.formula(number.text, {})
+    return d.formula(value, {})
+
+
+def _force(place, t, spot: Spot, x: Formula, y: Formula, turns: bool):
+    fx, fy = x.jet(place, t).v, y.jet(place, t).v
+    if turns:
+        c, s = (f(place((spot.body, 0.0, 0.0))[2].v) for f in (math.cos, math.sin))
+        fx, fy = c * fx - s * fy, s * fx + c * fy
+    return [(spot.point, fx, fy, 0.0)]
+
+
+def _torque(place, t, spot: Spot, other: Spot, value: Formula):
+    couple = value.jet(place, t).v
+    return [(spot.point, 0.0, 0.0, couple), (other.point, 0.0, 0.0, -couple)]
+
+
+def _spring(place, _, first: Spot, second: Spot, stiffness: float, length: float, damping: float):
+    (ax, ay, _), (bx, by, _) = place(first.point), place(second.point)
+    dx, dy = bx - ax, by - ay
+    reach = math.hypot(dx.v, dy.v)
+    tension = stiffness * (reach - length) + damping * (dx.v * dx.d + dy.v * dy.d) / reach
+    fx, fy = tension * dx.v / reach, tension * dy.v / reach
+    return [(first.point, fx, fy, 0.0), (second.point, -fx, -fy, 0.0)]
+
+
+def _coil(place, _, joint: oracle.Joint, stiffness: float, angle: float, damping: float):
+    bend = joint_coordinate(joint, place)
+    couple = -stiffness * (bend.v - angle) - damping * bend.d
+    return [(joint.child, 0.0, 0.0, couple), (joint.parent, 0.0, 0.0, -couple)]

@@ -1,0 +1,95 @@
+"""What a random mechanism's evaluation is worth: right by the oracle, refused in words, or neither."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import re
+import signal
+import traceback
+import warnings
+from dataclasses import dataclass, field
+
+from random_comparison import TOLERANCE, Comparison
+from random_mechanisms import Drawn
+from random_path import NEAR
+
+from lagrange_casadi import evaluate
+from lagrange_casadi.errors import CertificateWarning, LagrangeCasadiError
+
+
+class TooLongError(BaseException):
+    """The evaluation took more of the processor than its limit."""
+
+
+@dataclass
+class Verdict:
+    """``kind`` is right, refused, wrong, broken (an exception that is not ours) or slow; ``why`` says it in a line.
+
+    ``regular`` tells of the whole motion that its loops close far from any dead centre, so that a refusal wants a reason. ``notes``
+    are doubts about a right result: condemned by its certificate, unique forces withheld, another assembly than in the posture.
+    """
+
+    seed: int
+    kind: str
+    why: str
+    regular: bool
+    notes: list[str] = field(default_factory=list)
+    details: list[str] = field(default_factory=list)
+
+
+def judge(drawn: Drawn, seconds: float = 120.0, tolerance: float = TOLERANCE, claims: float = 0.0, **rung) -> Verdict:
+    """Evaluate a random mechanism, and compare with the oracle.
+
+    A quantity may also be off by ``claims`` times what the solution itself says it may be.
+    """
+    said = {"seed": drawn.seed, "regular": is_regular(drawn)}
+    try:
+        with _within(seconds), warnings.catch_warnings():
+            warnings.simplefilter("ignore", CertificateWarning)  # what the certificate says is among the notes
+            solution = evaluate(drawn.scene(), **drawn.keywords, **rung)
+    except LagrangeCasadiError as error:
+        return Verdict(kind="refused", why=f"{type(error).__name__}: {error}", **said)
+    except TooLongError:
+        return Verdict(kind="slow", why=f"no result after {seconds:g} s of the processor", **said)
+    except Exception as error:  # whatever it is, it is not ours
+        return Verdict(kind="broken", why=f"{type(error).__name__}: {error}", details=[traceback.format_exc()], **said)
+    return compare(drawn, solution, tolerance, claims)
+
+
+def is_regular(drawn: Drawn) -> bool:
+    """Whether nothing stands against a result: all was told, the drives fit, and no dead centre is near."""
+    path = drawn.path
+    return drawn.told and drawn.draft.fits and path.end >= drawn.grid[1] and path.steadiness > NEAR and path.passes == math.inf
+
+
+def compare(drawn: Drawn, solution, tolerance: float = TOLERANCE, claims: float = 0.0) -> Verdict:
+    """A solution beside the oracle."""
+    said = {"seed": drawn.seed, "regular": is_regular(drawn)}
+    if not drawn.draft.fits:
+        return Verdict(kind="wrong", why="there is a result, but the drives do not fit the freedoms", **said)
+    found = Comparison(drawn, solution, tolerance, claims)
+    found.look()
+    kind = "wrong" if found.faults else "right"
+    return Verdict(kind=kind, why=(found.faults or [""])[0], notes=found.notes, details=found.faults, **said)
+
+
+def reason(why: str) -> str:
+    """A message without its names and numbers, to count alike ones."""
+    why = re.sub(r"(\b[bjcfrp]\d+\b(, | or | and )?)+", "X", re.sub(r"random_\d+", "X", why))
+    why = re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", why)
+    return re.sub(r"(joint|constraint) 'X'((, | and )(joint|constraint) 'X')*", "'X'", why)[:150]
+
+
+@contextlib.contextmanager
+def _within(seconds: float):
+    def stop(*_):
+        raise TooLongError
+
+    before = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, before)
