@@ -1,0 +1,30 @@
+"""How many instructions an instant of each case takes: what all speed begins with."""
+
+import pytest
+from conftest import CASES
+
+from lagrange_casadi import derive, load_case
+
+INSTANT = {
+    "slider_crank": 183,
+    "engine": 393,
+    "four_bar": 296,
+    "quick_return": 303,
+    "six_bar": 522,
+    "andrews_squeezer": 591,
+    "rrr3": 795,
+    "arm": 222,
+    "sleigh": 220,
+}
+
+
+@pytest.mark.parametrize("name", INSTANT)
+def test_an_instant_takes_no_more_than_it_did(name):
+    """Another CasADi may share other terms, so a hundredth more is none."""
+    count = derive(load_case(CASES / name).scene).instructions
+    assert count["instant"] <= 1.01 * INSTANT[name]
+    assert count.get("loops", 0) <= (239 if name == "rrr3" else 0)
+
+
+def test_every_case_is_counted():
+    assert sorted(INSTANT) == sorted(path.parent.name for path in CASES.glob("*/case.py"))
