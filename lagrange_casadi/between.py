@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,9 @@ DIP = 0.5
 
 RISE = 0.5
 """By how much an exponent may seem to rise above both ends of a step."""
+
+STRAIGHT = 4.0
+"""How many times further than it may seem to go beyond its ends an argument goes in a step through which it goes straight on."""
 
 NEGLIGIBLE = 40.0
 """By how much an exponent is below the largest where the power is nothing beside that."""
@@ -52,8 +55,10 @@ def highest(y: Array) -> Array:
     return np.where(concave, tip, np.where(convex, np.maximum(a, b), either))
 
 
-def unresolved(rows: Array, watches: Sequence[Watch], step: float, kinks: npt.NDArray[np.intp] | None = None) -> Flags:
-    """In which steps of time something may rise and fall unseen, (n - 1,), by what is watched (watches, n).
+def unresolved(
+    rows: Array, watches: Sequence[Watch], step: float, kinks: npt.NDArray[np.intp] | None = None
+) -> tuple[Flags, Flags]:
+    """In which steps of time something may rise and fall unseen, (n - 1,), by what is watched (watches, n), and which have kinks.
 
     ``kinks`` are how many more kinks are known to be in each step. One in a step shows, two or one in each of two steps may not.
     """
@@ -61,17 +66,44 @@ def unresolved(rows: Array, watches: Sequence[Watch], step: float, kinks: npt.ND
     count = np.zeros(found.size, np.intp) if kinks is None else kinks.copy()
     with np.errstate(all="ignore"):
         for row, watch in zip(rows, watches, strict=True):
-            told, kinked = _unresolved(row, watch, step)
+            told, kinked = _unresolved(row, watch, step, found | (count > 0))
             found |= told
             count += kinked
     beside = np.zeros(found.size, bool)
     beside[1:] |= count[:-1] > 0
     beside[:-1] |= count[1:] > 0
-    return found | (count > 1) | ((count > 0) & beside)
+    return found | (count > 1) | ((count > 0) & beside), count > 0
 
 
-def _unresolved(row: Array, watch: Watch, step: float) -> tuple[Flags, npt.NDArray[np.intp]]:
-    """Where one of the watched is unresolved, and how many kinks it makes in each step."""
+def passed(rows: Array, watches: Sequence[Watch], step: int, length: float) -> Iterator[tuple[int, float]]:
+    """What is watched, by number, that has a kink or a jump in a step as it passes a number, and that number.
+
+    Nothing where something else may hide there. Whole numbers come first, for where they are passed others jump.
+    """
+    none = np.zeros(rows.shape[1] - 1, bool)
+    others = [(row, watch) for row, watch in zip(rows, watches, strict=True) if watch.kind not in (Kind.STEP, Kind.SWITCH)]
+    if any(_unresolved(row, watch, length, none)[0][step] for row, watch in others):
+        return
+    for kind in (Kind.STEP, Kind.SWITCH):
+        for k, watch in enumerate(watches):
+            low, high = sorted(rows[k, step : step + 2].tolist())
+            if watch.kind is not kind or not math.isfinite(high - low):
+                continue
+            whole = (math.floor(high),) if math.floor(high) == math.floor(low) + 1 else ()
+            yield from (
+                (k, float(at))
+                for at in (whole if kind is Kind.STEP else watch.at)
+                if beyond(kind, low, at) < beyond(kind, high, at)
+            )
+
+
+def beyond(kind: Kind, value: float, at: float) -> bool:
+    """Whether an argument has passed a number."""
+    return value >= at if kind is Kind.STEP else value > at
+
+
+def _unresolved(row: Array, watch: Watch, step: float, bent: Flags) -> tuple[Flags, npt.NDArray[np.intp]]:
+    """Where one of the watched is unresolved, and how many kinks it makes in each step; it may have one itself in ``bent`` ones."""
     kind, none = watch.kind, np.zeros(row.size - 1, np.intp)
     if kind is Kind.RATE:
         return _either(np.abs(row) * step > RATE), none
@@ -80,7 +112,7 @@ def _unresolved(row: Array, watch: Watch, step: float) -> tuple[Flags, npt.NDArr
         wide = np.abs(turned - math.tau * np.round(turned / math.tau)) > RATE
         return wide | _beside(wide), none
     a, b = row[:-1], row[1:]
-    low, high = -highest(-row), highest(row)
+    low, high = _between(row, bent)
     if kind in (Kind.POLE, Kind.ROOT):
         nearest = np.where(a > 0.0, low, -high)
         crossed = (a > 0.0) != (b > 0.0)
@@ -106,6 +138,14 @@ def _unresolved(row: Array, watch: Watch, step: float) -> tuple[Flags, npt.NDArr
         turns = ((high > last + CHANGE) | (low < first - CHANGE)) & (low < reach) & (high > -reach)
         return turns, ((last - first > CHANGE) & (first < reach) & (last > -reach)).astype(np.intp)
     return (high > np.maximum(a, b) + RISE) & (high > np.max(row[~np.isnan(row)], initial=-np.inf) - NEGLIGIBLE), none
+
+
+def _between(row: Array, bent: Flags) -> tuple[Array, Array]:
+    """Bounds of an argument in every step. Unless it may have a kink there, one that bends little stays between its ends."""
+    low, high = -highest(-row), highest(row)
+    least, most = np.minimum(row[:-1], row[1:]), np.maximum(row[:-1], row[1:])
+    straight = ~bent & (most - least >= STRAIGHT * ((high - most) + (least - low)))
+    return np.where(straight, least, low), np.where(straight, most, high)
 
 
 def _either(ends: Flags) -> Flags:

@@ -19,6 +19,13 @@ ASIDE = 1e-2
 
 _TRIALS = 4
 
+_MIDDLE = np.array([231, 1386, -1155, 924, -495, 154, -21]) / 1024
+_SLOPES = (
+    np.array([-147, 360, -450, 400, -225, 72, -10]) / 60,
+    np.array([-1627, 633, 2360, -2350, 1365, -443, 62]) / 1920,
+    np.array([-10, -77, 150, -100, 50, -15, 2]) / 60,
+)
+
 
 class Fit(NamedTuple):
     """What polynomials say of a summit each: where it is, in steps from the middle value, its size, slope and curve there.
@@ -77,6 +84,26 @@ def summit(y: Array, start: Array, low: Array, high: Array) -> Fit:
         # The product of x - j over the seven places j, and its slope.
         steep = (((7 * square - 70) * square + 147) * square - 36) / (x * (((square - 14) * square + 49) * square - 36))
     return Fit(x, at(x, 0), at(x, 1), at(x, 2), steep, np.abs(720 * a[6]))
+
+
+def stretch(y: Array) -> tuple[Array, Array]:
+    """What polynomials through seven values each, (7, m), of which the first are those at an end, say of the step there.
+
+    Their values in its middle, and the least size of their slopes, by steps, at its ends and there: zero where they turn.
+    """
+    slopes = np.stack([weights @ y for weights in _SLOPES])
+    least = np.where((slopes > 0.0).all(axis=0) | (slopes < 0.0).all(axis=0), np.abs(slopes).min(axis=0), 0.0)
+    return _MIDDLE @ y, least
+
+
+def where(y: Array, at: int, level: float) -> float:
+    """Where between value ``at`` and the next of a row, in steps from it, it passes a number: by a polynomial in the values."""
+    first = window(at, y.size)
+    values, places = y[first : first + SEVEN] - level, np.arange(first - at, first - at + SEVEN, dtype=float)
+    for k in range(1, SEVEN):
+        places = (values[k:] * places[:-1] - values[:-k] * places[1:]) / (values[k:] - values[:-k])
+    place = float(places[0])
+    return place if 0.0 <= place <= 1.0 else float((level - y[at]) / (y[at + 1] - y[at]))
 
 
 def kink(y: Array) -> list[tuple[float, float]]:

@@ -15,11 +15,12 @@ from .between import Flags
 from .codegen.emit import NOT_CONVERGED
 from .density import Array, NumericDensity
 from .mobility import LAW
+from .panels import Samples
 from .scene_graph import SceneGraph
 from .section_law import SectionLaw, StationLoad
 from .sharpness import Sharpness, bent
 from .stages import Stages
-from .summits import Curves, Peaks, Samples, peaks
+from .summits import Curves, Peaks, peaks
 
 _BLOCK = 4096
 

@@ -2,11 +2,12 @@
 
 A panel is a row of equal steps with the values at their ends. In each step :mod:`.between` bounds every curve. What could rise
 above the largest size so far is looked at: a polynomial through seven values around a summit says where, and what it misses there
-says whether it is to be believed. A step that this leaves open, or in which something may hide, becomes a panel of its own, of
-steps a ninth as long, and so on, until all are closed, or so short that nothing but a jump, a kink or a pole is left in them. Where
-that takes too many panels, or a quantity grows on slowly without an end, its peak is not told.
+says whether it is to be believed. A step that this leaves open, or in which something may hide, becomes a panel of its own, or two
+where it is known when in it a kink or a jump is, of steps a ninth as long, and so on, until all are closed, or so short that
+nothing but a jump, a kink or a pole is left in them. Where that takes too many panels, or a quantity grows on slowly without an
+end, its peak is not told.
 
-The emitted C does the same for many designs (``codegen/summits.c``), and is tested against this.
+The emitted C does the same for many designs (``codegen/summits.c``, ``looks.c``, ``parts.c``), and is tested against this.
 """
 
 from __future__ import annotations
@@ -14,13 +15,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from . import fits
 from .between import Flags, highest, unresolved
 from .density import Array
+from .panels import SIDE, SPACING, Panel, Samples, Source, Summit, sides
 from .sharpness import Watch
 
 INNER = 8
@@ -44,12 +45,15 @@ NOTHING = 1e-12
 NOISE = 1e-6
 """Of itself: how far rounding may throw a quantity, as near a dead centre, and be no more than that."""
 
-SPACING = 4 * float(np.finfo(float).eps)
-"""Of the time: the shortest step."""
-
 TRUST, TRUST_ASIDE = 1e-5, 1e-6
 """What a polynomial may miss, of its curve, in its middle and near its ends: where it misses more, its slope may be off by other
 things as well."""
+
+CLOSE = 8 * float(np.finfo(float).eps)
+"""Of its largest size: by how much a value may be off by its own rounding."""
+
+STRETCH = 1e-4
+"""What a polynomial may miss in the middle of an end step, of its least slope there, which is then off by nine times that."""
 
 ENDLESS, LAST = 0.1, 1e-11
 """By how much of itself a quantity grows over the last step towards a pole, and where it has come to its end."""
@@ -62,21 +66,6 @@ RAGGED = 0.3
 
 ROUGH = 0.1
 """Of its curve: how large the sixth difference of a polynomial may be that is believed."""
-
-
-class Samples(NamedTuple):
-    """At n times: curves (c, n), the ratios xi/l at which they are taken (c, n), and what is watched (w, n)."""
-
-    values: Array
-    places: Array
-    watched: Array
-
-
-class Source(Protocol):
-    """What gives curves at any times; where they have no value, NaN."""
-
-    def at(self, t: Array) -> Samples:
-        """At times of the span."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,40 +105,8 @@ def peaks(source: Source, curves: Curves, t: Array, samples: Samples, hiding: Fl
     """
     search = _Search(source, curves, t, samples)
     if t.size > 1:
-        search.panel(_Panel(t, samples), 0, hiding)
+        search.panel(Panel(t, samples), 0, hiding)
     return search.found(t, samples)
-
-
-@dataclass(frozen=True, eq=False)
-class _Panel:
-    t: Array
-    samples: Samples
-
-    @property
-    def step(self) -> float:
-        return float(self.t[-1] - self.t[0]) / (self.t.size - 1)
-
-
-@dataclass
-class _Summit:
-    """A value beside which a curve may rise, by its number in a panel: where to look, and what is expected there (:class:`.Fit`).
-
-    ``kink`` has the times at which to look for a kink, and the sizes expected there.
-    """
-
-    curve: int
-    at: int
-    sign: float
-    t: float
-    size: float
-    slope: float
-    bend: float
-    steep: float
-    rough: float
-    trust: float
-    kink: Sequence[tuple[float, float]]
-    closed: bool = False
-    again: bool = False
 
 
 class _Search:
@@ -207,16 +164,18 @@ class _Search:
         told = (self.told & (self.going <= self.best / 2)) | np.isinf(self.best)
         return Peaks(np.copysign(self.best, self.sign), self.t, self.xi, told)
 
-    def panel(self, panel: _Panel, depth: int, hiding: Flags) -> None:
+    def panel(self, panel: Panel, depth: int, hiding: Flags) -> None:
         """Search a panel; in ``hiding`` steps something is known to hide."""
         n, values = panel.t.size, panel.samples.values
         if n < fits.SEVEN:
             hiding, bound = np.ones(n - 1, bool), np.full((values.shape[0], n - 1), -np.inf)
         else:
             kinks = np.histogram(self.knots, panel.t)[0] if depth and self.knots.size else None
-            hiding = hiding | unresolved(panel.samples.watched, self.curves.watches, panel.step, kinks)
+            unseen, kinked = unresolved(panel.samples.watched, self.curves.watches, panel.step, kinks)
+            hiding = hiding | unseen
             bound = np.fmax(highest(values), highest(-values))
             self.hidden += np.count_nonzero(hiding) if depth == 0 else 0
+            self.stretches(panel, bound, hiding | kinked)
             self.settle(panel, bound)
             open_ = (bound > self.limit[:, None]).any(axis=1)
             bound[[curve for curve in np.flatnonzero(open_).tolist() if self.rounded(curve)]] = -np.inf
@@ -236,25 +195,40 @@ class _Search:
                 self.told[self.quantity[risen | hiding[step]]] = False
             hiding[step], bound[:, step] = False, -np.inf
 
-    def inside(self, panel: _Panel, step: int, depth: int) -> None:
-        """Search a step as a panel of its own."""
-        a, b = panel.t[step], panel.t[step + 1]
+    def inside(self, panel: Panel, step: int, depth: int) -> None:
+        """Search a step as a panel of its own, or as two if it is known where in it a kink or a jump is."""
+        start, stop = panel.t[step], panel.t[step + 1]
+        first, last = panel.samples.some(slice(step, step + 1)), panel.samples.some(slice(step + 1, step + 2))
+        beside = SIDE * self.step
+        found = sides(self.source, panel, step, self.curves.watches, beside)
+        if found is None:
+            self.part(start, stop, first, last, depth)
+            return
+        t, samples = found
+        for j, time in enumerate(t):
+            for curve in range(samples.values.shape[0]):
+                self.note(curve, samples.values[curve, j], time, samples.places[curve, j])
+        self.left -= 1
+        if t[0] - start > 2 * beside:
+            self.part(start, t[0], first, samples.some(slice(0, 1)), depth)
+        if stop - t[1] > 2 * beside:
+            self.part(t[1], stop, samples.some(slice(1, 2)), last, depth)
+
+    def part(self, a: float, b: float, first: Samples, last: Samples, depth: int) -> None:
+        """Search what is between two times as a panel."""
         t = np.append(a + np.arange(INNER + 1) * ((b - a) / (INNER + 1)), b)
         samples = self.source.at(t[1:-1])
-        joined = (
-            np.concatenate([ends[:, [step]], inner, ends[:, [step + 1]]], axis=1)
-            for ends, inner in zip(panel.samples, samples, strict=True)
-        )
+        joined = (np.concatenate(rows, axis=1) for rows in zip(first, samples, last, strict=True))
         # What has no value is nothing, and hides what is beside it.
         values, places, watched = joined
-        broken = ~np.isfinite(values).all(axis=0)
+        broken = np.asarray(~np.isfinite(values).all(axis=0))
         values = np.where(np.isfinite(values), values, 0.0)
         for curve in range(values.shape[0]):
             for j in np.flatnonzero(np.abs(values[curve, 1:-1]) > self.best[self.quantity[curve]]) + 1:
                 self.note(curve, values[curve, j], t[j], places[curve, j])
-        self.panel(_Panel(t, Samples(values, places, watched)), depth + 1, broken[:-1] | broken[1:])
+        self.panel(Panel(t, Samples(values, places, watched)), depth + 1, broken[:-1] | broken[1:])
 
-    def end(self, panel: _Panel, step: int, risen: Flags, deepest: bool) -> None:
+    def end(self, panel: Panel, step: int, risen: Flags, deepest: bool) -> None:
         """What is left in a step that is as short as can be: a kink, a jump, or what grows on without an end."""
         for curve in np.flatnonzero(risen):
             q, row, endless = self.quantity[curve], panel.samples.values[curve], -1
@@ -274,7 +248,27 @@ class _Search:
                 self.best[q], self.t[q], self.xi[q] = np.inf, panel.t[endless], panel.samples.places[curve, endless]
                 self.sign[q] = math.copysign(1.0, row[endless])
 
-    def settle(self, panel: _Panel, bound: Array) -> None:
+    def stretches(self, panel: Panel, bound: Array, kinked: Flags) -> None:
+        """Look at the middles of the end steps, where polynomials go through them straight on, and close those that do."""
+        t, n = panel.t, panel.t.size
+        for step, end in ((0, slice(0, fits.SEVEN)), (n - 2, slice(n - 1, n - fits.SEVEN - 1 if n > fits.SEVEN else None, -1))):
+            if kinked[step] or ((self.knots > t[step]) & (self.knots < t[step + 1])).any():
+                continue
+            curves = np.flatnonzero(bound[:, step] > self.limit)
+            y = panel.samples.values[curves][:, end].T
+            middle, least = fits.stretch(y)
+            rounding = self.rounding[self.quantity[curves]]
+            straight = (least > 0.0) & (np.abs(np.diff(y, 6, axis=0))[0] <= rounding + ROUGH * least)
+            if not straight.any():
+                continue
+            time = (t[step] + t[step + 1]) / 2
+            values, places, _ = self.source.at(np.array([time]))
+            for curve in curves[straight].tolist():
+                self.note(curve, values[curve, 0], time, places[curve, 0])
+            passed = straight & (np.abs(values[curves, 0] - middle) <= np.maximum(rounding, STRETCH * least))
+            bound[curves[passed], step] = -np.inf
+
+    def settle(self, panel: Panel, bound: Array) -> None:
         """Look for the summits of curves that may rise above what is known; what this closes is bounded no more."""
         summits = list(self.summits(panel, bound))
         opened = [summit for summit in summits if not summit.closed]
@@ -295,7 +289,7 @@ class _Search:
                 for t in (summit.t, *(t for t, _ in summit.kink)):
                     bound[summit.curve, np.clip(np.searchsorted(panel.t, t, side="right") - 1, 0, panel.t.size - 2)] = np.inf
 
-    def summits(self, panel: _Panel, bound: Array) -> Iterator[_Summit]:
+    def summits(self, panel: Panel, bound: Array) -> Iterator[Summit]:
         """The summits of curves that may rise above what is known."""
         found: list[tuple[int, int]] = []
         n = panel.t.size
@@ -325,7 +319,7 @@ class _Search:
             kink = fits.kink(ys[k]) if firsts[k] == at - fits.SEVEN // 2 else []
             times = [(float(panel.t[at] + panel.step * place), tip) for place, tip in kink]
             t = float(start + panel.step * (x + fits.SEVEN // 2))
-            summit = _Summit(curve, at, signs[k], t, size, slope, bend, steep, rough, trust, times)
+            summit = Summit(curve, at, signs[k], t, size, slope, bend, steep, rough, trust, times)
             summit.closed = bend < 0.0 and rough <= -ROUGH * bend and size + rough < self.best[q] - self.rounding[q]
             yield summit
 
@@ -355,7 +349,7 @@ class _Search:
         turns = ragged[:-1] & ragged[1:] & ((bends[:-1] > 0.0) != (bends[1:] > 0.0))
         return bool(2 * np.count_nonzero(turns) >= row.size)
 
-    def look(self, places: Sequence[tuple[_Summit, float]]) -> Iterator[float]:
+    def look(self, places: Sequence[tuple[Summit, float]]) -> Iterator[float]:
         """The sizes of curves where they are looked at."""
         if not places:
             return
@@ -364,14 +358,15 @@ class _Search:
             self.note(summit.curve, values[summit.curve, k], t, ratios[summit.curve, k])
             yield summit.sign * values[summit.curve, k]
 
-    def closed(self, panel: _Panel, summit: _Summit, found: float) -> bool:
+    def closed(self, panel: Panel, summit: Summit, found: float) -> bool:
         """Whether what was found closes both steps beside a summit; else, if it is worth another look, the summit says where."""
         rounding, missed = float(self.rounding[self.quantity[summit.curve]]), found - summit.size
         if not (summit.bend < 0.0 and summit.rough <= rounding - ROUGH * summit.bend):
             return False
         if not (abs(missed) <= rounding or abs(missed) <= -summit.trust * summit.bend):
             return False
-        slope = summit.slope + missed * summit.steep
+        # What is missed by rounding says nothing of the slope, however near a value is.
+        slope = summit.slope + (missed * summit.steep if abs(missed) > CLOSE * self.best[self.quantity[summit.curve]] else 0.0)
         gain = slope**2 / (-2 * summit.bend)
         if not math.isfinite(slope) or gain <= rounding:
             return True

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi.between import highest, unresolved
-from lagrange_casadi.fits import SEVEN, bounds, summit, window
+from lagrange_casadi.between import highest, passed, unresolved
+from lagrange_casadi.fits import SEVEN, bounds, stretch, summit, where, window
 from lagrange_casadi.sharpness import Kind, Watch
 
 numbers = st.floats(-3, 3, allow_nan=False)
@@ -41,7 +41,7 @@ def test_no_kink_is_above_its_bound(step, share, before, after):
 
 
 def told(row, watch, step=0.1):
-    return np.flatnonzero(unresolved(np.array([row], float), [watch], step)).tolist()
+    return np.flatnonzero(unresolved(np.array([row], float), [watch], step)[0]).tolist()
 
 
 @pytest.mark.parametrize(
@@ -59,6 +59,8 @@ def told(row, watch, step=0.1):
         (np.arange(9.0), Watch(Kind.SWITCH, (4.5, 5.5)), [4, 5]),
         (np.arange(9.0) * 0.3 + 0.05, Watch(Kind.STEP), []),
         (np.arange(9.0) * 2.1, Watch(Kind.STEP), list(range(8))),
+        (1 - 0.1 * (8 - np.arange(9)) - 1e-4 * (8 - np.arange(9)) ** 2, Watch(Kind.STEP), []),
+        (1.01 - 0.1 * (7.5 - np.arange(9)) ** 2, Watch(Kind.STEP), [7]),
         (np.arange(9) * 0.1, Watch(Kind.POWER), []),
         (-((np.arange(9) - 4.5) ** 2) * 10, Watch(Kind.POWER), [4]),
     ],
@@ -87,3 +89,35 @@ def test_windows_stay_among_the_values(count):
         assert first + SEVEN // 2 + start == at
         assert (low > start) == (at == 0)
         assert (high < start) == (at == count - 1)
+
+
+def test_what_passes_just_one_number_is_told_first_by_whole_numbers():
+    rows = np.array([np.arange(9.0), np.arange(9) * 0.3 + 0.05])
+    watches = [Watch(Kind.SWITCH, (4.5, 7.5)), Watch(Kind.STEP)]
+    assert list(passed(rows, watches, 4, 1.0)) == [(0, 4.5)]
+    assert list(passed(rows, watches, 3, 1.0)) == [(1, 1.0)]
+    assert list(passed(rows, watches, 5, 1.0)) == []
+    pole = np.arange(9) - 4.4
+    assert list(passed(np.vstack([rows, pole]), [*watches, Watch(Kind.POLE)], 4, 1.0)) == []
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.floats(-0.02, 0.02), st.integers(0, 10), st.floats(0.01, 0.99))
+def test_where_a_row_passes_a_number_is_found(curve, step, share):
+    def law(x):
+        return x + curve * x * x
+
+    places = np.arange(12.0)
+    assert where(law(places), step, law(step + share)) == pytest.approx(share, abs=1e-4)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.lists(numbers, min_size=7, max_size=7))
+def test_an_end_step_of_a_polynomial_of_degree_six_is_told_exactly(coefficients):
+    law = np.polynomial.Polynomial(coefficients)
+    middle, least = stretch(law(np.arange(0.0, 7.0))[:, None])
+    slopes = law.deriv()(np.array([0.0, 0.5, 1.0]))
+    scale = 1e-9 * (1 + np.abs(law(np.arange(7.0))).max())
+    assert middle[0] == pytest.approx(law(0.5), abs=scale)
+    straight = abs(np.sign(slopes).sum()) == 3
+    assert least[0] == pytest.approx(np.abs(slopes).min() if straight else 0.0, abs=scale)

@@ -54,6 +54,7 @@ ORDER = (
     "sharpness",
     "between",
     "fits",
+    "panels",
     "summits",
     "cost",
     "fingerprint",

@@ -11,9 +11,12 @@ from test_peaks import pendulum
 
 from lagrange_casadi import evaluate, motion
 from lagrange_casadi.designs import DesignEngine
+from lagrange_casadi.panels import Samples
 from lagrange_casadi.peaks import refine
 from lagrange_casadi.refusal import Status
 from lagrange_casadi.rung import Rung
+from lagrange_casadi.sharpness import Kind, Watch
+from lagrange_casadi.summits import Curves, peaks
 
 STEP = 0.04
 GRID = (0.0, 2.0, 51)
@@ -79,6 +82,15 @@ SIGNALS = {
     "nearly one, on both sides": (lambda x: (x - 1.0137) / ((x - 1.0137) ** 2 + 1e-5) + 0.2 * ca.cos(x), []),
     "a steep change and back": (lambda x: ca.tanh((x - 1.013) / 1e-3) - ca.tanh((x - 1.0135) / 1e-3) + 0.2 * ca.cos(x), []),
     "a high power": (lambda x: ca.cos(x - 1.0137) ** 1000 + 0.2 * ca.cos(x), [1.0137]),
+    "a jump at the last instant": (lambda x: ca.fmod(x, 2.0) + 0.3 * ca.sin(x), [np.nextafter(2.0, 0)]),
+    "a jump at the first instant": (lambda x: (2.5 - x) * (x > 0), [np.nextafter(0.0, 1)]),
+    "a remainder, in the middle of a step": (lambda x: ca.fmod(x, 0.7137) * (1 - 0.2 * x), [np.nextafter(0.7137, 0)]),
+    "kinks of a remainder": (
+        lambda x: ca.fabs(ca.fmod(x + 0.3, 0.9137) - 0.4) + 0.01 * ca.sin(9 * x),
+        [0.6137 - 1e-15, 1.5274 - 1e-15],
+    ),
+    "a kink beside an instant": (lambda x: 1 - ca.fabs(x - 1.0 - 1e-13) + 0.1 * x * x, [1.0, 1 + 1e-13]),
+    "a kink of a curved argument": (lambda x: 1 - ca.fabs(ca.exp(x) - 2.7713) / 5, [math.log(2.7713)]),
     "constant": (lambda x: 3.0 + 0 * x, []),
     "nothing": (lambda x: 0 * x, []),
 }
@@ -129,7 +141,58 @@ def test_few_instants(count):
         assert abs(value) == pytest.approx(largest, rel=max(1e-8, tolerance))
 
 
-@pytest.mark.parametrize("law", [lambda x: 1 / (x - 1.0137), lambda x: ca.tan(x), lambda x: 1 / ca.sqrt(ca.fabs(x - 1.0137))])
+class Counted:
+    """A function of time, what of it is watched, and how often it was asked for."""
+
+    def __init__(self, law, watched=None):
+        self.law, self.watched, self.times = law, watched, 0
+
+    def at(self, t):
+        self.times += t.size
+        watched = np.zeros((0, t.size)) if self.watched is None else self.watched(t)[None]
+        return Samples(self.law(t)[None], np.full((1, t.size), np.nan), watched)
+
+
+@pytest.mark.parametrize("law", [np.exp, lambda x: np.exp(-x), lambda x: 1 - 0.3 * x, lambda x: np.sinh(x - 1.5)])
+def test_what_goes_straight_on_to_an_end_needs_no_cuts(law):
+    """It is looked at in the end step, and believed."""
+    times = np.linspace(0.0, 2.0, 51)
+    source = Counted(law)
+    samples, source.times = source.at(times), 0
+    found = peaks(source, Curves((0,), (0,)), times, samples, np.zeros(50, bool))
+    assert abs(found.value[0]) == np.abs(samples.values).max()
+    assert source.times <= 1
+
+
+@pytest.mark.parametrize(
+    ("law", "kind", "at"),
+    [
+        (lambda x: 1 - np.abs(x - 1.013), Kind.SWITCH, 1.013),
+        (lambda x: x * (x < 1.0137), Kind.SWITCH, 1.0137),
+        (lambda x: np.fmod(x + 0.4, 1.0), Kind.STEP, 0.6),
+    ],
+)
+def test_a_known_kink_cuts_a_step_in_two(law, kind, at):
+    """What is watched tells where it is, and little is looked at around it."""
+    times = np.linspace(0.0, 2.0, 51)
+    watches = (Watch(kind, (at,) if kind is Kind.SWITCH else ()),)
+    source = Counted(law, lambda x: x if kind is Kind.SWITCH else x + 0.4)
+    samples, source.times = source.at(times), 0
+    found = peaks(source, Curves((0,), (0,), (), watches), times, samples, np.zeros(50, bool))
+    sides = law(np.array([at, np.nextafter(at, 0), np.nextafter(at, 3), 1.6 - 4e-16]))
+    assert found.value[0] == pytest.approx(sides.max(), rel=1e-12)
+    assert source.times <= 80
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        lambda x: (x < 1.0137) / (1.0137 - x),
+        lambda x: 1 / (x - 1.0137),
+        lambda x: ca.tan(x),
+        lambda x: 1 / ca.sqrt(ca.fabs(x - 1.0137)),
+    ],
+)
 def test_poles_are_infinite(law):
     assert all(math.isinf(value) for _, value in searched(signal(law)))
 

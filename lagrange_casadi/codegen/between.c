@@ -58,9 +58,11 @@ static designs_real designs_furthest(const designs_real* row, casadi_int i, casa
 #if DESIGNS_WATCHES
 static designs_real designs_floor(designs_real x) { return x - x == 0 ? (designs_real) floor((double) x) : x; }
 
-/* How many kinks one of the watched has in a step, 2 for more; or DESIGNS_MANY where it may do anything. */
+/* How many kinks one of the watched has in a step, 2 for more; or DESIGNS_MANY where it may do anything. Unless it may have a kink
+   itself there, as bent tells, one that bends little beside how far it goes stays between its ends. */
 #define DESIGNS_MANY 100
-static int designs_kinks(const designs_real* row, casadi_int i, casadi_int n, int kind, const designs_real* at, int count, double step) {
+static int designs_kinks(const designs_real* row, casadi_int i, casadi_int n, int kind, const designs_real* at, int count, double step,
+                         int bent) {
   const designs_real a = row[i], b = row[i + 1], least = a < b ? a : b, most = a < b ? b : a;
   designs_real low, high, nearest, sizes, turned;
   casadi_int j;
@@ -79,6 +81,10 @@ static int designs_kinks(const designs_real* row, casadi_int i, casadi_int n, in
   }
   designs_bounds(row, i, n, &high, &low);
   low = -low;
+  if (!bent && most - least >= DESIGNS_STRAIGHT*((high - most) + (least - low))) {
+    low = least;
+    high = most;
+  }
   if (kind == DESIGNS_IS_POLE || kind == DESIGNS_IS_ROOT) {
     nearest = a > 0 ? low : -high;
     if (kind == DESIGNS_IS_ROOT) return (a > 0) != (b > 0) || nearest < 0;
@@ -134,12 +140,14 @@ static int designs_is_sharp(designs_real* row, casadi_int n, int kind, double st
 
 /* Tell in which steps of a panel something may hide; inside a step between instants, kinks of the motion are counted too. */
 static void designs_hide(const designs_panel* panel, int inside) {
-#if DESIGNS_WATCHES || DESIGNS_KNOTS
   const casadi_int steps = panel->n - 1;
+#if DESIGNS_WATCHES || DESIGNS_KNOTS
   const double step = (panel->t[steps] - panel->t[0])/(double) steps;
   casadi_int i;
   int any = 0, k;
+#endif
   memset(panel->kinks, 0, (size_t) steps);
+#if DESIGNS_WATCHES || DESIGNS_KNOTS
 #if DESIGNS_KNOTS
   for (k = 0; inside && k < DESIGNS_KNOTS; ++k) {
     if (!(designs_knot[k] >= panel->t[0] && designs_knot[k] <= panel->t[steps])) continue;
@@ -154,7 +162,8 @@ static void designs_hide(const designs_panel* panel, int inside) {
     if (!designs_is_sharp(row, panel->n, designs_watch[k], step)) continue;
     for (i = 0; i < steps; ++i) {
       const int found = designs_kinks(row, i, panel->n, designs_watch[k], designs_watch_at + designs_watch_first[k],
-                                      designs_watch_first[k + 1] - designs_watch_first[k], step);
+                                      designs_watch_first[k + 1] - designs_watch_first[k], step,
+                                      panel->kinks[i] || panel->hiding[i] & DESIGNS_HIDES);
       if (found == DESIGNS_MANY) panel->hiding[i] |= DESIGNS_HIDES;
       else panel->kinks[i] = (signed char) (panel->kinks[i] + found > 2 ? 2 : panel->kinks[i] + found);
       any |= found > 0;
@@ -166,8 +175,13 @@ static void designs_hide(const designs_panel* panel, int inside) {
     if (!panel->kinks[i]) continue;
     if (panel->kinks[i] > 1 || (i > 0 && panel->kinks[i - 1]) || (i < steps - 1 && panel->kinks[i + 1])) panel->hiding[i] |= DESIGNS_HIDES;
   }
-#else
-  (void) panel;
 #endif
   (void) inside;
+}
+
+/* Whether a kink may be in a step. */
+static int designs_kinked(const designs_panel* panel, casadi_int step) {
+  int k, kinked = panel->kinks[step] || panel->hiding[step] & DESIGNS_HIDES;
+  for (k = 0; k < DESIGNS_KNOTS; ++k) kinked |= designs_knot[k] > panel->t[step] && designs_knot[k] < panel->t[step + 1];
+  return kinked;
 }

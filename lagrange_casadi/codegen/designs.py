@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import between, summits
+from .. import between, panels, summits
 from ..compensated import DTYPES, Precision
 from ..scene_graph import SceneGraph
 from ..sharpness import Kind, Watch
@@ -37,11 +37,15 @@ NOISE: dict[Precision, float] = {"double": summits.NOISE, "single": 1e-2}
 DEEPEST: dict[Precision, int] = {"double": summits.DEEPEST, "single": 8}
 """Panels within each other."""
 
+SIDE: dict[Precision, float] = {"double": panels.SIDE, "single": 1e-5}
+"""Of a step between instants: how near to a kink or a jump its sides are."""
+
 STRIDE = 64
 """Values of a row of a panel inside a step: its times, and two packs beside them."""
 
+_STRETCH: dict[Precision, float] = {"double": summits.STRETCH, "single": 1e-2}
 _LAST: dict[Precision, float] = {"double": summits.LAST, "single": 1e-5}
-_FILES = ("instants.c", "between.c", "fits.c", "summits.c", "designs.c")
+_FILES = ("instants.c", "between.c", "fits.c", "looks.c", "parts.c", "summits.c", "designs.c")
 
 
 @dataclass(frozen=True)
@@ -183,7 +187,8 @@ def _macros(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan, p
         "STRIDE": STRIDE,
         "DEEPEST": DEEPEST[precision],
         "PANELS": summits.PANELS,
-        "SPACING": f"{summits.SPACING:.17g}",
+        "SPACING": f"{panels.SPACING:.17g}",
+        "SIDE": f"{SIDE[precision]:.17g}",
         "RATE": f"{between.RATE:.17g}",
         **{f"IS_{kind.name}": int(kind) for kind in Kind},
         f"FOLLOW{loops}": f"{FOLLOW}{loops}" if stages.loops else "((void) 0)",
@@ -199,6 +204,7 @@ def _numbers(precision: Precision) -> dict[str, float]:
         "ROUNDING": ROUNDING[precision],
         "NOISE": NOISE[precision],
         "LAST": _LAST[precision],
+        "STRETCH": _STRETCH[precision],
         "BESIDE": summits.BESIDE,
         "NOTHING": summits.NOTHING,
         "ENDLESS": summits.ENDLESS,
@@ -207,6 +213,7 @@ def _numbers(precision: Precision) -> dict[str, float]:
         "DIP": between.DIP,
         "CHANGE": between.CHANGE,
         "RISE": between.RISE,
+        "STRAIGHT": between.STRAIGHT,
         "NEGLIGIBLE": between.NEGLIGIBLE,
     }
 

@@ -76,6 +76,31 @@ static void designs_begin(designs_fit* fit, int lane, casadi_int j, casadi_int f
   fit->high[lane] = j == count - 1 ? from - off : from + 1;
 }
 
+/* What a polynomial through seven values, of which the first is that at an end, says of the step there: its value in the middle, and
+   the least size of its slope, by steps, at both ends and there: zero where it turns. */
+static designs_real designs_stretch(const designs_real* end, int inward, designs_real* middle) {
+  static const designs_real weights[DESIGNS_FIT][4] = {
+    {(designs_real) 231/1024, (designs_real) -147/60, (designs_real) -1627/1920, (designs_real) -1/6},
+    {(designs_real) 1386/1024, (designs_real) 6, (designs_real) 633/1920, (designs_real) -77/60},
+    {(designs_real) -1155/1024, (designs_real) -7.5, (designs_real) 2360/1920, (designs_real) 2.5},
+    {(designs_real) 924/1024, (designs_real) 400/60, (designs_real) -2350/1920, (designs_real) -100/60},
+    {(designs_real) -495/1024, (designs_real) -3.75, (designs_real) 1365/1920, (designs_real) 50/60},
+    {(designs_real) 154/1024, (designs_real) 1.2, (designs_real) -443/1920, (designs_real) -0.25},
+    {(designs_real) -21/1024, (designs_real) -1/6, (designs_real) 62/1920, (designs_real) 2/60}};
+  designs_real sum[4] = {0, 0, 0, 0}, y;
+  int k, j;
+  for (j = 0; j < DESIGNS_FIT; ++j) {
+    y = end[j*inward];
+    for (k = 0; k < 4; ++k) sum[k] += weights[j][k]*y;
+  }
+  *middle = sum[0];
+  y = sum[1] < 0 ? -1 : 1;
+  for (k = 1; k < 4; ++k) sum[k] *= y;
+  y = sum[1] < sum[2] ? sum[1] : sum[2];
+  y = y < sum[3] ? y : sum[3];
+  return y > 0 ? y : 0;
+}
+
 /* Where two parabolas through three sizes on either side of value j meet in a tip, if they do, and their sizes there; and a little
    before it and after it, for only there does each show what it is worth. */
 static void designs_kink(const designs_real* row, designs_summit* summit, double t, double step) {
