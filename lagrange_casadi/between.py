@@ -37,7 +37,8 @@ def highest(y: Array) -> Array:
 
     Where it bends downwards at both ends of a step, a curve is below the chords of the steps beside it; where upwards, below its
     own. Where it bends both ways, and in the first step and the last, it rises above an end at most as far as a kink in the middle
-    would that bends it as much. To all this comes what the flanks of a kink bend upwards.
+    would that bends it as much. To all this comes what the flanks of a kink bend upwards; so beside an inflection, through which
+    the chord rises though the curve may fall.
     """
     a, b = y[..., :-1], y[..., 1:]
     inner = -np.diff(y, 2)
@@ -45,10 +46,13 @@ def highest(y: Array) -> Array:
     left, right, upward = bend[..., :-1], bend[..., 1:], np.maximum(-inner, 0.0)
     flanks = np.zeros_like(a)
     flanks[..., 2:-2] = upward[..., :-3] + upward[..., 3:]
+    beside = np.zeros_like(a)
+    beside[..., 2:] += upward[..., :-1]
+    beside[..., :-2] += upward[..., 1:]
     flanks[..., :2], flanks[..., -2:] = 2 * np.abs(inner[..., 1:3]), 2 * np.abs(inner[..., -3:-1])
     with np.errstate(all="ignore"):
         up, down = left + (b - a), right - (b - a)
-        tip = np.where((up > 0.0) & (down > 0.0), a + up * (right / (left + right)) + flanks, np.maximum(a, b))
+        tip = np.where((up > 0.0) & (down > 0.0), a + up * (right / (left + right)) + flanks, np.maximum(a, b) + beside)
         either = np.maximum(a + np.abs(left) / 2, b + np.abs(right) / 2) + flanks
         concave, convex = (left >= 0.0) & (right >= 0.0), (left <= 0.0) & (right <= 0.0)
     concave[..., [0, -1]] = convex[..., [0, -1]] = False

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from lagrange_casadi.between import highest, passed, unresolved
@@ -13,6 +13,7 @@ numbers = st.floats(-3, 3, allow_nan=False)
 
 
 @settings(max_examples=200, deadline=None)
+@example(1.0, 0.03125, 1.0, 0.0, 0.5)
 @given(numbers, numbers, numbers, st.floats(0, 12), st.floats(0.0, 0.6))
 def test_no_smooth_curve_is_above_its_bound(a, b, c, start, step):
     """Of waves that turn less than 0.6 rad in a step."""

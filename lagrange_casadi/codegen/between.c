@@ -27,10 +27,16 @@ static designs_real designs_flanks(const designs_real* row, casadi_int i, casadi
   return designs_upper(-sign*designs_bend(y - 1), 0) + designs_upper(-sign*designs_bend(y + 2), 0);
 }
 
+/* What a curve bends upwards beside step i of n - 1. */
+static designs_real designs_inflected(const designs_real* row, casadi_int i, casadi_int n, designs_real sign) {
+  const designs_real *y = row + i, before = i > 1 ? -sign*designs_bend(y - 1) : 0, after = i < n - 3 ? -sign*designs_bend(y + 2) : 0;
+  return designs_upper(before, 0) + designs_upper(after, 0);
+}
+
 /* Upper bounds of a curve in step i of n - 1, and of what it is below zero. Where it bends downwards at both ends of a step, a curve is
    below the chords of the steps beside it; where upwards, below its own. Where it bends both ways, and in the first step and the last,
    it rises above an end at most as far as a kink in the middle would that bends it as much. To all this comes what the flanks of a kink
-   bend upwards. */
+   bend upwards; so beside an inflection, through which the chord rises though the curve may fall. */
 static void designs_bounds(const designs_real* row, casadi_int i, casadi_int n, designs_real* up, designs_real* down) {
   const designs_real *y = row + i, a = y[0], b = y[1];
   const designs_real left = i == 0 ? 2*designs_bend(y + 1) : designs_bend(y);
@@ -40,8 +46,10 @@ static void designs_bounds(const designs_real* row, casadi_int i, casadi_int n, 
   *down = designs_upper(-a, -b);
   if (i > 0 && i < n - 2 && left >= 0 && right >= 0) {
     if (a > y[-1] && b > y[2]) *up = a + (a - y[-1])*(right/(left + right)) + designs_flanks(row, i, n, 1);
+    else *up += designs_inflected(row, i, n, 1);
   } else if (i > 0 && i < n - 2 && left <= 0 && right <= 0) {
     if (a < y[-1] && b < y[2]) *down = (y[-1] - a)*(right/(left + right)) - a + designs_flanks(row, i, n, -1);
+    else *down += designs_inflected(row, i, n, -1);
   } else {
     *up = designs_upper(a + l, b + r) + designs_flanks(row, i, n, 1);
     *down = designs_upper(l - a, r - b) + designs_flanks(row, i, n, -1);
