@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, load_case
-from lagrange_casadi.backends import rows, run
-from lagrange_casadi.description import describe
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.room import cores
-from lagrange_casadi.rung import Backend, Rung
-from lagrange_casadi.scene_graph import SceneGraph
-from lagrange_casadi.section_law import FORCES, SectionLaw
-from lagrange_casadi.solution import Provenance, Solution, in_order
+from lagrange_casadi.declare.description import describe
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.equations.scene_graph import SceneGraph
+from lagrange_casadi.instants.backends import rows, run
+from lagrange_casadi.instants.rung import Backend, Rung
+from lagrange_casadi.instants.section_law import FORCES, SectionLaw
+from lagrange_casadi.instants.solution import Provenance, Solution, in_order
+from lagrange_casadi.system.room import cores
 
 from .peers.paper_case import Array, SliderCrank, Work
 

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from lagrange_casadi import codegen, derive, export, load_case
-from lagrange_casadi.backends import rows
 from lagrange_casadi.codegen.compiler import FLAGS
+from lagrange_casadi.instants.backends import rows
 
 N = 1000
 _ROUNDS = 300

@@ -15,9 +15,9 @@ from types import ModuleType
 from typing import Any
 
 from . import case_modules
+from .declare.scene import Scene
+from .draw.figures import Spec
 from .errors import CaseError, LagrangeCasadiError, one_line
-from .figures import Spec
-from .scene import Scene
 
 
 @dataclass(frozen=True, eq=False)

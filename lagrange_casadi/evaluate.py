@@ -10,26 +10,26 @@ from dataclasses import replace
 
 import numpy as np
 
-from .accuracy import estimate, explained
-from .backends import Table
-from .certificate import certify, failure, tolerance
-from .compensated import Precision
-from .cost import seconds
-from .density import Array
-from .derive import assembled, derive
-from .description import describe
-from .determinacy import determinate, undetermined
+from .arithmetic.compensated import Precision
+from .declare.density import Array
+from .declare.description import describe
+from .declare.motion import refuse_kinked
+from .declare.scene import Grid, Scene, checked, checked_ratios, points
+from .equations.derive import assembled, derive
+from .equations.scene_graph import SceneGraph
 from .errors import CertificateWarning, DeclarationError
-from .motion import refuse_kinked
-from .phases import phases
-from .reading import columns
-from .refusal import refuse
-from .room import MOST_THREADS, cores, in_words, require
-from .rung import Backend, Rung
-from .scene import Grid, Scene, checked, checked_ratios, points
-from .scene_graph import SceneGraph
-from .solution import Solution, in_order
-from .written import written
+from .instants.backends import Table
+from .instants.cost import seconds
+from .instants.determinacy import determinate, undetermined
+from .instants.phases import phases
+from .instants.reading import columns
+from .instants.refusal import refuse
+from .instants.rung import Backend, Rung
+from .instants.solution import Solution, in_order
+from .judge.accuracy import estimate, explained
+from .judge.certificate import certify, failure, tolerance
+from .judge.written import written
+from .system.room import MOST_THREADS, cores, in_words, require
 
 _BESIDE, _CHECKED = 8, 2
 """Rows beside the outputs, and how many times both are in memory while they are checked."""

@@ -11,8 +11,8 @@ import oracle
 from arithmetic import DOUBLE
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.parts import Link, RigidMass
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.declare.parts import Link, RigidMass
 
 MOTION = polynomial(0.2, 3.0, 4.0)
 INSTANT = 0.3

@@ -19,10 +19,10 @@ from builders import settle
 from mpmath import mp
 from precise import precise
 
-from lagrange_casadi.compensated import DTYPES, ROUNDING
-from lagrange_casadi.interpret import interpret
-from lagrange_casadi.reference import arithmetic
-from lagrange_casadi.section_law import FORCES
+from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING
+from lagrange_casadi.arithmetic.interpret import interpret
+from lagrange_casadi.instants.section_law import FORCES
+from lagrange_casadi.judge.reference import arithmetic
 
 DIGITS = 50
 LEAST = 1e-30

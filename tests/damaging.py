@@ -13,12 +13,13 @@ import sys
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
-from lagrange_casadi import Sweep, check, load, store
+from lagrange_casadi import Sweep, check, load
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import StoreError
-from lagrange_casadi.seal import SIZE
+from lagrange_casadi.store import runs as store
 from lagrange_casadi.sweep import is_sweep
 from lagrange_casadi.sweep.checking import check_sweep
+from lagrange_casadi.system.seal import SIZE
 
 SECONDS = 30
 """What one attempt may take before the program ends itself."""

@@ -15,9 +15,9 @@ from test_stages import kind
 from truth import true_errors, truth
 
 from lagrange_casadi import evaluate, load_case
-from lagrange_casadi.compensated import DTYPES, ROUNDING
+from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING
+from lagrange_casadi.declare.scene import points
 from lagrange_casadi.errors import AssemblyError
-from lagrange_casadi.scene import points
 
 FACTOR = 10.0
 MOST = 0.8

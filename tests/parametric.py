@@ -10,7 +10,7 @@ from fractions import Fraction
 import pytest
 
 from lagrange_casadi import Mechanism, load_case
-from lagrange_casadi.parts import Ground, Link
+from lagrange_casadi.declare.parts import Ground, Link
 
 _DENOMINATOR = 60
 _RELATIVE = 1e-15

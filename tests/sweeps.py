@@ -10,8 +10,8 @@ import time
 import builders
 import numpy as np
 
-from lagrange_casadi.designs import Outcome
-from lagrange_casadi.solution import Provenance
+from lagrange_casadi.designs.engine import Outcome
+from lagrange_casadi.instants.solution import Provenance
 from lagrange_casadi.sweep import plan
 from lagrange_casadi.version import __version__
 

@@ -18,14 +18,14 @@ from test_stages import sampled
 from truth import true_errors, truth
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, save, table
-from lagrange_casadi.accuracy import explained
-from lagrange_casadi.backends import run
-from lagrange_casadi.certificate import LOOSE, TOLERANCE, certify, tolerance
-from lagrange_casadi.compensated import ROUNDING
+from lagrange_casadi.arithmetic.compensated import ROUNDING
+from lagrange_casadi.declare.motion import harmonic, polynomial
+from lagrange_casadi.declare.parts import Link
+from lagrange_casadi.declare.scene import points
 from lagrange_casadi.errors import AssemblyError, CertificateWarning
-from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.parts import Link
-from lagrange_casadi.scene import points
+from lagrange_casadi.instants.backends import run
+from lagrange_casadi.judge.accuracy import explained
+from lagrange_casadi.judge.certificate import LOOSE, TOLERANCE, certify, tolerance
 
 COUNT = 101
 """Instants of a grid: half of them estimates do not look at."""
@@ -346,7 +346,7 @@ def test_what_the_code_did_wrong_is_an_error_of_what_it_did_wrong(monkeypatch):
         table.out[arguments[0].columns.index("reaction:A:fx")] *= 1.001
         return table, provenance
 
-    monkeypatch.setattr(sys.modules["lagrange_casadi.reading"], "run", spoilt)
+    monkeypatch.setattr(sys.modules["lagrange_casadi.instants.reading"], "run", spoilt)
     with pytest.warns(CertificateWarning, match="balance"):
         solution = evaluate(slider_crank(["all"]))
     assert solution.errors["reaction:A:fx"] == pytest.approx(0.001 / 1.001 * abs(solution.peak("reaction:A:fx").value), rel=1e-9)

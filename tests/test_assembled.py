@@ -7,9 +7,9 @@ import pytest
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, sweep
 from lagrange_casadi.cli import main
+from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, UnknownNameError
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.peaks import refine
+from lagrange_casadi.study.peaks import refine
 
 SHORT, LONG = (0.1, 0.05, 0.05), (0.1, 0.35, 0.25)
 VALUES = dict(zip("pqr", LONG, strict=True))
@@ -113,7 +113,7 @@ def test_exported_c(tmp_path):
 
 CASE = """\
 from lagrange_casadi import Mechanism, Scene
-from lagrange_casadi.motion import polynomial
+from lagrange_casadi.declare.motion import polynomial
 
 
 def scene():

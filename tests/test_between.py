@@ -5,9 +5,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from lagrange_casadi.between import highest, passed, unresolved
-from lagrange_casadi.fits import SEVEN, bounds, stretch, summit, where, window
-from lagrange_casadi.sharpness import Kind, Watch
+from lagrange_casadi.summits.between import highest, passed, unresolved
+from lagrange_casadi.summits.fits import SEVEN, bounds, stretch, summit, where, window
+from lagrange_casadi.summits.sharpness import Kind, Watch
 
 numbers = st.floats(-3, 3, allow_nan=False)
 

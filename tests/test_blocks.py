@@ -5,11 +5,11 @@ import math
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.assembly import assemble
-from lagrange_casadi.blocks import plan
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.equations.assembly import assemble
+from lagrange_casadi.equations.blocks import plan
+from lagrange_casadi.equations.tree import span
 from lagrange_casadi.errors import MobilityError
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.tree import span
 
 
 def truss(triangles):

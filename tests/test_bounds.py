@@ -9,11 +9,12 @@ import pytest
 import sweeps
 from builders import slider_crank
 
-from lagrange_casadi import evaluate, room, sweep
+from lagrange_casadi import evaluate, sweep
 from lagrange_casadi.cli import main
+from lagrange_casadi.declare.scene import points
 from lagrange_casadi.errors import DeclarationError, SizeError
-from lagrange_casadi.scene import points
 from lagrange_casadi.sweep import plan, workers
+from lagrange_casadi.system import room
 
 CASE = str(Path(__file__).parent.parent / "cases" / "slider_crank")
 HUGE = "99999999999999999999999"

@@ -9,9 +9,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from lagrange_casadi import cache
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.system import cache
 
 NAMES = [f"{k:032x}" for k in range(12)]
 

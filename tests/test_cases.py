@@ -10,7 +10,8 @@ from arithmetic import DOUBLE
 from beside import of_case
 from builders import compare
 
-from lagrange_casadi import LagrangeSystem, evaluate, figures, load_case
+from lagrange_casadi import LagrangeSystem, evaluate, load_case
+from lagrange_casadi.draw import figures
 
 CASES = Path(__file__).parent.parent / "cases"
 NAMES = sorted(path.parent.name for path in CASES.glob("*/case.py"))

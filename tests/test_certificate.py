@@ -12,17 +12,19 @@ from conftest import CASES
 from test_loops import ladder
 from test_redundancy import parallelogram
 
-from lagrange_casadi import Mechanism, Scene, evaluate, export, loops, refusal, save
-from lagrange_casadi.certificate import LOOSE, certify
+from lagrange_casadi import Mechanism, Scene, evaluate, export, save
 from lagrange_casadi.cli import main
-from lagrange_casadi.designs import DesignEngine
+from lagrange_casadi.declare.motion import harmonic, polynomial
+from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.equations import loops
 from lagrange_casadi.errors import AssemblyError, CertificateError, CertificateWarning
-from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.refusal import Status
-from lagrange_casadi.rung import Rung
-from lagrange_casadi.solution import Solution
-from lagrange_casadi.store import check, load
-from lagrange_casadi.written import written
+from lagrange_casadi.instants import refusal
+from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.solution import Solution
+from lagrange_casadi.judge.certificate import LOOSE, certify
+from lagrange_casadi.judge.written import written
+from lagrange_casadi.store.runs import check, load
 
 WHOLE = {"closure", "balance", "power", "ends"}
 

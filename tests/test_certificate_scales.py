@@ -9,9 +9,9 @@ import pytest
 from extremes import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.certificate import certify
-from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.written import written
+from lagrange_casadi.declare.motion import harmonic, polynomial
+from lagrange_casadi.judge.certificate import certify
+from lagrange_casadi.judge.written import written
 
 MILLIONTH = 1.0 + 1e-6
 

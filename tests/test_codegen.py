@@ -15,12 +15,12 @@ from builders import four_bar, slider_crank
 from test_mobility import truss_platform
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
-from lagrange_casadi.backends import run
+from lagrange_casadi.arithmetic.compensated import DTYPES, PRECISIONS
 from lagrange_casadi.codegen import compiler
-from lagrange_casadi.compensated import DTYPES, PRECISIONS
+from lagrange_casadi.codegen.stages import compensated, plain
 from lagrange_casadi.errors import CompilerError
-from lagrange_casadi.rung import Rung
-from lagrange_casadi.stages import compensated, plain
+from lagrange_casadi.instants.backends import run
+from lagrange_casadi.instants.rung import Rung
 
 
 def spline_arm():

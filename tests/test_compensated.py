@@ -11,8 +11,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from lagrange_casadi.compensated import DTYPES, PRECISIONS, ROUNDING, Pair, Pairs, closed
-from lagrange_casadi.interpret import interpret, numpy_arithmetic
+from lagrange_casadi.arithmetic.compensated import DTYPES, PRECISIONS, ROUNDING, Pair, Pairs, closed
+from lagrange_casadi.arithmetic.interpret import interpret, numpy_arithmetic
 
 MP = mpmath.MPContext()
 MP.dps = 60

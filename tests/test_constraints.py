@@ -9,9 +9,9 @@ import pytest
 from builders import INSTANT, MOTION, assert_balanced
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.designs import DesignEngine
+from lagrange_casadi.declare.motion import expression, polynomial
+from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.motion import expression, polynomial
 
 
 @pytest.mark.parametrize("turns", [0.0, 40.0])

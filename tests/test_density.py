@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from lagrange_casadi.density import polynomial, tabulated, uniform
+from lagrange_casadi.declare.density import polynomial, tabulated, uniform
 
 U = (0.0, 0.25, 0.4999, 0.9985, 0.9995, 1.0 - 2.0**-40, 1.0)
 

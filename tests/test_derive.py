@@ -1,8 +1,10 @@
 """Graphs are derived once: named by all that they come from, kept on disk, and the same when they come back."""
 
+import hashlib
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import casadi as ca
 import numpy as np
@@ -10,11 +12,12 @@ import pytest
 from builders import four_bar, slider_crank
 from test_codegen import SCENES
 
+import lagrange_casadi
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate
-from lagrange_casadi.fingerprint import fingerprint
-from lagrange_casadi.motion import Motion, expression, harmonic, polynomial, samples
-from lagrange_casadi.scene import Wanted
-from lagrange_casadi.scene_graph import SceneGraph
+from lagrange_casadi.declare.motion import Motion, expression, harmonic, polynomial, samples
+from lagrange_casadi.declare.scene import Wanted
+from lagrange_casadi.equations.fingerprint import fingerprint, sources
+from lagrange_casadi.equations.scene_graph import SceneGraph
 
 
 def name_of(scene):
@@ -41,7 +44,7 @@ def test_a_second_process_derives_nothing(fresh_cache, tmp_path):
     first = evaluate(slider_crank(), backend="c")
     program = (
         f"import sys; sys.path[:0] = {[os.path.dirname(__file__)]!r}; from builders import slider_crank; "
-        "sys.modules['lagrange_casadi.derive'].assemble = None; "
+        "sys.modules['lagrange_casadi.equations.derive'].assemble = None; "
         "from lagrange_casadi import evaluate; print(evaluate(slider_crank(), backend='c').effort('O').tobytes().hex())"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=tmp_path)
@@ -141,3 +144,12 @@ def test_a_motion_by_a_callback_is_not_kept(fresh_cache):
     for _ in range(2):
         assert evaluate(scene, backend="vm", wanted=["motion"], certificate=False).motion("pin").value[-1] == 2.0
     assert not list(fresh_cache.glob("*.graph"))
+
+
+def test_the_code_that_derives_is_all_of_the_package():
+    """A change anywhere may derive other graphs: none is believed to be as it was kept."""
+    root = Path(lagrange_casadi.__file__).parent
+    digest = hashlib.sha256()
+    for path in sorted(root.rglob("*.py")):
+        digest.update(f"{path.relative_to(root)}\0".encode() + path.read_bytes())
+    assert sources() == digest.hexdigest()

@@ -15,12 +15,12 @@ from test_redundancy import parallelogram
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
 from lagrange_casadi.codegen import library
-from lagrange_casadi.designs import DesignEngine
-from lagrange_casadi.designs_plan import Kept, stages_of
+from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.designs.plan import Kept, stages_of
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.peaks import refine
-from lagrange_casadi.refusal import Status
-from lagrange_casadi.rung import Rung
+from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.study.peaks import refine
 
 NAMES = sorted(path.name for path in CASES.iterdir() if (path / "case.py").exists())
 INSTANTS = 128

@@ -10,11 +10,11 @@ from design_rows import DENSITIES, assert_refined, loaded, peaks_of, values
 from test_peaks import lobes, pendulum
 
 from lagrange_casadi import derive, evaluate, motion
-from lagrange_casadi.designs import DesignEngine
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.peaks import forces, refine
-from lagrange_casadi.refusal import Status
-from lagrange_casadi.rung import Rung
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.study.peaks import forces, refine
 
 both = pytest.mark.parametrize("backend", ["lanes", "vm"])
 

@@ -12,12 +12,12 @@ from test_kinematics import double_crank, flat_parallelogram
 from test_mobility import truss_platform
 
 from lagrange_casadi import Mechanism, Scene, load_case
-from lagrange_casadi.backends import run
-from lagrange_casadi.designs import DesignEngine
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import ParameterError
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.refusal import Status, refusal
-from lagrange_casadi.rung import Rung
+from lagrange_casadi.instants.backends import run
+from lagrange_casadi.instants.refusal import Status, refusal
+from lagrange_casadi.instants.rung import Rung
 
 
 def statuses(scene, p, rung, instants=None):

@@ -8,12 +8,12 @@ import pytest
 from test_mobility import truss_platform
 
 from lagrange_casadi import Mechanism, Scene, derive
-from lagrange_casadi.backends import run
-from lagrange_casadi.disturbed import TRIALS, Instants, effects, openness
-from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.rung import Rung
-from lagrange_casadi.scene import points
-from lagrange_casadi.stages import compensated, plain
+from lagrange_casadi.codegen.stages import compensated, plain
+from lagrange_casadi.declare.motion import harmonic, polynomial
+from lagrange_casadi.declare.scene import points
+from lagrange_casadi.instants.backends import run
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.judge.disturbed import TRIALS, Instants, effects, openness
 
 STAGES = {
     "double": plain,
@@ -168,5 +168,5 @@ def test_many_instants_are_followed_in_blocks(monkeypatch):
     chosen = np.arange(41)
     (whole,) = instants.blocks(chosen)
     np.testing.assert_array_equal(whole, chosen)
-    monkeypatch.setattr("lagrange_casadi.disturbed._AT_ONCE", 1)
+    monkeypatch.setattr("lagrange_casadi.judge.disturbed._AT_ONCE", 1)
     assert [block.tolist() for block in instants.blocks(chosen)] == [[*range(16)], [*range(16, 32)], [*range(32, 41)]]

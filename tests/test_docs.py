@@ -11,7 +11,7 @@ from lagrange_casadi import export, load_case
 from lagrange_casadi.cli import program
 from lagrange_casadi.codegen import find_compiler
 from lagrange_casadi.quantities import QUANTITIES
-from lagrange_casadi.store import SCHEMA_VERSION
+from lagrange_casadi.store.runs import SCHEMA_VERSION
 
 ROOT = Path(__file__).parent.parent
 PAGES = ["README.md", "docs/method.md", "docs/declaring.md", "docs/sweeps.md"]

@@ -11,7 +11,7 @@ from mpmath import mp
 
 from lagrange_casadi import derive, evaluate
 from lagrange_casadi.errors import AssemblyError, CertificateWarning
-from lagrange_casadi.reference import reference
+from lagrange_casadi.judge.reference import reference
 
 ROUNDINGS = 100
 ORDINARY = {"double": 1e-13, "single": 1e-5}

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from lagrange_casadi import evaluate, figures
+from lagrange_casadi import evaluate
+from lagrange_casadi.draw import figures
+from lagrange_casadi.draw.figures import MechanismDrawing, SectionMaps, SpanPlot, TimePlot
 from lagrange_casadi.errors import DeclarationError, StoreError, UnknownNameError
-from lagrange_casadi.figures import MechanismDrawing, SectionMaps, SpanPlot, TimePlot
 
 
 def curves(figure):

@@ -17,9 +17,9 @@ from test_codegen import fake_compiler
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.cli import main
 from lagrange_casadi.codegen import find_compiler
+from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import CompilerError, LagrangeCasadiError, PathError, StoreError
 from lagrange_casadi.export import export, fmu
-from lagrange_casadi.motion import polynomial
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
 pytestmark = pytest.mark.skipif(find_compiler() is None, reason="there is no C compiler to build an FMU with")

@@ -18,13 +18,13 @@ from test_mobility import truss_platform
 from truth import section
 
 from lagrange_casadi import Mechanism, Scene, derive, load_case
-from lagrange_casadi.backends import run
+from lagrange_casadi.arithmetic.interpret import interpret
+from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, DeclarationError, LagrangeCasadiError
-from lagrange_casadi.interpret import interpret
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.reference import arithmetic, reference
-from lagrange_casadi.rung import Rung
-from lagrange_casadi.section_law import FORCES
+from lagrange_casadi.instants.backends import run
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.section_law import FORCES
+from lagrange_casadi.judge.reference import arithmetic, reference
 
 MP = mpmath.mp
 EXACT = replace(arithmetic(), constant=meant(MP.mpf))
@@ -35,7 +35,7 @@ PARTS = {"engine": (340 / 720, 371.5 / 720, 397 / 720)}
 
 @pytest.mark.parametrize("name", NAMES)
 def test_formulas_to_forty_digits(name, monkeypatch):
-    monkeypatch.setattr("lagrange_casadi.reference.arithmetic", lambda: EXACT)
+    monkeypatch.setattr("lagrange_casadi.judge.reference.arithmetic", lambda: EXACT)
     scene = declared(CASES / name)
     graph, p = derive(scene, ["all"]), list(scene.mechanism.values().values())
     t = scene.t[0] + np.array(PARTS.get(name, (0.0, 0.4, 0.77))) * (scene.t[1] - scene.t[0])
@@ -108,7 +108,7 @@ def test_what_a_reference_refuses(monkeypatch):
     scene = truss_platform()
     graph = derive(scene)
     far = np.full((len(graph.newton.guess), 1), 1.0)
-    monkeypatch.setattr("lagrange_casadi.reference._STEPS", 3)
+    monkeypatch.setattr("lagrange_casadi.judge.reference._STEPS", 3)
     with pytest.raises(AssemblyError, match=r"the loops closed by joint .* do not close to all digits at t = 0\.5 s"):
         reference(graph, [0.5], [0.05], z=far)
     x = ca.SX.sym("x")

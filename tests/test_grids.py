@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from builders import slider_crank
 
-from lagrange_casadi import evaluate, grids, load, save
-from lagrange_casadi.density import NumericDensity
+from lagrange_casadi import evaluate, load, save
+from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.errors import DeclarationError, SizeError
-from lagrange_casadi.section_law import FORCES, SectionLaw, StationLoad
+from lagrange_casadi.instants import grids
+from lagrange_casadi.instants.section_law import FORCES, SectionLaw, StationLoad
 
 random = np.random.default_rng(4)
 
@@ -90,8 +91,8 @@ def test_without_a_compiler_numpy_fills(monkeypatch):
 def test_a_file_written_in_blocks_holds_the_whole_grid(tmp_path, monkeypatch):
     solution = evaluate(slider_crank(), t=(0, 0.08, 203), xi=(0, 1, 17))
     for chunk, block in ((1 << 20, 1 << 23), (1000, 5000), (40, 40)):
-        monkeypatch.setattr("lagrange_casadi.store._CHUNK_BYTES", chunk)
-        monkeypatch.setattr("lagrange_casadi.store._BLOCK_BYTES", block)
+        monkeypatch.setattr("lagrange_casadi.store.runs._CHUNK_BYTES", chunk)
+        monkeypatch.setattr("lagrange_casadi.store.runs._BLOCK_BYTES", block)
         save(solution, tmp_path / "x.h5")
         again = load(tmp_path / "x.h5")
         for force in FORCES:

@@ -5,8 +5,8 @@ import pytest
 from builders import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.certificate import certify
-from lagrange_casadi.motion import polynomial
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.judge.certificate import certify
 
 G = 9.81
 
@@ -120,6 +120,6 @@ def test_a_link_that_bears_nothing_at_its_base_is_certified_by_what_acts_on_it()
 
 def test_blocks_change_no_certificate(solution, monkeypatch):
     whole = certify(solution)
-    monkeypatch.setattr("lagrange_casadi.certificate._BLOCK", 77)
+    monkeypatch.setattr("lagrange_casadi.judge.certificate._BLOCK", 77)
     for name, values in certify(solution).items():
         assert np.array_equal(values, whole[name])

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import LagrangeSystem
+from lagrange_casadi.equations.integrability import Course, no_rates
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.integrability import Course, no_rates
 
 INERTIA = np.array([0.7, 1.1, 1.6])
 

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from test_cases import CASES, NAMES
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
+from lagrange_casadi.arithmetic.interpret import ROUNDINGS, Step, followable, interpret, numpy_arithmetic, steps
+from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.interpret import ROUNDINGS, Step, followable, interpret, numpy_arithmetic, steps
-from lagrange_casadi.motion import polynomial
 
 # NumPy's own sines differ from those of the C library, which the virtual machine takes.
 OF_C = {getattr(ca, f"OP_{name.upper()}"): getattr(math, name) for name in ("sin", "cos", "atan2")}

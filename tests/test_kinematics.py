@@ -9,9 +9,9 @@ from builders import INSTANT, four_bar, instant_at, slider_crank
 from test_mobility import CASES, block, cross_slide, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.equations.linear import LinearSystem
 from lagrange_casadi.errors import AssemblyError, DeclarationError, MobilityError
-from lagrange_casadi.linear import LinearSystem
-from lagrange_casadi.motion import polynomial
 
 
 @pytest.mark.parametrize("name", CASES)

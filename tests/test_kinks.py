@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, table
+from lagrange_casadi.declare.kinks import kink
+from lagrange_casadi.declare.motion import expression, polynomial
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.kinks import kink
-from lagrange_casadi.motion import expression, polynomial
 
 X, Y, T = (ca.SX.sym(name) for name in "xyt")
 TURN = np.linspace(0.0, math.tau, 37)

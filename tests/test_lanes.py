@@ -10,10 +10,10 @@ from builders import slider_crank
 from test_codegen import SCENES, columns
 
 from lagrange_casadi import codegen, derive, evaluate
-from lagrange_casadi.backends import run
+from lagrange_casadi.arithmetic.compensated import PRECISIONS, ROUNDING
 from lagrange_casadi.codegen import library
-from lagrange_casadi.compensated import PRECISIONS, ROUNDING
-from lagrange_casadi.rung import Rung
+from lagrange_casadi.instants.backends import run
+from lagrange_casadi.instants.rung import Rung
 
 HEADER = resources.files("lagrange_casadi.codegen").joinpath("lanes.h")
 

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from test_export import EVALUATED, told
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export
-from lagrange_casadi.designs import DesignEngine
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import DeclarationError, ParameterError
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.refusal import Status
+from lagrange_casadi.instants.refusal import Status
 
 RATIOS = (0.0, 1.0, 3)
 MISSES = {"0.1 + 0.2 on 0.3": (0.1 + 0.2, 0.3), "0.3 on 0.1 + 0.2": (0.3, 0.1 + 0.2), "its length": (0.3, 0.3)}

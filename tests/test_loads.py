@@ -8,8 +8,8 @@ import pytest
 from builders import INSTANT, assert_balanced, crank_and_rod, instant_at
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, table
+from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import ParameterError
-from lagrange_casadi.motion import polynomial
 
 
 def loads_on(m, parts):

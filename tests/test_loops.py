@@ -8,8 +8,8 @@ import pytest
 from builders import assert_balanced
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
+from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError
-from lagrange_casadi.motion import polynomial
 
 
 def iterated(scene):

@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.declare.parts import Link
 from lagrange_casadi.errors import AssemblyError
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.parts import Link
 
 TOLERANCE = 1e-12
 

@@ -6,7 +6,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, evaluate, motion
+from lagrange_casadi import Mechanism, Scene, evaluate
+from lagrange_casadi.declare import motion
 from lagrange_casadi.errors import DeclarationError
 
 

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lagrange_casadi import Mechanism
-from lagrange_casadi.multibody import Turned, joint_coordinate
-from lagrange_casadi.planar import Frame, Rotation
+from lagrange_casadi.equations.multibody import Turned, joint_coordinate
+from lagrange_casadi.geometry.planar import Frame, Rotation
 
 angles = st.floats(-30.0, 30.0)
 

@@ -7,9 +7,9 @@ import pytest
 from builders import assert_balanced
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load, save
-from lagrange_casadi.designs import DesignEngine
-from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.rung import Rung
+from lagrange_casadi.declare.motion import harmonic, polynomial
+from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.instants.rung import Rung
 
 
 def bracket(reach=0.9):

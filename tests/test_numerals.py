@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from lagrange_casadi.numerals import real, whole
+from lagrange_casadi.system.numerals import real, whole
 
 
 def test_numbers_are_read():

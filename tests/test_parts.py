@@ -7,8 +7,8 @@ import pytest
 from builders import INSTANT, MOTION, assert_balanced, crank_and_rod
 
 from lagrange_casadi import Mechanism, Scene, density, derive, evaluate, table
+from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import DeclarationError, ParameterError
-from lagrange_casadi.motion import polynomial
 
 
 @pytest.mark.parametrize(
@@ -120,7 +120,11 @@ def test_drive_between_two_moving_links():
         (lambda m, a: m.link("b", length=1), DeclarationError, "link 'b': give its mass, or a density"),
         (lambda m, a: m.link("b", length=1, mass=1, density=density.uniform(1)), DeclarationError, "give its mass, or a density"),
         (lambda m, a: m.link("b", length=1, mass=1, centre=(0, 0)), DeclarationError, "centre and inertia go together"),
-        (lambda m, a: m.link("b", length=1, density=3.0), DeclarationError, "expected a density of lagrange_casadi.density"),
+        (
+            lambda m, a: m.link("b", length=1, density=3.0),
+            DeclarationError,
+            "expected a density of lagrange_casadi.density",
+        ),
         (lambda m, a: density.tabulated([0, 0.5, 0.5, 1], [1, 1, 1, 1]), DeclarationError, "places must increase, but entry 2"),
         (lambda m, a: density.tabulated([0, 0.5], [1, 1]), DeclarationError, "must reach from 0 to 1, got 0 to 0.5"),
         (lambda m, a: density.polynomial(), DeclarationError, "at least one coefficient"),

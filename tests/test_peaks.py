@@ -11,7 +11,7 @@ from test_redundancy import parallelogram
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, motion, save
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
-from lagrange_casadi.peaks import forces, rates, refine, shortfall
+from lagrange_casadi.study.peaks import forces, rates, refine, shortfall
 
 MASS, LENGTH, G = 1.2, 0.5, 9.81
 NAMES = sorted(path.name for path in CASES.iterdir() if (path / "case.py").exists())

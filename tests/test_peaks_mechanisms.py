@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, evaluate, refine
-from lagrange_casadi.designs import DesignEngine
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.peaks import forces
-from lagrange_casadi.refusal import Status
-from lagrange_casadi.rung import Rung
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.study.peaks import forces
 
 
 def crank_rocker(lengths, ground, start, count):

@@ -15,10 +15,11 @@ import sweeps
 from builders import slider_crank
 from test_codegen import fake_compiler
 
-from lagrange_casadi import cache, codegen, evaluate
+from lagrange_casadi import codegen, evaluate
 from lagrange_casadi.cli import main
 from lagrange_casadi.codegen import compiler, programs
 from lagrange_casadi.errors import CompilerError
+from lagrange_casadi.system import cache
 
 CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
 TELLS = 'test "$1" = --version && exit 0;'

@@ -7,7 +7,7 @@ import h5py
 import pytest
 
 from lagrange_casadi.errors import PathError
-from lagrange_casadi.publish import check_writable, filling, replacing, uninterrupted
+from lagrange_casadi.system.publish import check_writable, filling, replacing, uninterrupted
 
 
 def test_a_folder_keeps_what_else_is_in_it(tmp_path):

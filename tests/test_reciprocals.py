@@ -5,7 +5,7 @@ import numpy as np
 from builders import slider_crank
 
 from lagrange_casadi import derive
-from lagrange_casadi.reciprocals import differentiable, share_reciprocals
+from lagrange_casadi.equations.reciprocals import differentiable, share_reciprocals
 
 
 def divisions(function):

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, evaluate
-from lagrange_casadi.designs import DesignEngine
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError, MobilityError
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.rung import Rung
+from lagrange_casadi.instants.rung import Rung
 
 
 def parallelogram(third=1.0, pendulum=False):

@@ -9,7 +9,7 @@ import pytest
 from builders import instant_at, section_forces
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.motion import polynomial
+from lagrange_casadi.declare.motion import polynomial
 
 # Vector Newton-Euler on free bodies in 60-digit arithmetic, the paper's mechanism and motion; its "about" says what each entry is.
 SIXTY_DIGITS = json.loads((Path(__file__).parent / "data" / "slider_crank_60_digits.json").read_text())

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from lagrange_casadi import room
 from lagrange_casadi.errors import SizeError
+from lagrange_casadi.system import room
 
 MEMINFO = "MemTotal:       64000000 kB\nMemFree:          100000 kB\nMemAvailable:   32000000 kB\nSwapFree:        1000000 kB\n"
 STAT = "anon 900\ninactive_file 4000000\ntotal_inactive_file 6000000\n"

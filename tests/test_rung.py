@@ -10,7 +10,7 @@ from test_cli import CASE
 from lagrange_casadi import evaluate
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.rung import Rung
+from lagrange_casadi.instants.rung import Rung
 
 WRONG = [
     ({"backend": "gpu"}, UnknownNameError, "unknown backend 'gpu'; valid: auto, lanes, c, vm"),

@@ -6,8 +6,8 @@ import pytest
 import xarray
 
 from lagrange_casadi import Mechanism, Scene, check, evaluate, load, save
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.scales import LARGE, Scales
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.store.scales import LARGE, Scales
 
 MANY = 6000
 """More than a list in an object's header has room for."""

@@ -5,9 +5,9 @@ import pytest
 from builders import four_bar, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.declare.scene import outputs
 from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.scene import outputs
 
 
 def test_outputs():

@@ -17,10 +17,12 @@ from forging import flip, unseal
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lagrange_casadi import Sweep, check, evaluate, load, save, seal, store
+from lagrange_casadi import Sweep, check, evaluate, load, save
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import PathError, StoreError
+from lagrange_casadi.store import runs as store
 from lagrange_casadi.sweep.checking import check_sweep
+from lagrange_casadi.system import seal
 
 MIB = 1 << 20
 

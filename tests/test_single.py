@@ -15,9 +15,9 @@ from test_lanes import HEADER
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate
 from lagrange_casadi.codegen.compiler import FLAGS
 from lagrange_casadi.codegen.emit import LANES_PLACE
+from lagrange_casadi.codegen.stages import compensated, plain
+from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import SizeError
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.stages import compensated, plain
 
 
 def every_function():

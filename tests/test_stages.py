@@ -10,14 +10,14 @@ from builders import four_bar, instant_at, settle, slider_crank
 from test_cases import CASES, NAMES
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
-from lagrange_casadi.backends import run
-from lagrange_casadi.certificate import certify
+from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, counts, plain
+from lagrange_casadi.declare.motion import expression, harmonic, polynomial, samples
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.motion import expression, harmonic, polynomial, samples
+from lagrange_casadi.instants.backends import run
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.judge.certificate import certify
+from lagrange_casadi.judge.reference import reference
 from lagrange_casadi.quantities import quantity_of
-from lagrange_casadi.reference import reference
-from lagrange_casadi.rung import Rung
-from lagrange_casadi.stages import FEW_TURNS, compensated, counts, plain
 
 # Compiled in half the time; test_codegen shows that not a bit depends on it.
 DOUBLE = [Rung("vm"), Rung("c", flags="-O1"), Rung("lanes", flags="-O1")]

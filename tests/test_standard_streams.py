@@ -57,7 +57,7 @@ def test_a_backend_that_a_notebook_set_draws_all_the_same(here, backend):
 
 LATE = """
 from lagrange_casadi import Mechanism, Scene, motion
-from lagrange_casadi.motion import Motion
+from lagrange_casadi.declare.motion import Motion
 
 def law(t):
     raise {raised}

@@ -15,9 +15,10 @@ import sweeps
 import xarray
 from forging import edit, flip
 
-from lagrange_casadi import check, evaluate, load, save, store
+from lagrange_casadi import check, evaluate, load, save
 from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoreError
 from lagrange_casadi.quantities import CONVENTIONS
+from lagrange_casadi.store import runs as store
 
 
 @pytest.fixture
@@ -306,7 +307,7 @@ def test_nothing_is_left_out_without_a_trace(file):
 
 
 def test_a_file_that_the_disk_has_no_room_for_is_refused(solution, tmp_path, monkeypatch):
-    monkeypatch.setattr("lagrange_casadi.store.shutil.disk_usage", lambda _: shutil._ntuple_diskusage(10**6, 0, 10**6))
+    monkeypatch.setattr("lagrange_casadi.store.runs.shutil.disk_usage", lambda _: shutil._ntuple_diskusage(10**6, 0, 10**6))
     with pytest.raises(StoreError, match=r"cannot write .*x\.h5: it takes 0\.004\d+ GB, and the disk has 0\.001 GB left"):
         save(solution, tmp_path / "x.h5")
     assert not list(tmp_path.iterdir())

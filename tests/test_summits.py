@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from test_peaks import pendulum
 
 from lagrange_casadi import evaluate, motion
-from lagrange_casadi.designs import DesignEngine
-from lagrange_casadi.panels import Samples
-from lagrange_casadi.peaks import refine
-from lagrange_casadi.refusal import Status
-from lagrange_casadi.rung import Rung
-from lagrange_casadi.sharpness import Kind, Watch
-from lagrange_casadi.summits import Curves, peaks
+from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.study.peaks import refine
+from lagrange_casadi.summits.panels import Samples
+from lagrange_casadi.summits.search import Curves, peaks
+from lagrange_casadi.summits.sharpness import Kind, Watch
 
 STEP = 0.04
 GRID = (0.0, 2.0, 51)

@@ -17,7 +17,7 @@ import sweeps
 
 from lagrange_casadi import Case, load_case
 from lagrange_casadi.errors import ClusterError, DeclarationError, StoppedError
-from lagrange_casadi.rung import Rung
+from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.sweep import cluster, columns, sweep
 from lagrange_casadi.sweep.cluster import Cluster, Source
 from lagrange_casadi.sweep.plan import Task, signature
@@ -300,7 +300,7 @@ def test_a_case_travels_without_its_file(tmp_path):
     path.parent.mkdir()
     path.write_text(
         "from lagrange_casadi import Mechanism, Scene\n"
-        "from lagrange_casadi.motion import polynomial\n"
+        "from lagrange_casadi.declare.motion import polynomial\n"
         "def scene():\n"
         "    m = Mechanism('arm')\n"
         "    m.revolute('O', m.ground, m.link('a', length=m.parameter('l', 0.5, 'm'), mass=1.0))\n"

@@ -6,9 +6,9 @@ import sweeps
 
 from lagrange_casadi import evaluate
 from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
-from lagrange_casadi.peaks import forces, refine
-from lagrange_casadi.rung import Rung
-from lagrange_casadi.section_law import FORCES
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.section_law import FORCES
+from lagrange_casadi.study.peaks import forces, refine
 from lagrange_casadi.sweep import columns, sweep
 from lagrange_casadi.sweep.plan import Task
 
@@ -161,7 +161,7 @@ def test_what_no_file_keeps_in_one_piece_is_refused(slider_crank, tmp_path):
 
 
 def test_a_design_that_memory_cannot_hold_is_refused(slider_crank, tmp_path, monkeypatch):
-    monkeypatch.setattr("lagrange_casadi.room.memory", lambda: 2.05e7)
+    monkeypatch.setattr("lagrange_casadi.system.room.memory", lambda: 2.05e7)
     with pytest.raises(
         SizeError, match=r"no room for a design and what it is made from: 4 x .* GB, and this machine has 0\.0205 GB"
     ):

@@ -15,9 +15,9 @@ import pytest
 import sweeps
 
 from lagrange_casadi.errors import BusyError, DeclarationError, PathError, SizeError, StoppedError, StoreError
-from lagrange_casadi.room import cores
 from lagrange_casadi.sweep import sweep
 from lagrange_casadi.sweep.parts import Folder
+from lagrange_casadi.system.room import cores
 
 GRID = {"l": (0.15, 0.4, 60), "r": (0.05, 0.1, 7)}
 SIZE = 420
@@ -213,7 +213,7 @@ def test_another_version_is_refused(whole, engine, tmp_path, monkeypatch):
 
 def test_another_law_of_motion_is_refused(whole, tmp_path):
     from lagrange_casadi import Scene
-    from lagrange_casadi.motion import polynomial
+    from lagrange_casadi.declare.motion import polynomial
 
     scene = sweeps.scene()
     other = Scene(scene.mechanism, {"O": polynomial(0, 1)}, t=scene.t, posture=scene.posture)

@@ -105,7 +105,7 @@ def test_no_path_and_no_clock_is_in_it(file):
 
 def test_names_that_the_file_keeps_are_refused(monkeypatch, tmp_path):
     from lagrange_casadi import Mechanism, Scene
-    from lagrange_casadi.motion import polynomial
+    from lagrange_casadi.declare.motion import polynomial
 
     sweeps.use(monkeypatch)
     m = Mechanism("x")

@@ -9,8 +9,9 @@ import pytest
 import sweeps
 from forging import edit, flip
 
-from lagrange_casadi import load, save, store
+from lagrange_casadi import load, save
 from lagrange_casadi.errors import DeclarationError, PathError, StoreError, UnknownNameError
+from lagrange_casadi.store import runs as store
 from lagrange_casadi.sweep import Listed, Sweep, is_sweep, reading, sweep
 from lagrange_casadi.sweep.checking import check_sweep
 

@@ -4,7 +4,7 @@ import casadi as ca
 import numpy as np
 
 from lagrange_casadi import Mechanism, Scene, motion, sweep
-from lagrange_casadi.refusal import Status
+from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.sweep.checking import check_sweep
 
 

@@ -15,12 +15,13 @@ from conftest import CASES
 from test_mobility import truss_platform
 from test_redundancy import parallelogram
 
-from lagrange_casadi import Mechanism, Scene, codegen, cycle_table, derive, load_case, motion, tabulate
+from lagrange_casadi import Mechanism, Scene, codegen, derive, load_case, motion
 from lagrange_casadi.codegen.compiler import FLAGS
-from lagrange_casadi.cycle import Cycle
-from lagrange_casadi.cycle_table import CycleTable
-from lagrange_casadi.determinacy import determinate
 from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.instants import cycle_table, tabulate
+from lagrange_casadi.instants.cycle import Cycle
+from lagrange_casadi.instants.cycle_table import CycleTable
+from lagrange_casadi.instants.determinacy import determinate
 
 RATES = (60.0, 900.0)
 

@@ -4,9 +4,9 @@ import pytest
 from builders import four_bar, slider_crank
 
 from lagrange_casadi import Mechanism, Scene
+from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.equations.tree import span
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.motion import polynomial
-from lagrange_casadi.tree import span
 
 
 def names(tree):

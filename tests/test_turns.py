@@ -15,13 +15,13 @@ from test_export import EVALUATED, told
 from test_mobility import truss_platform
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, table
-from lagrange_casadi.designs import DesignEngine
+from lagrange_casadi.declare.motion import harmonic, polynomial
+from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.equations.turns import tells_turns
 from lagrange_casadi.errors import AssemblyError, DeclarationError
-from lagrange_casadi.motion import harmonic, polynomial
-from lagrange_casadi.peaks import refine
-from lagrange_casadi.refusal import Status
-from lagrange_casadi.rung import Rung
-from lagrange_casadi.turns import tells_turns
+from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.study.peaks import refine
 
 STIFFNESS, FREE, DAMPING = 1.5, 0.2, 0.05
 SMALL = 0.05

@@ -13,14 +13,15 @@ import pytest
 import sweeps
 from forging import forging
 
-from lagrange_casadi import Sweep, best, check, evaluate, load, save, store
+from lagrange_casadi import Sweep, best, check, evaluate, load, save
 from lagrange_casadi.cli import main
+from lagrange_casadi.draw.figures import TimePlot, dump_specs, parse_specs
 from lagrange_casadi.errors import DeclarationError, LagrangeCasadiError, StoreError
-from lagrange_casadi.figures import TimePlot, dump_specs, parse_specs
+from lagrange_casadi.store import runs as store
+from lagrange_casadi.store.untrusted import check_shape, parsed, told_as
 from lagrange_casadi.sweep import Listed, sweep
 from lagrange_casadi.sweep.checking import check_sweep, progress
 from lagrange_casadi.sweep.parts import Folder
-from lagrange_casadi.untrusted import check_shape, parsed, told_as
 
 pytestmark = pytest.mark.filterwarnings("ignore::RuntimeWarning")  # of numbers beyond numbers
 

@@ -13,7 +13,7 @@ from threading import Barrier
 import numpy as np
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, load, save, sweep
-from lagrange_casadi.motion import polynomial
+from lagrange_casadi.declare.motion import polynomial
 
 JOBS = 40
 QUICK = "-O0"  # to compile

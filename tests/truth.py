@@ -10,10 +10,10 @@ import mpmath
 import numpy as np
 
 from lagrange_casadi import derive
-from lagrange_casadi.backends import run
-from lagrange_casadi.reference import DIGITS, reference
-from lagrange_casadi.rung import Rung
-from lagrange_casadi.section_law import FORCES
+from lagrange_casadi.instants.backends import run
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.instants.section_law import FORCES
+from lagrange_casadi.judge.reference import DIGITS, reference
 
 MP = mpmath.mp
 RATIOS = (0.0, 0.31, 0.64, 1.0)

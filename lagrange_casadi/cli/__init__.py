@@ -15,7 +15,7 @@ from typing import Any
 import click
 
 from ..errors import LagrangeCasadiError, UnknownNameError, one_line
-from ..interrupts import SENTENCE, STATUS, interrupts
+from ..system.interrupts import SENTENCE, STATUS, interrupts
 from ..version import __version__
 from .best import best
 from .cache import cache

@@ -8,12 +8,12 @@ from pathlib import Path
 import click
 
 from ..errors import NoDesignError
-from ..publish import check_writable
-from ..streams import is_standard_output
 from ..sweep import Sweep
 from ..sweep import best as find
 from ..sweep.axes import DESIGN, counted, grouped
 from ..sweep.best import missed, tally
+from ..system.publish import check_writable
+from ..system.streams import is_standard_output
 from .rows import show, write_csv
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import click
 
-from .. import cache as kept
 from ..errors import StoreError
 from ..sweep.axes import counted
+from ..system import cache as kept
 
 
 @click.command()

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import click
 
-from .. import store
-from ..seal import kind_of
+from ..store import runs as store
 from ..sweep import is_sweep
 from ..sweep.checking import check_sweep, progress, unfinished
+from ..system.seal import kind_of
 
 _UNSEALED = ", as far as can be told: files of schema version 1 have no digest of all of it"
 

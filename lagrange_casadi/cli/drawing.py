@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 from tqdm import tqdm
 
-from ..figures import Spec, default_figures, draw
-from ..solution import Solution
+from ..draw.figures import Spec, default_figures, draw
+from ..instants.solution import Solution
 
 
 def draw_with_progress(solution: Solution, specs: Sequence[Spec], folder: Path) -> None:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import click
 
+from ..arithmetic.compensated import Precision
 from ..case import load_case
-from ..compensated import Precision
 from ..export import export as write
 from .options import arithmetic, parameters, setting
 

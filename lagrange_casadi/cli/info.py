@@ -9,12 +9,12 @@ from typing import Any
 
 import click
 
-from .. import store
 from ..case import load_case
-from ..derive import derive
-from ..description import Description, describe
-from ..scene import Scene, outputs
-from ..solution import Solution
+from ..declare.description import Description, describe
+from ..declare.scene import Scene, outputs
+from ..equations.derive import derive
+from ..instants.solution import Solution
+from ..store import runs as store
 from ..sweep import Sweep, is_sweep
 from ..sweep.axes import counted
 from ..sweep.checking import progress, unfinished

@@ -9,12 +9,12 @@ from typing import Any, TypeVar
 
 import click
 
-from ..compensated import PRECISIONS
+from ..arithmetic.compensated import PRECISIONS
+from ..declare.scene import Grid
 from ..errors import DeclarationError
-from ..numerals import real, whole
-from ..rung import BACKENDS
-from ..scene import Grid
+from ..instants.rung import BACKENDS
 from ..sweep import Axis, Range, Values
+from ..system.numerals import real, whole
 
 GRID = "START:STOP:COUNT"
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."

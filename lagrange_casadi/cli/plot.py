@@ -8,14 +8,14 @@ from pathlib import Path
 import click
 from tqdm import tqdm
 
+from ..draw.figures import parse_specs
 from ..errors import NoDesignError
-from ..figures import parse_specs
-from ..publish import check_writable, filling
-from ..store import figure_specs, load
+from ..store.runs import figure_specs, load
+from ..store.untrusted import told_as
 from ..sweep import Sweep, is_sweep
 from ..sweep.plots import Spec, draw_sweep
 from ..sweep.usual import default_plots
-from ..untrusted import told_as
+from ..system.publish import check_writable, filling
 from .drawing import draw_with_progress
 from .options import place
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..solution import Peak, Solution
+from ..instants.solution import Peak, Solution
 
 
 def peak_line(solution: Solution, peak: Peak) -> str:

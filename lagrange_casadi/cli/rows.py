@@ -9,9 +9,9 @@ from pathlib import Path
 
 import click
 
-from ..publish import writing
 from ..sweep import Sweep
 from ..sweep.columns import STATUS
+from ..system.publish import writing
 
 _WIDTH = 10
 

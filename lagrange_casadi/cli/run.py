@@ -9,19 +9,19 @@ from pathlib import Path
 
 import click
 
+from ..arithmetic.compensated import Precision
 from ..case import load_case
-from ..certificate import failure, summary
-from ..compensated import Precision
+from ..declare.scene import Grid
+from ..draw.figures import dump_specs
 from ..errors import CertificateError
 from ..evaluate import evaluate
-from ..figures import dump_specs
-from ..peaks import forces, refine
-from ..publish import check_free, check_writable, filling
-from ..room import MOST_THREADS
-from ..rung import Backend
-from ..scene import Grid
-from ..solution import Peak, Solution
-from ..store import check_target, save
+from ..instants.rung import Backend
+from ..instants.solution import Peak, Solution
+from ..judge.certificate import failure, summary
+from ..store.runs import check_target, save
+from ..study.peaks import forces, refine
+from ..system.publish import check_free, check_writable, filling
+from ..system.room import MOST_THREADS
 from .drawing import draw_with_progress
 from .options import GRID, grid, parameters, rung, setting
 from .report import peak_line

@@ -8,16 +8,16 @@ from pathlib import Path
 
 import click
 
+from ..arithmetic.compensated import Precision
 from ..case import load_case
-from ..compensated import Precision
+from ..declare.scene import Grid
 from ..errors import CertificateError
-from ..refusal import Status
-from ..room import MOST_THREADS
-from ..rung import Backend
-from ..scene import Grid
+from ..instants.refusal import Status
+from ..instants.rung import Backend
 from ..sweep import KEEPS, Axis, Keep, Sweep, read_designs
 from ..sweep import sweep as carry_out
 from ..sweep.axes import counted, grouped
+from ..system.room import MOST_THREADS
 from .options import AXIS, GRID, axis, grid, parameters, setting, untabled_rung
 from .progress import shown
 

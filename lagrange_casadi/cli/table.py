@@ -10,12 +10,12 @@ from pathlib import Path
 import click
 
 from ..errors import NoDesignError
-from ..publish import check_writable
-from ..streams import is_standard_output
 from ..sweep import Sweep, chosen
 from ..sweep.axes import counted, grouped
 from ..sweep.best import conditions_in, missed, tally
 from ..sweep.columns import STATUS
+from ..system.publish import check_writable
+from ..system.streams import is_standard_output
 from .rows import show, write_csv
 
 _WIDE = 6

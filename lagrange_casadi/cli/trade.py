@@ -10,13 +10,13 @@ import click
 from tqdm import tqdm
 
 from ..case import load_case
+from ..declare.scene import Grid
+from ..draw.trade_plot import PICTURES, draw_trade
 from ..errors import DeclarationError
-from ..publish import check_writable, writing
-from ..rung import Rung
-from ..scene import Grid
-from ..trade import RUNGS, Trade
-from ..trade import trade as measure
-from ..trade_plot import PICTURES, draw_trade
+from ..instants.rung import Rung
+from ..study.trade import RUNGS, Trade
+from ..study.trade import trade as measure
+from ..system.publish import check_writable, writing
 from .options import GRID, grid, parameters, setting
 
 

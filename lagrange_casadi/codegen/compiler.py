@@ -26,8 +26,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from .. import cache
 from ..errors import CompilerError, lacking
+from ..system import cache
 from . import programs
 
 Language = Literal["c", "c++"]

@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from .. import between, panels, summits
-from ..compensated import DTYPES, Precision
-from ..scene_graph import SceneGraph
-from ..sharpness import Kind, Watch
-from ..stages import Stages
-from ..turns import LEAP
+from ..arithmetic.compensated import DTYPES, Precision
+from ..equations.scene_graph import SceneGraph
+from ..equations.turns import LEAP
+from ..summits import between, panels
+from ..summits import search as summits
+from ..summits.sharpness import Kind, Watch
 from .emit import FOLLOW, Parts, dump, emit, following, in_single, work
+from .stages import Stages
 
 DESIGNS, BEGIN = "lagrange_casadi_designs", "lagrange_casadi_begin"
 CHECKS = ("CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT", "TURNED")

@@ -16,11 +16,11 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..compensated import Precision
+from ..arithmetic.compensated import Precision
+from ..equations.scene_graph import SceneGraph
 from ..errors import SizeError
-from ..scene_graph import SceneGraph
-from ..stages import Stages, plain
 from .split import split
+from .stages import Stages, plain
 
 EVALUATE, FOLLOW = "lagrange_casadi_evaluate", "lagrange_casadi_follow"
 NEWTON_STEPS = 50

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..compensated import DTYPES, Precision
+from ..arithmetic.compensated import DTYPES, Precision
 from .compiler import Compiler, broken, loaded, statements
 from .designs import DEEPEST, DESIGNS, STRIDE, Plan
 from .emit import EVALUATE, FOLLOW, LANES_PLACE

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from ..compensated import Precision
+from ..arithmetic.compensated import Precision
 from .emit import in_single, opened
 from .split import split
 

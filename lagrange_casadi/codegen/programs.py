@@ -10,8 +10,8 @@ from contextlib import suppress
 from pathlib import Path
 
 from ..errors import CompilerError
-from ..numerals import real
-from ..publish import uninterrupted
+from ..system.numerals import real
+from ..system.publish import uninterrupted
 
 VARIABLE = "LAGRANGE_CASADI_COMPILER_TIMEOUT"
 """The variable that sets another time limit, in seconds."""

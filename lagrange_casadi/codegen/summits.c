@@ -1,4 +1,4 @@
-/* What is largest of each quantity, at the instants and between them: the same search as in summits.py, which see.
+/* What is largest of each quantity, at the instants and between them: the same search as in summits/search.py, which see.
 
    A panel is a row of equal steps with the values at their ends. In each step every curve is bounded; what could rise above the largest
    size so far is looked at, a pack at once: a polynomial through seven values says where, and what it misses there says whether it is to

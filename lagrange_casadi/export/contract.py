@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import numpy as np
 
-from ..compensated import Precision
-from ..mobility import stations_of
+from ..arithmetic.compensated import Precision
+from ..equations.mobility import stations_of
+from ..equations.scene_graph import SceneGraph
+from ..instants.solution import Solution
 from ..quantities import quantity_of, unit_in
-from ..scene_graph import SceneGraph
-from ..solution import Solution
 from .naming import constants, members, prefix
 
 REST = "rest:"

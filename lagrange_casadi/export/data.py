@@ -8,7 +8,7 @@ from importlib import resources
 
 import numpy as np
 
-from ..density import Array
+from ..declare.density import Array
 from ..errors import SizeError
 from .program import Format, Program, Samples, literal
 

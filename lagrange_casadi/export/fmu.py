@@ -12,7 +12,7 @@ from typing import Any
 
 from ..codegen import find_compiler
 from ..codegen.compiler import Compiler, broken, compiled, complaint
-from ..density import Array
+from ..declare.density import Array
 from ..errors import CompilerError, LagrangeCasadiError, StoreError
 from .contract import REST
 from .fmu_description import Description, page

@@ -15,9 +15,9 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..density import Array
+from ..declare.density import Array
+from ..equations.scene_graph import SceneGraph
 from ..quantities import CONVENTIONS
-from ..scene_graph import SceneGraph
 from ..version import __version__
 from .contract import Contract, Member, Setting
 from .source import Source

@@ -12,19 +12,19 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..certificate import failure
-from ..compensated import Precision
-from ..derive import assembled, derive
-from ..determinacy import determinate
+from ..arithmetic.compensated import Precision
+from ..declare.expressions import check_line
+from ..declare.scene import Scene, points
+from ..equations.derive import assembled, derive
+from ..equations.fingerprint import declaration
+from ..equations.scene_graph import SceneGraph
 from ..errors import CertificateError, DeclarationError, PathError
 from ..evaluate import checked_times, evaluate
-from ..expressions import check_line
-from ..fingerprint import declaration
-from ..publish import check_writable, filling
-from ..reading import drive_of, table_of
-from ..rung import Rung
-from ..scene import Scene, points
-from ..scene_graph import SceneGraph
+from ..instants.determinacy import determinate
+from ..instants.reading import drive_of, table_of
+from ..instants.rung import Rung
+from ..judge.certificate import failure
+from ..system.publish import check_writable, filling
 from ..version import __version__
 from .companions import companions
 from .contract import Contract, contract

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from ..compensated import ROUNDING, Precision
-from ..density import Array
-from ..scene_graph import SceneGraph
-from ..section_law import FORCES
-from ..solution import Solution
+from ..arithmetic.compensated import ROUNDING, Precision
+from ..declare.density import Array
+from ..equations.scene_graph import SceneGraph
+from ..instants.section_law import FORCES
+from ..instants.solution import Solution
 from .contract import FAINT, REST, Contract, Member
 
 INSTANTS = 9

@@ -10,17 +10,17 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arithmetic.compensated import Precision
 from ..codegen.emit import hoisted, newton_rule
 from ..codegen.plain import plain
-from ..compensated import Precision
-from ..cycle_table import CycleTable
-from ..density import Array, Density
+from ..codegen.stages import controlled
+from ..declare.density import Array, Density
+from ..declare.limits import margins
+from ..declare.parts import Link, RigidMass
+from ..equations.gaps import extent
+from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
-from ..gaps import extent
-from ..limits import margins
-from ..parts import Link, RigidMass
-from ..scene_graph import SceneGraph
-from ..stages import controlled
+from ..instants.cycle_table import CycleTable
 
 
 @dataclass(frozen=True, eq=False)

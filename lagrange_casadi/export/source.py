@@ -10,12 +10,12 @@ from functools import cached_property
 import casadi as ca
 
 from ..codegen.emit import newton_rule
-from ..density import Density
-from ..determinacy import open_limits
-from ..mobility import LAW, PLACE_FIRST
-from ..refusal import MISFIT, dead_centre, gap_limit
-from ..rung import Rung
-from ..turns import REACH
+from ..declare.density import Density
+from ..equations.mobility import LAW, PLACE_FIRST
+from ..equations.turns import REACH
+from ..instants.determinacy import open_limits
+from ..instants.refusal import MISFIT, dead_centre, gap_limit
+from ..instants.rung import Rung
 from ..version import __version__
 from .contract import REST, Contract
 from .data import sampled, table_call, table_text

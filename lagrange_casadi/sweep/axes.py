@@ -14,11 +14,11 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from ..density import Array
+from ..declare.density import Array
+from ..declare.limits import parameter_faults
+from ..declare.mechanism import Mechanism
+from ..declare.scene import points
 from ..errors import DeclarationError, ParameterError, UnknownNameError
-from ..limits import parameter_faults
-from ..mechanism import Mechanism
-from ..scene import points
 
 Numbers = npt.NDArray[np.int64]
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..density import Array
+from ..declare.density import Array
 from ..errors import DeclarationError
-from ..numerals import real
+from ..system.numerals import real
 from .columns import STATUS
 from .reading import Sweep, names_in
 from .selection import absent, near

@@ -9,8 +9,8 @@ import h5py
 import numpy as np
 
 from ..errors import one_line
-from ..refusal import Status
-from ..untrusted import check_chunks, told_as
+from ..instants.refusal import Status
+from ..store.untrusted import check_chunks, told_as
 from .axes import counted, grouped, size_of
 from .blocks import slabs
 from .columns import STATUS

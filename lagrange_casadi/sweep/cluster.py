@@ -20,9 +20,9 @@ from pathlib import Path
 from typing import Any
 
 from ..case import Case, load_case
-from ..density import Array
+from ..declare.density import Array
+from ..declare.scene import Scene
 from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_line
-from ..scene import Scene
 from .blocks import Queue
 from .columns import Harvest
 from .crew import Crew

@@ -16,13 +16,13 @@ from typing import Any, Literal
 import casadi as ca
 import numpy as np
 
-from ..density import Array, Density
-from ..designs import Outcome
+from ..declare.density import Array, Density
+from ..declare.mechanism import Mechanism
+from ..designs.engine import Outcome
 from ..errors import DeclarationError, UnknownNameError
-from ..mechanism import Mechanism
+from ..instants.refusal import Status
+from ..instants.section_law import FORCES, SectionLaw, StationLoad
 from ..quantities import FORCE, quantity_of, unit_in
-from ..refusal import Status
-from ..section_law import FORCES, SectionLaw, StationLoad
 from .chunks import encoded
 from .engine import STATUSES, Engine
 

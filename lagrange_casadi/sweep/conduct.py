@@ -10,8 +10,8 @@ from itertools import islice
 from pathlib import Path
 
 from ..errors import ClusterError, DeclarationError, PathError, SizeError, StoppedError, StoreError
-from ..publish import check_writable, telling, uninterrupted
-from ..seal import Seen, seal
+from ..system.publish import check_writable, telling, uninterrupted
+from ..system.seal import Seen, seal
 from .axes import counted, grouped
 from .blocks import Queue
 from .file import check_names, joining

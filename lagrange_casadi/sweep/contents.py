@@ -9,7 +9,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ..untrusted import check_chunks, check_dataset, check_links, check_shape, parsed, shown
+from ..store.untrusted import check_chunks, check_dataset, check_links, check_shape, parsed, shown
 from .axes import DESIGN
 from .columns import KINDS, STATUS
 from .file import WORDS

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..density import Array
+from ..declare.density import Array
 from .axes import DESIGN
 from .panels import value
 from .reading import Sweep

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Protocol
 
-from ..density import Array
-from ..designs import Outcome
-from ..refusal import Status
-from ..solution import Provenance
+from ..declare.density import Array
+from ..designs.engine import Outcome
+from ..instants.refusal import Status
+from ..instants.solution import Provenance
 
 STATUSES: Mapping[int, tuple[str, str]] = {int(status): (status.name.lower(), status.meaning) for status in Status}
 """A word and a sentence for each status."""

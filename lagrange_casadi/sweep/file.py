@@ -16,9 +16,9 @@ import h5py
 import numpy as np
 
 from ..errors import DeclarationError
-from ..publish import PatientFile
 from ..quantities import CF, CONVENTIONS
-from ..scales import LARGE, Scales
+from ..store.scales import LARGE, Scales
+from ..system.publish import PatientFile
 from .axes import DESIGN, Designs, Grid
 from .blocks import chunk_of, slabs
 from .chunks import FILTERS

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import DeclarationError, PathError
-from ..numerals import real
+from ..system.numerals import real
 from .axes import Listed, check_known, not_parameter
 
 

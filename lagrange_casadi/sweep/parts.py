@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from ..errors import BusyError, PathError, StoreError, one_line
-from ..publish import flush, put, settled, telling
-from ..untrusted import parsed
+from ..store.untrusted import parsed
+from ..system.publish import flush, put, settled, telling
 from .columns import Column
 from .plan import IDENTITY
 

@@ -13,18 +13,18 @@ from typing import Any
 
 import numpy as np
 
-from ..density import Array
-from ..derive import derive
-from ..description import SHAPE as DESCRIPTION
-from ..description import Description, describe
-from ..designs import DesignEngine
+from ..declare.density import Array
+from ..declare.description import SHAPE as DESCRIPTION
+from ..declare.description import Description, describe
+from ..declare.scene import Grid as Span
+from ..declare.scene import Scene, Wanted, checked, checked_ratios, outputs, points
+from ..designs.engine import DesignEngine
+from ..equations.derive import derive
+from ..equations.fingerprint import fingerprint, sources
 from ..errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
-from ..fingerprint import fingerprint, sources
-from ..room import in_words, require
-from ..rung import Rung
-from ..scene import Grid as Span
-from ..scene import Scene, Wanted, checked, checked_ratios, outputs, points
-from ..solution import Provenance
+from ..instants.rung import Rung
+from ..instants.solution import Provenance
+from ..system.room import in_words, require
 from .axes import Designs, check_designs, counted
 from .blocks import Slab, chunk_of, slabs
 from .columns import Column, Harvest, Keep, check_keep

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..density import Array
+from ..declare.density import Array
 from ..errors import NoDesignError
-from ..section_law import FORCES
+from ..instants.section_law import FORCES
 from .best import best, chosen, size
 from .columns import STATUS
 from .cut import DOTS, LINES, Cut, stays

@@ -14,10 +14,10 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
-from ..density import Array
+from ..declare.density import Array
 from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, one_line
-from ..seal import Seen, verify
-from ..store import reading, schema_of
+from ..store.runs import reading, schema_of
+from ..system.seal import Seen, verify
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
 from .columns import STATUS

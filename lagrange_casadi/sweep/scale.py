@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..density import Array
+from ..declare.density import Array
 
 _MIDDLE: Any = ((5, "higher"), (95, "lower"))
 _SPAN, _LOWEST, _DEPTH, _SAME = 5.0, 0.2, 1e6, 1e-9

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..density import Array
+from ..declare.density import Array
 from ..errors import DeclarationError
 
 _NEAR = 1e-9

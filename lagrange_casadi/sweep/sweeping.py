@@ -10,13 +10,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..arithmetic.compensated import Precision
 from ..case import Case
-from ..compensated import Precision
+from ..declare.scene import Grid as Span
+from ..declare.scene import Scene
 from ..errors import DeclarationError
-from ..room import MOST_THREADS
-from ..rung import Backend, Rung
-from ..scene import Grid as Span
-from ..scene import Scene
+from ..instants.rung import Backend, Rung
+from ..system.room import MOST_THREADS
 from .axes import designs_of
 from .columns import Keep
 from .conduct import Progress, conduct

@@ -8,7 +8,7 @@ from concurrent.futures import wait
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from ..room import cores, memory
+from ..system.room import cores, memory
 from .blocks import Queue
 from .crew import Crew
 from .plan import Plan

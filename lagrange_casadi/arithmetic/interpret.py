@@ -1,0 +1,162 @@
+"""An SX function followed instruction by instruction, in any arithmetic.
+
+CasADi's own machine knows doubles. Here the same instructions run on whatever an :class:`Arithmetic` computes with: numbers of many
+digits, arrays with errors put on operations, or expressions that become another function.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..errors import DeclarationError
+
+
+@dataclass(frozen=True)
+class Step:
+    """An instruction: what it does (one of CasADi's ``OP_`` codes), the places it reads, the place it writes, and its number.
+
+    Of an input or output the places are those of argument and nonzero.
+    """
+
+    operation: int
+    arguments: tuple[int, ...]
+    results: tuple[int, ...]
+    constant: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Arithmetic:
+    """``constant`` makes a number of a double; ``operations`` are functions of one or two numbers by CasADi's ``OP_`` code."""
+
+    constant: Callable[[float], Any]
+    operations: Mapping[int, Callable[..., Any]]
+
+
+@functools.lru_cache(maxsize=64)
+def steps(function: Any) -> tuple[Step, ...]:
+    """The instructions of an SX function. Raises :class:`DeclarationError` for a function of another kind."""
+    if not function.is_a("SXFunction"):
+        raise DeclarationError(f"function '{function.name()}' cannot be followed: it is not written in scalars (casadi.SX)")
+    found = []
+    for k in range(function.n_instructions()):
+        operation = function.instruction_id(k)
+        number = function.instruction_constant(k) if operation == ca.OP_CONST else 0.0
+        places = (tuple(function.instruction_input(k)), tuple(function.instruction_output(k)))
+        found.append(Step(operation, *places, number))
+    return tuple(found)
+
+
+@functools.lru_cache(maxsize=64)
+def followable(function: Any) -> bool:
+    """Whether a function is written in scalars, calls no other, and does nothing that is unknown here."""
+    return bool(function.is_a("SXFunction")) and all(step.operation in _KNOWN for step in steps(function))
+
+
+def interpret(function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithmetic) -> list[list[Any]]:
+    """The nonzeros of every output of an SX function, from those of its inputs.
+
+    Raises :class:`DeclarationError` where the function calls another one, or does what the arithmetic has no name for.
+    """
+    work: dict[int, Any] = {}
+    outputs: list[list[Any]] = [[arithmetic.constant(0.0)] * function.nnz_out(i) for i in range(function.n_out())]
+    for step in steps(function):
+        if step.operation == ca.OP_CONST:
+            work[step.results[0]] = arithmetic.constant(step.constant)
+        elif step.operation == ca.OP_INPUT:
+            work[step.results[0]] = inputs[step.arguments[0]][step.arguments[1]]
+        elif step.operation == ca.OP_OUTPUT:
+            outputs[step.results[0]][step.results[1]] = work[step.arguments[0]]
+        else:
+            rule = arithmetic.operations.get(step.operation)
+            if rule is None:
+                what = "calls another one" if step.operation == ca.OP_CALL else f"takes {_name(step.operation)}, unknown here"
+                raise DeclarationError(f"function '{function.name()}' cannot be followed: it {what}")
+            work[step.results[0]] = rule(*(work[place] for place in step.arguments))
+    return outputs
+
+
+def _name(operation: int) -> str:
+    return next((name for name in dir(ca) if name.startswith("OP_") and getattr(ca, name) == operation), str(operation))
+
+
+def numpy_arithmetic() -> Arithmetic:
+    """NumPy's arithmetic on doubles and arrays of them."""
+    known = _ROUNDED | _FUNCTIONS | _EXACT
+    return Arithmetic(np.float64, known | {code: _truth(function) for code, function in _TRUTHS.items()})
+
+
+def _truth(function: Callable[..., Any]) -> Callable[..., Any]:
+    """As in C, a comparison is one or zero."""
+    return lambda *values: np.asarray(function(*values)).astype(np.result_type(*values))
+
+
+def _remainder(x: Any, y: Any) -> Any:
+    """C's remainder, which is exact: every difference is of numbers within a factor of two."""
+    left, y = np.abs(np.fmod(x, 2 * y)), np.abs(y)
+    above = 2 * left > y
+    left = left - y * above
+    left = left - y * (above & (2 * left >= y))
+    return np.where(np.signbit(x), -left, left)
+
+
+_EXACT: dict[int, Callable[..., Any]] = {
+    ca.OP_NEG: np.negative,
+    ca.OP_TWICE: lambda x: x + x,
+    ca.OP_ASSIGN: lambda x: x,
+    ca.OP_FABS: np.abs,
+    ca.OP_SIGN: np.sign,
+    ca.OP_FLOOR: np.floor,
+    ca.OP_CEIL: np.ceil,
+    ca.OP_FMIN: np.fmin,
+    ca.OP_FMAX: np.fmax,
+    ca.OP_FMOD: np.fmod,
+    ca.OP_COPYSIGN: np.copysign,
+    ca.OP_IF_ELSE_ZERO: lambda x, y: np.where(x, y, np.zeros_like(y)),
+    ca.OP_REMAINDER: _remainder,
+}
+_TRUTHS: dict[int, Callable[..., Any]] = {
+    ca.OP_LT: np.less,
+    ca.OP_LE: np.less_equal,
+    ca.OP_EQ: np.equal,
+    ca.OP_NE: np.not_equal,
+    ca.OP_NOT: np.logical_not,
+    ca.OP_AND: np.logical_and,
+    ca.OP_OR: np.logical_or,
+}
+_ROUNDED: dict[int, Callable[..., Any]] = {
+    ca.OP_ADD: np.add,
+    ca.OP_SUB: np.subtract,
+    ca.OP_MUL: np.multiply,
+    ca.OP_DIV: np.divide,
+    ca.OP_SQ: np.square,
+    ca.OP_SQRT: np.sqrt,
+    ca.OP_INV: np.reciprocal,
+}
+_FUNCTIONS: dict[int, Callable[..., Any]] = {
+    ca.OP_POW: np.power,
+    ca.OP_CONSTPOW: np.power,
+    ca.OP_ATAN2: np.arctan2,
+    ca.OP_HYPOT: np.hypot,
+    ca.OP_ASIN: np.arcsin,
+    ca.OP_ACOS: np.arccos,
+    ca.OP_ATAN: np.arctan,
+    ca.OP_ASINH: np.arcsinh,
+    ca.OP_ACOSH: np.arccosh,
+    ca.OP_ATANH: np.arctanh,
+    ca.OP_ERF: np.vectorize(math.erf),
+}
+_FUNCTIONS |= {
+    getattr(ca, f"OP_{name.upper()}"): getattr(np, name)
+    for name in ["sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "log1p", "expm1"]
+}
+ROUNDINGS: Mapping[int, float] = dict.fromkeys(_ROUNDED, 1.0) | dict.fromkeys(_FUNCTIONS, 2.0)
+"""By how many roundings an operation may be off: functions such as a sine by two, for libraries differ. Others round nothing."""
+
+_KNOWN = {ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT, *_EXACT, *_TRUTHS, *_ROUNDED, *_FUNCTIONS}

@@ -1,0 +1,287 @@
+"""What is evaluated at an instant, in order: the drive, iterated loops, and all that follows from them.
+
+What is *counted* (time, driven coordinates, and sums, products and whole parts of them) grows with the turns; nothing else does.
+Where turns are few, the drive hands on time and coordinates as they are. Where they are many, or numbers are single, all that is
+counted is followed in pairs (:mod:`.compensated`), and handed on when it is small again: an angle under a sine or cosine without
+its whole turns, the rest rounded once. What comes after does not know the difference.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..arithmetic.compensated import Pair, Pairs, Precision
+from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic
+from ..declare.density import Array
+from ..declare.motion import Laws
+from ..equations.scene_graph import SceneGraph
+
+FEW_TURNS = 128.0
+"""Up to so many radians an angle in one double has lost no more than 1.4e-14 rad of its phase in each rounding."""
+
+_SAMPLES = 65
+
+
+@dataclass(frozen=True, eq=False)
+class Stages:
+    """The functions of an instant, in a precision.
+
+    ``drive(t, p) -> (counted, d_rate, d_acceleration)``; ``loops(z, counted, p) -> (correction, size)`` where loops are iterated;
+    ``instant(counted, d_rate, d_acceleration, z, p) -> out``. The drive of single precision takes t and p as pairs, all the rests
+    after all the values.
+    """
+
+    drive: Any
+    loops: Any | None
+    instant: Any
+    precision: Precision = "double"
+    compensated: bool = False
+
+
+@functools.lru_cache(maxsize=32)
+def plain(graph: SceneGraph) -> Stages:
+    """The stages of a graph in doubles that count turns themselves."""
+    t, d, rate, acceleration, z, p = graph.instant.sx_in()
+    counted = ca.vertcat(t, d)
+    instant = ca.Function("instant", [counted, rate, acceleration, z, p], graph.instant.call([t, d, rate, acceleration, z, p]))
+    loops = None
+    if graph.newton is not None:
+        loops = ca.Function("loops", [z, counted, p], graph.newton.step.call([z, t, d, p]))
+    smooth = graph.motion.is_a("SXFunction")
+    time, values = (t, p) if smooth else (ca.MX.sym("t"), ca.MX.sym("p", p.numel()))
+    driven = graph.motion.call([time, values])
+    drive = ca.Function("drive", [time, values], [ca.vertcat(time, driven[0]), *driven[1:]])
+    return Stages(drive, loops, instant)
+
+
+@functools.lru_cache(maxsize=32)
+def compensated(graph: SceneGraph, precision: Precision) -> Stages:
+    """The stages of a graph in pairs. Raises :class:`DeclarationError` for a graph that cannot be followed."""
+    return _compensated(graph, graph.laws, precision)
+
+
+@dataclass(frozen=True, eq=False)
+class Controlled:
+    """The functions of an instant whose drives are given, not prescribed: for code that a controller calls.
+
+    ``law(t, p) -> (d, d_rate, d_acceleration)`` are the motions that are written in scalars, as :class:`.Laws` order them;
+    ``count(moment, p) -> counted`` stands for the drive of :class:`Stages`, of which ``loops`` and ``instant`` are. A moment is the
+    time and the driven coordinates; in single precision all of them once more follow, what rounding them to single left. So do t
+    and d; parameters do not.
+    """
+
+    law: Any
+    count: Any
+    loops: Any | None
+    instant: Any
+    precision: Precision
+
+
+@functools.lru_cache(maxsize=32)
+def controlled(graph: SceneGraph, precision: Precision) -> Controlled:
+    """The stages of a graph by its driven coordinates; in doubles the caller counts turns, in singles pairs do.
+
+    Raises :class:`DeclarationError` for a graph that cannot be followed in pairs.
+    """
+    names = ["moment", "p"]
+    if precision == "double":
+        stages, p = plain(graph), graph.instant.sx_in("p")
+        moment = ca.SX.sym("moment", stages.instant.size1_in(0))
+        return Controlled(graph.laws.smooth, ca.Function("count", [moment, p], [moment], names, ["counted"]), *_others(stages))
+    laws = graph.laws
+    pairs, rows = Pairs(precision), 1 + len(graph.driven)
+    moment, p = ca.SX.sym("moment", rows, 2), graph.instant.sx_in("p")
+    t, *driven = (Pair(row[0], row[1]) for row in ca.vertsplit(moment))
+    handed, loops, instant = _counted(graph, pairs, t, driven, [Pair(x) for x in _split(p)])
+    count = ca.Function("count", [ca.vec(moment), p], [handed], names, ["counted"], {"cse": True})
+    return Controlled(_paired_law(laws.smooth, pairs, p), count, loops, instant, precision)
+
+
+def _others(stages: Stages) -> tuple[Any | None, Any, Precision]:
+    return stages.loops, stages.instant, stages.precision
+
+
+def _rest(pair: Pair) -> Any:
+    return ca.SX(0) if pair.low is None else pair.low
+
+
+def _paired_law(smooth: Any, pairs: Pairs, p: Any) -> Any:
+    """The motion of drives by a time in pairs, each coordinate as a pair."""
+    time = ca.SX.sym("t", 2)
+    values, *changes = interpret(smooth, [[Pair(time[0], time[1])], [Pair(x) for x in _split(p)]], pairs.arithmetic)
+    found = [[x.high for x in values], [_rest(x) for x in values]]
+    found += [[pair.value for pair in row] for row in changes]
+    return ca.Function("law", [time, p], [_column([*found[0], *found[1]]), *(_column(row) for row in found[2:])], {"cse": True})
+
+
+def counts(graph: SceneGraph, t: Array, p: Array) -> bool:
+    """Whether some angle counts so many turns over the instants that one double loses its phase."""
+    functions = (graph.instant, graph.laws.smooth, *([graph.newton.step] if graph.newton else []))
+    if not all(followable(function) for function in functions):
+        return False
+    sampled = t[np.linspace(0, t.size - 1, min(t.size, _SAMPLES)).astype(int)]
+    return _largest(graph, tuple(sampled), tuple(p)) > FEW_TURNS
+
+
+@functools.lru_cache(maxsize=256)
+def _largest(graph: SceneGraph, instants: tuple[float, ...], p: tuple[float, ...]) -> float:
+    """The largest counted angle under a sine or cosine [rad], or of which whole turns are taken.
+
+    What is counted is a row over the instants, what parameters set a number, and anything else nothing.
+    """
+    angles = [0.0]
+    known = numpy_arithmetic().operations
+
+    def measured(code: int, *values: Any) -> Any:
+        if np.ndim(values[0]) and code in _PHASES | _REMAINDERS | {ca.OP_FLOOR}:
+            angles.append(float(np.max(np.abs(values[0]))) * (math.tau if code == ca.OP_FLOOR else 1.0))
+        return known[code](*values)
+
+    def counted(code: int, *values: Any) -> Any:
+        if any(value is None for value in values):
+            return None
+        found = measured(code, *values)
+        return found if code in _FOLLOWED or not np.ndim(found) else None
+
+    following, of_counted = (
+        Arithmetic(np.float64, {code: functools.partial(rule, code) for code in known}) for rule in (measured, counted)
+    )
+    laws, t = graph.laws, np.array(instants)
+    unknown, rates = [None] * graph.instant.size1_in("z"), [None] * len(laws.order)
+    with np.errstate(all="ignore"):
+        driven = list(interpret(laws.smooth, [[t], p], following)[0])
+        if laws.sampled is not None:
+            driven += list(laws.sampled(t[None], p)[0].full())
+        driven = [driven[k] for k in laws.order]
+        if graph.newton is not None:
+            interpret(graph.newton.step, [unknown, [t], driven, p], of_counted)
+        interpret(graph.instant, [[t], driven, rates, rates, unknown, p], of_counted)
+    return max(angles)
+
+
+@dataclass(frozen=True, eq=False)
+class _Value:
+    """A value of a stage: as it is evaluated at an instant, and as a pair where it can be followed in pairs.
+
+    ``fixed`` is what parameters alone set.
+    """
+
+    plain: Any = None
+    pair: Pair | None = None
+    fixed: bool = False
+
+
+class _Counting:
+    """Arithmetic that follows in pairs what is counted, and makes a symbol where it goes over into what is not."""
+
+    def __init__(self, pairs: Pairs) -> None:
+        self.pairs = pairs
+        self.symbols: dict[tuple[Any, ...], tuple[Any, Pair, Pair]] = {}
+
+    @property
+    def arithmetic(self) -> Arithmetic:
+        known = numpy_arithmetic().operations
+        return Arithmetic(self.constant, {code: functools.partial(self.apply, code) for code in known})
+
+    def constant(self, value: float) -> _Value:
+        return _Value(ca.SX(value), self.pairs.turn if value == math.tau else self.pairs.constant(value), fixed=True)
+
+    def apply(self, code: int, *values: _Value) -> _Value:
+        pairs = [value.pair for value in values if value.pair is not None]
+        if len(pairs) < len(values):
+            return _Value(self._plain(code, values))
+        if all(value.fixed for value in values):
+            return _Value(self._plain(code, values), self.pairs.operations[code](*pairs), fixed=True)
+        if code in _FOLLOWED:
+            return _Value(pair=self.pairs.operations[code](*pairs))
+        if code in _REMAINDERS:
+            return _Value(self.settled(_Value(pair=self.pairs.operations[code](*pairs))))
+        if code in _PHASES:
+            return _Value(ca.SX.unary(code, self._symbol("angle", pairs[0], self.pairs.reduced)))
+        return _Value(self._plain(code, values))
+
+    def settled(self, value: _Value) -> Any:
+        """A value as one number."""
+        if value.plain is not None:
+            return value.plain
+        assert value.pair is not None
+        return self._symbol("counted", value.pair, lambda pair: pair)
+
+    def handed(self) -> tuple[Any, Any]:
+        """The symbols that were made, and what the drive hands on for them."""
+        return _column([symbol for symbol, *_ in self.symbols.values()]), _column(
+            [pair.value for _, pair, _ in self.symbols.values()]
+        )
+
+    def _plain(self, code: int, values: Sequence[_Value]) -> Any:
+        operands = [self.settled(value) for value in values]
+        return ca.SX.unary(code, *operands) if len(operands) == 1 else ca.SX.binary(code, *operands)
+
+    def _symbol(self, kind: str, pair: Pair, made: Callable[[Pair], Pair]) -> Any:
+        """The symbol of what is made of a pair, which is known by its nodes: they are kept, lest others take their place."""
+        key = (kind, *(None if part is None else part.element_hash() for part in (pair.high, pair.low)))
+        if key not in self.symbols:
+            self.symbols[key] = ca.SX.sym(f"{kind}{len(self.symbols)}"), made(pair), pair
+        return self.symbols[key][0]
+
+
+_PHASES = {ca.OP_SIN, ca.OP_COS, ca.OP_TAN}
+_REMAINDERS = {ca.OP_FMOD, ca.OP_REMAINDER}
+_FOLLOWED = {
+    *(ca.OP_ADD, ca.OP_SUB, ca.OP_NEG, ca.OP_MUL, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV),
+    *(ca.OP_INV, ca.OP_SQRT, ca.OP_FABS, ca.OP_FLOOR, ca.OP_CEIL),
+}
+
+
+def _compensated(graph: SceneGraph, laws: Laws, precision: Precision) -> Stages:
+    pairs, single = Pairs(precision), precision == "single"
+    time, parameters = ca.SX.sym("t", 2 if single else 1), ca.SX.sym("p", graph.instant.size1_in("p"), 2 if single else 1)
+    t_pair, *p_pairs = (Pair(row[0], row[1] if single else None) for row in (time.T, *ca.vertsplit(parameters)))
+    smooth = interpret(laws.smooth, [[t_pair], p_pairs], pairs.arithmetic)
+    sampled = ca.SX.sym("sampled", len(laws.order) - len(smooth[0]))
+    driven = [*smooth[0], *(Pair(x) for x in _split(sampled))]
+    # As a controller gives them: see controlled().
+    driven = [Pair(x.high, _rest(x)) for x in driven] if single else driven
+    handed, loops, instant = _counted(graph, pairs, t_pair, [driven[k] for k in laws.order], p_pairs)
+    given = [handed, *(_column([pair.value for pair in row]) for row in smooth[1:])]
+    inputs = [time, ca.vec(parameters)]
+    if laws.sampled is None:
+        return Stages(ca.Function("drive", inputs, given, {"cse": True}), loops, instant, precision, compensated=True)
+    following = ca.Function("following", [*inputs, sampled], given, {"cse": True})
+    t, values = ca.MX.sym("t", time.numel()), ca.MX.sym("p", parameters.numel())
+    read, *changes = laws.sampled.call([t[0], values[: parameters.size1()]])
+    handed, *others = following.call([t, values, read])
+    ordered = [ca.vertcat(a, b)[list(laws.order)] for a, b in zip(others, changes, strict=True)]
+    return Stages(ca.Function("drive", [t, values], [handed, *ordered]), loops, instant, precision, compensated=True)
+
+
+def _counted(graph: SceneGraph, pairs: Pairs, t: Pair, driven: Sequence[Pair], p: Sequence[Pair]) -> tuple[Any, Any | None, Any]:
+    """What the drive hands on of time and driven coordinates, and the loops and the instant that take it."""
+    counting = _Counting(pairs)
+    _, _, rate, acceleration, z, symbols = graph.instant.sx_in()
+    t_value, d_values = _Value(pair=t), [_Value(pair=pair) for pair in driven]
+    p_values = [_Value(symbol, pair, fixed=True) for symbol, pair in zip(_split(symbols), p, strict=True)]
+    z_values, rates, accelerations = ([_Value(x) for x in _split(column)] for column in (z, rate, acceleration))
+    found = [interpret(graph.newton.step, [z_values, [t_value], d_values, p_values], counting.arithmetic)] if graph.newton else []
+    found.append(interpret(graph.instant, [[t_value], d_values, rates, accelerations, z_values, p_values], counting.arithmetic))
+    results = [[_column([counting.settled(value) for value in output]) for output in outputs] for outputs in found]
+    counted, handed = counting.handed()
+    names = ["counted", "d_rate", "d_acceleration", "z", "p"]
+    instant = ca.Function("instant", [counted, rate, acceleration, z, symbols], results[-1], names, ["out"], {"cse": True})
+    loops = ca.Function("loops", [z, counted, symbols], results[0], {"cse": True}) if graph.newton else None
+    return handed, loops, instant
+
+
+def _split(symbols: Any) -> list[Any]:
+    return ca.vertsplit(symbols) if symbols.numel() else []
+
+
+def _column(parts: list[Any]) -> Any:
+    return ca.densify(ca.vertcat(ca.SX(0, 1), *parts))

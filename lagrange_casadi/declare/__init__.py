@@ -1,0 +1,1 @@
+"""What is said: mechanisms, their parts and what is possible of them, motions, scenes."""

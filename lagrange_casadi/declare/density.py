@@ -1,0 +1,141 @@
+"""How mass lies along a straight link: piecewise polynomial in the ratio u = xi/l, which covers every density a table can give.
+
+From a section at u to the tip the moments of the material are combinations of T_k(u) = int_u^1 p(w) (w - u)^k dw with p = dm/du:
+mu0 = T0, mu1 = l (u T0 + T1), mu1 - xi mu0 = l T1, mu2 - xi mu1 = l^2 (u T1 + T2): nothing cancels near the tip.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import DeclarationError
+from .curves import rows
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Density:
+    """Mass along a link: on the i-th interval of ``breaks`` (ratios from 0 to 1) the polynomial sum_j cells[i][j] u^j.
+
+    It is the mass per unit of the ratio [kg], or where ``per_length`` the mass per length [kg/m]. Coefficients are numbers or
+    expressions in parameters.
+    """
+
+    breaks: tuple[float, ...]
+    cells: tuple[tuple[Any, ...], ...]
+    per_length: bool
+
+    def ends(self, length: Any) -> tuple[Any, Any, Any]:
+        """Masses at the base and at the tip, and a moment of inertia, that together move just as the link does.
+
+        They have its mass, first and second moment: with p = dm/du int p (1 - u) du, int p u du, and l^2 int p u (u - 1) du.
+        """
+        found: list[Any] = [0.0, 0.0, 0.0]
+        for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
+            for j, coefficient in enumerate(cell):
+                mass, first, second = (part / n for n, part in zip(range(j + 1, j + 4), _differences(b, a, j + 3)[j:], strict=True))
+                for k, part in enumerate((mass - first, first, second - first)):
+                    found[k] = found[k] + coefficient * part
+        scale = length if self.per_length else 1.0
+        return found[0] * scale, found[1] * scale, found[2] * scale * length * length
+
+    def at(self, number: Callable[[Any], float], length: float) -> NumericDensity:
+        """The density at given parameters, per unit of the ratio."""
+        scale = length if self.per_length else 1.0
+        return NumericDensity(self.breaks, tuple(tuple(number(c) * scale for c in cell) for cell in self.cells))
+
+
+@dataclass(frozen=True)
+class NumericDensity:
+    """A :class:`Density` in numbers: mass per unit of the ratio [kg]."""
+
+    breaks: tuple[float, ...]
+    cells: tuple[tuple[float, ...], ...]
+
+    @property
+    def uniform(self) -> bool:
+        """Whether it is one constant."""
+        return len(self.cells) == 1 and len(self.cells[0]) == 1
+
+    @property
+    def mass(self) -> float:
+        """The whole mass [kg]."""
+        return float(self.tails(np.zeros(1))[0][0])
+
+    def tails(self, u: Array) -> tuple[Array, Array, Array]:
+        """T0, T1 and T2 at ratios ``u`` of any shape."""
+        found: list[Any] = [np.zeros_like(u) for _ in range(3)]
+        for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
+            parts = _differences(np.maximum(b - u, 0.0), np.maximum(a - u, 0.0), len(cell) + 2)
+            for j, shifted in enumerate(_shift(cell, u)):
+                for k in range(3):
+                    found[k] = found[k] + shifted * parts[j + k] / (j + k + 1)
+        return found[0], found[1], found[2]
+
+    def at(self, u: Array) -> Array:
+        """The density at ratios ``u`` of any shape; at a break, that towards the tip."""
+        cell = np.clip(np.searchsorted(self.breaks, u, side="right") - 1, 0, len(self.cells) - 1)
+        return np.asarray(sum(np.where(cell == i, np.polynomial.polynomial.polyval(u, c), 0.0) for i, c in enumerate(self.cells)))
+
+    def lowest(self) -> tuple[float, float]:
+        """The ratio at which the density is lowest, and the density there."""
+        candidates: list[tuple[float, float]] = []
+        for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
+            curve = np.polynomial.Polynomial(cell)
+            turning = (
+                [float(r.real) for r in curve.deriv().roots() if abs(r.imag) < 1e-12 and a < r.real < b] if len(cell) > 2 else []
+            )
+            candidates += [(float(curve(u)), u) for u in (a, b, *turning)]
+        value, place = min(candidates)
+        return place, value
+
+
+def uniform(mass: Any) -> Density:
+    """A link of one density throughout, by its whole mass [kg]."""
+    return Density((0.0, 1.0), ((mass,),), per_length=False)
+
+
+def polynomial(*coefficients: Any) -> Density:
+    """c0 + c1 u + c2 u^2 + ... [kg/m] with u = xi/l; ``polynomial(a, b - a)`` tapers from a at the base to b at the tip."""
+    if not coefficients:
+        raise DeclarationError("density polynomial: expected at least one coefficient")
+    return Density((0.0, 1.0), (tuple(coefficients),), per_length=True)
+
+
+def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
+    """Linear between values [kg/m] at ratios xi/l that rise from 0 to 1.
+
+    Raises :class:`DeclarationError` for tables that do not increase, do not reach from 0 to 1, or are negative.
+    """
+    u, v = rows("density table", ratios, values, 2)
+    if (u[0], u[-1]) != (0.0, 1.0):
+        raise DeclarationError(f"density table: ratios must reach from 0 to 1, got {u[0]:g} to {u[-1]:g}")
+    cells = []
+    for i in range(len(u) - 1):
+        slope = (v[i + 1] - v[i]) / (u[i + 1] - u[i])
+        cells.append((v[i] - slope * u[i], slope))
+    return Density(tuple(u), tuple(cells), per_length=True)
+
+
+def _differences(high: Any, low: Any, count: int) -> list[Any]:
+    """high^n - low^n for n = 1, 2, ..., by products of their difference, so that close ones do not cancel; of numbers or arrays."""
+    width, power, total, found = high - low, low, 1.0, []
+    for _ in range(count):
+        found.append(width * total)
+        total, power = total * high + power, power * low
+    return found
+
+
+def _shift(cell: Sequence[float], u: Array) -> list[Array]:
+    """Coefficients of p(u + x) as a polynomial in x."""
+    return [
+        np.asarray(sum(c * math.comb(n, j) * u ** (n - j) for n, c in enumerate(cell) if n >= j) + np.zeros_like(u))
+        for j in range(len(cell))
+    ]

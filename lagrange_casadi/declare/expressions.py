@@ -1,0 +1,60 @@
+"""What may stand for a name or a number in a declaration."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import casadi as ca
+
+from ..errors import DeclarationError
+from .parts import Expression
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+
+def check_name(kind: str, name: str) -> None:
+    """Raise :class:`DeclarationError` for what cannot be a name in a file, on the command line, and in C."""
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise DeclarationError(f"{kind} name {name!r} must be a letter followed by letters, digits or underscores")
+
+
+def check_line(what: str, text: object) -> None:
+    """Raise :class:`DeclarationError` for what is no line of printable characters: it may stand in files, figures and C."""
+    if not isinstance(text, str) or not text.isprintable():
+        raise DeclarationError(f"{what} must be a line of printable characters, got {text!r}")
+
+
+def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str) -> Expression:
+    """A finite float, or an SX scalar in the given symbols. Raises :class:`DeclarationError`, saying what is ``allowed``."""
+    if isinstance(value, ca.SX):
+        if value.numel() != 1:
+            raise DeclarationError(f"{what} must be a scalar, got one of shape {value.shape}")
+        known = {symbol.element_hash() for symbol in symbols}
+        foreign = [f"'{symbol}'" for symbol in ca.symvar(value) if symbol.element_hash() not in known]
+        if foreign:
+            raise DeclarationError(f"{what} depends on {', '.join(foreign)}: no {allowed}")
+        return value
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise DeclarationError(f"{what} must be a number or an expression in parameters, got {value!r}") from None
+    if not math.isfinite(number):
+        raise DeclarationError(f"{what} must be finite, got {number}")
+    return number
+
+
+def unit_vector(what: str, axis: Any, component: Callable[[Any], Expression]) -> tuple[Expression, Expression]:
+    """A direction of length one. Raises :class:`DeclarationError` for (0, 0), or for what has not two components."""
+    if not isinstance(axis, (tuple, list)) or len(axis) != 2:
+        raise DeclarationError(f"{what}: axis must be two components, got {axis!r}")
+    x, y = (component(a) for a in axis)
+    if isinstance(x, ca.SX) or isinstance(y, ca.SX):
+        norm = ca.sqrt(x * x + y * y)
+        return x / norm, y / norm
+    norm = math.hypot(x, y)
+    if norm == 0.0:
+        raise DeclarationError(f"{what}: axis must not be (0, 0)")
+    return x / norm, y / norm

@@ -1,0 +1,134 @@
+"""What the parts must be together, and what the values of parameters may make of them: lengths, masses, densities, stations."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import casadi as ca
+
+from ..arithmetic.compensated import Precision
+from ..errors import DeclarationError, ParameterError, UnknownNameError
+from .density import Density
+from .parts import Body, Expression, Ground, Joint, Link, Load, Parameter, Point, PointMass, RigidMass
+
+Number = Callable[[Any], float]
+
+END: dict[Precision, float] = {"double": 1e-12, "single": 1e-6}
+"""Of a link's length: what misses its end by so little misses it by rounding, and is at it."""
+
+
+def check_connected(name: str, ground: Ground, bodies: Iterable[Body], joints: Iterable[Joint]) -> None:
+    """Raise :class:`DeclarationError` for bodies that no chain of joints connects to the ground."""
+    joined, reached = list(joints), {ground.name}
+    while new := {
+        body.name
+        for joint in joined
+        for body in joint.bodies
+        if body.name not in reached and reached & {other.name for other in joint.bodies}
+    }:
+        reached |= new
+    loose = [f"'{body.name}'" for body in bodies if body.name not in reached]
+    if loose:
+        raise DeclarationError(
+            f"mechanism '{name}': {', '.join(loose)} {'is' if len(loose) == 1 else 'are'} not connected to the ground by any chain "
+            f"of joints; joints declared: {', '.join(joint.name for joint in joined) or 'none'}"
+        )
+
+
+def parameter_values(parameters: Mapping[str, Parameter], overrides: Mapping[str, float]) -> dict[str, float]:
+    """Defaults with overrides, each checked against its range.
+
+    Raises :class:`UnknownNameError` for names, :class:`ParameterError` for values, all of them at once.
+    """
+    if unknown := [name for name in overrides if name not in parameters]:
+        raise UnknownNameError("parameter", unknown, parameters)
+    if faults := parameter_faults(parameters, overrides):
+        raise ParameterError("; ".join(faults))
+    return {name: float(overrides.get(name, parameter.default)) for name, parameter in parameters.items()}
+
+
+def parameter_faults(parameters: Mapping[str, Parameter], values: Mapping[str, float]) -> list[str]:
+    """What is wrong with values of parameters, each in words of its own."""
+    return [fault for name, value in values.items() if (fault := parameters[name].fault(value))]
+
+
+def check_parts(
+    name: str, bodies: Iterable[Link | PointMass], joints: Iterable[Joint], loads: Iterable[Load], number: Number
+) -> None:
+    """Raise :class:`ParameterError` for a part that is impossible at the values that ``number`` puts into expressions."""
+    if sum(_mass(body, number) for body in bodies) == 0.0:
+        raise ParameterError(f"mechanism '{name}' is massless: at least one link or point mass needs a mass")
+    for joint in joints:
+        for point in (joint.parent, joint.child):
+            _check_station(f"joint '{joint.name}'", point, number)
+    for load in loads:
+        for point in load.points:
+            _check_station(f"load '{load.name}'", point, number)
+
+
+def _mass(body: Link | PointMass, number: Number) -> float:
+    """The mass of a body, once everything about it is possible."""
+    what = f"link '{body.name}'" if isinstance(body, Link) else f"point mass '{body.name}'"
+    if isinstance(body, Link):
+        length = number(body.length)
+        if not (length > 0.0 and math.isfinite(length)):
+            raise ParameterError(f"{what}: length must be positive, got {length:.17g} m")
+        if isinstance(body.mass, Density):
+            return _density_mass(what, body.mass, length, number)
+    matter = body.mass
+    mass = number(matter.mass if isinstance(matter, RigidMass) else matter)
+    if not (mass >= 0.0 and math.isfinite(mass)):
+        raise ParameterError(f"{what}: mass must not be negative, got {mass:.17g} kg")
+    if isinstance(matter, RigidMass) and not number(matter.inertia) >= 0.0:
+        raise ParameterError(f"{what}: inertia must not be negative, got {number(matter.inertia):.17g} kg m^2")
+    return mass
+
+
+def _density_mass(what: str, matter: Density, length: float, number: Number) -> float:
+    density = matter.at(number, length)
+    place, lowest = density.lowest()
+    if not lowest >= 0.0:
+        if density.uniform:
+            raise ParameterError(f"{what}: mass must not be negative, got {lowest:.17g} kg")
+        raise ParameterError(f"{what}: density must not be negative, got {lowest / length:.17g} kg/m at xi/l = {place:.6g}")
+    return density.mass
+
+
+def margins(point: Point, precision: Precision) -> list[Expression]:
+    """What must not be negative for a fixed point to be on its link, where that has sections: how far it is from either end."""
+    if not (isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None):
+        return []
+    slack = END[precision] * point.body.length
+    return [point.x + slack, (point.body.length - point.x) + slack]
+
+
+def at_end(point: Point) -> Expression:
+    """Where a fixed point of a link is along it [m]: at an end, if it misses that by rounding."""
+    assert isinstance(point.body, Link)
+    x, length = point.x, point.body.length
+    if isinstance(x, float) and x == 0.0:
+        return x
+    slack = END["double"] * length
+    if isinstance(x, float) and isinstance(length, float):
+        return 0.0 if abs(x) <= slack else length if abs(x - length) <= slack else x
+    return ca.if_else(ca.fabs(x) <= slack, 0.0, ca.if_else(ca.fabs(x - length) <= slack, length, x))
+
+
+def no_sections(name: str, *, link: bool, links: Iterable[str]) -> str:
+    """Why a body has no sections, in words: a link, of which it is not known how its mass lies, or none of the links."""
+    if link:
+        return (
+            f"link '{name}' is known by its centre of mass and inertia only; a section needs to know how its mass lies along it, "
+            "so give it a mass alone or a density"
+        )
+    return f"'{name}' is not a link and has no sections; links: {', '.join(links)}"
+
+
+def _check_station(what: str, point: Point, number: Number) -> None:
+    for margin in margins(point, "double"):
+        if not number(margin) >= 0.0:
+            assert isinstance(point.body, Link)
+            x, length = number(point.x), number(point.body.length)
+            raise ParameterError(f"{what}: station {x:.13g} m is outside link '{point.body.name}', 0 to {length:.13g} m")

@@ -1,0 +1,399 @@
+"""The declaration of a mechanism: parameters, links and point masses, joints, loads, constraints and gravity.
+
+A :class:`Mechanism` is filled part by part and freezes when a scene is made of it. What a number can tell is checked when a part
+is declared, what depends on the whole when the mechanism freezes, and what depends on the parameters' values by
+:meth:`Mechanism.values`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, cast
+
+import casadi as ca
+
+from ..errors import DeclarationError
+from . import density as densities
+from .density import Density
+from .expressions import check_line, check_name, scalar, unit_vector
+from .kinks import refuse_kinks
+from .limits import check_connected, check_parts, parameter_values
+from .measures import Measures
+from .parts import (
+    Body,
+    Constraint,
+    Expression,
+    Force,
+    Ground,
+    Joint,
+    JointKind,
+    Link,
+    Load,
+    Parameter,
+    Point,
+    PointMass,
+    RigidMass,
+    Row,
+    Spring,
+    Torque,
+)
+
+_RESERVED_ENDINGS = ("_rate", "_acceleration")
+_RESERVED_NAMES = ("law",)
+_GROUND = "ground"
+
+
+@dataclass(eq=False)
+class Mechanism:
+    """A planar mechanism under declaration: links and point masses in the x-y plane, joined to each other and to the ground.
+
+    Gravity is (0, -9.81) m/s^2 unless :meth:`set_gravity` says otherwise. Lengths, masses, places and gravity may be numbers or
+    expressions in the symbols that :meth:`parameter` returns; loads, constraints and rows also in :attr:`time`,
+    :meth:`coordinate` and :meth:`rate`.
+    """
+
+    name: str
+    parameters: dict[str, Parameter] = field(default_factory=dict, init=False)
+    bodies: dict[str, Body] = field(default_factory=dict, init=False)
+    joints: dict[str, Joint] = field(default_factory=dict, init=False)
+    loads: dict[str, Load] = field(default_factory=dict, init=False)
+    constraints: dict[str, Constraint] = field(default_factory=dict, init=False)
+    rows: dict[str, Row] = field(default_factory=dict, init=False)
+    gravity: tuple[Expression, Expression] = field(default=(0.0, -9.81), init=False)
+    frozen: bool = field(default=False, init=False)
+    time: Any = field(default_factory=lambda: ca.SX.sym("t"), init=False)
+    measures: Measures = field(default_factory=Measures, init=False)
+
+    def __post_init__(self) -> None:
+        check_name("mechanism", self.name)
+        self.bodies[_GROUND] = Ground(_GROUND)
+
+    def __repr__(self) -> str:
+        names = ", ".join(body.name for body in self.moving)
+        return f"<Mechanism {self.name}: {names or 'no body yet'}; joints: {', '.join(self.joints) or 'none yet'}>"
+
+    @property
+    def ground(self) -> Ground:
+        """The fixed frame; ``ground.at(x, y)`` is a point of it, ``ground`` itself its origin."""
+        return cast(Ground, self.bodies[_GROUND])
+
+    @property
+    def moving(self) -> tuple[Link | PointMass, ...]:
+        """The links and point masses, in the order of declaration."""
+        return tuple(body for body in self.bodies.values() if isinstance(body, Link | PointMass))
+
+    @property
+    def links(self) -> dict[str, Link]:
+        """The links by name."""
+        return {name: body for name, body in self.bodies.items() if isinstance(body, Link)}
+
+    @property
+    def symbols(self) -> Any:
+        """The parameters' symbols as one column, in the order of declaration."""
+        return ca.vertcat(ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values()))
+
+    def parameter(self, name: str, default: float, unit: str = "1", *, low: float = -math.inf, high: float = math.inf) -> Any:
+        """Declare a parameter and return its symbol, a ``casadi.SX`` scalar to build lengths, masses and places from."""
+        self._add("parameter", name, self.parameters)
+        check_line(f"parameter '{name}': its unit", unit)
+        parameter = Parameter(name, float(default), unit, float(low), float(high), ca.SX.sym(name))
+        parameter.check(parameter.default)
+        self.parameters[name] = parameter
+        return parameter.symbol
+
+    def link(
+        self,
+        name: str,
+        *,
+        length: Expression,
+        mass: Expression = None,
+        density: Density | None = None,
+        centre: tuple[Expression, Expression] | None = None,
+        inertia: Expression = None,
+    ) -> Link:
+        """Declare a link of a length [m].
+
+        Its mass is one of: ``mass`` [kg] alone, a uniform rod; a ``density`` of :mod:`.density`; or ``mass``, ``centre`` (in the
+        link's axes [m]) and ``inertia`` about the centre [kg m^2], for a body whose sections are not wanted.
+        """
+        self._add("link", name, self.bodies)
+        what = f"link '{name}'"
+        if (mass is None) == (density is None):
+            raise DeclarationError(f"{what}: give its mass, or a density")
+        if (centre is None) != (inertia is None) or (centre is not None and mass is None):
+            raise DeclarationError(f"{what}: centre and inertia go together, and with a mass")
+        if density is not None:
+            if not isinstance(density, Density):
+                raise DeclarationError(f"{what}: expected a density of lagrange_casadi.density, got {density!r}")
+            cells = tuple(tuple(self._expression(f"{what}: density", c) for c in cell) for cell in density.cells)
+            matter: Density | RigidMass = Density(density.breaks, cells, density.per_length)
+        elif centre is not None:
+            x, y = (self._expression(f"{what}: centre", c) for c in centre)
+            matter = RigidMass(self._expression(f"{what}: mass", mass), (x, y), self._expression(f"{what}: inertia", inertia))
+        else:
+            matter = densities.uniform(self._expression(f"{what}: mass", mass))
+        link = Link(name, self._expression(f"{what}: length", length), matter)
+        self.bodies[name] = link
+        return link
+
+    def point_mass(self, name: str, mass: Expression) -> PointMass:
+        """Declare a mass [kg] without extent; welded to a link it is a lump of it."""
+        self._add("point mass", name, self.bodies)
+        body = PointMass(name, self._expression(f"point mass '{name}': mass", mass))
+        self.bodies[name] = body
+        return body
+
+    def revolute(self, name: str, parent: Body | Point, child: Body | Point) -> Joint:
+        """Pin a point of ``child`` to a point of ``parent``; a link stands for its base, the ground for its origin."""
+        return self._joint(name, "revolute", parent, child)
+
+    def prismatic(
+        self,
+        name: str,
+        parent: Body | Point,
+        child: Body | Point,
+        *,
+        axis: tuple[Expression, Expression],
+        angle: Expression = 0.0,
+    ) -> Joint:
+        """Let a point of ``child`` slide along ``axis`` (in the parent's axes) through a point of ``parent``.
+
+        ``angle`` [rad] is the child's direction against the parent's, which carries the line and is loaded where the point is.
+        """
+        return self._joint(name, "prismatic", parent, child, axis, angle)
+
+    def slot(
+        self, name: str, parent: Body | Point, child: Body | Point, *, axis: tuple[Expression, Expression] = (1.0, 0.0)
+    ) -> Joint:
+        """Let a pin at a point of ``child`` slide in a slot of ``parent`` along ``axis``, its direction free."""
+        return self._joint(name, "slot", parent, child, axis)
+
+    def weld(self, name: str, parent: Body | Point, child: Body | Point, *, angle: Expression = 0.0) -> Joint:
+        """Fix a point of ``child`` to a point of ``parent``, its direction at ``angle`` [rad] from the parent's."""
+        return self._joint(name, "weld", parent, child, angle=angle)
+
+    def gear(self, name: str, first: Joint, second: Joint, *, ratio: Expression, offset: Expression = 0.0) -> Constraint:
+        """Tie two joints: coordinate of ``second`` = ratio (coordinate of ``first``) + offset. A mesh of gears has ratio -z1/z2."""
+        ratio, offset = self._expression(f"gear '{name}': ratio", ratio), self._expression(f"gear '{name}': offset", offset)
+        return self.constraint(name, self.coordinate(second) - ratio * self.coordinate(first) - offset)
+
+    def constraint(self, name: str, phi: Any) -> Constraint:
+        """Declare Phi = 0, an expression of coordinates, places, directions, time and parameters (paper eq. 5); no slope may jump.
+
+        Its multiplier works on what it is written in: on joints' coordinates between their bodies, on places from the ground.
+        """
+        self._add("constraint", name, self.constraints)
+        phi = self._expression(f"constraint '{name}'", phi, moving=True)
+        if not isinstance(phi, ca.SX) or not ca.depends_on(phi, self.measures.places):
+            raise DeclarationError(
+                f"constraint '{name}' depends on no coordinate; build it from coordinate(JOINT), place(POINT) or direction(LINK)"
+            )
+        if ca.depends_on(phi, self.measures.rates):
+            raise DeclarationError(f"constraint '{name}' depends on rates; declare it with nonholonomic()")
+        defaults = [parameter.default for parameter in self.parameters.values()]
+        refuse_kinks(f"constraint '{name}'", phi, ca.vertcat(self.measures.places, self.time), self.symbols, defaults)
+        constraint = Constraint(name, phi)
+        self.constraints[name] = constraint
+        return constraint
+
+    def nonholonomic(self, name: str, expression: Any, *, replaces: Joint) -> Row:
+        """Declare a row A(q) q' + b = 0 (paper eq. 3), linear in rates and velocities.
+
+        ``replaces`` is a driven joint that needs no effort for the row's sake: its motion is prescribed, and the row holds it.
+        """
+        self._add("non-holonomic row", name, self.rows)
+        expression = self._expression(f"row '{name}'", expression, moving=True)
+        if not isinstance(expression, ca.SX) or not ca.depends_on(expression, self.measures.rates):
+            raise DeclarationError(f"row '{name}' depends on no rate; build it from rate(JOINT) or velocity(POINT)")
+        if ca.depends_on(ca.jacobian(expression, self.measures.rates), self.measures.rates):
+            raise DeclarationError(f"row '{name}' must be linear in the rates")
+        row = Row(name, expression, self._own_joint(replaces).name)
+        for other in self.rows.values():
+            if other.replaces == row.replaces:
+                raise DeclarationError(f"row '{name}': row '{other.name}' replaces the drive of joint '{row.replaces}' already")
+        self.rows[name] = row
+        return row
+
+    def force(self, name: str, point: Body | Point, *, x: Expression = 0.0, y: Expression = 0.0, turning: bool = False) -> Force:
+        """Apply a force [N] at a point, in ground axes, or in the body's own where ``turning``."""
+        place = self._load_point(name, point)
+        if turning and not place.body.oriented:
+            raise DeclarationError(f"load '{name}': point mass '{place.body.name}' has no axes for its force to turn with")
+        if place.body is self.ground:
+            raise DeclarationError(f"load '{name}': a force on the ground moves nothing; name a point of a link or a point mass")
+        load = Force(name, place, self._load(name, x), self._load(name, y), turning)
+        self.loads[name] = load
+        return load
+
+    def torque(self, name: str, point: Body | Point, value: Expression, *, against: Body | Point | None = None) -> Torque:
+        """Apply a torque [N m] to a body at a point, and its opposite to another one (default: the ground).
+
+        Where on a link it acts matters to the link's sections only; a link stands for its base.
+        """
+        ends = self._load_point(name, point), self._load_point(name, self.ground if against is None else against)
+        for end in ends:
+            if not end.body.oriented:
+                raise DeclarationError(f"load '{name}': point mass '{end.body.name}' bears no torque")
+        load = Torque(name, ends[0], self._load(name, value), ends[1])
+        self.loads[name] = load
+        return load
+
+    def spring(
+        self,
+        name: str,
+        first: Body | Point,
+        second: Body | Point,
+        *,
+        stiffness: Expression,
+        length: Expression,
+        damping: Expression = 0.0,
+    ) -> Spring:
+        """Stretch a spring [N/m] of a free length [m], with a damper [N s/m] beside it, between two points."""
+        ends = self._load_point(name, first), self._load_point(name, second)
+        load = Spring(name, *ends, self._load(name, stiffness), self._load(name, length), self._load(name, damping))
+        self.loads[name] = load
+        return load
+
+    def damper(self, name: str, first: Body | Point, second: Body | Point, *, damping: Expression) -> Spring:
+        """Put a damper [N s/m] between two points."""
+        return self.spring(name, first, second, stiffness=0.0, length=0.0, damping=damping)
+
+    def torsion_spring(
+        self, name: str, joint: Joint, *, stiffness: Expression, angle: Expression = 0.0, damping: Expression = 0.0
+    ) -> Torque:
+        """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint, whose angle counts turns."""
+        if self._own_joint(joint).coordinate != "angle":
+            raise DeclarationError(f"load '{name}': joint '{joint.name}' has no angle for a torsion spring")
+        stretch, rate = self.coordinate(joint) - angle, self.rate(joint)
+        return self.torque(name, joint.child, -(stiffness * stretch) - damping * rate, against=joint.parent)
+
+    def coordinate(self, joint: Joint) -> Any:
+        """The symbol of a joint's coordinate, for loads and constraints; an angle counts turns from the start of the scene on."""
+        return self.measures.joint(self._moving_joint(joint)).places[0]
+
+    def rate(self, joint: Joint) -> Any:
+        """The symbol of a joint's rate, for loads and non-holonomic rows."""
+        return self.measures.joint(self._moving_joint(joint)).rates[0]
+
+    def place(self, point: Body | Point) -> tuple[Any, Any]:
+        """The symbols of a point's x and y in ground axes [m], for loads and constraints."""
+        x, y = self.measures.point(self._point("place", point)).places
+        return x, y
+
+    def velocity(self, point: Body | Point) -> tuple[Any, Any]:
+        """The symbols of a point's velocity in ground axes [m/s], for loads and non-holonomic rows."""
+        x, y = self.measures.point(self._point("velocity", point)).rates
+        return x, y
+
+    def direction(self, link: Link) -> Any:
+        """The symbol of the direction of a link's axis against the ground's x axis [rad]; it counts turns as a coordinate does."""
+        body = self._point("direction", link).body
+        if not isinstance(body, Link):
+            raise DeclarationError(f"direction: expected a link, got '{body.name}'")
+        return self.measures.link(body).places[0]
+
+    def set_gravity(self, x: Expression, y: Expression) -> None:
+        """Set the acceleration of gravity [m/s^2], in ground axes."""
+        self._check_open("set gravity")
+        self.gravity = (self._expression("gravity", x), self._expression("gravity", y))
+
+    def freeze(self) -> None:
+        """Check the whole and end the declaration. Raises :class:`DeclarationError` for a part that hangs on nothing."""
+        if not self.moving:
+            raise DeclarationError(f"mechanism '{self.name}' has no link and no point mass")
+        check_connected(self.name, self.ground, self.moving, self.joints.values())
+        self.frozen = True
+
+    def values(self, overrides: Mapping[str, float] | None = None) -> dict[str, float]:
+        """Every parameter's value, the defaults overridden, checked against the ranges and against what the parts allow.
+
+        Raises :class:`UnknownNameError` for names that are no parameters', :class:`ParameterError` for values that are not finite
+        or out of range, all of them at once, a length that is not positive, a mass or density that is negative, a station outside
+        its link, or a mechanism without any mass.
+        """
+        values = parameter_values(self.parameters, overrides or {})
+        check_parts(self.name, self.moving, self.joints.values(), self.loads.values(), lambda e: self.number(e, values))
+        return values
+
+    def number(self, expression: Expression, values: Mapping[str, float]) -> float:
+        """The value of an expression in the parameters."""
+        if not isinstance(expression, ca.SX):
+            return float(expression)
+        numbers = [values[name] for name in self.parameters]
+        return float(ca.evalf(ca.substitute(expression, self.symbols, ca.vertcat(ca.SX(0, 1), *numbers))))
+
+    def _joint(
+        self,
+        name: str,
+        kind: JointKind,
+        parent: Body | Point,
+        child: Body | Point,
+        axis: tuple[Expression, Expression] | None = None,
+        angle: Expression = 0.0,
+    ) -> Joint:
+        self._add("joint", name, self.joints)
+        what = f"joint '{name}'"
+        if name.endswith(_RESERVED_ENDINGS):
+            raise DeclarationError(f"{what}: names ending in {' or '.join(_RESERVED_ENDINGS)} are taken")
+        start, end = self._point(what, parent), self._point(what, child)
+        if start.body is end.body:
+            raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
+        if kind != "revolute" and not start.body.oriented:
+            raise DeclarationError(
+                f"{what}: its parent '{start.body.name}' is a point mass and has no direction to carry "
+                f"{'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
+            )
+        unit = (1.0, 0.0) if axis is None else unit_vector(what, axis, lambda a: self._expression(f"{what}: axis", a))
+        joint = Joint(name, kind, start, end, unit, self._expression(f"{what}: angle", angle))
+        self.joints[name] = joint
+        return joint
+
+    def _point(self, what: str, place: Body | Point) -> Point:
+        point = place.base if isinstance(place, Link) else Point(place, 0.0, 0.0) if isinstance(place, Body) else place
+        if not isinstance(point, Point):
+            raise DeclarationError(f"{what}: expected a link, a point mass, the ground or a point of one, got {place!r}")
+        if self.bodies.get(point.body.name) is not point.body:
+            raise DeclarationError(f"{what}: '{point.body.name}' is of another mechanism than '{self.name}'")
+        what = f"{what}: place on '{point.body.name}'"
+        return Point(point.body, self._expression(what, point.x), self._expression(what, point.y), point.end)
+
+    def _load_point(self, name: str, place: Body | Point) -> Point:
+        self._add("load", name, self.loads)
+        return self._point(f"load '{name}'", place)
+
+    def _load(self, name: str, value: Expression) -> Expression:
+        return self._expression(f"load '{name}'", value, moving=True)
+
+    def _own_joint(self, joint: Joint) -> Joint:
+        if not isinstance(joint, Joint) or self.joints.get(joint.name) is not joint:
+            raise DeclarationError(f"expected a joint of mechanism '{self.name}', got {joint!r}; joints: {', '.join(self.joints)}")
+        return joint
+
+    def _moving_joint(self, joint: Joint) -> Joint:
+        if self._own_joint(joint).coordinate is None:
+            raise DeclarationError(f"joint '{joint.name}' has no coordinate")
+        return joint
+
+    def _expression(self, what: str, value: Expression, *, moving: bool = False) -> Expression:
+        """A finite float, or an SX scalar in this mechanism's parameters, and where ``moving`` in its time and state."""
+        own = [parameter.symbol for parameter in self.parameters.values()]
+        own += [self.time, *self.measures.symbols] if moving else []
+        allowed = "parameter, time, coordinate or rate" if moving else "parameter"
+        return scalar(what, value, own, f"{allowed} of mechanism '{self.name}'")
+
+    def _add(self, kind: str, name: str, table: Mapping[str, object]) -> None:
+        self._check_open(f"add {kind} '{name}'")
+        check_name(kind, name)
+        if name in table:
+            raise DeclarationError(f"{kind} '{name}' is declared twice in mechanism '{self.name}'")
+        # Files know joints, loads, constraints and rows by their names alone, beside those of links.
+        acting = (self.joints, self.loads, self.constraints, self.rows)
+        shared = any(table is other for other in acting) and any(name in other for other in (self.bodies, *acting))
+        if shared or name in _RESERVED_NAMES:
+            raise DeclarationError(f"{kind} '{name}': the name is taken")
+
+    def _check_open(self, what: str) -> None:
+        if self.frozen:
+            raise DeclarationError(f"cannot {what}: mechanism '{self.name}' is frozen, a scene has been made of it")

@@ -1,0 +1,160 @@
+"""Prescribed motions of driven joints: d(t), d'(t), d''(t).
+
+A law is a frozen object with one method, ``graph(t)``, which returns a CasADi expression of the symbol t; rates come by
+automatic differentiation.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from ..errors import DeclarationError, one_line
+from .curves import rows
+from .expressions import scalar
+from .kinks import Span, refuse_kinks
+from .parts import Expression
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A law of motion as a function from the symbol t [s] to the coordinate [rad or m].
+
+    ``spline`` tells that the graph needs ``casadi.MX``; ``span`` is the time the law covers, and ``knots`` are the times between
+    which the second derivative of a spline is linear.
+    """
+
+    graph: Callable[[Any], Any]
+    spline: bool = False
+    span: tuple[float, float] = (-math.inf, math.inf)
+    knots: tuple[float, ...] = ()
+
+
+def polynomial(*coefficients: Expression) -> Motion:
+    """c0 + c1 t + c2 t^2 + ... (paper eq. 22: ``polynomial(0, Omega0, epsilon0/2)``); numbers or parameters' symbols."""
+    if not coefficients:
+        raise DeclarationError("polynomial: expected at least one coefficient")
+
+    def graph(t: Any) -> Any:
+        value = ca.SX(coefficients[-1])
+        for coefficient in reversed(coefficients[:-1]):
+            value = value * t + coefficient
+        return value
+
+    return Motion(graph)
+
+
+def harmonic(mean: Expression, amplitude: Expression, frequency: Expression, phase: Expression = 0.0) -> Motion:
+    """mean + amplitude sin(2 pi frequency t + phase), the frequency in Hz."""
+    return Motion(lambda t: mean + amplitude * ca.sin(2.0 * math.pi * frequency * t + phase))
+
+
+def expression(law: Callable[[Any], Any]) -> Motion:
+    """Any law: a function that takes the symbol t and returns a ``casadi.SX`` expression of it and of parameters."""
+    if not callable(law):
+        raise DeclarationError(f"expression: expected a function of the symbol t, got {law!r}")
+    return Motion(law)
+
+
+def samples(times: Sequence[float], values: Sequence[float]) -> Motion:
+    """A C2 cubic spline through samples, not-a-knot at its ends; defined between the first and the last time only.
+
+    Raises :class:`DeclarationError` for fewer than four samples, for times that do not increase, or for what is not finite.
+    """
+    t, v = rows("motion samples", times, values, 4)
+    spline = ca.interpolant("spline", "bspline", [t], v)
+    return Motion(lambda time: spline(time), spline=True, span=(t[0], t[-1]), knots=tuple(t))
+
+
+def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
+    """The CasADi function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of several laws, by the joint's name.
+
+    Raises :class:`DeclarationError` for a law that is not a scalar expression of t and parameters.
+    """
+    names = (["t", "p"], ["d", "d_rate", "d_acceleration"])
+    t = ca.SX.sym("t")
+    smooth = [None if law.spline else _derivatives(_scalar(joint, law, t, parameters), t) for joint, law in laws.items()]
+    if not any(law.spline for law in laws.values()):
+        return ca.Function("motion", [t, parameters], _stack(smooth, ca.SX), *names, {"cse": True})
+    time, p = ca.MX.sym("t"), ca.MX.sym("p", parameters.numel())
+    rows = [
+        _derivatives(law.graph(time), time) if row is None else ca.Function(f"law{i}", [t, parameters], row, {"cse": True})(time, p)
+        for i, (law, row) in enumerate(zip(laws.values(), smooth, strict=True))
+    ]
+    return ca.Function("motion", [time, p], _stack(rows, ca.MX), *names)
+
+
+def refuse_kinked(laws: Mapping[str, Motion], parameters: Any, values: Sequence[float], span: Span) -> None:
+    """Raise :class:`DeclarationError` for a law whose value or rate jumps within a span of time, for values of the parameters."""
+    t = ca.SX.sym("t")
+    for joint, law in laws.items():
+        if not law.spline:
+            refuse_kinks(f"the motion of joint '{joint}'", ca.SX(_scalar(joint, law, t, parameters)), t, parameters, values, span)
+
+
+def jerk_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
+    """The CasADi function ``jerk(t, p) -> d_jerk``, the third derivatives of several laws; at a spline's knot, that of one side.
+
+    Raises :class:`DeclarationError` for a spline that does not tell its knots.
+    """
+    t, p = ca.MX.sym("t"), ca.MX.sym("p", parameters.numel())
+    rows = []
+    for joint, law in laws.items():
+        motion = motion_function({joint: law}, parameters)
+        bend = motion(t, p)[2]
+        if law.spline:
+            if not law.knots:
+                raise DeclarationError(f"the motion of joint '{joint}' does not tell its knots, which its third derivative needs")
+            # Not by the spline's own derivative: at a knot CasADi's splines of degree 0 write beside their memory.
+            values = motion(ca.DM(law.knots).T, ca.DM.zeros(p.numel()))[2].full().ravel()
+            bend = ca.interpolant("bend", "linear", [law.knots], values)(t)
+        rows.append(ca.densify(ca.jacobian(bend, t)))
+    return ca.Function("jerk", [t, p], [ca.vertcat(ca.MX(0, 1), *rows)], ["t", "p"], ["d_jerk"])
+
+
+@dataclass(frozen=True, eq=False)
+class Laws:
+    """The motion of several drives in two functions as :func:`motion_function` makes them.
+
+    ``smooth`` is of the laws that are written in scalars, ``sampled`` of those by samples, or None; ``order`` says of each drive
+    where it is, the sampled ones counted after the smooth ones.
+    """
+
+    smooth: Any
+    sampled: Any | None
+    order: tuple[int, ...]
+
+    @classmethod
+    def of(cls, laws: Mapping[str, Motion], parameters: Any) -> Laws:
+        """The functions of laws by the joint's name."""
+        smooth, sampled = ({name: law for name, law in laws.items() if law.spline is spline} for spline in (False, True))
+        order = tuple([*smooth, *sampled].index(name) for name in laws)
+        return cls(motion_function(smooth, parameters), motion_function(sampled, parameters) if sampled else None, order)
+
+
+def _scalar(joint: str, law: Motion, t: Any, parameters: Any) -> Any:
+    try:
+        value = law.graph(t)
+    except Exception as error:
+        reason = f"{type(error).__name__}: {one_line(error)[:200]}"
+        raise DeclarationError(f"the motion of joint '{joint}' is no casadi.SX expression of t: {reason}") from None
+    if isinstance(value, float) and math.isnan(value):
+        raise DeclarationError(
+            f"the motion of joint '{joint}' is not a number; use CasADi's functions of t, as casadi.sin, not math's"
+        )
+    symbols = [t, *ca.vertsplit(parameters)] if parameters.numel() else [t]
+    return scalar(f"the motion of joint '{joint}'", value, symbols, "parameter")
+
+
+def _derivatives(value: Any, t: Any) -> list[Any]:
+    value = value if isinstance(value, ca.MX) else ca.SX(value)
+    rate = ca.densify(ca.jacobian(value, t))
+    return [ca.densify(value), rate, ca.densify(ca.jacobian(rate, t))]
+
+
+def _stack(rows: list[Any], kind: Any) -> list[Any]:
+    return [ca.vertcat(kind(0, 1), *(row[order] for row in rows)) for order in range(3)]

@@ -1,0 +1,226 @@
+"""A scene: a mechanism, the motion it must make, and what is wanted of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from types import MappingProxyType
+from typing import NoReturn
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError
+from ..system.room import require
+from .density import Array, Density
+from .limits import no_sections
+from .mechanism import Mechanism
+from .motion import Motion
+
+Grid = tuple[float, float, int]
+"""Start, stop and count; both ends are included."""
+
+_TOLD = 8
+_MADE_FROM = 3
+"""How many arrays points are, with what they are made from."""
+
+_EXACT = 2**53
+"""Up to which doubles hold all whole numbers, so that a quotient of two is rounded once."""
+
+
+def checked(what: str, grid: Grid) -> Grid:
+    """A grid in numbers. Raises :class:`DeclarationError` for a count below 1, ends that are not finite, fall, or are one."""
+    try:
+        start, stop, count = float(grid[0]), float(grid[1]), int(grid[2])
+        if len(grid) != 3:
+            raise ValueError
+    except (TypeError, ValueError, IndexError, OverflowError):
+        raise DeclarationError(f"{what}: expected (start, stop, count), got {grid!r}") from None
+    if count < 1 or count != grid[2]:
+        raise DeclarationError(f"{what}: COUNT must be a whole number of at least 1, got {grid[2]}")
+    if not (math.isfinite(start) and math.isfinite(stop)):
+        raise DeclarationError(f"{what}: START and STOP must be finite, got {start:g} and {stop:g}")
+    if stop < start or (count > 1 and stop == start):
+        raise DeclarationError(f"{what}: STOP must be after START, got {start:g} and {stop:g}")
+    if count == 1 and stop > start:
+        raise DeclarationError(f"{what}: COUNT must be 2 or more to reach from {start:g} to {stop:g}, got 1")
+    return start, stop, count
+
+
+def points(grid: Grid, numbers: npt.NDArray[np.int64] | None = None) -> Array:
+    """All points of a grid, or those of given numbers, evenly spaced.
+
+    Each is rounded once from what the decimals of the ends say, so that 0.2:0.4:3 has 0.3, not 0.30000000000000004; where
+    these take more than the digits of a double, they are those of ``numpy.linspace``. Raises :class:`SizeError` for more than
+    memory holds.
+    """
+    start, stop, count = grid
+    if numbers is None:
+        require(f"the points from {start:g} to {stop:g}", (_MADE_FROM, count))
+    numbers = np.arange(count) if numbers is None else numbers
+    first, last = (Fraction(repr(float(end))) for end in (start, stop))
+    step = (last - first) / max(count - 1, 1)
+    whole = math.lcm(first.denominator, step.denominator)
+    base, by = int(first * whole), int(step * whole)
+    if max(abs(base), abs(int(last * whole)), whole) <= _EXACT:
+        return np.asarray((base + by * numbers) / whole)
+    values = numbers * ((stop - start) / max(count - 1, 1)) + start
+    return np.asarray(np.where(numbers == count - 1, float(stop), values))
+
+
+def told_parameters(mechanism: Mechanism, values: Mapping[str, float]) -> str:
+    """With which parameters something was found, to end a message with: the defaults, or others; nothing where there are none."""
+    told = values or {name: parameter.default for name, parameter in mechanism.parameters.items()}
+    listed = [f"{name} = {value:.6g}" for name, value in told.items()]
+    if len(listed) > _TOLD:
+        listed = [*listed[:_TOLD], f"{len(listed) - _TOLD} more"]
+    return f"; with the {'' if values else 'default '}parameters {', '.join(listed)}" if listed else ""
+
+
+def checked_ratios(grid: Grid) -> Grid:
+    """A grid of section ratios xi/l in numbers. Raises :class:`DeclarationError` outside [0, 1]."""
+    start, stop, count = checked("xi", grid)
+    if start < 0.0 or stop > 1.0:
+        raise DeclarationError(f"xi: ratios xi/l must lie in [0, 1], got {start:g} to {stop:g}")
+    return start, stop, count
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Outputs by kind, each in the order of declaration whatever the order of wanting."""
+
+    effort: bool
+    motion: bool
+    reactions: tuple[str, ...]
+    multipliers: tuple[str, ...]
+    loads: tuple[str, ...]
+    sections: tuple[str, ...]
+
+    @classmethod
+    def of(cls, mechanism: Mechanism, names: Sequence[str]) -> Wanted:
+        """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``, ``load:NAME``, ``section:LINK``, ``all``."""
+        choices = outputs(mechanism)
+        if isinstance(names, str) or not all(isinstance(name, str) for name in names):
+            raise DeclarationError(f"wanted: expected a list of output names, got {names!r}; valid: {', '.join(choices)}")
+        for name in names:
+            if name not in choices:
+                _refuse_output(mechanism, name)
+                raise UnknownNameError("output", name, choices)
+        chosen = set(choices if "all" in names else names)
+        if not chosen:
+            raise DeclarationError(f"no output wanted; valid: {', '.join(choices)}")
+
+        def parts(kind: str) -> tuple[str, ...]:
+            return tuple(name.partition(":")[2] for name in choices if name in chosen and name.startswith(f"{kind}:"))
+
+        kinds = ("reaction", "multiplier", "load", "section")
+        return cls("effort" in chosen, "motion" in chosen, *(parts(kind) for kind in kinds))
+
+    @property
+    def forces(self) -> bool:
+        """Whether any force is wanted that equilibrium gives."""
+        return bool(self.effort or self.reactions or self.multipliers or self.sections)
+
+
+def outputs(mechanism: Mechanism) -> list[str]:
+    """Every output that can be wanted of a mechanism."""
+    reactions = [f"reaction:{joint}" for joint in mechanism.joints]
+    multipliers = [f"multiplier:{name}" for name in (*mechanism.constraints, *mechanism.rows)]
+    loads = [f"load:{name}" for name in mechanism.loads]
+    sections = [f"section:{name}" for name, link in mechanism.links.items() if isinstance(link.mass, Density)]
+    return ["all", "effort", "motion", *reactions, *multipliers, *loads, *sections]
+
+
+def _refuse_output(mechanism: Mechanism, name: str) -> None:
+    kind, _, part = name.partition(":")
+    if kind == "section" and part in mechanism.bodies:
+        why = no_sections(part, link=part in mechanism.links, links=mechanism.links)
+        raise DeclarationError(f"output '{name}': {why}")
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A mechanism, the motion of its driven joints, and the outputs wanted over a grid of time and of section ratios.
+
+    Parameters
+    ----------
+    mechanism
+        The mechanism; it freezes here.
+    motion
+        The law of every driven joint, by the joint's name.
+    wanted
+        Output names, see :func:`outputs`. Only these are derived, compiled and evaluated.
+    t, xi
+        Grids of time [s] and of the ratio xi/l: start, stop, count.
+    posture
+        Rough directions of links [rad] and places of slides [m] at the first instant, to choose between the ways in which a loop
+        can be assembled.
+    assembly
+        Values of parameters with which loops are first assembled, in place of the defaults: ways to assemble are chosen there.
+    """
+
+    mechanism: Mechanism
+    motion: Mapping[str, Motion]
+    wanted: Sequence[str] = ("all",)
+    t: Grid = (0.0, 1.0, 101)
+    xi: Grid = (0.0, 1.0, 101)
+    posture: Mapping[str, float] = field(default_factory=dict)
+    assembly: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.mechanism, Mechanism):
+            raise DeclarationError(f"scene: expected a Mechanism, got {self.mechanism!r}")
+        for what, mapping in (("motion", self.motion), ("posture", self.posture), ("assembly", self.assembly)):
+            if not isinstance(mapping, Mapping):
+                raise DeclarationError(f"{what}: expected a mapping by name, got {mapping!r}")
+            object.__setattr__(self, what, MappingProxyType(dict(mapping)))
+        joints = self.mechanism.joints
+        for name, law in self.motion.items():
+            if name not in joints:
+                raise UnknownNameError("joint in motion", name, joints)
+            if joints[name].coordinate is None:
+                why = "a weld does not move" if joints[name].kind == "weld" else "a pin at a point mass turns nothing"
+                raise DeclarationError(f"joint '{name}' cannot be driven: {why}")
+            if not isinstance(law, Motion):
+                raise DeclarationError(f"motion of joint '{name}': expected a law of lagrange_casadi.motion, got {law!r}")
+        places = [*self.mechanism.links, *(n for n, j in joints.items() if j.slides)]
+        for name, rough in self.posture.items():
+            if name not in places:
+                raise UnknownNameError("link or sliding joint in posture", name, places)
+            if not isinstance(rough, (int, float)) or not math.isfinite(rough):
+                raise DeclarationError(f"posture of '{name}': expected a finite number, got {rough!r}")
+        for row in self.mechanism.rows.values():
+            if row.replaces not in self.motion:
+                raise DeclarationError(f"row '{row.name}' replaces the drive of joint '{row.replaces}', which has no motion")
+        self.mechanism.freeze()
+        Wanted.of(self.mechanism, self.wanted)
+        checked("t", self.t)
+        checked_ratios(self.xi)
+        try:
+            self.mechanism.values()
+        except ParameterError as error:
+            raise ParameterError(f"{error}{told_parameters(self.mechanism, {})}") from None
+        self.mechanism.values(self.assembly)
+
+    def __repr__(self) -> str:
+        start, stop, count = self.t
+        motion = ", ".join(self.motion) or "nothing"
+        wanted = ", ".join(self.wanted)
+        return f"<Scene of {self.mechanism.name}: drives {motion}, wants {wanted}, {count} instants from {start} to {stop} s>"
+
+    def __reduce__(self) -> NoReturn:
+        """Raise :class:`PickleError`."""
+        raise PickleError(
+            "a Scene cannot be pickled: its expressions and laws of motion live in this process alone; send a Case from load_case, "
+            "which the other process loads anew, or call there the function that makes the scene"
+        )
+
+    def __copy__(self) -> Scene:
+        """Itself: nothing of it changes."""
+        return self
+
+    def __deepcopy__(self, _memo: object) -> Scene:
+        """Itself: nothing of it changes."""
+        return self

@@ -1,0 +1,207 @@
+"""Many designs of one scene at once: of each parameter set the peaks, means, and whether there is a result at all.
+
+Instants of a design are evaluated in packs, and reduced in C to what is kept; between instants peaks are sought by evaluating the
+same graph at a few more instants there. A design depends on nothing but its own parameters: its row has the same bytes whatever
+stands beside it.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import codegen
+from ..codegen.stages import Stages
+from ..declare.density import Array
+from ..declare.scene import Grid, Scene, points
+from ..equations.derive import derive
+from ..equations.scene_graph import SceneGraph
+from ..errors import DeclarationError
+from ..evaluate import checked_laws, checked_times, outputs_of
+from ..instants.backends import compiled, provenance
+from ..instants.cost import seconds
+from ..instants.determinacy import determinate, undetermined
+from ..instants.rung import Rung
+from ..instants.section_law import made_of
+from ..instants.solution import Provenance
+from ..summits.sharpness import bent, with_watched
+from ..system.room import cores, require
+from .plain import outcome
+from .plan import Kept, stages_of
+from .witness import failures
+
+_LOOKS = 32
+"""At about so many more instants is the peak of a quantity sought."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What is kept of n designs, a row each; rows of designs without a result hold NaN.
+
+    ``status`` (n) is a :class:`.Status`. ``value``, ``t`` and ``xi``, (n, q), are the peak of each quantity with its sign, its time
+    [s] and its ratio xi/l, NaN off a link; ``mean`` and ``rms``, (n, e), those of each effort over time. ``series`` (n, columns, t)
+    are whole histories, where they were asked for.
+    """
+
+    status: npt.NDArray[np.int8]
+    value: Array
+    t: Array
+    xi: Array
+    mean: Array
+    rms: Array
+    series: Array | None
+
+
+@dataclass(frozen=True, eq=False)
+class DesignEngine:
+    """A scene compiled for many designs.
+
+    ``parameters`` are the columns of what :meth:`evaluate` takes; ``quantities``, with ``units``, and ``efforts`` those of what it
+    gives; ``columns`` those of histories. ``undetermined`` are the outputs that equilibrium leaves open for the parameters'
+    defaults, which are left out; what it leaves open for some design is NaN there.
+    """
+
+    scene: Scene
+    rung: Rung
+    t: Array
+    kept: Kept
+    graph: SceneGraph
+    stages: Stages
+    library: codegen.DesignsLibrary | None
+    undetermined: tuple[str, ...]
+    provenance: Provenance
+
+    @classmethod
+    def of(cls, scene: Scene, wanted: Sequence[str] | None = None, t: Grid | None = None, rung: Rung | None = None) -> DesignEngine:
+        """Derive and compile: ``wanted`` outputs, instants ``t`` and ``rung`` as in :func:`.evaluate`."""
+        rung = rung or Rung()
+        if rung.table is not None:
+            raise DeclarationError("designs are not read from a table: each would need a table of its own")
+        graph = derive(scene, wanted, iterate=rung.newton is not None)
+        instants = points(checked_times(scene, t))
+        checked_laws(scene, (float(instants[0]), float(instants[-1])), tuple(scene.mechanism.values().values()))
+        p = np.array(list(scene.mechanism.values().values()))
+        _, left_open = determinate(graph, instants, p)
+        kept = Kept.of(graph, rung, left_open)
+        require("the instants of a design", (kept.plan.rows, instants.size))
+        watched = with_watched(graph, kept.sharpness)
+        stages = stages_of(watched, rung, instants)
+        guess = np.array(graph.newton.guess if graph.newton else (), float)
+
+        def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:
+            source = codegen.emit_designs(watched, stages, rung.newton, kept.plan)
+            hidden = bent(graph, kept.sharpness, instants, p)
+            return codegen.load_designs(
+                source, compiler, tuple(shlex.split(rung.flags)), kept.plan, instants, guess, hidden, rung.precision
+            )
+
+        found = compiled(rung, build)
+        if found is None:
+            return cls(scene, rung, instants, kept, graph, stages, None, left_open, provenance("vm", "", "", rung))
+        compiler, library = found
+        backend = "lanes" if compiler.language == "c++" else "c"
+        made = provenance(backend, compiler.version, " ".join(library.flags), rung)
+        return cls(scene, rung, instants, kept, graph, stages, library, left_open, made)
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of the parameters."""
+        return tuple(self.scene.mechanism.parameters)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The names of the quantities that have peaks."""
+        return tuple(self.kept.quantities[k] for k in self._shown)
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """Their units."""
+        return tuple(self.kept.units[k] for k in self._shown)
+
+    @property
+    def efforts(self) -> tuple[str, ...]:
+        """The names of the efforts that have means."""
+        return self.kept.efforts
+
+    @property
+    def doubtful(self) -> tuple[str, ...]:
+        """The quantities, and the outputs in histories, that equilibrium may leave open for some designs."""
+        numbers = sorted({quantity for _, quantity in self.kept.plan.doubts})
+        return tuple(dict.fromkeys([*(self.kept.quantities[k] for k in numbers), *self.graph.doubtful]))
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The names of the outputs that histories have."""
+        left_out = {name for name in self.undetermined if not name.startswith("section:")}
+        whole = {f"section:{link}" for link in self.kept.links}
+        names = (name for name in self.graph.columns if not name.startswith("_") and name not in left_out)
+        return tuple(name for name in names if not name.startswith("section:") or name[: name.index(":", 8)] in whole)
+
+    @property
+    def cost(self) -> float:
+        """Seconds that a core takes for a design, within a factor of three or so: counted, not measured, the same everywhere."""
+        return seconds(self.graph, self.t.size + _LOOKS * len(self.quantities), self.rung, interpreted=self.library is None)
+
+    @property
+    def room(self) -> int:
+        """Bytes of memory that a core takes while it evaluates."""
+        return 8 * self.kept.plan.rows * self.t.size
+
+    def evaluate(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
+        """The outcome of designs ``p``, (n, parameters), in the order of :attr:`parameters`; with ``histories``, its series too.
+
+        Values are not checked against the parameters' ranges. ``threads`` share the designs, by default one a core; no byte depends
+        on them. Raises :class:`DeclarationError` for another shape, :class:`SizeError` where the outcome does not fit into memory.
+        """
+        p = np.ascontiguousarray(p, float)
+        if p.ndim != 2 or p.shape[1] != len(self.parameters):
+            raise DeclarationError(f"designs: expected an array of shape (n, {len(self.parameters)}), got {p.shape}")
+        n, q, e = p.shape[0], len(self.kept.quantities), len(self.efforts)
+        history = (n, len(self.graph.columns), self.t.size)
+        require("the peaks of the designs", (n, 3 * q + 2 * e))
+        if histories:
+            require("the histories of the designs", history)
+        columns = np.empty(history) if histories else None
+        peaks, means = (np.empty((3, n, q)), np.empty((2, n, e)))
+        found = Outcome(np.zeros(n, np.int8), peaks[0], peaks[1], peaks[2], means[0], means[1], columns)
+        if self.library is not None:
+            self.library.evaluate(p, list(vars(found).values()), threads or cores())
+        else:
+            self._interpret(p, found)
+        if len(self._shown) < q:
+            found = replace(found, **{name: getattr(found, name)[:, self._shown] for name in ("value", "t", "xi")})
+        if columns is None:
+            return found
+        with np.errstate(invalid="ignore"):
+            for row, out in zip(p, columns, strict=True):
+                out[[self.graph.columns.index(name) for name in undetermined(self.graph, out, row, self.rung)]] = np.nan
+            series = outputs_of(self.graph, np.moveaxis(columns, 1, 0))
+        return replace(found, series=np.stack([series[name] for name in self.columns], axis=1))
+
+    @cached_property
+    def _shown(self) -> list[int]:
+        """The quantities that are given: of a link that has some forces determined, all are made, and these are shown."""
+        names = enumerate(self.kept.quantities)
+        parts = ((k, name.split(":")) for k, name in names)
+        return [k for k, (kind, *part) in parts if kind != "section" or not made_of(self.undetermined, part[0], part[1])]
+
+    def failures(self, p: Array) -> dict[str, float]:
+        """What fails of one design that has a result, (parameters,), looked at with all its outputs: see :mod:`.witness`."""
+        series = self.evaluate(p[None], threads=1, histories=True).series
+        assert series is not None
+        return failures(self.scene, p, self.t, self.rung, self.columns, series[0])
+
+    def _interpret(self, p: Array, found: Outcome) -> None:
+        kept = (found.value, found.t, found.xi, found.mean, found.rms)
+        for i, row in enumerate(p):
+            found.status[i], design = outcome(self.graph, self.kept, self.t, row, self.rung.newton)
+            for array, values in zip(kept, (*design.peaks, *design.means) if design else [np.nan] * 5, strict=True):
+                array[i] = values
+            if found.series is not None:
+                found.series[i] = design.columns if design else np.nan

@@ -1,0 +1,94 @@
+"""What is kept of a design where there is no compiler: the same as the emitted C keeps, by CasADi's virtual machine and NumPy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..declare.density import Array, Density, NumericDensity
+from ..declare.mechanism import Mechanism
+from ..equations.scene_graph import SceneGraph
+from ..instants.backends import Table, run
+from ..instants.determinacy import undetermined
+from ..instants.refusal import Status, refusal
+from ..instants.rung import Rung
+from ..instants.section_law import FORCES
+from ..instants.signals import Quantity, SectionForce, Signals
+from .plan import Kept
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """What is kept of a design that has a result: peaks (3, q) as value, time and ratio, means (2, e), and columns (columns, t)."""
+
+    peaks: Array
+    means: Array
+    columns: Array
+
+
+def outcome(graph: SceneGraph, kept: Kept, t: Array, p: Array, newton: int | None) -> tuple[Status, Row | None]:
+    """What is kept of a design, or why it has no result."""
+    if not np.isfinite(p).all():
+        return Status.INVALID, None
+    plan = kept.plan
+    margins = plan.matter(p).full().ravel()[: plan.margins]
+    if not (np.isfinite(margins).all() and (margins >= 0.0).all() and (margins[: plan.positive] > 0.0).all()):
+        return Status.IMPOSSIBLE, None
+    rung = Rung("vm", newton=newton)
+    table, _ = run(graph, t, p, rung)
+    why = refusal(graph, table, t, p, rung)
+    if why is not None:
+        return why.status, None
+    left_open = {graph.doubtful[name] for name in undetermined(graph, table.out, p, rung)}
+    doubted = {quantity for check, quantity in plan.doubts if plan.checks[check][0] in left_open}
+    told = [k for k in range(len(plan.units)) if k not in doubted]
+    signals = _signals(graph, kept, t, p, newton, table, told)
+    efforts = table.out[[graph.columns.index(name) for name in kept.efforts]]
+    with np.errstate(all="ignore"):
+        found = signals.peaks([plan.units[k] for k in told])
+        means = np.stack(_means(efforts))
+    if not found.told.all():
+        return Status.PEAK_NOT_TOLD, None
+    peaks = np.full((3, len(plan.units)), np.nan)
+    peaks[:, told] = found.value, found.t, found.xi
+    means[:, [effort not in told for effort in plan.efforts]] = np.nan
+    return Status.OK, Row(peaks, means, table.out)
+
+
+def _means(rows: Array) -> tuple[Array, Array]:
+    """Mean and root of the mean square over time, by trapezia."""
+    weights = np.ones(rows.shape[1])
+    weights[[0, -1]] = 0.5 if rows.shape[1] > 1 else 1.0
+    weights /= weights.sum()
+    return rows @ weights, np.sqrt(rows**2 @ weights)
+
+
+def _signals(graph: SceneGraph, kept: Kept, t: Array, p: Array, newton: int | None, table: Table, some: Sequence[int]) -> Signals:
+    """Some quantities that are kept of a design, as curves over time."""
+    mechanism, plan = graph.scene.mechanism, kept.plan
+    matter = _matter(kept, mechanism, dict(zip(mechanism.parameters, p.tolist(), strict=True)))
+    sections = [
+        SectionForce(force, along.law, along.stations, length, density)
+        for along, (length, density) in zip(plan.links, matter, strict=True)
+        for force in FORCES
+    ]
+    quantities: list[Quantity] = [*plan.quantities, *sections]
+    return Signals(graph, table.stages, kept.sharpness, [quantities[k] for k in some], t, p, table.iterated, newton)
+
+
+def _matter(kept: Kept, mechanism: Mechanism, values: Mapping[str, float]) -> list[tuple[float, NumericDensity]]:
+    """Lengths and densities of the links that have section forces."""
+
+    def number(expression: Any) -> float:
+        return mechanism.number(expression, values)
+
+    links = [mechanism.links[name] for name in kept.links]
+    lengths = [number(link.length) for link in links]
+    return [
+        (length, link.mass.at(number, length))
+        for link, length in zip(links, lengths, strict=True)
+        if isinstance(link.mass, Density)
+    ]

@@ -1,0 +1,192 @@
+"""What is kept of a design of a scene, as numbers of columns: what the emitted C reduces its instants to."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..arithmetic.compensated import Precision
+from ..codegen.designs import Along, Plan, matter_of
+from ..codegen.stages import Stages, compensated, counts, plain
+from ..declare.density import Array, Density
+from ..declare.limits import margins
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Link, RigidMass
+from ..equations.gaps import extent
+from ..equations.kinematics import NEAR
+from ..equations.mobility import LAW, PLACE_FIRST, stations_of
+from ..equations.scene_graph import SceneGraph
+from ..equations.turns import REACH
+from ..errors import DeclarationError
+from ..instants.determinacy import open_limits
+from ..instants.refusal import MISFIT, Status, dead_centre, gap_limit
+from ..instants.rung import Rung
+from ..instants.section_law import FORCES, made_of
+from ..quantities import FORCE, unit_in
+from ..summits.sharpness import Sharpness
+
+_BETWEEN = 9
+"""Places in a cell of density at which one of a higher degree than a line is asked for its sign."""
+
+
+def stages_of(graph: SceneGraph, rung: Rung, t: Array) -> Stages:
+    """In which arithmetic all designs are evaluated: in pairs where angles count many turns, or may, as parameters set them."""
+    if rung.precision == "single":
+        return compensated(graph, "single")
+    time, p = graph.laws.smooth.sx_in()
+    if p.numel() and ca.depends_on(ca.vertcat(*graph.laws.smooth(time, p)), p):
+        try:
+            return compensated(graph, "double")
+        except DeclarationError:
+            return plain(graph)
+    many = counts(graph, t, np.array(list(graph.scene.mechanism.values().values())))
+    return compensated(graph, "double") if many else plain(graph)
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """The names of what is kept, and the plan by which: peaks of ``quantities``, in ``units``, and means of ``efforts``.
+
+    Quantities are the wanted outputs by their full names, angles that loops set left out; ``reaction:JOINT`` is the size of a
+    joint's reaction; the section forces of ``links`` come last. What equilibrium leaves open for the parameters' defaults is
+    left out.
+    """
+
+    quantities: tuple[str, ...]
+    units: tuple[str, ...]
+    efforts: tuple[str, ...]
+    links: tuple[str, ...]
+    plan: Plan
+    sharpness: Sharpness
+
+    @classmethod
+    def of(cls, graph: SceneGraph, rung: Rung, left_open: Collection[str] = ()) -> Kept:
+        """What is kept of a scene's designs on a rung, less what is ``left_open``."""
+        mechanism, at = graph.scene.mechanism, {name: k for k, name in enumerate(graph.columns)}
+        chosen: dict[str, tuple[int, ...]] = {}
+        for name, k in at.items():
+            if name.startswith(("_", "section:")) or name in graph.wrapped or name in left_open:
+                continue
+            kind, part, *rest = name.split(":")
+            other = f"reaction:{part}:fy"
+            if kind == "reaction" and rest == ["fx"] and other in at and other not in left_open:
+                chosen[f"reaction:{part}"] = (k, at[other])
+            chosen[name] = (k,)
+        links = [link for link in mechanism.links.values() if f"section:{link.name}:law:n0" in at]
+        links = [link for link in links if not all(made_of(left_open, link.name, force) for force in FORCES)]
+        names = [*chosen, *(f"section:{link.name}:{force}" for link in links for force in FORCES)]
+        if not names:
+            raise DeclarationError("designs: nothing is wanted that has a peak")
+        units = tuple(_unit(mechanism, name) for name in names)
+        numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
+        efforts = tuple(name for name in names if name.startswith("effort:"))
+        along = tuple(_along(link, at) for link in links)
+        matter, positive, margins = _matter(mechanism, links, along, rung.precision)
+        columns = {column for columns in chosen.values() for column in columns}
+        columns |= {column for link in along for column in (*link.law, *(k for station in link.stations for k in station))}
+        sharpness = Sharpness.of(graph, sorted(columns))
+        checks = _checks(graph, rung, at)
+        doubted = {k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")}
+        made = {name: _made_of(graph, name) for name in names}
+        doubts = [(doubted[graph.doubtful[n]], k) for k, name in enumerate(names) for n in made[name] if n in graph.doubtful]
+        plan = Plan(
+            quantities=tuple(chosen.values()),
+            links=along,
+            units=tuple(numbers[unit] for unit in units),
+            efforts=tuple(names.index(name) for name in efforts),
+            checks=tuple(checks),
+            doubts=tuple(doubts),
+            matter=matter,
+            positive=positive,
+            margins=margins,
+            near=NEAR,
+            statuses={status.name: int(status) for status in Status},
+            watches=sharpness.watches,
+            knots=sharpness.knots,
+        )
+        return cls(tuple(names), units, efforts, tuple(link.name for link in links), plan, sharpness)
+
+
+def _unit(mechanism: Mechanism, name: str) -> str:
+    if name.startswith("reaction:") and name.count(":") == 1:
+        return FORCE
+    return unit_in(mechanism.joints, name)
+
+
+def _along(link: Link, at: dict[str, int]) -> Along:
+    assert isinstance(link.mass, Density)
+    start = f"section:{link.name}"
+    return Along(
+        tuple(at[f"{start}:law:{member}"] for member in LAW),
+        tuple(tuple(at[f"{start}:{station}:{member}"] for member in PLACE_FIRST) for station in stations_of(at, link.name)),
+        link.mass.breaks,
+        max(len(cell) for cell in link.mass.cells),
+    )
+
+
+def _made_of(graph: SceneGraph, quantity: str) -> list[str]:
+    """The columns that a quantity is made of."""
+    kind, part, *rest = quantity.split(":")
+    if kind == "section":
+        return made_of(graph.columns, part, rest[0])
+    return [f"{quantity}:{member}" for member in ("fx", "fy")] if kind == "reaction" and not rest else [quantity]
+
+
+def _checks(graph: SceneGraph, rung: Rung, at: dict[str, int]) -> list[tuple[int, str, float]]:
+    found: list[tuple[int, str, float]] = []
+    precision, opened = rung.precision, open_limits(graph, rung)
+    for name, k in at.items():
+        kind, _, joint = name.partition(":")
+        if kind == "_closure":
+            jumps = graph.newton is not None and f"'{joint}'" in graph.newton.joints
+            found.append((k, "BRANCH" if jumps else "CLOSURE", dead_centre(graph, precision, name)))
+        elif kind == "_gap":
+            found.append((k, "GAP", gap_limit(precision, rung.newton)))
+        elif kind == "_open":
+            limit, moment = opened[joint]
+            found.append((k, "OPEN_MOMENT" if moment else "OPEN", limit))
+        elif kind == "_turned":
+            found.append((k, "TURNED", REACH))
+        elif kind == "_misfit":
+            found.append((k, "MISFIT", MISFIT[precision]))
+        elif kind == "_row":
+            found += [(k, "ROW", MISFIT[precision]), (at[f"_rowsize:{joint}"], "ROWSIZE", 0.0)]
+    return found
+
+
+def _matter(
+    mechanism: Mechanism, links: list[Link], along: tuple[Along, ...], precision: Precision
+) -> tuple[ca.Function, int, int]:
+    """What the plan wants to know of the parts, and how many numbers must be positive, and not negative."""
+    lengths = {name: link.length for name, link in mechanism.links.items()}
+    masses = [_masses(body.mass, lengths.get(body.name, 0.0)) for body in mechanism.moving]
+    positive = [extent(mechanism), *lengths.values(), sum((mass for mass, _ in masses), ca.SX(0))]
+    others = [value for _, values in masses for value in values]
+    points = [point for joint in mechanism.joints.values() for point in (joint.parent, joint.child)]
+    for point in (*points, *(point for load in mechanism.loads.values() for point in load.points)):
+        others += margins(point, precision)
+    rest: list[Any] = []
+    for link, part in zip(links, along, strict=True):
+        assert isinstance(link.mass, Density)
+        scale = link.length if link.mass.per_length else 1.0
+        rest += matter_of(part, link.length, [[c * scale for c in cell] for cell in link.mass.cells])
+    out = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.SX(value) for value in (*positive, *others, *rest))))
+    return ca.Function("matter_of", [mechanism.symbols], [out], {"cse": True}), len(positive), len(positive) + len(others)
+
+
+def _masses(matter: Any, length: Any) -> tuple[Any, list[Any]]:
+    """A mass, and what of it must not be negative."""
+    if isinstance(matter, RigidMass):
+        return matter.mass, [matter.mass, matter.inertia]
+    if not isinstance(matter, Density):
+        return matter, [matter]
+    base, tip, _ = matter.ends(length)
+    values: list[Any] = []
+    for a, b, cell in zip(matter.breaks, matter.breaks[1:], matter.cells, strict=False):
+        for u in np.linspace(a, b, min(len(cell), 2) if len(cell) < 3 else _BETWEEN):
+            values.append(sum(c * float(u) ** j for j, c in enumerate(cell)))
+    return base + tip, values

@@ -1,0 +1,144 @@
+"""The mechanism itself, drawn from a solution's poses and its description."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..declare.density import Array
+from ..instants.solution import Solution
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_COLOURS = ("#1f4e79", "#b3541e", "#2e7d4f", "#7a3b8f", "#8a6d1a", "#3c6e71", "#9c2f4a", "#555555")
+
+
+def draw_mechanism(solution: Solution, count: int) -> Figure:
+    """The mechanism at ``count`` instants, with the paths that its joints take over the whole time."""
+    from matplotlib.figure import Figure
+
+    paths = {name: _place(solution, joint["child"]) for name, joint in solution.description["joints"].items()}
+    ends = {name: _ends(solution, name) for name, body in solution.description["bodies"].items() if body["length"]}
+    x = np.concatenate([p[0] for p in paths.values()] + [e[k] for e in ends.values() for k in (0, 2)])
+    y = np.concatenate([p[1] for p in paths.values()] + [e[k] for e in ends.values() for k in (1, 3)])
+    size = max(float(np.ptp(x)), float(np.ptp(y))) or 1.0
+    box = (x.min() - 0.12 * size, x.max() + 0.12 * size, y.min() - 0.12 * size, y.max() + 0.12 * size)
+    columns = min(count, 2)
+    rows = -(-count // columns)
+    aspect = (box[3] - box[2]) / (box[1] - box[0])
+    figure = Figure(figsize=(4.4 * columns, min(9.0, rows * (4.4 * aspect + 0.5))), layout="constrained")
+    axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    chosen = np.linspace(0, solution.t.size - 1, count + 1).astype(int)[:-1] if count > 1 else [0]
+    for place, i in zip(axes.flat, chosen, strict=False):
+        _draw_instant(place, solution, int(i), paths, size)
+        place.set(xlim=box[:2], ylim=box[2:], aspect="equal")
+        place.set_title(f"t = {solution.t[i]:.4g} s", fontsize=10)
+        place.grid(True, color="0.93")
+    for place in axes.flat[len(chosen) :]:
+        place.set_axis_off()
+    for place in axes[-1]:
+        place.set_xlabel("x [m]")
+    for place in axes[:, 0]:
+        place.set_ylabel("y [m]")
+    names = axes[0, 0].get_legend_handles_labels()
+    figure.legend(*names, loc="outside lower center", ncols=min(6, max(1, len(names[1]))), frameon=False, fontsize=9)
+    return figure
+
+
+def _draw_instant(axes: Any, solution: Solution, i: int, paths: Any, size: float) -> None:
+    description = solution.description
+    for number, (name, body) in enumerate(description["bodies"].items()):
+        colour = _COLOURS[number % len(_COLOURS)]
+        if body["length"]:
+            _draw_body(axes, solution, name, i, colour)
+        elif body["length"] is None:
+            pose = solution.pose(name)
+            axes.plot(pose.x[i], pose.y[i], "s", color=colour, markersize=11, label=name, zorder=3)
+    for load in description["loads"].values():
+        if load["kind"] == "spring":
+            (ax, ay), (bx, by) = (_place(solution, point) for point in load["points"])
+            axes.plot([ax[i], bx[i]], [ay[i], by[i]], color="0.4", linewidth=1.4, linestyle=":", zorder=2)
+    for name, joint in description["joints"].items():
+        x, y = paths[name]
+        axes.plot(x, y, color="0.75", linewidth=0.9, zorder=1)
+        if joint["kind"] in ("prismatic", "slot"):
+            _draw_axis(axes, solution, joint, i, size)
+        if joint["kind"] in ("revolute", "slot"):
+            grounded = "ground" in (joint["parent"]["body"], joint["child"]["body"])
+            axes.plot(x[i], y[i], "o", markersize=7, markerfacecolor="white", markeredgecolor="black", zorder=4)
+            if grounded:
+                axes.plot(x[i], y[i] - 0.035 * size, "^", markersize=12, color="0.55", zorder=2)
+    for (x, y), names in _labels(paths, i, size).items():
+        axes.annotate(", ".join(names), (x, y), xytext=(6, 6), textcoords="offset points", fontsize=8, color="0.25", zorder=5)
+
+
+def _draw_body(axes: Any, solution: Solution, name: str, i: int, colour: str) -> None:
+    """A link's axis, and arms to the joints beside it; a body known by its centre of mass as arms from there."""
+    body = solution.description["bodies"][name]
+    points = [end for joint in solution.description["joints"].values() for end in (joint["parent"], joint["child"])]
+    own = [(point["x"], point["y"]) for point in points if point["body"] == name]
+    if "centre" in body:
+        centre = (body["centre"]["x"], body["centre"]["y"])
+        lines, width = [(centre, point) for point in own], 3.0
+    else:
+        lines, width = [((min(max(x, 0.0), body["length"]), 0.0), (x, y)) for x, y in own], 1.6
+        (x0, y0), (x1, y1) = (_at(solution, name, i, *place) for place in ((0.0, 0.0), (body["length"], 0.0)))
+        axes.plot([x0, x1], [y0, y1], color=colour, linewidth=4, solid_capstyle="round", label=name, zorder=3)
+    for k, (start, stop) in enumerate(lines):
+        (x0, y0), (x1, y1) = _at(solution, name, i, *start), _at(solution, name, i, *stop)
+        label = name if "centre" in body and k == 0 else None
+        axes.plot([x0, x1], [y0, y1], color=colour, linewidth=width, solid_capstyle="round", label=label, zorder=3)
+
+
+def _at(solution: Solution, body: str, i: int, x: float, y: float) -> tuple[float, float]:
+    place = _place(solution, {"body": body, "x": x, "y": y})
+    return float(place[0][i]), float(place[1][i])
+
+
+def _labels(paths: Any, i: int, size: float) -> dict[tuple[float, float], list[str]]:
+    """The joints' names by place, those at one place together."""
+    found: dict[tuple[float, float], list[str]] = {}
+    for name, (x, y) in paths.items():
+        near = next((at for at in found if max(abs(at[0] - x[i]), abs(at[1] - y[i])) < 1e-3 * size), (float(x[i]), float(y[i])))
+        found.setdefault(near, []).append(name)
+    return found
+
+
+def _draw_axis(axes: Any, solution: Solution, joint: Any, i: int, size: float) -> None:
+    """The line of a prismatic joint, through its parent's point."""
+    parent = joint["parent"]
+    c, s = _direction(solution, parent["body"])
+    ax = c[i] * joint["axis"][0] - s[i] * joint["axis"][1]
+    ay = s[i] * joint["axis"][0] + c[i] * joint["axis"][1]
+    x, y = (values[i] for values in _place(solution, parent))
+    axes.plot(
+        [x - 4 * size * ax, x + 4 * size * ax],
+        [y - 4 * size * ay, y + 4 * size * ay],
+        color="0.55",
+        linewidth=1.0,
+        linestyle=(0, (6, 4)),
+        zorder=1,
+    )
+
+
+def _direction(solution: Solution, body: str) -> tuple[Array, Array]:
+    angle = None if body == "ground" else solution.pose(body).angle
+    return (np.ones_like(solution.t), np.zeros_like(solution.t)) if angle is None else (np.cos(angle), np.sin(angle))
+
+
+def _place(solution: Solution, point: Any) -> tuple[Array, Array]:
+    """The path of a point of a body."""
+    c, s = _direction(solution, point["body"])
+    x, y = point["x"], point["y"]
+    if point["body"] == "ground":
+        return x * c, y * c
+    pose = solution.pose(point["body"])
+    return pose.x + c * x - s * y, pose.y + s * x + c * y
+
+
+def _ends(solution: Solution, body: str) -> tuple[Array, Array, Array, Array]:
+    length = solution.description["bodies"][body]["length"]
+    base = _place(solution, {"body": body, "x": 0.0, "y": 0.0})
+    return (*base, *_place(solution, {"body": body, "x": length, "y": 0.0}))

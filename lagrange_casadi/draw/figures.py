@@ -1,0 +1,247 @@
+"""Pictures of a solution: what is drawn is declared as frozen specs, which a case may give and a file keeps.
+
+Nothing here is imported before a figure is asked for, nor is matplotlib.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ..errors import DeclarationError, StoreError, UnknownNameError, one_line
+from ..instants.section_law import FORCES
+from ..instants.solution import Solution
+from ..quantities import quantity_of
+from ..store.untrusted import parsed
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_PIXELS = 1600
+
+
+@dataclass(frozen=True)
+class TimePlot:
+    """Quantities over time; of a section force, one curve for each ratio in ``xi``.
+
+    ``factor`` multiplies what is drawn: -1 turns the package's sign into another convention, which ``note`` then names.
+    """
+
+    kind: ClassVar[str] = "time"
+    name: str
+    quantities: tuple[str, ...]
+    title: str = ""
+    xi: tuple[float, ...] = ()
+    factor: float = 1.0
+    note: str = ""
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return self.quantities
+
+    def draw(self, solution: Solution) -> Figure:
+        """The figure."""
+        figure, axes = _figure()
+        for name in self.quantities:
+            label = name.split(":", 1)[1].replace(":", " ") if len(self.quantities) > 1 else None
+            if quantity_of(name).axes == ("t",):
+                axes.plot(solution.t, self.factor * solution.series[name], label=label)
+                continue
+            _, link, force = name.split(":")
+            values = solution.section(link).law.on_grid(force, np.array(self.xi))
+            for xi, curve in zip(self.xi, values.T, strict=True):
+                axes.plot(solution.t, self.factor * curve, label=rf"$\xi/l$ = {xi:g}")
+        _finish(figure, axes, solution, self.quantities[0], self.title, self.note, "t [s]")
+        return figure
+
+
+@dataclass(frozen=True)
+class SpanPlot:
+    """A section force along its link at the instant nearest to ``t``."""
+
+    kind: ClassVar[str] = "span"
+    name: str
+    quantity: str
+    t: float
+    title: str = ""
+    factor: float = 1.0
+    note: str = ""
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return (self.quantity,)
+
+    def draw(self, solution: Solution) -> Figure:
+        """The figure."""
+        figure, axes = _figure()
+        i = int(np.argmin(np.abs(solution.t - self.t)))
+        _, link, force = self.quantity.split(":")
+        values = solution.section(link).law.during(slice(i, i + 1)).on_grid(force, solution.xi)
+        axes.plot(solution.xi, self.factor * values[0])
+        title = f"{self.title}, t = {solution.t[i]:.4g} s" if self.title else f"t = {solution.t[i]:.4g} s"
+        _finish(figure, axes, solution, self.quantity, title, self.note, r"$\xi/l$")
+        return figure
+
+
+@dataclass(frozen=True)
+class SectionMaps:
+    """The three section forces of a link as maps of time and xi/l, the peaks marked; a grid finer than the picture is thinned."""
+
+    kind: ClassVar[str] = "maps"
+    name: str
+    link: str
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return tuple(f"section:{self.link}:{force}" for force in FORCES)
+
+    def draw(self, solution: Solution) -> Figure:
+        """The figure."""
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(8.0, 8.4), layout="constrained")
+        instants, ratios = (slice(None, None, 1 + size // _PIXELS) for size in (solution.t.size, solution.xi.size))
+        law, t, xi = solution.section(self.link).law.during(instants), solution.t[instants], solution.xi[ratios]
+        basis = law.basis(xi)
+        for axes, force, name in zip(figure.subplots(3, 1, sharex=True), FORCES, self.needs(), strict=True):
+            values, peak = law.on_grid(force, basis), solution.peak(name)
+            bound = abs(peak.value) or 1.0
+            picture = axes.pcolormesh(t, xi, values.T, cmap="RdBu_r", vmin=-bound, vmax=bound, shading="nearest", rasterized=True)
+            axes.plot(peak.t, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
+            axes.set_title(
+                f"{quantity_of(name).long_name}: peak {peak.value:.4g} {peak.unit} at t = {peak.t:.4g} s, "
+                rf"$\xi/l$ = {peak.xi:.3f}",
+                fontsize=10,
+            )
+            axes.set_ylabel(r"$\xi/l$")
+            figure.colorbar(picture, ax=axes, label=f"{quantity_of(name).long_name} [{peak.unit}]")
+        axes.set_xlabel("t [s]")
+        figure.suptitle(f"{solution.case}: section forces of {self.link}, as the tip's side acts on the base's", fontsize=11)
+        return figure
+
+
+@dataclass(frozen=True)
+class MechanismDrawing:
+    """The mechanism at ``count`` instants, evenly spread over the time of the solution."""
+
+    kind: ClassVar[str] = "drawing"
+    name: str = "mechanism"
+    count: int = 4
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws; the poses of all bodies besides."""
+        return ()
+
+    def draw(self, solution: Solution) -> Figure:
+        """The figure."""
+        from .drawing import draw_mechanism
+
+        return draw_mechanism(solution, self.count)
+
+
+Spec = TimePlot | SpanPlot | SectionMaps | MechanismDrawing
+_FILE = re.compile(r"[A-Za-z0-9_-]+")
+_KINDS: dict[str, type[Spec]] = {spec.kind: spec for spec in (TimePlot, SpanPlot, SectionMaps, MechanismDrawing)}
+
+
+def default_figures(solution: Solution) -> tuple[Spec, ...]:
+    """The usual drawings of whatever a solution holds."""
+    specs: list[Spec] = []
+    groups: dict[tuple[str, str], list[str]] = {}
+    for name in solution.series:
+        group, part, *member = name.split(":")
+        drawn = group in ("motion", "effort", "reaction", "multiplier", "load") and not name.endswith(("_rate", "_acceleration"))
+        if drawn and solution.determined(name) and np.any(solution.series[name]):
+            groups.setdefault((group + ("_moment" if member == ["mz"] else ""), part), []).append(name)
+    for (group, part), names in groups.items():
+        specs.append(TimePlot(f"{group}_{part}", tuple(names), f"{solution.case}: {group.replace('_', ' ')} of {part}"))
+    for link in solution.links_with_sections:
+        if solution.determined(f"section:{link}:bending"):
+            specs.append(SectionMaps(f"section_{link}", link))
+    return (*specs, MechanismDrawing())
+
+
+def dump_specs(specs: Sequence[Spec]) -> str:
+    """Specs as text, for a file."""
+    return json.dumps([{"kind": spec.kind} | dataclasses.asdict(spec) for spec in specs])
+
+
+def parse_specs(text: str) -> tuple[Spec, ...]:
+    """Specs from a file's text; none from an empty one. Raises :class:`StoreError` for what are none."""
+    try:
+        return tuple(_parse(entry) for entry in parsed(text or "[]", [{"kind": str, "name": str}], "figures"))
+    except (ValueError, TypeError, KeyError, RecursionError) as error:
+        raise StoreError(f"the file's attribute 'figures' is damaged: {one_line(error)}") from None
+
+
+def _parse(entry: dict[str, Any]) -> Spec:
+    fields: dict[str, Any] = {
+        key: tuple(value) if isinstance(value, list) else value for key, value in entry.items() if key != "kind"
+    }
+    return _KINDS[entry["kind"]](**fields)
+
+
+def draw(solution: Solution, specs: Sequence[Spec], folder: Path) -> Iterator[tuple[Spec, Path | None]]:
+    """Draw specs, or the usual ones where there are none, into an existing folder as PNG, one by one.
+
+    The path is None where the solution lacks what a spec draws. Raises :class:`DeclarationError` for what is no spec.
+    """
+    chosen = specs or default_figures(solution)
+    for spec in chosen:
+        if not isinstance(spec, Spec):
+            raise DeclarationError(f"expected specs of lagrange_casadi.figures, got {spec!r}")
+        if not _FILE.fullmatch(spec.name) or sum(other.name == spec.name for other in chosen) > 1:
+            raise DeclarationError(f"figure '{spec.name}': names must be letters, digits, underscores and hyphens, each once")
+        _check_parts(solution, spec)
+    for spec in chosen:
+        if not _has(solution, spec):
+            yield spec, None
+            continue
+        path = folder / f"{spec.name}.png"
+        # No program's name and no clock, so that the same solution gives the same bytes.
+        spec.draw(solution).savefig(path, dpi=120, metadata={"Software": None})
+        yield spec, path
+
+
+def _check_parts(solution: Solution, spec: Spec) -> None:
+    """Raise :class:`UnknownNameError` for a quantity of a part that the mechanism does not have."""
+    parts = [part for table in ("bodies", "joints", "loads", "constraints", "rows") for part in solution.description[table]]
+    for name in spec.needs():
+        part = name.partition(":")[2].partition(":")[0].removesuffix("_rate").removesuffix("_acceleration")
+        if part not in parts:
+            raise UnknownNameError(f"part in figure '{spec.name}'", part, parts)
+
+
+def _has(solution: Solution, spec: Spec) -> bool:
+    if isinstance(spec, MechanismDrawing):
+        return all(f"pose:{body}:x" in solution.series for body in solution.description["bodies"])
+    names = set(solution.names())
+    return all(name in names for name in spec.needs())
+
+
+def _figure() -> tuple[Figure, Any]:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.0, 4.2), layout="constrained")
+    return figure, figure.subplots()
+
+
+def _finish(figure: Figure, axes: Any, solution: Solution, name: str, title: str, note: str, along: str) -> None:
+    axes.set_xlabel(along)
+    words = quantity_of(name).long_name.partition(":")[0]
+    axes.set_ylabel(f"{words.partition(',')[0] if len(axes.get_lines()) > 1 else words} [{solution.unit(name)}]")
+    axes.set_title(title or name, fontsize=11)
+    axes.axhline(0.0, color="0.6", linewidth=0.8, zorder=0)
+    axes.grid(True, color="0.9")
+    axes.margins(x=0.0)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(frameon=False)
+    if note:
+        figure.supxlabel(note, fontsize=8, color="0.35")

@@ -1,0 +1,264 @@
+"""The order in which loops can be solved: blocks of equations, each as small as possible, and the count of freedoms.
+
+Which coordinate stands in which equation is a sparse matrix. Its Dulmage-Mendelsohn decomposition gives the blocks: a maximum
+matching and strongly connected components (A. Pothen and C.-J. Fan, *Computing the block triangular form of a sparse matrix*,
+ACM TOMS 16, 1990). CasADi has that of CSparse.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..declare.density import Array
+from ..errors import MobilityError
+from .loops import ClosedForm, solve_loop
+from .multibody import Closure, Coordinate, Multibody, column
+from .sampling import drawn
+
+_STEPS = 200
+_CLOSED = 1e-11
+_DEPENDENT = 1e-9
+_NO_SLOPE = 1e-14
+"""A coordinate's slopes that are smaller are rounding, though they be all that it has: a guide that is there twice."""
+
+_ABSENT = 1e-13
+"""Of the largest slope of an equation: what stands in it by rounding alone, as a line that a link slides along may."""
+
+
+@dataclass(frozen=True, eq=False)
+class Equation:
+    """One scalar equation of a closure, with its total time derivatives, in the undriven coordinates that are ``present``."""
+
+    closure: Closure
+    row: int
+    present: frozenset[Coordinate]
+    gap: Any
+    gap_rate: Any
+    gap_acceleration: Any
+
+    @property
+    def aligns(self) -> bool:
+        """Whether it holds the direction of a joint's child: by its sine, which a half turn has too."""
+        joint = self.closure.joint
+        return joint is not None and joint.holds_direction and self.row == self.closure.gap.numel() - 1
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Equations solved together for ``unknown``; more equations than unknowns where the mechanism is over-constrained."""
+
+    equations: tuple[Equation, ...]
+    unknown: tuple[Coordinate, ...]
+    form: ClosedForm | None
+
+    @property
+    def gap(self) -> Any:
+        """The equations, one column."""
+        return column(equation.gap for equation in self.equations)
+
+    @property
+    def gap_rate(self) -> Any:
+        """Their total time derivative."""
+        return column(equation.gap_rate for equation in self.equations)
+
+    @property
+    def gap_acceleration(self) -> Any:
+        """Their second one."""
+        return column(equation.gap_acceleration for equation in self.equations)
+
+    @property
+    def multipliers(self) -> Any:
+        """The symbols of their multipliers."""
+        return column(equation.closure.multipliers[equation.row] for equation in self.equations)
+
+    @property
+    def closures(self) -> tuple[Closure, ...]:
+        """The closures that they are of."""
+        return tuple(dict.fromkeys(equation.closure for equation in self.equations))
+
+    @property
+    def name(self) -> str:
+        """The closure that stands for the block where one name is wanted: its last."""
+        return self.closures[-1].name
+
+    @property
+    def joints(self) -> str:
+        """The joints and constraints that close the loops, for messages."""
+        return ", ".join(f"{'joint' if closure.joint else 'constraint'} '{closure.name}'" for closure in self.closures)
+
+    @property
+    def jacobian(self) -> Any:
+        """Phi_z, in symbols: how Phi' goes with the rates."""
+        return ca.jacobian(self.gap_rate, column(c.rate for c in self.unknown))
+
+
+Part = tuple[list[Equation], list[Coordinate]]
+"""Equations, and the coordinates that they are solved for."""
+
+
+def plan(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block, ...]:
+    """The blocks in the order of solution; among those that can be solved next, first the one that fewest joints close.
+
+    Where the equations do not match the unknowns, the rank of their Jacobian decides, at the assembled start: equations
+    that repeat what others say are kept, in blocks with more equations than unknowns. ``start`` holds numbers at the start:
+    ``posture`` (by coordinate), ``inputs`` (symbols) and ``values``.
+
+    Raises :class:`MobilityError`, with the count of freedoms, where the drives do not match them.
+    """
+    unknown = [c for c in multibody.coordinates if not c.driven]
+    equations = _equations(multibody, unknown)
+    parts = _decomposed(equations, unknown)
+    if any(len(rows) != len(columns) for rows, columns in parts):
+        _require_freedom(multibody, len(equations), parts, start)
+        parts = [piece for part in parts for piece in _pieces(part)]
+    counted = column(closure.gap for closure in multibody.closures if closure.joint is None)
+    ordered = _in_order(parts, multibody.closures)
+    return tuple(Block(tuple(rows), tuple(columns), _form(multibody, rows, columns, counted)) for rows, columns in ordered)
+
+
+def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equation]:
+    """All scalar equations, without the coordinates that stand in them by rounding alone."""
+    closures = multibody.closures
+    motion = [column(getattr(closure, name) for closure in closures) for name in ("gap", "gap_rate", "gap_acceleration")]
+    slopes = ca.jacobian(motion[1], column(c.rate for c in unknown))
+    entries = drawn(ca.vertcat(ca.SX(0, 1), *slopes.nonzeros()), multibody.coordinates)
+    sizes: list[dict[Coordinate, float]] = [{} for _ in range(slopes.size1())]
+    for row, k, values in zip(*slopes.sparsity().get_triplet(), np.abs(entries), strict=True):
+        sizes[row][unknown[k]] = float(np.where(np.isnan(values), np.inf, values).max())
+    found = []
+    for k, (closure, row) in enumerate((own, row) for own in closures for row in range(own.gap.numel())):
+        least = _ABSENT * max(sizes[k].values(), default=0.0)
+        present = frozenset(c for c, size in sizes[k].items() if size > least)
+        parts = ca.vertcat(*(expressions[k] for expressions in motion))
+        written = {symbol.element_hash() for symbol in ca.symvar(parts)}
+        absent = [c for c in unknown if c not in present and not written.isdisjoint(c.keys)]
+        if absent:
+            symbols = column(ca.vertcat(c.variables, c.rate, c.acceleration) for c in absent)
+            parts = ca.substitute(parts, symbols, column([1, 0, 0, 0, 0] if c.kind == "angle" else [0, 0, 0] for c in absent))
+        found.append(Equation(closure, row, present, *ca.vertsplit(parts)))
+    return found
+
+
+def _decomposed(equations: Sequence[Equation], unknown: Sequence[Coordinate]) -> list[Part]:
+    """Parts that can be solved one after another: square ones, and what has too many equations, or too many unknowns.
+
+    What has neither an equation nor an unknown to go with is a part as well.
+    """
+    number = {c: k for k, c in enumerate(unknown)}
+    entries = [(row, number[c]) for row, equation in enumerate(equations) for c in equation.present]
+    rows, columns = zip(*entries, strict=True) if entries else ((), ())
+    pattern = ca.Sparsity.triplet(len(equations), len(unknown), rows, columns)
+    if not entries:
+        return [([equation], []) for equation in equations] + [([], [c]) for c in unknown]
+    count, row_order, column_order, row_cuts, column_cuts, *_ = pattern.btf()
+    return [
+        (
+            [equations[k] for k in sorted(row_order[row_cuts[i] : row_cuts[i + 1]])],
+            [unknown[k] for k in sorted(column_order[column_cuts[i] : column_cuts[i + 1]])],
+        )
+        for i in range(count)
+    ]
+
+
+def _pieces(part: Part) -> list[Part]:
+    """A part in pieces that share neither a coordinate nor a closure.
+
+    A piece with too many equations is not taken apart further: what is left of a parallelogram without one of its cranks
+    is singular when its links lie on one line, and the whole is not.
+    """
+    rows, columns = part
+    if len(rows) == len(columns):
+        return [part]
+    groups: list[tuple[list[Equation], set[Any]]] = []
+    for equation in rows:
+        shared = {equation.closure, *equation.present.intersection(columns)}
+        joined = [group for group in groups if group[1] & shared]
+        groups = [group for group in groups if group not in joined]
+        groups.append(([e for group in joined for e in group[0]] + [equation], shared.union(*(group[1] for group in joined))))
+    return [(equations, [c for c in columns if c in shared]) for equations, shared in groups]
+
+
+def _in_order(parts: Sequence[Part], closures: Sequence[Closure]) -> list[Part]:
+    """The parts in an order in which each stands on the ones before; next the one that fewest joints close, then as declared."""
+    owner = {c: i for i, (_, columns) in enumerate(parts) for c in columns}
+    needs = [{owner[c] for equation in rows for c in equation.present} - {i} for i, (rows, _) in enumerate(parts)]
+    declared = {closure: k for k, closure in enumerate(closures)}
+    ranks = [sorted({declared[equation.closure] for equation in rows}) for rows, _ in parts]
+    followers: list[list[int]] = [[] for _ in parts]
+    for i, earlier in enumerate(needs):
+        for j in earlier:
+            followers[j].append(i)
+    ready = [(len(rank), rank, i) for i, rank in enumerate(ranks) if not needs[i]]
+    heapq.heapify(ready)
+    found = []
+    while ready:
+        *_, i = heapq.heappop(ready)
+        found.append(parts[i])
+        for j in followers[i]:
+            needs[j].discard(i)
+            if not needs[j]:
+                heapq.heappush(ready, (len(ranks[j]), ranks[j], j))
+    return found
+
+
+def _form(multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coordinate], counted: Any) -> ClosedForm | None:
+    """The closed form of a part, where there is one."""
+    form = solve_loop(column(equation.gap for equation in rows), unknown, multibody.coordinates)
+    # An angle whose turns some constraint counts must not come back from its cosine and sine.
+    if form is not None and form.branch is not None and any(ca.depends_on(counted, c.value) for c in unknown):
+        return None
+    return form
+
+
+def _require_freedom(multibody: Multibody, equations: int, parts: Sequence[Part], start: Mapping[str, Any]) -> None:
+    """Raise :class:`MobilityError` unless the drives are as many as the freedoms, and no part is loose."""
+    driven = sum(c.driven for c in multibody.coordinates)
+    ranks, how = _ranks(multibody, start), "by the rank of its loops at the start"
+    if ranks is None:
+        freedom = len(multibody.coordinates) - equations
+        how = "counted by joints; it could not be assembled to count by rank"
+    else:
+        freedom = len(multibody.coordinates) - ranks[0]
+        if freedom == driven == len(multibody.coordinates) - ranks[1] and all(len(rows) >= len(columns) for rows, columns in parts):
+            return
+    movable = [name for name, joint in multibody.mechanism.joints.items() if joint.coordinate]
+    advice = f"drive {freedom} of the joints {', '.join(movable)}" if freedom > 0 else "take a joint, a constraint or a link away"
+    if freedom == driven:
+        advice = "but these over-determine some loops and leave others loose; drive other joints"
+    raise MobilityError(
+        f"mechanism '{multibody.mechanism.name}' has {freedom} degree(s) of freedom ({how}) and {driven} drive(s); {advice}"
+    )
+
+
+def _ranks(multibody: Multibody, start: Mapping[str, Any]) -> tuple[int, int] | None:
+    """The ranks of the loops' Jacobian, by all coordinates and by the undriven ones, in a posture near the rough one.
+
+    Drives are free to give way in it, for there may be too many. None where no posture is found.
+    """
+    coordinates = multibody.coordinates
+    free = ca.SX.sym("u", len(coordinates))
+    symbols = column(c.value for c in coordinates)
+    values = column(c.placed(symbols, free) for c in coordinates)
+    gaps = ca.substitute(column(c.gap for c in multibody.closures), column(c.variables for c in coordinates), values)
+    f = ca.Function("gaps", [free, *start["inputs"]], [gaps, ca.jacobian(gaps, free)])
+    u = np.array([start["posture"].get(c, 0.0) for c in coordinates])
+    for _ in range(_STEPS):
+        gap, slope = (x.full() for x in f(u, *start["values"]))
+        step = np.linalg.lstsq(slope, -gap.ravel(), rcond=1e-10)[0] if u.size else u
+        u = u + step * min(1.0, 0.5 / (np.max(np.abs(step), initial=0.0) + 1e-300))
+        if np.max(np.abs(gap), initial=0.0) < _CLOSED:
+            undriven = [k for k, c in enumerate(coordinates) if not c.driven]
+            return _rank(slope), _rank(slope[:, undriven])
+    return None
+
+
+def _rank(slope: Array) -> int:
+    lengths = np.linalg.norm(slope, axis=0)
+    scaled = slope / np.where(lengths > _NO_SLOPE, lengths, 1.0)
+    return int(np.linalg.matrix_rank(scaled, tol=_DEPENDENT)) if scaled.size else 0

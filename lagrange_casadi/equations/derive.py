@@ -1,0 +1,194 @@
+"""From a scene to its graphs: kinematics, Lagrange terms and internal forces put together, and nothing that is not wanted."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import casadi as ca
+
+from ..declare.mechanism import Mechanism
+from ..declare.motion import motion_function
+from ..declare.scene import Scene, Wanted, told_parameters
+from ..errors import AssemblyError, MobilityError
+from ..system import cache
+from . import kinematics
+from .assembly import assemble
+from .fingerprint import fingerprint
+from .kinematics import Start
+from .mobility import internal_forces, needed_reactions
+from .multibody import Multibody, column
+from .reciprocals import share_reciprocals
+from .scene_graph import SceneGraph
+from .tree import span
+from .turns import count_turns
+
+
+def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool = False) -> SceneGraph:
+    """Derive the graphs of a scene, for its own wanted outputs or for others; with ``iterate``, without closed forms of loops.
+
+    A graph is derived once: it is kept while the process lasts, and in the cache folder by the content of the declaration.
+
+    Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the loops cannot be solved.
+    """
+    found = _kept(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted), iterate)
+    if isinstance(found, SceneGraph):
+        return found
+    raise type(found)(str(found))
+
+
+def assembled(scene: Scene, values: Mapping[str, float], wanted: Sequence[str] | None = None, *, iterate: bool = False) -> Scene:
+    """The scene; or where its loops cannot be assembled with its own parameters, the same assembled with ``values`` of all.
+
+    Raises what :func:`derive` does, where they can be assembled with neither.
+    """
+    try:
+        derive(scene, wanted, iterate=iterate)
+    except (AssemblyError, MobilityError):
+        if values == scene.mechanism.values(scene.assembly):
+            raise
+        scene = _at(scene, tuple(values.items()))
+        derive(scene, wanted, iterate=iterate)
+    return scene
+
+
+@functools.lru_cache(maxsize=32)
+def _at(scene: Scene, values: tuple[tuple[str, float], ...]) -> Scene:
+    return replace(scene, assembly=dict(values))
+
+
+@functools.lru_cache(maxsize=32)
+def _kept(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph | AssemblyError | MobilityError:
+    """The graph from the cache, or derived and kept there; or why there is none."""
+    key = fingerprint(scene, want)
+    key = f"{key}-iterated" if key and iterate else key
+    text = cache.read(f"{key}.graph") if key else None
+    if text is not None:
+        return SceneGraph.loads(text, scene, want)
+    try:
+        graph = _derive(scene, want, iterate)
+    except AssemblyError as error:
+        return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
+    except MobilityError as error:
+        return MobilityError(str(error))
+    if key:
+        cache.write(f"{key}.graph", graph.dumps())
+    return graph
+
+
+def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
+    mechanism = scene.mechanism
+    p = mechanism.symbols
+    tree = span(mechanism, scene.motion)
+    body = assemble(mechanism, tree, scene.motion, needed_reactions(mechanism, want.reactions, want.sections))
+    driven = tuple(c.joint for c in body.coordinates if c.driven)
+    motion = motion_function({name: scene.motion[name] for name in driven}, p)
+    values = list(mechanism.values(scene.assembly).values())
+    first = [float(x) for x in ca.DM(motion(scene.t[0], values)[0]).full().ravel()]
+    start = Start(float(scene.t[0]), first, values)
+    solved = kinematics.solve(body, scene.posture, start, iterate=iterate)
+    times = (float(scene.t[0]), float(scene.t[1]))
+    solved, swings = count_turns(body, solved, motion, times, start, _seeing(body, want))
+
+    columns = {f"_closure:{name}": closure for name, closure in solved.closures.items()}
+    columns |= {f"_gap:{name}": gap for name, gap in solved.gaps.items()}
+    columns |= {f"_misfit:{name}": misfit for name, misfit in solved.misfits.items()}
+    for graph in body.rows:
+        columns |= {f"_row:{graph.row.name}": graph.residual, f"_rowsize:{graph.row.name}": graph.size}
+    columns |= {f"_turned:{name}": swing for name, swing in swings.items()}
+    wrapped: dict[str, dict[str, int]] = {}
+    if want.motion:
+        motions = _motion_columns(body, solved, driven)
+        angles = [c for c in body.coordinates if c.kind == "angle"]
+        loose = {f"pose:{c.body}:angle": c.value for c in angles if c.joint in solved.loose}
+        counted = {f"_turns:{c.joint}": c.value for c in angles if c.joint not in solved.loose}
+        wrapped = {name: _turns(value, loose | counted) for name, value in motions.items() if _is_angle(mechanism, name)}
+        wrapped = {name: turns for name, turns in wrapped.items() if not loose.keys().isdisjoint(turns)}
+        whole = {name: ca.floor(value * (1 / math.tau)) for name, value in counted.items()}
+        within = column(value - math.tau * whole[name] for name, value in counted.items())
+        motions |= {name: ca.substitute(ca.SX(motions[name]), column(counted.values()), within) for name in wrapped}
+        columns |= {name: value for name, value in whole.items() if any(name in turns for turns in wrapped.values())} | motions
+    for part in reversed(body.applied):
+        if part.source in want.loads:
+            columns |= {f"load:{part.source}:{member}": getattr(part, member) for member in ("fx", "fy", "mz")}
+    placed = solved.evaluate(ca.vertcat(ca.SX(0, 1), *columns.values()))
+    columns = dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True))
+    inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, p]
+    if want.forces:
+        forces = internal_forces(
+            body,
+            solved,
+            effort=want.effort,
+            reactions=want.reactions,
+            multipliers=want.multipliers,
+            sections=want.sections,
+        )
+        columns |= _settled(forces.columns, forces.free)
+    out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
+    names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
+    instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
+    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), wrapped)
+
+
+def _settled(columns: dict[str, Any], free: Any) -> dict[str, Any]:
+    """Forces with nothing for what equilibrium leaves open, and by ``_open:NAME`` how much a force changes with that.
+
+    What does not change with it by structure is determined. Any other force is determined where that is zero, for parameters and
+    at instants that are looked at then.
+    """
+    if not free.numel():
+        return columns
+    forces = column(columns.values())
+    slopes = ca.jacobian(forces, free)
+    slopes, forces = (ca.substitute(part, free, ca.SX.zeros(free.numel())) for part in (slopes, forces))
+    doubted = ((name, slopes[k, :]) for k, name in enumerate(columns) if slopes[k, :].nnz() and not name.startswith("_"))
+    sizes = {f"_open:{name}": ca.sum2(ca.fabs(slope)) for name, slope in doubted}
+    return dict(zip(columns, ca.vertsplit(forces), strict=True)) | sizes
+
+
+def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
+    """The expressions of loads, rows and multipliers that are evaluated, by what they are of."""
+    parts = [part for part in (*body.applied, *body.held) if want.forces or part.source in want.loads]
+    found = {f"row '{graph.row.name}'": ca.vertcat(graph.residual, graph.size) for graph in body.rows}
+    for part in parts:
+        name = f"{'load' if part.source in body.mechanism.loads else 'row'} '{part.source}'"
+        found[name] = ca.vertcat(found.get(name, ca.SX(0, 1)), part.fx, part.fy, part.mz)
+    return found
+
+
+def _motion_columns(body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]) -> dict[str, Any]:
+    columns: dict[str, Any] = {}
+    for name, joint in body.mechanism.joints.items():
+        if name in driven:
+            i = driven.index(name)
+            motion = (solved.driven[i], solved.driven_rate[i], solved.driven_acceleration[i])
+        elif joint.coordinate is not None:
+            motion = body.joint_motion(joint)
+        else:
+            continue
+        columns |= dict(zip((f"motion:{name}", f"motion:{name}_rate", f"motion:{name}_acceleration"), motion, strict=True))
+    for part in body.mechanism.moving:
+        frame = body.frames[part.name]
+        x, y = frame.place_of(0.0, 0.0)
+        columns |= {f"pose:{part.name}:x": x, f"pose:{part.name}:y": y}
+        if part.oriented:
+            columns[f"pose:{part.name}:angle"] = frame.rotation.angle
+    return columns
+
+
+def _is_angle(mechanism: Mechanism, column: str) -> bool:
+    group, part, *_ = column.split(":")
+    if group == "pose":
+        return column.endswith(":angle")
+    return part in mechanism.joints and mechanism.joints[part].coordinate == "angle"
+
+
+def _turns(angle: Any, parts: dict[str, Any]) -> dict[str, int]:
+    """How often each coordinate's angle goes into another angle: once, or less once."""
+    if not parts:
+        return {}
+    slopes = ca.evalf(ca.densify(ca.jacobian(ca.SX(angle), ca.vertcat(*parts.values())))).full().ravel()
+    return {name: int(slope) for name, slope in zip(parts, slopes, strict=True) if slope}

@@ -1,0 +1,62 @@
+"""What is left of the equations of loops once they are solved, and beside what length a gap is large."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi as ca
+
+from ..declare.mechanism import Mechanism
+from ..geometry.planar import misalignment
+from .blocks import Block, Equation
+from .multibody import Multibody
+
+
+def left(multibody: Multibody, block: Block, length: Any) -> Any:
+    """What is left of a block's equations, in one number [m]: gaps as they are, any other over its slopes, times a ``length``."""
+    total = ca.SX(0)
+    for equation in block.equations:
+        if equation.closure.joint is None:
+            total += length * equation.gap / _slope(multibody, equation, length)
+        elif equation.aligns:
+            total += length * (ca.fabs(equation.gap) + _turned(multibody, equation))
+        else:
+            total += equation.gap
+    return total
+
+
+def misfit(multibody: Multibody, block: Block) -> Any:
+    """The largest gap of a block, over the length of all links; and a direction is missed by a half turn, which has no sine."""
+    found = ca.mmax(ca.fabs(block.gap)) / reach(multibody.mechanism)
+    for equation in block.equations:
+        if equation.aligns:
+            found = ca.fmax(found, _turned(multibody, equation))
+    return found
+
+
+def reach(mechanism: Mechanism) -> Any:
+    """All links end to end [m], or one metre where there is none, as an expression in parameters."""
+    return sum((ca.SX(link.length) for link in mechanism.links.values()), ca.SX(0)) if mechanism.links else ca.SX(1)
+
+
+def extent(mechanism: Mechanism) -> Any:
+    """The links end to end, and how far from the origin they are joined to the ground [m]: a gap is small or large beside it."""
+    points = (point for joint in mechanism.joints.values() for point in (joint.parent, joint.child))
+    places = [ca.fabs(ca.SX(place)) for point in points if point.body is mechanism.ground for place in (point.x, point.y)]
+    return reach(mechanism) + (ca.mmax(ca.vertcat(*places)) if places else 0)
+
+
+def _turned(multibody: Multibody, equation: Equation) -> Any:
+    """One less the cosine of what a direction is off."""
+    joint = equation.closure.joint
+    assert joint is not None
+    return 1 - misalignment(joint, *(multibody.frames[body.name] for body in joint.bodies)).c
+
+
+def _slope(multibody: Multibody, equation: Equation, length: Any) -> Any:
+    """How much an equation changes with all coordinates: angles by a radian or their own size, slides by a length or theirs."""
+    total = ca.SX(0)
+    for coordinate in multibody.coordinates:
+        unit = ca.SX(1) if coordinate.kind == "angle" else length
+        total += ca.fabs(ca.jacobian(equation.gap_rate, coordinate.rate)) * (unit + ca.fabs(coordinate.value))
+    return total

@@ -1,0 +1,370 @@
+"""Loops: the undriven coordinates, their rates and accelerations, from the driven ones.
+
+The loop equations Phi = 0 are solved block by block (:mod:`.blocks`). A dyad is solved in closed form (:mod:`.loops`); any other
+block by Newton's method, iterated by whoever evaluates the graphs, from the solution of the instant before. Rates and
+accelerations follow from the linear systems Phi_z z' = -Phi_d d' and Phi_z z'' = -(Phi_d d'' + what the rates leave), whose
+matrix, transposed, gives the multipliers too.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from ..declare.density import Array
+from ..errors import AssemblyError, DeclarationError
+from .blocks import Block, plan
+from .gaps import left, misfit, reach
+from .linear import LinearSystem
+from .loops import ClosedForm
+from .multibody import Coordinate, Multibody, column, joint_coordinate
+from .substitution import Expressions, Numbers
+
+_LARGEST_STEP = 0.3
+"""Of an angle [rad], or of a slide over the length of all links: a full step from afar may land on another branch."""
+
+NEAR = 0.3
+"""Sines of the transmission angle below which a loop may pass a dead centre."""
+
+
+@dataclass(frozen=True, eq=False)
+class NewtonLoop:
+    """What is left to iterate: ``step(z, t, d, p) -> (correction, relative size)`` and the guess for the first instant.
+
+    ``names`` are those of its blocks that have no closed form, and are judged by a volume; ``joints`` says what closes all of its
+    blocks, for messages. ``turning`` tells which unknowns are angles that matter up to whole turns only.
+    """
+
+    step: Any
+    guess: tuple[float, ...]
+    turning: tuple[bool, ...]
+    names: tuple[str, ...]
+    joints: str
+
+
+@dataclass(frozen=True)
+class Start:
+    """Numbers at the start of the motion: time, driven coordinates, parameters."""
+
+    t: float
+    driven: Sequence[float]
+    parameters: Sequence[float]
+
+
+@dataclass(frozen=True, eq=False)
+class Kinematics:
+    """The whole motion as graphs over time, the driven coordinates d, d', d'', the iterated unknowns z and the parameters.
+
+    ``found`` has the expression of every variable, rate and acceleration of a :class:`.Multibody`; ``systems`` are the factorized
+    Phi_z of ``blocks``. ``closures`` say by joint how far each loop is from a dead centre, ``gaps`` [m] what is
+    left of the equations of a block, ``misfits`` how far the equations that are too many are from holding. ``loose`` names the
+    joints whose angles are known up to whole turns.
+    """
+
+    driven: Any
+    driven_rate: Any
+    driven_acceleration: Any
+    iterated: Any
+    found: Expressions
+    blocks: tuple[Block, ...]
+    systems: tuple[LinearSystem, ...]
+    closures: dict[str, Any]
+    gaps: dict[str, Any]
+    misfits: dict[str, Any]
+    newton: NewtonLoop | None
+    loose: frozenset[str]
+
+    def evaluate(self, expression: Any) -> Any:
+        """An expression in the multibody's symbols, as one in t, d, d', d'', z and the parameters."""
+        return self.found.put_into(expression)
+
+
+def solve(multibody: Multibody, posture: Mapping[str, float], start: Start, *, iterate: bool = False) -> Kinematics:
+    """Close every loop, on the branch that is nearest to ``posture`` at the start of the motion.
+
+    ``posture`` gives rough directions of links [rad] and places of slides [m], by the link's or the joint's name. With ``iterate``
+    dyads are left to Newton's method too; their closed form gives the guess.
+    Raises :class:`MobilityError` where drives and degrees of freedom do not match, :class:`DeclarationError` for a posture that
+    leaves the branch open, :class:`AssemblyError` where the mechanism cannot be assembled at the start.
+    """
+    solver = _Solver(multibody, dict(posture), start, iterate)
+    blocks = plan(multibody, solver.beginning())
+    for block in blocks:
+        solver.close(block)
+    return solver.finish(blocks)
+
+
+class _Solver:
+    """Carries the expressions known so far, and their numbers at the start, while the blocks are closed in order."""
+
+    def __init__(self, multibody: Multibody, posture: dict[str, float], start: Start, iterate: bool) -> None:
+        self.iterate = iterate
+        self.multibody = multibody
+        self.posture = posture
+        self.start = start
+        driven = [c for c in multibody.coordinates if c.driven]
+        self.d, self.dd, self.ddd = (ca.SX.sym(name, len(driven)) for name in ("d", "d_rate", "d_acceleration"))
+        self.iterated: list[Any] = []
+        self.guess: list[float] = []
+        self.scales: list[Any] = []
+        self.turning: list[bool] = []
+        self.residuals: list[Block] = []
+        self.closures: dict[str, tuple[Any, bool]] = {}
+        self.dyads: dict[Block, Any] = {}
+        self.loose: set[str] = set()
+        self.length = reach(multibody.mechanism)
+        self.found = Expressions()
+        self.numbers = Numbers()
+        self.numbers.note(multibody.mechanism.time, [start.t])
+        self.numbers.note(multibody.mechanism.symbols, start.parameters)
+        self.numbers.note(self.d, start.driven)
+        self.known: dict[Coordinate, Any] = {}
+        values = column(c.value for c in driven)
+        for coordinate in driven:
+            self._know(coordinate, coordinate.placed(values, self.d))
+            self.numbers.note(coordinate.variables, self.numbers.of(self.known[coordinate]))
+
+    def beginning(self) -> dict[str, Any]:
+        """What the count of freedoms needs: the rough posture, drives included, and the inputs with their values at the start."""
+        mechanism = self.multibody.mechanism
+        told = {c: self.posture[_posture_name(c)] for c in self.multibody.coordinates if _posture_name(c) in self.posture}
+        told |= dict(zip(self.known, self.start.driven, strict=True))
+        return {
+            "posture": told,
+            "inputs": [mechanism.time, mechanism.symbols],
+            "values": [self.start.t, self.start.parameters],
+        }
+
+    def _know(self, coordinate: Coordinate, value: Any) -> None:
+        self.known[coordinate] = value
+        self.found.note(coordinate.variables, value)
+
+    def close(self, block: Block) -> None:
+        """Solve a block for its variables."""
+        form = block.form
+        if form is None:
+            if block.unknown:
+                self._iterate(block, self._told(block))
+        elif form.branch is None:
+            for coordinate, value in zip(block.unknown, form.variables, strict=True):
+                self.numbers.note(coordinate.variables, self.numbers.of(value))
+                self._know(coordinate, self.found.put_into(value))
+            if form.closure is not None:
+                self._judge(block, self.found.put_into(form.closure))
+        else:
+            closure = self.found.put_into(form.closure)
+            sign, values = self._branch(block, form, form.branch)
+            if self.iterate:
+                self.dyads[block] = closure
+                self._iterate(block, _numbers(block.unknown, values))
+                return
+            self.numbers.note(column(c.variables for c in block.unknown), values)
+            for coordinate, value in zip(block.unknown, form.variables, strict=True):
+                self._know(coordinate, self.found.put_into(ca.substitute(value, form.branch, ca.SX(sign))))
+            self.loose |= {c.joint for c in block.unknown if c.kind == "angle"}
+            self._judge(block, closure)
+
+    def _judge(self, block: Block, closure: Any) -> None:
+        """Note how far a block is from a dead centre: of blocks that one joint closes, the one that is nearest."""
+        # What iterates has the sine for its measure, a closed form its square.
+        sine = block.form is None
+        before = self.closures.get(block.name)
+        if before is not None:
+            both = (before, (closure, sine))
+            sine = sine or before[1]
+            closure = ca.fmin(*(ca.sqrt(value) if sine and not is_sine else value for value, is_sine in both))
+        self.closures[block.name] = closure, sine
+
+    def _branch(self, block: Block, form: ClosedForm, branch: Any) -> tuple[int, list[float]]:
+        """The sign of the branch that is nearest to the posture, and the variables on it at the start."""
+        (closure,) = self.numbers.of(form.closure)
+        if not closure > 0.0:
+            what = "is at a dead centre" if closure == 0.0 else "cannot be closed"
+            raise AssemblyError(f"the loop closed by {block.joints} {what} at the start of the motion{self._where()}")
+        variables = column(form.variables)
+        values = {sign: self.numbers.of(ca.substitute(variables, branch, ca.SX(sign))) for sign in (1, -1)}
+        distance = {sign: self._distance(block, found) for sign, found in values.items()}
+        if abs(distance[1] - distance[-1]) <= 1e-6 * (1.0 + distance[1]):
+            choices = " or ".join(_describe(block.unknown, found) for found in values.values())
+            raise DeclarationError(
+                f"the loop closed by {block.joints} can be assembled in two ways at the start of the motion: {choices}; "
+                f"say which by posture={{'{_posture_name(block.unknown[0])}': ...}}"
+            )
+        nearest = min(distance, key=lambda sign: distance[sign])
+        return nearest, values[nearest]
+
+    def _distance(self, block: Block, values: Sequence[float]) -> float:
+        """How far a solution is from the posture, by all that the posture says of what the block places."""
+        (size,) = self.numbers.of(self.length)
+        total, placed = 0.0, {*self.known, *block.unknown}
+        self.numbers.note(column(c.variables for c in block.unknown), values)
+        for name, (measured, of) in self._told_of.items():
+            if of & set(block.unknown) and of <= placed:
+                gap = self.numbers.of(measured)[0] - self.posture[name]
+                total += abs(math.remainder(gap, 2.0 * math.pi)) if name in self.multibody.frames else abs(gap) / size
+        return total
+
+    @cached_property
+    def _told_of(self) -> dict[str, tuple[Any, set[Coordinate]]]:
+        """What the posture tells of, as expressions, and the coordinates that these are of."""
+        owner = {key: c for c in self.multibody.coordinates for key in c.keys}
+        told: dict[str, tuple[Any, set[Coordinate]]] = {}
+        for name in self.posture:
+            if name in self.multibody.frames:
+                turn = self.multibody.frames[name].rotation
+                measured = ca.SX(ca.atan2(turn.s, turn.c))
+            else:
+                joint = self.multibody.mechanism.joints[name]
+                measured = ca.SX(joint_coordinate(joint, self.multibody.frames, self.multibody.coordinates))
+            of = (owner.get(symbol.element_hash()) for symbol in ca.symvar(measured))
+            told[name] = measured, {c for c in of if c is not None}
+        return told
+
+    def _told(self, block: Block) -> dict[Coordinate, float]:
+        """What the posture says of a block that has no closed form."""
+        missing = [_posture_name(c) for c in block.unknown if _posture_name(c) not in self.posture]
+        if missing:
+            raise DeclarationError(
+                f"the loops closed by {block.joints} have no closed form; give a rough posture of {', '.join(missing)} too"
+            )
+        return {c: self.posture[_posture_name(c)] for c in block.unknown}
+
+    def _iterate(self, block: Block, guess: Mapping[Coordinate, float]) -> None:
+        for coordinate in block.unknown:
+            symbol = ca.SX.sym(f"z_{coordinate.joint}")
+            self._know(coordinate, coordinate.placed(coordinate.value, symbol))
+            self.iterated.append(symbol)
+            self.guess.append(guess[coordinate])
+            self.scales.append(1 if coordinate.kind == "angle" else self.length)
+            counted = any(ca.depends_on(closure.gap, coordinate.value) for closure in self.multibody.closures)
+            self.turning.append(coordinate.kind == "angle" and not counted)
+            if self.turning[-1]:
+                self.loose.add(coordinate.joint)
+        self.residuals.append(block)
+        self._settle()
+
+    def _settle(self) -> None:
+        """Iterate the guess at the start of the motion, so that every later evaluation begins on this branch."""
+        loop = self.newton()
+        assert loop is not None
+        for _ in range(100):
+            correction, size = loop.step(self.guess, self.start.t, self.start.driven, self.start.parameters)
+            self.guess = [float(z) for z in (ca.DM(self.guess) + correction).full().ravel()]
+            if float(size) < 1e-9:
+                self.numbers.note(column(self.iterated), self.guess)
+                for coordinate in (c for block in self.residuals for c in block.unknown):
+                    self.numbers.note(coordinate.variables, self.numbers.of(self.known[coordinate]))
+                return
+        raise AssemblyError(
+            f"the loops closed by {loop.joints} cannot be assembled from the given posture at the start of the motion"
+            f"{self._where()}"
+        )
+
+    def _where(self) -> str:
+        driven = [c for c in self.multibody.coordinates if c.driven]
+        return where((c.joint, c.kind, v) for c, v in zip(driven, self.start.driven, strict=True))
+
+    def finish(self, blocks: tuple[Block, ...]) -> Kinematics:
+        """Rates and accelerations, block by block, and the substitution of everything."""
+        body, found = self.multibody, self.found
+        driven = column(c.rate for c in body.coordinates if c.driven), column(c.acceleration for c in body.coordinates if c.driven)
+        found.note(ca.vertcat(*driven), ca.vertcat(self.dd, self.ddd))
+        systems: list[LinearSystem] = []
+        gaps: dict[str, Any] = {}
+        misfits: dict[str, Any] = {}
+        for block in blocks:
+            rates, accelerations = column(c.rate for c in block.unknown), column(c.acceleration for c in block.unknown)
+            still = ca.SX.zeros(len(block.unknown))
+            system = LinearSystem.of(found.put_into(block.jacobian))
+            found.note(rates, system.solve(-found.put_into(ca.substitute(block.gap_rate, rates, still))))
+            found.note(accelerations, system.solve(-found.put_into(ca.substitute(block.gap_acceleration, accelerations, still))))
+            systems.append(system)
+            if block in self.residuals:
+                side = math.copysign(1.0, self.numbers.of(system.volume)[0])
+                volume = ca.fabs(system.volume) if system.free else side * system.volume
+                # Of a dyad the closed form knows how near its dead centre is, and the volume on which branch it is.
+                dyad = self.dyads.get(block)
+                self._judge(block, volume if dyad is None else dyad * ca.copysign(1.0, volume))
+            if system.free:
+                misfits[block.name] = found.put_into(misfit(body, block))
+            else:
+                gaps[block.name] = gaps.get(block.name, 0) + found.put_into(left(body, block, self.length))
+        return Kinematics(
+            driven=self.d,
+            driven_rate=self.dd,
+            driven_acceleration=self.ddd,
+            iterated=column(self.iterated),
+            found=found,
+            blocks=blocks,
+            systems=tuple(systems),
+            closures={name: closure for name, (closure, _) in self.closures.items()},
+            gaps=gaps,
+            misfits=misfits,
+            newton=self.newton(),
+            loose=frozenset(self.loose),
+        )
+
+    def newton(self) -> NewtonLoop | None:
+        """The iteration of all blocks without a closed form, together."""
+        if not self.residuals:
+            return None
+        iterated = column(self.iterated)
+        gaps = self.found.put_into(column(block.gap for block in self.residuals))
+        correction = -LinearSystem.of(ca.jacobian(gaps, iterated)).solve(gaps)
+        relative = ca.mmax(ca.fabs(correction / column(self.scales)))
+        # Not fmin(1, limit / relative): where the loops are closed, its derivative would be 0 times infinity.
+        bounded = correction * (_LARGEST_STEP / ca.fmax(relative, _LARGEST_STEP))
+        inputs = [iterated, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
+        step = ca.Function("loops", inputs, [bounded, relative], ["z", "t", "d", "p"], ["correction", "size"], {"cse": True})
+        names = tuple(block.name for block in self.residuals if block.form is None)
+        joints = ", ".join(block.joints for block in self.residuals)
+        return NewtonLoop(step, tuple(self.guess), tuple(self.turning), names, joints)
+
+
+def where(coordinates: Iterable[tuple[str, str, float]]) -> str:
+    """Coordinates by joint, kind and value, to end a message with; nothing where there are none."""
+    listed = ", ".join(describe_coordinate(*coordinate) for coordinate in coordinates)
+    return f", where {listed}" if listed else ""
+
+
+def passes_dead_centre(closure: Array, *, ends: bool = False) -> npt.NDArray[np.bool_]:
+    """After which instants a loop may pass a dead centre: straight on from either side its transmission angle's sine meets zero.
+
+    The closed forms keep to their branch there, with a kink; the mechanism itself may not. With ``ends`` the first interval and the
+    last are looked at too, each from its one side.
+    """
+    found = np.zeros(closure.size, dtype=bool)
+    sine = np.sqrt(np.where((closure > 0.0) & (closure < np.inf), closure, 0.0))
+    left, right = np.full((2, max(closure.size - 1, 0)), -1.0 if ends else 1.0)
+    left[1:], right[:-1] = 2 * sine[1:-1] - sine[:-2], 2 * sine[1:-1] - sine[2:]
+    found[:-1] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[:-1], sine[1:]) < NEAR)
+    return found
+
+
+def describe_coordinate(joint: str, kind: str, value: float) -> str:
+    """A coordinate's value for a reader."""
+    return f"{joint} = {value:.6g} rad ({math.degrees(value):.6g} deg)" if kind == "angle" else f"{joint} = {value:.6g} m"
+
+
+def _posture_name(coordinate: Coordinate) -> str:
+    return coordinate.body if coordinate.kind == "angle" else coordinate.joint
+
+
+def _numbers(unknown: Sequence[Coordinate], values: Sequence[float]) -> dict[Coordinate, float]:
+    found, rest = {}, list(values)
+    for coordinate in unknown:
+        size = coordinate.variables.numel()
+        found[coordinate] = math.atan2(rest[1] + 0.0, rest[0]) if coordinate.kind == "angle" else rest[0]
+        rest = rest[size:]
+    return found
+
+
+def _describe(unknown: Sequence[Coordinate], values: Sequence[float]) -> str:
+    return " with ".join(describe_coordinate(_posture_name(c), c.kind, x) for c, x in _numbers(unknown, values).items())

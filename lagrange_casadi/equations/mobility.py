@@ -1,0 +1,255 @@
+"""Internal forces from extra mobilities: multipliers and efforts, joint reactions, and the section law of a link.
+
+The law (exact for a straight link of any density): with mu0 and mu1 the mass and the first moment, about the base, of the
+material from the section to the tip,
+
+    axial   = n0 + n1 mu0 + n2 mu1,
+    shear   = f0 + f1 mu0 + f2 mu1,
+    bending = m0 + f0 (l - xi) + f1 (mu1 - xi mu0) + f2 (mu2 - xi mu1).
+
+Energy is linear in the moments, so n1, n2, f1, f2 are derivatives of the section mobility's Lagrange terms by the moments (paper
+eq. 20): n2 and f2 are the square of the link's rate and less its change. They repeat in bending because d(bending)/d(xi) = -shear,
+the equilibrium of an element. n0, f0, m0 are what acts on the tip: the reactions, efforts and loads there. What acts at a station
+between base and tip is seen by the sections on its base side.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from ..declare.density import Density
+from ..declare.limits import at_end
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Joint, Link, Point
+from ..geometry.planar import Frame, Velocities, reaction, slide
+from .kinematics import Kinematics
+from .lagrange import LagrangeSystem
+from .multibody import Multibody, column
+
+LAW = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
+STATION = ("n", "f", "m", "station")
+PLACE_FIRST = ("station", "n", "f", "m")
+"""The same in the order in which emitted C takes them."""
+
+
+@dataclass(frozen=True, eq=False)
+class InternalForces:
+    """Every force that was asked for, by full name, over time, the driven motion, the iterated unknowns and the parameters.
+
+    ``free`` are the symbols of what equilibrium leaves open in an over-constrained mechanism.
+    """
+
+    columns: dict[str, Any]
+    free: Any
+
+
+def needed_reactions(mechanism: Mechanism, reactions: Sequence[str], sections: Sequence[str]) -> tuple[str, ...]:
+    """The joints whose reaction some output needs: those wanted, and those that load a wanted link beyond its base."""
+    needed = set(reactions)
+    for joint in mechanism.joints.values():
+        for point in (joint.parent, joint.child):
+            moves = joint.slides and point is joint.parent
+            if point.body.name in sections and (moves or not _at_base(point)):
+                needed.add(joint.name)
+    return tuple(name for name in mechanism.joints if name in needed)
+
+
+def internal_forces(
+    multibody: Multibody,
+    kinematics: Kinematics,
+    *,
+    effort: bool,
+    reactions: Sequence[str],
+    multipliers: Sequence[str],
+    sections: Sequence[str],
+) -> InternalForces:
+    """Efforts of the drives, reactions of the named joints, multipliers of constraints and rows, and the laws of links."""
+    along, across = multibody.system.terms()
+    along = kinematics.evaluate(along)
+    unknowns, values, free = _multipliers(multibody, kinematics, along)
+
+    unaided = {graph.row.replaces for graph in multibody.rows}
+    drives = {c.joint: along[i] for i, c in enumerate(multibody.coordinates) if c.driven and c.joint not in unaided}
+    starts = itertools.accumulate((rates.numel() for rates in multibody.mobilities.values()), initial=0)
+    by_joint = dict(zip(multibody.mobilities, ca.vertsplit(across, [*starts]), strict=True))
+    joints = multibody.mechanism.joints
+    borne = {
+        name: _reaction(multibody, joints[name], by_joint) for name in needed_reactions(multibody.mechanism, reactions, sections)
+    }
+    columns = {f"effort:{joint}": force for joint, force in drives.items()} if effort else {}
+    for name in reactions:
+        columns |= {f"reaction:{name}:{member}": force for member, force in borne[name].items()}
+    held = {c.name: c.multipliers for c in multibody.closures if c.joint is None}
+    held |= {graph.row.name: graph.multiplier for graph in multibody.rows}
+    columns |= {f"multiplier:{name}": held[name] for name in multipliers}
+    if reactions:
+        columns |= {f"_multiplier:{name}": multiplier for name, multiplier in held.items() if name not in multipliers}
+    for name in sections:
+        for coefficient, force in _section_law(multibody, name, borne, drives).items():
+            columns[f"section:{name}:{coefficient}"] = force
+    # All at once, for a substitution visits the whole graph; and mobilities rest.
+    rates = multibody.mobility_rates
+    resting = ca.substitute(column(columns.values()), rates, ca.SX.zeros(rates.numel()))
+    known = ca.substitute(kinematics.evaluate(resting), unknowns, values)
+    return InternalForces(dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True)), free)
+
+
+def _section_law(multibody: Multibody, name: str, borne: Any, drives: Any) -> dict[str, Any]:
+    """The coefficients of a link's law: of its material from the section mobility, of the tip and stations from what acts there."""
+    link, direction = multibody.mechanism.links[name], multibody.frames[name].rotation
+    slopes = _material(multibody, name)
+    tip = [ca.SX(0), ca.SX(0), ca.SX(0)]
+    stations: dict[str, Any] = {}
+    for source, x, y, (fx, fy, mz) in _loads_on(multibody, link, borne, drives):
+        n, f = direction.resolve(fx, fy)
+        acting = (n, f, mz - y * n)
+        if x is None:
+            tip = [total + part for total, part in zip(tip, acting, strict=True)]
+        else:
+            found = zip(STATION, (*acting, x / link.length), strict=True)
+            stations |= {f"{source}:{member}": value for member, value in found}
+    n0, f0, m0 = tip
+    f1, f2 = -slopes[1, 0], -slopes[1, 1]
+    if _between_pins(multibody, link, drives):
+        # The moment about the base is zero: of a light link between heavy bodies the tip's reaction would leave rounding only.
+        assert isinstance(link.mass, Density)
+        _, first, inertia = link.mass.ends(link.length)
+        f0 = -(f1 * first + f2 * (first * link.length + inertia / link.length))
+    law = (n0, -slopes[0, 0], -slopes[0, 1], f0, f1, f2, m0)
+    return dict(zip((f"law:{k}" for k in LAW), law, strict=True)) | stations
+
+
+def _between_pins(multibody: Multibody, link: Link, drives: Any) -> bool:
+    """Whether pins without effort at a link's base and at its tip are all that acts on it."""
+    if any(part.point.body is link for part in (*multibody.applied, *multibody.held)):
+        return False
+    joints = [joint for joint in multibody.mechanism.joints.values() if link in joint.bodies]
+    ends = [point.end for joint in joints for point in (joint.parent, joint.child) if point.body is link]
+    pins = all(joint.kind == "revolute" and joint.name not in drives for joint in joints)
+    return pins and set(ends) == {"base", "tip"}
+
+
+def _material(multibody: Multibody, name: str) -> Any:
+    """What holds the piece of a link beyond a section, along the link and across, for a unit of its mass and of its first moment.
+
+    In axes at rest that lie along the link at the instant: the energy does not see which axes at rest it is written in, and in
+    these the first moment's forces are the rate squared and its change, to the last bit.
+    """
+    frame = multibody.felt[name].along_axis()
+    slopes, symbols = _of_any_link()
+    return ca.substitute(slopes, symbols, column([*frame.speed, *frame.acceleration, frame.rate, frame.angular]))
+
+
+@functools.cache
+def _of_any_link() -> tuple[Any, Any]:
+    """The same for symbols of the velocity and acceleration of the link's base, its rate, and the rate's change; and these."""
+    vx, vy, ax, ay, rate, angular = symbols = ca.vertsplit(ca.SX.sym("motion", 6))
+    base_frame = Frame(speed=(vx, vy), acceleration=(ax, ay), rate=rate, angular=angular)
+    mass, first, second = (ca.SX.sym(f"mu{i}") for i in range(3))
+    released, velocities = ca.SX.sym("ed_section", 2), Velocities()
+    base = velocities.point(base_frame.displaced(released).motion_of(0.0, 0.0))
+    lever = velocities.point(Frame(rate=rate, angular=angular).motion_of(1.0, 0.0))
+    piece = LagrangeSystem(
+        kinetic=mass * ca.sumsqr(base) / 2 + first * ca.dot(base, lever) + second * ca.sumsqr(lever) / 2,
+        force_function=ca.SX(0),
+        coordinates=ca.SX(0, 1),
+        rates=ca.SX(0, 1),
+        accelerations=ca.SX(0, 1),
+        mobility_rates=released,
+        velocities=column(velocities.symbols),
+        velocity_graphs=column(velocities.graphs),
+        velocity_rates=column(velocities.rates),
+    )
+    return ca.jacobian(piece.terms()[1], ca.vertcat(mass, first)), ca.vertcat(*symbols)
+
+
+def _loads_on(multibody: Multibody, link: Link, borne: Any, drives: Any) -> Iterator[tuple[str, Any, Any, tuple[Any, Any, Any]]]:
+    """What acts on a link beyond its base: by whom, where in the link's axes, and force and couple in ground axes.
+
+    The station is None at the tip.
+    """
+    for joint in multibody.mechanism.joints.values():
+        for point, sign in ((joint.parent, -1), (joint.child, 1)):
+            if point.body is not link or joint.name not in borne:
+                continue
+            parent = multibody.frames[joint.parent.body.name]
+            members = borne[joint.name]
+            fx, fy, mz = members["fx"], members["fy"], members.get("mz", 0)
+            if joint.name in drives and joint.slides:
+                ax, ay = parent.rotation.apply(*joint.axis)
+                fx, fy = fx + drives[joint.name] * ax, fy + drives[joint.name] * ay
+            elif joint.name in drives:
+                mz = mz + drives[joint.name]
+            x, y = point.x, point.y
+            if joint.slides and point is joint.parent:
+                along, _ = slide(joint, parent, multibody.frames[joint.child.body.name])
+                x, y = x + joint.axis[0] * along, y + joint.axis[1] * along
+            elif _at_base(point):
+                continue
+            elif point.end == "tip":
+                x = None
+            else:
+                x = at_end(point)
+            yield joint.name, x, y, (sign * fx, sign * fy, sign * mz)
+    seen: dict[str, int] = {}
+    for part in (*multibody.applied, *multibody.held):
+        if part.point.body is link and not _at_base(part.point):
+            x = None if part.point.end == "tip" else at_end(part.point)
+            seen[part.source] = seen.get(part.source, 0) + 1
+            name = part.source if seen[part.source] == 1 else f"{part.source}_{seen[part.source]}"
+            yield name, x, part.point.y, (part.fx, part.fy, part.mz)
+
+
+def _at_base(point: Point) -> bool:
+    x = at_end(point)
+    return isinstance(x, float) and x == 0.0
+
+
+def _multipliers(multibody: Multibody, kinematics: Kinematics, along: Any) -> tuple[Any, Any, Any]:
+    """lambda and mu: their symbols, their values, and the symbols of what equilibrium leaves open.
+
+    lambda comes from the undriven rows of R = Phi_q' lambda + A' mu (paper eq. 2, 8), the blocks of the loops last one first; mu
+    from the driven rows that bear no effort.
+    """
+    rows = {c: along[i] for i, c in enumerate(multibody.coordinates)}
+    symbols, values, free = ca.SX(0, 1), ca.SX(0, 1), ca.SX(0, 1)
+    every = column(closure.multipliers for closure in multibody.closures)
+    for block, system in reversed(list(zip(kinematics.blocks, kinematics.systems, strict=True))):
+        own = block.multipliers
+        left = column(rows[c] for c in block.unknown)
+        left = ca.substitute(left, symbols, values)
+        # What no equation of theirs moves, others may still be written in, with factors that cancel.
+        left = ca.substitute(left, every, ca.SX.zeros(every.numel()))
+        open_here = ca.SX.sym(f"free_{block.closures[0].name}", system.free)
+        free = ca.vertcat(free, open_here)
+        symbols, values = ca.vertcat(own, symbols), ca.vertcat(system.solve_transposed(left, open_here), values)
+    if multibody.rows:
+        mu = column(graph.multiplier for graph in multibody.rows)
+        replaced = [next(c for c in rows if c.joint == graph.row.replaces) for graph in multibody.rows]
+        unaided = ca.substitute(column(rows[c] for c in replaced), symbols, values)
+        solved = ca.solve(ca.jacobian(unaided, mu), -ca.substitute(unaided, mu, ca.SX.zeros(mu.numel())))
+        values = ca.substitute(values, mu, solved)
+        symbols, values = ca.vertcat(symbols, mu), ca.vertcat(values, solved)
+    return symbols, values, free
+
+
+def _reaction(multibody: Multibody, joint: Joint, actions: dict[str, Any]) -> dict[str, Any]:
+    parent, child = (multibody.frames[body.name] for body in joint.bodies)
+    for closure in multibody.closures:
+        if closure.joint is joint:
+            return reaction(joint, parent, child, closure.multipliers, closing=True)
+    branch = next(branch for branch in multibody.tree.branches if branch.joint is joint)
+    return reaction(joint, parent, child, branch.sign * actions[joint.name], closing=False)
+
+
+def stations_of(columns: Iterable[str], link: str) -> tuple[str, ...]:
+    """The stations that columns of a link's section law name, in their order."""
+    start = f"section:{link}:"
+    names = (name.removeprefix(start).partition(":")[0] for name in columns if name.startswith(start))
+    return tuple(dict.fromkeys(name for name in names if name != "law"))

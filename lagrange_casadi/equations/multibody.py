@@ -1,0 +1,219 @@
+"""A mechanism as graphs: kinetic energy over velocities, forces that do work along them, loop equations, extra mobilities.
+
+Every undriven pin on the tree takes the *absolute* direction of the body that hangs on it for its coordinate, which keeps the
+energy of a chain short; a driven pin takes the angle between its two bodies, the one its effort works on. Its cosine and sine
+are still those of the body's direction where drives alone set it, since angles are added with less than directions are turned.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal
+
+import casadi as ca
+
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Joint, Point, Row
+from ..geometry.planar import Frame, Velocities, slide, slide_motion
+from .lagrange import LagrangeSystem
+from .tree import Tree
+
+
+@dataclass(frozen=True, eq=False)
+class Coordinate:
+    """A coordinate of the tree: the joint that carries it, the body it places, and its symbols.
+
+    ``variables`` is what graphs are written in: (cosine, sine, angle) or the slide itself, the value last; ``change`` their rates.
+    Cosine and sine are those of ``turn``, an expression in coordinates: the direction of the body, or of a driven body as seen from
+    the one it hangs on (``relative``).
+    """
+
+    joint: str
+    body: str
+    kind: Literal["angle", "slide"]
+    driven: bool
+    variables: Any
+    change: Any
+    rate: Any
+    acceleration: Any
+    turn: Any = None
+    relative: bool = False
+
+    @property
+    def value(self) -> Any:
+        """The symbol of the coordinate itself."""
+        return self.variables[-1]
+
+    def placed(self, symbols: Any, values: Any) -> Any:
+        """Its variables for values of the coordinates ``symbols``."""
+        if self.kind == "slide":
+            return ca.substitute(self.value, symbols, values)
+        turn, angle = ca.vertsplit(ca.substitute(ca.vertcat(self.turn, self.value), symbols, values))
+        return ca.vertcat(ca.cos(turn), ca.sin(turn), angle)
+
+    @cached_property
+    def keys(self) -> tuple[int, ...]:
+        """What its variables are known by, and then its rate and its acceleration."""
+        return tuple(symbol.element_hash() for symbol in ca.vertsplit(ca.vertcat(self.variables, self.rate, self.acceleration)))
+
+
+@dataclass(frozen=True, eq=False)
+class Closure:
+    """Equations that a joint or a constraint puts on the coordinates, and the symbols of their multipliers.
+
+    ``gap`` is Phi, with its total time derivatives. ``joint`` is None for a constraint of the user's.
+    """
+
+    name: str
+    joint: Joint | None
+    gap: Any
+    gap_rate: Any
+    gap_acceleration: Any
+    multipliers: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Applied:
+    """What a load, or the multiplier of a constraint or row, does at a point of a body, as expressions of the state.
+
+    Force in ground axes [N] and couple [N m]; ``source`` names the load, constraint or row.
+    """
+
+    source: str
+    point: Point
+    fx: Any
+    fy: Any
+    mz: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """An angle that loads and rows see, of an undriven joint or a link, by its name; ``symbol`` stands for it in their expressions.
+
+    ``angle`` is known up to whole turns where loops set it.
+    """
+
+    name: str
+    symbol: Any
+    cosine: Any
+    sine: Any
+    angle: Any
+
+    @property
+    def within(self) -> Any:
+        """The angle between -pi and pi."""
+        return ca.atan2(self.sine, self.cosine)
+
+
+@dataclass(frozen=True, eq=False)
+class RowGraph:
+    """A non-holonomic row: its expression at rest, the sum of the sizes of its terms, and its multiplier's symbol."""
+
+    row: Row
+    residual: Any
+    size: Any
+    multiplier: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Multibody:
+    """The graphs of a mechanism, over the symbols of its coordinates, mobilities, multipliers and time.
+
+    ``frames`` are without mobilities; ``felt`` are with them, and their accelerations are less that of gravity, as matter feels
+    them.
+    """
+
+    mechanism: Mechanism
+    tree: Tree
+    coordinates: tuple[Coordinate, ...]
+    closures: tuple[Closure, ...]
+    rows: tuple[RowGraph, ...]
+    mobilities: dict[str, Any]
+    frames: dict[str, Frame]
+    felt: dict[str, Frame]
+    applied: tuple[Applied, ...]
+    held: tuple[Applied, ...]
+    turned: tuple[Turned, ...]
+    kinetic: Any
+    velocities: Velocities
+
+    @property
+    def variables(self) -> Any:
+        """All coordinates' variables, one column."""
+        return column(c.variables for c in self.coordinates)
+
+    @property
+    def rates(self) -> Any:
+        """All coordinates' rates, one column."""
+        return column(c.rate for c in self.coordinates)
+
+    @property
+    def accelerations(self) -> Any:
+        """All coordinates' accelerations, one column."""
+        return column(c.acceleration for c in self.coordinates)
+
+    @property
+    def mobility_rates(self) -> Any:
+        """The rates of all extra mobilities, one column."""
+        return column(self.mobilities.values())
+
+    @property
+    def system(self) -> LagrangeSystem:
+        """The Lagrange system of the whole."""
+        return LagrangeSystem(
+            kinetic=self.kinetic,
+            force_function=ca.SX(0),
+            coordinates=self.variables,
+            rates=self.rates,
+            accelerations=self.accelerations,
+            tangent=ca.jacobian(column(c.change for c in self.coordinates), self.rates),
+            mobility_rates=self.mobility_rates,
+            velocities=column(self.velocities.symbols),
+            velocity_graphs=column(self.velocities.graphs),
+            velocity_rates=column(self.velocities.rates),
+            velocity_forces=column(self.velocities.forces),
+            time=self.mechanism.time,
+        )
+
+    def joint_motion(self, joint: Joint) -> tuple[Any, Any, Any]:
+        """Coordinate, rate and acceleration of any joint that has one, on the tree or closing a loop.
+
+        Where loops set an angle, it is known up to whole turns.
+        """
+        return joint_coordinate(joint, self.frames, self.coordinates), *joint_rates(joint, self.frames, self.coordinates)
+
+
+def joint_coordinate(joint: Joint, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]) -> Any:
+    """A joint's coordinate; an angle counts turns, but where loops set it is known up to them only."""
+    for coordinate in coordinates:
+        if coordinate.joint == joint.name and (coordinate.driven or coordinate.kind == "slide"):
+            return coordinate.value
+    parent, child = (frames[body.name] for body in joint.bodies)
+    if joint.coordinate == "angle":
+        return ca.SX(child.rotation.against(parent.rotation).angle)
+    return ca.SX(slide(joint, parent, child)[0])
+
+
+def joint_rates(joint: Joint, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]) -> tuple[Any, Any]:
+    """Rate and acceleration of a joint's coordinate."""
+    for coordinate in coordinates:
+        if coordinate.joint == joint.name and (coordinate.driven or coordinate.kind == "slide"):
+            return coordinate.rate, coordinate.acceleration
+    parent, child = (frames[body.name] for body in joint.bodies)
+    if joint.coordinate == "angle":
+        return ca.SX(child.rate - parent.rate), ca.SX(child.angular - parent.angular)
+    rate, acceleration = slide_motion(joint, parent, child)
+    return ca.SX(rate), ca.SX(acceleration)
+
+
+def change(expression: Any, coordinates: tuple[Coordinate, ...], time: Any) -> Any:
+    """The total time derivative of an expression in coordinates' variables, their rates, and time."""
+    moving = column([*(c.variables for c in coordinates), *(c.rate for c in coordinates), time])
+    speed = column([*(c.change for c in coordinates), *(c.acceleration for c in coordinates), 1])
+    return ca.jtimes(ca.SX(expression), moving, speed)
+
+
+def column(parts: Any) -> Any:
+    """Parts one below the other; an empty column where there are none."""
+    return ca.vertcat(ca.SX(0, 1), *parts)

@@ -1,0 +1,98 @@
+"""Fewer divisions: what is divided by more than once, or depends on parameters alone, is inverted once; and fewer changes of sign.
+
+A division takes as long as ten products, and a machine has few dividers; a product with a reciprocal rounds once more.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import casadi as ca
+
+from ..arithmetic.interpret import Step, followable, steps
+
+
+def share_reciprocals(function: Any, parameters: str) -> Any:
+    """The same function of one output with divisions shared; ``parameters`` names the input whose reciprocals always pay.
+
+    Less a difference is the opposite difference, to the last bit.
+
+    A function that calls others stays as it is.
+    """
+    if not followable(function):
+        return function
+    divisors = _divisors(steps(function), function.index_in(parameters))
+    uses = Counter(divisor for divisor, _ in divisors.values())
+    inverses: dict[int, Any] = {}
+
+    def made(k: int, operation: int, operands: list[Any]) -> Any:
+        if k in divisors and (divisors[k][1] or uses[divisors[k][0]] > 1):
+            x = operands[-1]
+            # It is given its own sign, for else CasADi writes (1/x) y as y/x again.
+            inverse = inverses.setdefault(divisors[k][0], ca.copysign(1 / x, x))
+            return operands[0] * inverse if operation == ca.OP_DIV else inverse
+        if operation == ca.OP_NEG and operands[0].op() == ca.OP_SUB:
+            return operands[0].dep(1) - operands[0].dep(0)
+        return _applied(operation, operands)
+
+    return _replayed(function, made)
+
+
+def differentiable(function: Any) -> Any:
+    """A function of :func:`share_reciprocals` with plain divisions again.
+
+    CasADi 3.7 differentiates copysign(a, b) as if a were positive.
+    """
+    if not followable(function):
+        return function
+
+    def made(_k: int, operation: int, operands: list[Any]) -> Any:
+        if operation == ca.OP_COPYSIGN and operands[0].op() == ca.OP_INV and ca.is_equal(operands[0].dep(0), operands[1]):
+            return operands[0]
+        return _applied(operation, operands)
+
+    return _replayed(function, made)
+
+
+def _applied(operation: int, operands: list[Any]) -> Any:
+    return ca.SX.unary(operation, *operands) if len(operands) == 1 else ca.SX.binary(operation, *operands)
+
+
+def _replayed(function: Any, made: Callable[[int, int, list[Any]], Any]) -> Any:
+    """The function of one output again, with what ``made`` makes of the number of a step, its operation and its operands."""
+    inputs = function.sx_in()
+    work: dict[int, Any] = {}
+    out = ca.SX(function.sparsity_out(0))
+    for k, step in enumerate(steps(function)):
+        operation, arguments, results = step.operation, step.arguments, step.results
+        if operation == ca.OP_OUTPUT:
+            out.nz[results[1]] = work[arguments[0]]
+        elif operation == ca.OP_CONST:
+            work[results[0]] = ca.SX(step.constant)
+        elif operation == ca.OP_INPUT:
+            work[results[0]] = inputs[arguments[0]].nz[arguments[1]]
+        else:
+            work[results[0]] = made(k, operation, [work[a] for a in arguments])
+    names = [function.name_in(i) for i in range(function.n_in())]
+    return ca.Function(function.name(), inputs, [out], names, [function.name_out(0)], {"cse": True})
+
+
+def _divisors(instructions: Sequence[Step], parameters: int) -> dict[int, tuple[int, bool]]:
+    """By step that divides: the step that made its divisor, and whether that depends on parameters alone."""
+    made: dict[int, int] = {}
+    fixed: dict[int, bool] = {}
+    found = {}
+    for k, step in enumerate(instructions):
+        operation, arguments, results = step.operation, step.arguments, step.results
+        if operation == ca.OP_OUTPUT:
+            continue
+        if operation == ca.OP_INPUT:
+            fixed[k] = arguments[0] == parameters
+        else:
+            fixed[k] = all(fixed[made[a]] for a in arguments)
+        if operation in (ca.OP_DIV, ca.OP_INV):
+            found[k] = (made[arguments[-1]], fixed[made[arguments[-1]]])
+        made[results[0]] = k
+    return found

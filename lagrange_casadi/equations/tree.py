@@ -1,0 +1,103 @@
+"""The spanning tree of a mechanism: which joints carry the coordinates, and which close loops.
+
+The tree is grown from the ground, always by the joint of the highest rank in reach, then the one nearest the ground, then the
+one declared first. Driven joints rank first, so that a driven motion is a coordinate of its own; then joints that hold a
+direction, so that directions tied together stay one coordinate; then pins; a point mass on a line last, since opening it
+leaves a single equation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Body, Joint, Point
+from ..errors import DeclarationError
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """A joint of the tree; ``reverse`` where the tree runs from the joint's child to its parent."""
+
+    joint: Joint
+    reverse: bool
+
+    @property
+    def near(self) -> Point:
+        """The joint's point on the body nearer the ground."""
+        return self.joint.child if self.reverse else self.joint.parent
+
+    @property
+    def far(self) -> Point:
+        """The joint's point on the body that hangs on it."""
+        return self.joint.parent if self.reverse else self.joint.child
+
+    @property
+    def sign(self) -> int:
+        """1, or -1 where the tree runs against the joint."""
+        return -1 if self.reverse else 1
+
+
+@dataclass(frozen=True, eq=False)
+class Tree:
+    """``branches`` in an order in which each hangs on the ground or on an earlier one; ``closures`` close the loops."""
+
+    branches: tuple[Branch, ...]
+    closures: tuple[Joint, ...]
+
+
+def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
+    """The spanning tree of a frozen mechanism whose joints ``driven`` carry a prescribed motion.
+
+    Raises :class:`DeclarationError` for drives that close a loop among themselves, and for a link that only slides on a point.
+    """
+    depth: dict[Body, int] = {mechanism.ground: 0}
+    branches: list[Branch] = []
+    waiting = list(mechanism.joints.values())
+    while reachable := [
+        Branch(joint, joint.parent.body not in depth)
+        for joint in waiting
+        if (joint.parent.body in depth) != (joint.child.body in depth) and _can_carry(joint, joint.parent.body not in depth)
+    ]:
+        # What a driven joint can carry one way only is left to it, for its motion would else close a loop.
+        kept = {j.child.body for j in waiting if j.name in driven and (_can_carry(j, False), _can_carry(j, True)) == (True, False)}
+        best = min(
+            reachable,
+            key=lambda branch: (
+                branch.far.body in kept and branch.joint.name not in driven,
+                -_rank(branch.joint, driven),
+                depth[branch.near.body],
+            ),
+        )
+        depth[best.far.body] = depth[best.near.body] + 1
+        branches.append(best)
+        waiting.remove(best.joint)
+    for body in mechanism.moving:
+        if body not in depth:
+            raise DeclarationError(
+                f"link '{body.name}' only slides on a point; pin it to a point mass (of mass 0 if need be) that slides in its stead"
+            )
+    for joint in waiting:
+        if joint.name in driven:
+            if joint.kind == "slot" and joint.child.body.oriented:
+                raise DeclarationError(f"joint '{joint.name}' cannot be driven: it is a slot, drive another joint of its loop")
+            raise DeclarationError(
+                f"the drive of joint '{joint.name}' is redundant: the motions of the other driven joints already place its bodies"
+            )
+    return Tree(tuple(branches), tuple(waiting))
+
+
+def _can_carry(joint: Joint, reverse: bool) -> bool:
+    """A point on a line places neither the body that carries the line, nor the direction of the one that slides."""
+    if joint.slides and not joint.holds_direction:
+        return not reverse and not joint.child.body.oriented
+    return not (reverse and joint.kind == "weld" and not joint.child.body.oriented)
+
+
+def _rank(joint: Joint, driven: Collection[str]) -> int:
+    if joint.name in driven:
+        return 3
+    if joint.holds_direction:
+        return 2
+    return 0 if joint.slides else 1

@@ -1,0 +1,1 @@
+"""Frames, rotations, and what joints look like in them."""

@@ -1,0 +1,1 @@
+"""From graphs to arrays: how an instant is evaluated, what is refused, tables over a cycle, the law of sections."""

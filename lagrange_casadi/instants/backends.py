@@ -1,0 +1,227 @@
+"""The columns of a scene graph over instants: by packs, by scalar C, or by CasADi's virtual machine."""
+
+from __future__ import annotations
+
+import functools
+import math
+import shlex
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import casadi as ca
+import h5py
+import numpy as np
+import numpy.typing as npt
+
+from .. import codegen
+from ..arithmetic.compensated import DTYPES
+from ..codegen.emit import NEWTON_STEPS, NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
+from ..codegen.stages import Stages, compensated, counts, plain
+from ..declare.density import Array
+from ..equations.scene_graph import SceneGraph
+from ..errors import CompilerError
+from ..system.room import cores
+from ..version import __version__
+from . import grids
+from .cycle_table import CycleTable
+from .rung import Backend, Rung
+from .solution import Provenance
+
+_LANGUAGES: dict[Backend, tuple[codegen.Language, ...]] = {"auto": ("c++", "c"), "lanes": ("c++",), "c": ("c",), "vm": ()}
+_NEEDS = {
+    "lanes": "backend 'lanes' needs a C++ compiler: none of $CXX, c++, g++, clang++ or the Python package ziglang is there",
+    "c": "backend 'c' needs a C compiler: none of $CC, cc, gcc, clang or the Python package ziglang is there",
+}
+_TRIED = "c++, g++, clang++, cc, gcc, clang, ziglang"
+_VM_BLOCK = 4096
+_FEWEST_STEPS, _MOST_STEPS = 50, 5000
+"""From the scene's start to an evaluation that begins elsewhere."""
+
+Built = TypeVar("Built")
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """The columns of a scene graph over instants: ``out`` (columns, t) and the status of each instant (t).
+
+    ``iterated`` (k, t) are the coordinates of iterated loops; ``stages`` say what was evaluated, ``cycle`` what the rest was read
+    from, if it was.
+    """
+
+    out: Array
+    status: npt.NDArray[np.int32]
+    iterated: Array
+    stages: Stages
+    cycle: CycleTable | None = None
+
+
+def run(
+    graph: SceneGraph,
+    t: Array,
+    p: Array,
+    rung: Rung | None = None,
+    threads: int | None = None,
+    *,
+    into: Table | None = None,
+) -> tuple[Table, Provenance]:
+    """The columns of a graph at instants ``t`` and parameters ``p``, on a rung; nothing is checked.
+
+    ``into`` is a table of an earlier run on the same rung and as many instants, to be filled anew. Raises :class:`CompilerError`
+    where the backend needs a compiler and there is none, or it fails.
+    """
+    rung = rung or Rung()
+    many = rung.precision == "single" or counts(graph, t, p)
+    stages = compensated(graph, rung.precision) if many else plain(graph)
+    found = _compiled(graph, stages, rung)
+    table = into or empty_table(graph, stages, t.size)
+    begin = _begin(graph, rung.newton is not None, t[0], tuple(p))
+    if found is None:
+        _interpret(graph, t, p, table, begin, rung.newton)
+        return table, provenance("vm", "", "", rung)
+    compiler, library = found
+    dtype = DTYPES[rung.precision]
+    guess = np.array(begin, dtype)
+    if rung.precision == "single":
+        t, p = _paired(t, rows(2, t.size, dtype)), _paired(p, np.empty((2, p.size), dtype))
+    library.follow(t, p, guess, table.iterated, table.status)
+    library.evaluate(t, p, table.iterated, table.out, table.status, threads or cores())
+    used = "lanes" if compiler.language == "c++" else "c"
+    return table, provenance(used, compiler.version, " ".join(library.flags), rung)
+
+
+@functools.lru_cache(maxsize=256)
+def _begin(graph: SceneGraph, counted: bool, t: float, p: tuple[float, ...]) -> tuple[float, ...]:
+    """The iterated coordinates that the first instant begins from: closed there where steps are ``counted``.
+
+    The motion is followed from the scene's own start, as far from which another branch may be nearer; by many steps, unless they
+    were too many.
+    """
+    if graph.newton is None:
+        return ()
+    start, stop, count = graph.scene.t
+    if t == start and not counted:
+        return graph.newton.guess
+    wanted = max(abs(t - start) / (stop - start) * (count - 1), _FEWEST_STEPS) if stop > start else math.inf
+    steps = math.ceil(wanted) if t != start and wanted <= _MOST_STEPS else 1
+    z, status = follow(graph, np.linspace(start, t, steps + 1)[1:], np.array(p))
+    return tuple(z[:, -1]) if counted or status[-1] != NOT_CONVERGED else graph.newton.guess
+
+
+def _paired(values: Array, out: Array) -> Array:
+    """Doubles as the nearest singles, and what these leave of them; infinite beyond them."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        out[0] = values
+        out[1] = values - out[0]
+    return out
+
+
+def _compiled(graph: SceneGraph, stages: Stages, rung: Rung) -> tuple[codegen.Compiler, codegen.Library] | None:
+    """The library that a backend takes, and what built it; None for the virtual machine."""
+    return compiled(rung, lambda compiler: _library(graph, stages, rung.newton, rung.flags, compiler))
+
+
+def compiled(rung: Rung, build: Callable[[codegen.Compiler], Built]) -> tuple[codegen.Compiler, Built] | None:
+    """What is built by the compiler that a rung's backend takes, and that; None for the virtual machine."""
+    backend = rung.backend
+    for language in _LANGUAGES[backend]:
+        compiler = codegen.find_compiler(language)
+        if compiler is None:
+            continue
+        try:
+            return compiler, build(compiler)
+        except CompilerError as error:
+            if backend != "auto" or language == "c":
+                raise
+            warnings.warn(f"{error}; scalar C serves", stacklevel=5)
+    if backend in _NEEDS:
+        raise CompilerError(_NEEDS[backend])
+    if rung.precision == "single":
+        raise CompilerError(f"precision 'single' needs a compiler: none of {_TRIED} is there")
+    if backend == "auto":
+        warnings.warn(f"no C or C++ compiler found ({_TRIED}): CasADi's virtual machine serves, slowly", stacklevel=5)
+    return None
+
+
+@functools.lru_cache(maxsize=32)
+def _library(graph: SceneGraph, stages: Stages, newton: int | None, flags: str, compiler: codegen.Compiler) -> codegen.Library:
+    return codegen.load(codegen.emit(graph, stages, newton), compiler, tuple(shlex.split(flags)), newton or NEWTON_STEPS)
+
+
+def empty_table(graph: SceneGraph, stages: Stages, size: int) -> Table:
+    """A table to be filled."""
+    dtype = DTYPES[stages.precision]
+    out, iterated = (rows(count, size, dtype) for count in (len(graph.columns), graph.instant.size1_in("z")))
+    return Table(out, np.full(size, OK, dtype=np.int32), iterated, stages)
+
+
+def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
+    """Rows an odd number of cache lines apart: at a power of two all would share the same few lines of the cache."""
+    line = 64 // np.dtype(dtype).itemsize
+    stride = line * (-(-size // line) | 1)
+    return grids.empty("the outputs over time", (count, stride), dtype)[:, :size]
+
+
+def provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenance:
+    """How numbers were made, with the versions of what made them."""
+    versions = {
+        "lagrange_casadi": __version__,
+        "casadi": ca.CasadiMeta.version(),
+        "numpy": np.__version__,
+        "h5py": h5py.__version__,
+        "hdf5": h5py.version.hdf5_version,
+    }
+    return Provenance(backend, rung.precision, compiler, flags, rung.options, versions)
+
+
+def _interpret(graph: SceneGraph, t: Array, p: Array, table: Table, begin: Sequence[float], newton: int | None) -> None:
+    """What the emitted C does, by CasADi's virtual machine."""
+    stages = table.stages
+    guess = np.array(begin)
+    table.iterated[:], table.status[:] = follow(graph, t, p, guess, stages=stages, newton=newton)
+    for start in range(0, t.size, _VM_BLOCK):
+        block = slice(start, min(start + _VM_BLOCK, t.size))
+        counted, rate, acceleration = stages.drive(t[None, block], p)
+        table.out[:, block] = stages.instant(counted, rate, acceleration, table.iterated[:, block], p).full()
+    unclean = ~np.isfinite(table.out).all(axis=0) & (table.status == OK)
+    table.status[unclean] = NOT_FINITE
+
+
+def follow(
+    graph: SceneGraph, t: Array, p: Array, guess: Array | None = None, *, stages: Stages | None = None, newton: int | None = None
+) -> tuple[Array, npt.NDArray[np.int32]]:
+    """Iterated coordinates (z, t), each instant from the one before, the first from ``guess`` or the graph's own; and statuses.
+
+    By CasADi's virtual machine; ``newton`` as in :class:`.Rung`.
+    """
+    stages = stages or plain(graph)
+    if graph.newton is None or stages.loops is None:
+        return np.zeros((0, t.size)), np.full(t.size, OK, dtype=np.int32)
+    last, rule = np.array(graph.newton.guess) if guess is None else guess, newton_rule("double", newton)
+    z, status = rows(last.size, t.size), np.full(t.size, OK, dtype=np.int32)
+    for start in range(0, t.size, _VM_BLOCK):
+        counted = np.atleast_2d(stages.drive(t[None, start : start + _VM_BLOCK], p)[0].full())
+        for i, now in enumerate(counted.T, start):
+            z[:, i], status[i] = _iterate(graph, stages.loops, last, now, p, rule)
+            last = last if status[i] == NOT_CONVERGED else z[:, i]
+    return z, status
+
+
+def _iterate(
+    graph: SceneGraph, loops: ca.Function, guess: Array, counted: Array, p: Array, rule: dict[str, float]
+) -> tuple[Array, int]:
+    assert graph.newton is not None
+    z, size, before, step = guess, 1.0, 1.0, 0
+    while step < rule["steps"] and not size < rule["done"]:
+        before, step = size, step + 1
+        correction, relative = (x.full().ravel() for x in loops(z, counted, p))
+        size = float(relative[0])
+        if not math.isfinite(size):
+            break
+        z = z + correction
+    if not size < rule["lost"]:
+        return guess, NOT_CONVERGED
+    turns = np.where(graph.newton.turning, np.floor(z * (1.0 / math.tau) + 0.5), 0.0)
+    slow = rule["done"] > 0.0 and size > rule["rate"] * before and size > rule["rounding"]
+    return z - math.tau * turns, SLOW if slow else OK

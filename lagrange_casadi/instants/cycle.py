@@ -1,0 +1,325 @@
+"""A scene over the cycle of its one drive: the terms of its columns at any angle, and after how many turns they repeat.
+
+Where one drive turns and nothing depends on time itself, every column is A theta'' + B theta'^2 + D theta' + C of the drive's
+angle theta. The terms are derivatives of the graph at rest, by automatic differentiation: no difference of large numbers is taken.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from ..declare.density import Array
+from ..equations.kinematics import describe_coordinate, passes_dead_centre, where
+from ..equations.scene_graph import SceneGraph
+from ..errors import DeclarationError
+from ..quantities import ANGLE, unit_in
+
+TURNS = 4
+"""Of the longest period."""
+
+_STEPS = 512
+_OFFSET = 0.618
+_BLOCK = 4096
+_NEWTON_STEPS, _NEWTON_DONE = 50, 1e-9
+_SAME, _FAINT = 1e-9, 1e-11
+"""What is no change: so much of a column's own largest value, and of the largest of its unit."""
+
+_ROUNDING = 16 * 2.0**-52
+"""Of the largest value of a unit."""
+
+_GAP = 1e-8
+"""Of the mechanism's extent, what may be left of a loop's equations."""
+
+_PROBES = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (0.5, 0.0), (-0.1, 0.1), (1e-3, 0.0))
+_NAMED = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Cycle:
+    """A scene over the cycle of its one drive.
+
+    ``turns`` of the drive are its period, over which each column gains ``drift`` a radian beside (columns). ``rounding`` (factors,
+    columns) is what rounding makes of a term: some units of it of the largest term of its unit, or more where it changes more from
+    one period to the next.
+    """
+
+    drive: Drive
+    course: Course
+    turns: int
+    drift: Array
+    rounding: Array
+
+    @property
+    def period(self) -> float:
+        """The period [rad]."""
+        return math.tau * self.turns
+
+    def values(self, nodes: int, *, halfway: bool = False) -> Array:
+        """The terms less the drift at equal distances, (factors, columns, nodes): the first at the angle 0, or halfway to the next.
+
+        They are taken where the motion goes from its start on, for a load may be declared for no other angles.
+        """
+        width = self.period / nodes
+        first = math.ceil(self.drive.start / width) if self.drive.way > 0 else math.floor(self.drive.start / width) - nodes
+        angles = (np.arange(first, first + nodes).astype(np.float64) + (0.5 if halfway else 0.0)) * width
+        values = self.drive.terms_at(angles, self.drive.settle(angles, self.course.places_near(angles)))
+        self.drive.unwind(values[0], self.course.turns_of(angles, values[0, self.drive.loose]))
+        values[0] -= self.drift[:, None] * angles
+        return np.roll(values, first, axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Some turns of the drive at equal steps: angles (n), iterated coordinates (k, n), and the angles known up to whole turns, made
+    continuous (m, n).
+    """
+
+    angles: Array
+    places: Array
+    loose: Array
+
+    def places_near(self, angles: Array) -> Array:
+        """Iterated coordinates to begin with."""
+        step = self.angles[1] - self.angles[0]
+        nearest = np.rint((angles - self.angles[0]) / step).astype(int)
+        return self.places[:, np.clip(nearest, 0, self.angles.size - 1)]
+
+    def turns_of(self, angles: Array, loose: Array) -> Array:
+        """What makes angles known up to whole turns continuous with those of the course, (m, n)."""
+        rising = slice(None, None, 1 if self.angles[1] > self.angles[0] else -1)
+        found = np.zeros_like(loose)
+        for k, row in enumerate(self.loose):
+            found[k] = math.tau * np.rint((np.interp(angles, self.angles[rising], row[rising]) - loose[k]) / math.tau)
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """A scene's one drive, that of a joint that turns: where it starts, the sign of the way it goes, and the terms by its angle."""
+
+    graph: SceneGraph
+    p: Array
+    joint: str
+    start: float
+    way: int
+    terms: Any
+
+    @classmethod
+    def of(cls, graph: SceneGraph, p: Array) -> Drive:
+        """Raises :class:`DeclarationError` where there is not one drive that turns, or where columns depend on time itself."""
+        joint = the_drive(graph)
+        t, d, rate, acceleration, z, parameters = graph.instant.sx_in()
+        out = graph.instant(t, d, rate, acceleration, z, parameters)
+        timed = [graph.columns[k] for k in ca.jacobian_sparsity(out, t).row()]
+        if graph.newton is not None and ca.depends_on(graph.newton.step(z, t, d, parameters)[0], t):
+            timed += [f"_closure:{name}" for name in graph.newton.names]
+        if timed:
+            raise DeclarationError(
+                f"table: expected columns that the angle of joint '{joint}' decides, but time itself enters {_listed(timed)}"
+            )
+        slope = ca.jacobian(out, rate)
+        rows = [out, slope, ca.jacobian(slope, rate) / 2, ca.jacobian(out, acceleration)]
+        moving = ca.vertcat(t, rate, acceleration)
+        at_rest = [ca.densify(ca.substitute(row, moving, ca.SX.zeros(3))) for row in rows]
+        terms = ca.Function("terms", [d, z, parameters], at_rest, {"cse": True})
+        start, stop = (float(graph.motion(moment, p)[0]) for moment in graph.scene.t[:2])
+        return cls(graph, p, joint, start, -1 if stop < start else 1, terms)
+
+    @property
+    def loose(self) -> list[int]:
+        """The rows of the angles that are known up to whole turns only."""
+        parts = {part for signs in self.graph.wrapped.values() for part in signs if not part.startswith("_turns:")}
+        return [k for k, name in enumerate(self.graph.columns) if name in parts]
+
+    def terms_at(self, angles: Array, places: Array) -> Array:
+        """The terms at angles, as they come, (factors, columns, n).
+
+        Raises :class:`DeclarationError` where a loop does not close, or a term is not finite.
+        """
+        values = np.empty((4, len(self.graph.columns), angles.size))
+        for start in range(0, angles.size, _BLOCK):
+            cut = slice(start, start + _BLOCK)
+            for row, found in zip(values, self.terms(angles[None, cut], places[:, cut], self.p), strict=True):
+                row[:, cut] = found.full()
+        self._refuse(angles, values)
+        return values
+
+    def columns_at(self, angles: Array, places: Array, rate: float, acceleration: float) -> Array:
+        """The columns themselves at angles, (columns, n)."""
+        return np.asarray(self.graph.instant(0.0, angles[None], rate, acceleration, places, self.p).full())
+
+    def settle(self, angles: Array, places: Array) -> Array:
+        """The iterated coordinates at angles, from ones that are near. Raises :class:`DeclarationError` where there are none."""
+        if self.graph.newton is None:
+            return places
+        for _ in range(_NEWTON_STEPS):
+            correction, size = (found.full() for found in self.graph.newton.step(places, 0.0, angles[None], self.p))
+            places = places + correction
+            if np.all(size < _NEWTON_DONE):
+                return places
+        bad = angles[int(np.argmax(~(size[0] < _NEWTON_DONE)))]
+        raise DeclarationError(f"table: the loops closed by {self.graph.newton.joints} did not converge{self._not_round(bad)}")
+
+    def unwind(self, columns: Array, turns: Array) -> None:
+        """Add to the angles known up to whole turns (columns, n), and to their sums, the turns (m, n) that they lack.
+
+        Whole turns that columns count are then in the angles, and the columns are zero.
+        """
+        own = {self.graph.columns[k]: turn for k, turn in zip(self.loose, turns, strict=True)}
+        whole = [k for k, name in enumerate(self.graph.columns) if name.startswith("_turns:")]
+        own |= {self.graph.columns[k]: math.tau * columns[k] for k in whole}
+        for k, name in enumerate(self.graph.columns):
+            for part, sign in self.graph.wrapped.get(name, {}).items():
+                columns[k] += sign * own[part]
+        columns[whole] = 0.0
+
+    def follow(self, turns: int) -> tuple[Course, Array]:
+        """Some turns from the start on, and the terms there, angles made continuous.
+
+        Raises :class:`DeclarationError` where a loop cannot be closed all the way, or passes a dead centre.
+        """
+        steps = np.arange(turns * _STEPS).astype(np.float64) + _OFFSET
+        angles = self.start + self.way * math.tau / _STEPS * steps
+        here = np.array(self.graph.newton.guess if self.graph.newton else ())[:, None]
+        places = np.empty((here.size, angles.size))
+        for i in range(angles.size if self.graph.newton else 0):
+            here = self.settle(angles[i : i + 1], here)
+            places[:, i] = here[:, 0]
+        values = self.terms_at(angles, places)
+        for name, closure in self._closures(values[0]):
+            passes = passes_dead_centre(closure)
+            if passes.any():
+                near = describe_coordinate(self.joint, "angle", angles[int(np.argmax(passes))])
+                raise DeclarationError(f"{name} is at a dead centre, or about a degree from one, near {near}")
+        loose = values[0, self.loose].copy()
+        course = Course(angles, places, np.unwrap(loose))
+        self.unwind(values[0], course.loose - loose)
+        return course, values
+
+    def _refuse(self, angles: Array, values: Array) -> None:
+        for name, closure in self._closures(values[0]):
+            if not (closure > 0.0).all():
+                bad = angles[int(np.argmax(~(closure > 0.0)))]
+                raise DeclarationError(f"{name} cannot be closed{self._not_round(bad)}")
+        limit = _GAP * self.graph.extent(self.p)
+        for name, gaps in zip(self.graph.columns, values[0], strict=True):
+            if name.startswith("_gap:") and not (np.abs(gaps) <= limit).all():
+                bad = angles[int(np.argmax(~(np.abs(gaps) <= limit)))]
+                what = f"what was found for the loop closed by '{name.partition(':')[2]}' does not close it"
+                raise DeclarationError(f"table: {what}{self._not_round(bad)}")
+        found = np.argwhere(~np.isfinite(values).all(axis=0))
+        if found.size:
+            k, i = found[0]
+            at = where([(self.joint, "angle", angles[i])])
+            raise DeclarationError(f"table: '{self.graph.columns[k]}' is not finite at rest{at}")
+
+    def _closures(self, columns: Array) -> Iterator[tuple[str, Array]]:
+        """The closures among the columns, with the beginning of a message."""
+        joints = self.graph.scene.mechanism.joints
+        for name, values in zip(self.graph.columns, columns, strict=True):
+            kind, _, closing = name.partition(":")
+            if kind == "_closure":
+                yield f"table: the loop closed by {'joint' if closing in joints else 'constraint'} '{closing}'", values
+
+    def _not_round(self, angle: float) -> str:
+        return f"{where([(self.joint, 'angle', angle)])}; expected a drive that can turn all the way round"
+
+
+def the_drive(graph: SceneGraph) -> str:
+    """The one driven joint of a scene. Raises :class:`DeclarationError` where there is not one, or where it slides."""
+    if len(graph.driven) != 1:
+        named = ", ".join(f"'{name}'" for name in graph.driven) or "none"
+        raise DeclarationError(f"table: expected one driven joint, whose angle decides all, got {named}")
+    (joint,) = graph.driven
+    if graph.scene.mechanism.joints[joint].coordinate != "angle":
+        raise DeclarationError(f"table: the driven joint '{joint}' slides; expected one that turns, for only its angle comes again")
+    return joint
+
+
+def cycle_of(graph: SceneGraph, p: Array, rates: tuple[float, float]) -> Cycle:
+    """The cycle of a scene for parameters ``p`` and motions up to a rate and an acceleration.
+
+    Raises :class:`DeclarationError`, with the reason, where there is none.
+    """
+    drive = Drive.of(graph, p)
+    for turns in range(1, TURNS + 1):
+        course, values = drive.follow(2 * turns)
+        sizes = _sizes(graph, np.abs(values).max(axis=-1))
+        if turns == 1:
+            _refuse_other_powers(drive, course, sizes, rates)
+        half = course.angles.size // 2
+        gained = drive.way * (values[..., half:] - values[..., :half])
+        near = _SAME * np.abs(values).max(axis=-1) + _FAINT * sizes
+        change = gained[0].mean(axis=-1)
+        change[np.abs(change) <= near[0]] = 0.0
+        gained[0] -= change[:, None]
+        noise = np.abs(gained).max(axis=-1)
+        moved = ~(noise <= near).all(axis=0)
+        if not moved.any():
+            # An angle gains whole turns, and just so.
+            gain = change / math.tau
+            whole = np.rint(gain)
+            drift = np.where((whole != 0.0) & (np.abs(gain - whole) < _SAME), whole, gain) / turns
+            return Cycle(drive, course, turns, drift, _ROUNDING * sizes + 2.0 * noise)
+    names = [name for name, does in zip(graph.columns, moved, strict=True) if does]
+    wound = any(name.startswith("_turned:") for name in graph.columns)
+    raise DeclarationError(
+        f"table: expected columns that repeat after at most {TURNS} turns of joint '{drive.joint}', but {_listed(names)} go on"
+        f"{'; a load that sees an angle with its turns may wind up' if wound else ''}"
+    )
+
+
+def _refuse_other_powers(drive: Drive, course: Course, sizes: Array, rates: tuple[float, float]) -> None:
+    """Derivatives at rest see nothing of a load by the rate's sign, or its size: so the columns themselves are looked at."""
+    columns = drive.graph.columns
+    some = slice(0, _STEPS, 7)
+    angles, places = course.angles[some], course.places[:, some]
+    own = drive.terms_at(angles, places)
+    wrong: npt.NDArray[np.bool_] = np.zeros(len(columns), dtype=bool)
+    for by_rate, by_acceleration in _PROBES:
+        rate, acceleration = by_rate * (rates[0] or 1.0), by_acceleration * (rates[1] or 1.0)
+        factors = np.array([1.0, rate, rate**2, acceleration])
+        found = drive.columns_at(angles, places, rate, acceleration)
+        near = _SAME * np.abs(found).max(axis=-1) + _FAINT * np.abs(factors) @ sizes
+        wrong |= ~(np.abs(found - np.tensordot(factors, own, 1)).max(axis=-1) <= near)
+    if wrong.any():
+        names = [name for name, is_wrong in zip(columns, wrong, strict=True) if is_wrong]
+        raise DeclarationError(
+            f"table: expected columns quadratic in the rate of joint '{drive.joint}', but a load by a rate's sign, size or other "
+            f"power enters {_listed(names)}"
+        )
+
+
+def _sizes(graph: SceneGraph, peaks: Array) -> Array:
+    """The largest terms of the same unit, (factors, columns), of a misfit one; the rate's square and the acceleration have one."""
+    kinds = [_kind(graph, name) for name in graph.columns]
+    alike = np.stack((peaks[0], peaks[1], *[np.maximum(peaks[2], peaks[3])] * 2))
+    largest = {kind: alike[:, [k == kind for k in kinds]].max(axis=-1) for kind in set(kinds)}
+    sizes: Array = np.array([largest[kind] for kind in kinds]).reshape(len(kinds), 4).T
+    sizes[0, [name.startswith(("_gap:", "_misfit:")) for name in graph.columns]] = 1.0
+    return sizes
+
+
+def _kind(graph: SceneGraph, column: str) -> str:
+    """What columns are compared by: their unit, or, where that says nothing, their name."""
+    group = column.partition(":")[0]
+    if group == "_turns":
+        return ANGLE
+    if group.startswith("_"):
+        return column
+    unit = unit_in(graph.scene.mechanism.joints, column)
+    return column if unit == "1" else unit
+
+
+def _listed(columns: Collection[str]) -> str:
+    """Some columns for a reader, outputs before what is none."""
+    ordered = sorted(columns, key=lambda name: name.startswith("_"))
+    more = f" and {len(ordered) - _NAMED} more" if len(ordered) > _NAMED else ""
+    return ", ".join(f"'{name}'" for name in ordered[:_NAMED]) + more

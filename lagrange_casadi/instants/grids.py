@@ -1,0 +1,156 @@
+"""Grids of (t, xi) filled at the speed of memory: small products over a basis, written straight into the result.
+
+A grid worth it is filled by compiled code, on all cores; any other by NumPy, in blocks. Both take the same operations in the same
+order, so they give the same bits.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import math
+import warnings
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from importlib import resources
+from typing import Any
+
+import numpy as np
+
+from ..codegen import find_compiler
+from ..codegen.compiler import loaded
+from ..declare.density import Array
+from ..errors import CompilerError, DeclarationError
+from ..system.room import require
+
+WORTH_COMPILING = 1 << 14
+"""Values from which on compiled code fills a grid."""
+
+_STREAMING = 1 << 24
+"""Bytes from which on a grid goes past the caches."""
+
+_BLOCK = 1 << 14
+_LINE = 64
+_SHARE = 1 << 21
+_OPTIONS = ("-O3", "-march=native")
+
+Load = tuple[Array, Array, Array]
+"""Station, constant and slope of what acts there: sections on its base side feel constant + slope (station - u)."""
+
+
+def fill(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array, threads: int = 1) -> None:
+    """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what acts at stations.
+
+    ``columns`` and the rows of ``basis`` are three or four; ``u`` are the ratios. Raises :class:`DeclarationError` for an ``out``
+    of another shape.
+    """
+    if out.shape != (columns[0].size, u.size):
+        raise DeclarationError(f"out: expected an array of shape {(columns[0].size, u.size)}, got {out.shape}")
+    plain = out.flags.c_contiguous and out.dtype == np.float64
+    library = _compiled() if plain and out.size >= WORTH_COMPILING else None
+    if library is None:
+        _fill_in_blocks(columns, basis, loads, u, out)
+        return
+    flat, functions, ratios = _flat(columns, basis, loads, u)
+    n, k = out.shape
+    shares = max(1, min(threads, out.size // _SHARE, n))
+    size = -(-n // shares)
+
+    def run(start: int) -> None:
+        addresses = [row.ctypes.data + start * row.itemsize for row in flat]
+        terms, acting = addresses[: len(columns)], addresses[len(columns) :]
+        library.lagrange_casadi_grid(
+            *(min(size, n - start), k, len(terms), (ctypes.c_void_p * len(terms))(*terms), functions.ctypes.data),
+            *(len(loads), (ctypes.c_void_p * len(acting))(*acting), ratios.ctypes.data),
+            *(int(out.nbytes >= _STREAMING), out[start:].ctypes.data),
+        )
+
+    if shares == 1:
+        run(0)
+        return
+    with ThreadPoolExecutor(shares) as pool:
+        list(pool.map(run, range(0, n, size)))
+
+
+def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array) -> Array:
+    """Over the instants of n designs the value largest in size at each ratio, with its sign: (n, xi).
+
+    ``columns`` and what ``loads`` consist of are (n, t), ``basis`` is (terms, n, xi); see :func:`fill`. Of values of one size the
+    positive one is given; a design whose columns or loads are not all finite has NaN.
+    """
+    n, t = columns[0].shape
+    out = np.empty((n, u.size))
+    finite = np.all([np.isfinite(row).all(axis=1) for row in (*columns, *(row for load in loads for row in load))], axis=0)
+    library = _compiled() if t * out.size >= WORTH_COMPILING else None
+    if library is None:
+        for i in range(n):
+            grid = np.empty((t, u.size))
+            _fill_in_blocks([column[i] for column in columns], basis[:, i], [(a[i], b[i], c[i]) for a, b, c in loads], u, grid)
+            high, low = grid.max(axis=0), grid.min(axis=0)
+            out[i] = np.where(high >= -low, high, low)
+        out[~finite] = np.nan
+        return out
+    flat, functions, ratios = _flat(columns, basis, loads, u)
+    addresses = [array.ctypes.data for array in flat]
+    terms, acting = addresses[: len(columns)], addresses[len(columns) :]
+    library.lagrange_casadi_largest(
+        *(n, t, u.size, len(terms), (ctypes.c_void_p * len(terms))(*terms), functions.ctypes.data),
+        *(len(loads), (ctypes.c_void_p * len(acting))(*acting), ratios.ctypes.data, out.ctypes.data),
+    )
+    out[~finite] = np.nan
+    return out
+
+
+def empty(what: str, shape: tuple[int, ...], dtype: Any = np.float64) -> Array:
+    """An array to fill, from the start of a cache line: what crosses lines is stored at half the speed.
+
+    Raises :class:`SizeError` where this machine has less memory than that.
+    """
+    require(what, shape)
+    count = math.prod(shape)
+    room = np.empty(count + _LINE // np.dtype(dtype).itemsize, dtype)
+    first = -room.ctypes.data // room.itemsize % (_LINE // room.itemsize)
+    return room[first : first + count].reshape(shape)
+
+
+def _flat(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array) -> tuple[list[Array], Array, Array]:
+    """Columns and loads one after another, basis and ratios, as C takes them."""
+    rows = [np.ascontiguousarray(row, dtype=np.float64) for row in (*columns, *(row for load in loads for row in load))]
+    return rows, np.ascontiguousarray(basis, dtype=np.float64), np.ascontiguousarray(u, dtype=np.float64)
+
+
+def _fill_in_blocks(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array) -> None:
+    height = max(1, _BLOCK // max(1, out.shape[1]))
+    for start in range(0, out.shape[0], height):
+        block = slice(start, start + height)
+        rows = out[block]
+        np.multiply(columns[0][block, None], basis[0], out=rows)
+        for column, function in zip(columns[1:], basis[1:], strict=True):
+            rows += column[block, None] * function
+        for station, constant, slope in loads:
+            at = station[block, None]
+            seen = (u < at) | ((u >= 1.0) & (at >= 1.0))
+            rows += np.where(seen, constant[block, None] + slope[block, None] * (at - u), 0.0)
+
+
+@functools.cache
+def _compiled() -> Any | None:
+    """The C functions, or None where there is no compiler that takes them."""
+    source = resources.files("lagrange_casadi.codegen").joinpath("grids.c").read_text()
+    try:
+        compiler = find_compiler()
+        if compiler is None:
+            return None
+        library = loaded(source, compiler, _OPTIONS)
+    except CompilerError as error:
+        warnings.warn(f"{error}; NumPy fills the grids", stacklevel=4)
+        return None
+    integer, number, pointer = ctypes.c_longlong, ctypes.c_int, ctypes.c_void_p
+    arguments = {
+        "lagrange_casadi_grid": [integer, integer, number, pointer, pointer, number, pointer, pointer, number, pointer],
+        "lagrange_casadi_largest": [integer, integer, integer, number, pointer, pointer, number, pointer, pointer, pointer],
+    }
+    for name, types in arguments.items():
+        entry = getattr(library, name)
+        entry.restype, entry.argtypes = None, types
+    return library

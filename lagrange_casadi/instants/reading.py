@@ -1,0 +1,103 @@
+"""A scene read from a table: its drive is evaluated, as on any rung, and everything else is read at the drive's angle."""
+
+from __future__ import annotations
+
+import functools
+import math
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import casadi as ca
+import numpy as np
+
+from ..codegen.emit import NOT_FINITE, OK
+from ..declare.density import Array
+from ..equations.scene_graph import SceneGraph
+from ..system.room import cores
+from .backends import Table, empty_table, run
+from .cycle import TURNS, the_drive
+from .cycle_table import CycleTable
+from .rung import Rung
+from .solution import Provenance
+from .tabulate import tabulate
+
+_SHARE = 1 << 14
+_MARGIN = 1.01
+
+
+def columns(
+    graph: SceneGraph, t: Array, p: Array, rung: Rung, threads: int | None = None, *, into: Table | None = None
+) -> tuple[Table, Provenance]:
+    """The columns of a graph at instants ``t`` and parameters ``p``: evaluated, or read from a table, as the rung says.
+
+    ``into`` is what an earlier call with the same rung and as many instants gave, to be filled anew. Raises
+    :class:`DeclarationError`, with the reason, where the scene cannot be tabulated, and what :func:`.run` raises.
+    """
+    if rung.table is None:
+        return run(graph, t, p, rung, threads, into=into)
+    the_drive(graph)
+    drive, provenance = run(drive_of(graph), t, p, replace(rung, table=None), threads)
+    angle, rate, acceleration, *within = drive.out
+    cycle = _serving(graph, p, rung, rate, acceleration)
+    phase = within[cycle.turns - 1]
+    table = into or replace(empty_table(graph, drive.stages, t.size), cycle=cycle)
+    table.iterated[:] = np.nan
+    table.status[:] = drive.status
+
+    def fill(start: int) -> None:
+        cut = slice(start, start + size)
+        cycle.evaluate(phase[cut], rate[cut], acceleration[cut], table.out[:, cut])
+
+    shares = max(1, min(threads or cores(), t.size // _SHARE))
+    size = -(-t.size // shares)
+    if shares == 1:
+        fill(0)
+    else:
+        with ThreadPoolExecutor(shares) as pool:
+            list(pool.map(fill, range(0, t.size, size)))
+    for k in np.flatnonzero(cycle.drift):
+        table.out[k] += cycle.drift[k] * (angle - phase)
+    table.status[~np.isfinite(table.out.sum(axis=0)) & (table.status == OK)] = NOT_FINITE
+    return table, replace(provenance, rung=rung.options)
+
+
+def table_of(graph: SceneGraph, t: Array, p: Array, rung: Rung) -> CycleTable:
+    """The table that :func:`columns` reads. Raises :class:`DeclarationError` where the scene cannot be tabulated."""
+    the_drive(graph)
+    _, rate, acceleration, *_ = run(drive_of(graph), t, p, Rung("vm"))[0].out
+    return _serving(graph, p, rung, rate, acceleration)
+
+
+def _serving(graph: SceneGraph, p: Array, rung: Rung, rate: Array, acceleration: Array) -> CycleTable:
+    assert rung.table is not None
+    cycle = cycle_table(graph, tuple(p), rung.table, (_above(rate), _above(acceleration)))
+    return _single(cycle) if rung.precision == "single" else cycle
+
+
+@functools.lru_cache(maxsize=32)
+def cycle_table(graph: SceneGraph, p: tuple[float, ...], table: float, rates: tuple[float, float]) -> CycleTable:
+    """The table of a scene for parameters ``p``, kept while the process lasts; see :func:`.tabulate`."""
+    return tabulate(graph, np.array(p), table, rates)
+
+
+_single = functools.lru_cache(maxsize=32)(CycleTable.single)
+
+
+@functools.lru_cache(maxsize=32)
+def drive_of(graph: SceneGraph) -> SceneGraph:
+    """The graph of the one drive alone: its angle, rate and acceleration, and the angle within one turn, two, and so on."""
+    t, d, rate, acceleration, _, p = graph.instant.sx_in()
+    within = [d - math.tau * (turns * ca.floor(d * (1 / (turns * math.tau)))) for turns in range(1, TURNS + 1)]
+    out = ca.densify(ca.vertcat(d, rate, acceleration, *within))
+    names = [graph.instant.name_in(i) for i in range(graph.instant.n_in())]
+    instant = ca.Function("instant", [t, d, rate, acceleration, ca.SX(0, 1), p], [out], names, ["out"], {"cse": True})
+    columns = ("angle", "rate", "acceleration", *(f"within:{turns}" for turns in range(1, TURNS + 1)))
+    return replace(graph, instant=instant, newton=None, columns=columns, wrapped={})
+
+
+def _above(values: Array) -> float:
+    """A little more than the largest size: a table serves motions that are nearly as fast as well."""
+    largest = float(np.max(np.abs(values), initial=0.0))
+    if not largest or not math.isfinite(largest):
+        return largest
+    return float(f"{_MARGIN * largest:.2e}")

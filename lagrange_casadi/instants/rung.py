@@ -1,0 +1,84 @@
+"""The rungs of the trade between speed and accuracy: by what, in which precision and how exactly a scene is evaluated."""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import dataclass
+from typing import Literal
+
+from ..arithmetic.compensated import PRECISIONS, Precision
+from ..errors import DeclarationError, UnknownNameError
+
+Backend = Literal["auto", "lanes", "c", "vm"]
+BACKENDS: tuple[Backend, ...] = ("auto", "lanes", "c", "vm")
+
+FEWEST_NODES = 8
+MOST_STEPS = 1000
+"""Each step squares what a loop still misses: after some ten nothing changes."""
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One choice of each.
+
+    Parameters
+    ----------
+    backend
+        ``lanes`` compiles for packs of instants, by a C++ compiler; ``c`` for one instant at a time; ``vm`` runs in CasADi's
+        virtual machine. ``auto`` takes the first of them that there is a compiler for, and warns where there is none.
+    precision
+        ``double``, or ``single``: every operation, in code without a double; phases are kept all the same.
+    newton
+        None solves loops in closed form where there is one, and iterates the others until they are closed. A number, at most
+        1000, takes so many steps of Newton's method for every loop, from the instant before, and no more; at the first instant it
+        is closed.
+    table
+        A whole number of nodes, or a wanted accuracy below 1: outputs are read from a table over the turn of the one drive.
+    flags
+        Further flags of the compiler, after the package's own.
+
+    Raises :class:`DeclarationError` for what does not go together.
+    """
+
+    backend: Backend = "auto"
+    precision: Precision = "double"
+    newton: int | None = None
+    table: float | None = None
+    flags: str = ""
+
+    def __post_init__(self) -> None:
+        for kind, name, valid in (("backend", self.backend, BACKENDS), ("precision", self.precision, PRECISIONS)):
+            if name not in valid:
+                raise UnknownNameError(kind, str(name), valid)
+        if self.newton is not None and (type(self.newton) is not int or not 1 <= self.newton <= MOST_STEPS):
+            raise DeclarationError(
+                f"newton: expected a number of steps, from 1 to {MOST_STEPS} (after some ten nothing changes), got {self.newton!r}"
+            )
+        if self.table is not None and not _tabulates(self.table):
+            raise DeclarationError(
+                f"table: expected a number of nodes, at least {FEWEST_NODES}, or an accuracy between 0 and 1, got {self.table!r}"
+            )
+        try:
+            words = shlex.split(self.flags)
+            if "\0" in self.flags:
+                raise ValueError("they hold a null character")
+        except (ValueError, AttributeError) as error:
+            raise DeclarationError(f"flags: expected words for a compiler, got {self.flags!r}: {error}") from None
+        if self.newton is not None and self.table is not None:
+            raise DeclarationError("newton and table exclude each other: a table is read, no loop is closed")
+        if self.backend == "vm" and self.precision == "single":
+            raise DeclarationError("backend 'vm' computes in doubles only; precision 'single' needs lanes or c")
+        if self.backend == "vm" and words:
+            raise DeclarationError(f"backend 'vm' compiles nothing; flags '{self.flags}' need lanes or c")
+
+    @property
+    def options(self) -> str:
+        """The rung as options of the command line, as a shell takes them: only what differs from the default."""
+        words = [f"--{name} {shlex.quote(str(value))}" for name, value in vars(self).items() if value != getattr(type(self), name)]
+        return " ".join(words) or "(default)"
+
+
+def _tabulates(table: object) -> bool:
+    if type(table) is int:
+        return table >= FEWEST_NODES
+    return type(table) is float and 0.0 < table < 1.0

@@ -1,0 +1,126 @@
+"""The quantities of a scene as curves over time, at any times: what :mod:`.summits` searches, by CasADi's virtual machine."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..codegen.emit import NOT_CONVERGED
+from ..codegen.stages import Stages
+from ..declare.density import Array, NumericDensity
+from ..equations.mobility import LAW
+from ..equations.scene_graph import SceneGraph
+from ..summits.between import Flags
+from ..summits.panels import Samples
+from ..summits.search import Curves, Peaks, peaks
+from ..summits.sharpness import Sharpness, bent
+from .backends import follow
+from .section_law import SectionLaw, StationLoad
+
+_BLOCK = 4096
+
+
+@dataclass(frozen=True, eq=False)
+class SectionForce:
+    """A section force of a link: the columns of its law and of what acts at each station, and how its mass lies."""
+
+    force: str
+    law: tuple[int, ...]
+    stations: tuple[tuple[int, ...], ...]
+    length: float
+    density: NumericDensity
+
+    def curves(self, columns: Array) -> tuple[Array, Array]:
+        """Ratios and values, each (curves, t): see :meth:`.SectionLaw.curves`."""
+        law = dict(zip(LAW, columns[list(self.law)], strict=True))
+        loads = tuple(StationLoad("", *columns[list(station)]) for station in self.stations)
+        places, values = SectionLaw(self.length, self.density, law, loads).curves(self.force)
+        return places.T, values.T
+
+
+Quantity: TypeAlias = "tuple[int, ...] | SectionForce"
+"""A column, two that are the components of a vector whose size is meant, or a section force."""
+
+
+@dataclass(frozen=True, eq=False)
+class Signals:
+    """Quantities of a graph, in its ``stages``, for parameters ``p`` over instants ``t``, with iterated coordinates ``z`` there.
+
+    ``newton`` is as in :class:`.Rung`. ``turned`` are, by the number of an angle that loops set, its values at the instants, which
+    tell its turns.
+    """
+
+    graph: SceneGraph
+    stages: Stages
+    sharpness: Sharpness
+    quantities: Sequence[Quantity]
+    t: Array
+    p: Array
+    z: Array
+    newton: int | None = None
+    turned: Mapping[int, Array] = field(default_factory=dict)
+
+    def peaks(self, units: Sequence[int], scales: Sequence[float] = ()) -> Peaks:
+        """The peaks of the quantities over all times between the first instant and the last.
+
+        ``units`` numbers the units of all, and ``scales`` gives for each unit how large others are that have it.
+        """
+        samples = self.samples(self.t, self.z, np.arange(self.t.size))
+        counts = [len(values) for _, values in self.curves(np.zeros((len(self.graph.columns), 1)), np.zeros(1, int))]
+        quantities = tuple(q for q, count in enumerate(counts) for _ in range(count))
+        curves = Curves(quantities, tuple(units), tuple(scales), self.sharpness.watches, self.sharpness.knots)
+        with np.errstate(all="ignore"):
+            return peaks(self, curves, self.t, samples, bent(self.graph, self.sharpness, self.t, self.p))
+
+    def at(self, t: Array) -> Samples:
+        """All curves at times; NaN where iterated loops do not close."""
+        near = self.near(t)
+        z, failed = self.closed(t, near)
+        found = self.samples(t, z, near)
+        return found._replace(values=np.where(failed, np.nan, found.values))
+
+    def near(self, t: Array) -> npt.NDArray[np.intp]:
+        """The instants that are nearest to times."""
+        step = (self.t[-1] - self.t[0]) / max(self.t.size - 1, 1) or 1.0
+        return np.asarray(np.clip(np.round((t - self.t[0]) / step), 0, self.t.size - 1), np.intp)
+
+    def closed(self, t: Array, near: npt.NDArray[np.intp]) -> tuple[Array, Flags]:
+        """The iterated coordinates at times next to instants (z, t), and where the loops do not close."""
+        z = np.zeros((self.z.shape[0], t.size))
+        failed = np.zeros(t.size, dtype=bool)
+        for k in range(t.size if self.graph.newton else 0):
+            at, status = follow(self.graph, t[k : k + 1], self.p, self.z[:, near[k]], stages=self.stages, newton=self.newton)
+            z[:, k], failed[k] = at[:, 0], status[0] == NOT_CONVERGED
+        return z, failed
+
+    def samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:
+        """All curves at times next to instants, where the iterated coordinates are told."""
+        blocks = [slice(start, start + _BLOCK) for start in range(0, t.size, _BLOCK)]
+        parts = [self._samples(t[block], z[:, block], near[block]) for block in blocks]
+        return Samples(*(np.concatenate(rows, axis=1) for rows in zip(*parts, strict=True)))
+
+    def _samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:
+        columns = self.stages.instant(*self.stages.drive(t[None], self.p), z, self.p).full()
+        watched = self.sharpness.watched(t[None], *self.graph.motion(t[None], self.p), z, self.p).full()
+        with np.errstate(all="ignore"):
+            places, values = (np.concatenate(rows) for rows in zip(*self.curves(columns, near), strict=True))
+        return Samples(values, places, watched)
+
+    def curves(self, columns: Array, near: npt.NDArray[np.intp]) -> list[tuple[Array, Array]]:
+        """Of each quantity its curves, as ratios and values (curves, t), from the graph's columns (columns, t)."""
+        found = []
+        for q, quantity in enumerate(self.quantities):
+            if isinstance(quantity, SectionForce):
+                found.append(quantity.curves(columns))
+                continue
+            rows = columns[list(quantity)]
+            values = rows[0] if len(rows) == 1 else np.hypot(*rows)
+            if q in self.turned:
+                values = values + math.tau * np.round((self.turned[q][near] - values) / math.tau)
+            found.append((np.full((1, values.size), np.nan), values[None]))
+        return found

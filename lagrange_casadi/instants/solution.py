@@ -1,0 +1,308 @@
+"""What an evaluation gives: named arrays over time, section forces over time and xi/l, and peaks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..declare.density import Array
+from ..declare.description import Description, density_of
+from ..declare.limits import no_sections
+from ..declare.notes import notes
+from ..errors import DeclarationError, LagrangeCasadiError, UnknownNameError
+from ..quantities import QUANTITIES, quantity_of
+from ..system.room import require
+from .section_law import FORCES, Basis, SectionLaw, StationLoad, made_of
+
+if TYPE_CHECKING:
+    import xarray
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """How the numbers were made. Holds no clock, no user and no path; ``rung`` are the options of the :class:`.Rung`."""
+
+    backend: str
+    precision: str
+    compiler: str
+    flags: str
+    rung: str
+    versions: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The value largest in size of a quantity, with its sign, and where it is; ``xi`` is a ratio, None off a link.
+
+    ``value`` is NaN where it could not be told between the instants, and ``least`` then the largest size that was found.
+    """
+
+    name: str
+    value: float
+    unit: str
+    t: float
+    xi: float | None = None
+    least: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class JointMotion:
+    """Coordinate, rate and acceleration of a joint, each (t,)."""
+
+    value: Array
+    rate: Array
+    acceleration: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Reaction:
+    """Action of the joint's parent on its child, ground axes, each (t,) [N]; ``mz`` [N m] is None where the joint bears none."""
+
+    fx: Array
+    fy: Array
+    mz: Array | None
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """Place of a body's base [m] and direction of its axis [rad], each (t,); ``angle`` is None for a point mass."""
+
+    x: Array
+    y: Array
+    angle: Array | None
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """The forces inside a link. The grids are made when first asked for; the law itself is seven numbers an instant."""
+
+    law: SectionLaw
+    xi: Array
+
+    def __repr__(self) -> str:
+        return f"<Section of a link of {self.law.length:g} m: {self.law.coefficients['n0'].size} instants, {self.xi.size} ratios>"
+
+    @cached_property
+    def axial(self) -> Array:
+        """Axial force (t, xi) [N], tension positive."""
+        return self._grid("axial")
+
+    @cached_property
+    def shear(self) -> Array:
+        """Shear force (t, xi) [N]."""
+        return self._grid("shear")
+
+    @cached_property
+    def bending(self) -> Array:
+        """Bending moment (t, xi) [N m]."""
+        return self._grid("bending")
+
+    def _grid(self, force: str) -> Array:
+        require(f"a grid of {force}", (self.law.coefficients["n0"].size, self.xi.size))
+        return self.law.on_grid(force, self._basis)
+
+    @cached_property
+    def _basis(self) -> Basis:
+        return self.law.basis(self.xi)
+
+
+def in_order(series: Mapping[str, Array], description: Description) -> dict[str, Array]:
+    """Series in the order in which a solution keeps them: by kind, then by part as declared, then as in the table."""
+    groups = list(dict.fromkeys(q.group for q in QUANTITIES))
+    parts = [part for table in ("bodies", "joints", "constraints", "rows", "loads") for part in description[table]]
+
+    def rank(name: str) -> tuple[int, int, str, int]:
+        group, part, *rest = name.split(":")
+        part = part.removesuffix("_rate").removesuffix("_acceleration") if group == "motion" else part
+        station = rest[0] if group == "section" and rest[0] != "law" else ""
+        return groups.index(group), parts.index(part), station, QUANTITIES.index(quantity_of(name))
+
+    return {name: series[name] for name in sorted(series, key=rank)}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Solution:
+    """The outputs of a scene over its instants.
+
+    ``series`` holds every array over time by full name (``effort:O``, ``reaction:guide:fy``, ``section:link:law:n0``, ...), each of
+    shape (t,); :mod:`.quantities` says what each means. ``xi`` are the ratios of the section grids. ``undetermined`` names what
+    equilibrium does not determine, because the mechanism is over-constrained: its values are NaN. ``certificate`` holds the
+    residuals of :mod:`.certificate`, and how singular the loops are; a residual above ``tolerance`` means that the solution is
+    wrong, not that it is rounded. ``errors`` estimates by :mod:`.accuracy` how far each quantity may be off, over all
+    instants, in its unit.
+    """
+
+    case: str
+    t: Array
+    xi: Array
+    series: Mapping[str, Array]
+    description: Description
+    provenance: Provenance
+    undetermined: tuple[str, ...] = ()
+    certificate: Mapping[str, Array] = field(default_factory=dict)
+    errors: Mapping[str, float] = field(default_factory=dict)
+    tolerance: float = 0.0
+
+    @property
+    def failed(self) -> dict[str, float]:
+        """The residuals that are above the tolerance, or no numbers, and the largest of each."""
+        residuals = {name: float(np.max(v, initial=0.0)) for name, v in self.certificate.items() if name != "condition"}
+        return {name: value for name, value in residuals.items() if not value <= self.tolerance}
+
+    @property
+    def certified(self) -> bool:
+        """Whether there are residuals, and none of them fails."""
+        return any(name != "condition" for name in self.certificate) and not self.failed
+
+    def __repr__(self) -> str:
+        many = sum(1 for _ in self.names())
+        word = "certified" if self.certified else "its certificate fails" if self.failed else "no certificate"
+        return f"<Solution of {self.case}: {self.t.size} instants, {self.xi.size} ratios, {many} quantities, {word}>"
+
+    def effort(self, joint: str) -> Array:
+        """Effort of the drive at a joint (t,) [N m or N], positive along the joint's coordinate."""
+        return self._find("effort", "drive", joint, "")
+
+    def reaction(self, joint: str) -> Reaction:
+        """Reaction of a joint."""
+        fx, fy = (self._find("reaction", "joint with a reaction", joint, f":{member}") for member in ("fx", "fy"))
+        return Reaction(fx, fy, self.series.get(f"reaction:{joint}:mz"))
+
+    def motion(self, joint: str) -> JointMotion:
+        """Motion of a joint's coordinate."""
+        return JointMotion(*(self._find("motion", "joint with a motion", joint, end) for end in ("", "_rate", "_acceleration")))
+
+    def pose(self, body: str) -> Pose:
+        """Place and direction of a link or point mass."""
+        x, y = (self._find("pose", "body with a pose", body, f":{member}") for member in ("x", "y"))
+        return Pose(x, y, self.series.get(f"pose:{body}:angle"))
+
+    def section(self, link: str) -> Section:
+        """Forces inside a link."""
+        if link in self._sections:
+            return self._sections[link]
+        bodies = self.description["bodies"]
+        if link not in bodies:
+            raise UnknownNameError("link with sections", link, self._sections)
+        if "density" in bodies[link]:
+            raise DeclarationError(f"the sections of link '{link}' were not wanted; want section:{link} too")
+        links = [name for name, body in bodies.items() if body["length"] is not None]
+        raise DeclarationError(no_sections(link, link=link in links, links=links))
+
+    @property
+    def links_with_sections(self) -> tuple[str, ...]:
+        """The links whose sections were wanted."""
+        return tuple(self._sections)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is worth a word though all is right: points that slide beyond the end of a link."""
+        return tuple(notes(self.t, self.series, self.description))
+
+    def during(self, instants: slice) -> Solution:
+        """The same at some of the instants."""
+        series = {name: values[instants] for name, values in self.series.items()}
+        certificate = {name: values[instants] for name, values in self.certificate.items()}
+        return replace(self, t=self.t[instants], series=series, certificate=certificate)
+
+    def determined(self, name: str) -> bool:
+        """Whether equilibrium determines a quantity, at all instants."""
+        group, part, *rest = name.split(":")
+        if group == "section" and len(rest) == 1:
+            return not made_of(self.undetermined, part, rest[0])
+        return name not in self.undetermined
+
+    def names(self) -> Iterator[str]:
+        """The full names of all quantities, the coefficients of the laws left out and the section forces in their place."""
+        yield from (name for name in self.series if not name.startswith("section:"))
+        yield from (f"section:{link}:{force}" for link in self._sections for force in FORCES)
+
+    def unit(self, name: str) -> str:
+        """The unit of a quantity by its full name."""
+        if name not in self.series and not name.startswith("certificate:"):
+            self._of_section(name)
+        joint = name.split(":")[1].removesuffix("_rate").removesuffix("_acceleration")
+        kind = self.description["joints"].get(joint, {}).get("coordinate") or "angle"
+        return quantity_of(name).unit_for(kind)
+
+    def array(self, name: str) -> Array:
+        """A quantity by its full name: (t,), or (t, xi) for ``section:LINK:FORCE``."""
+        if name in self.series:
+            return self.series[name]
+        link, force = self._of_section(name)
+        grid: Array = getattr(self._sections[link], force)
+        return grid
+
+    def extremes(self, name: str) -> tuple[Array, Array | None]:
+        """A quantity at every instant, (t,); of a section force the value largest in size along the link, and its ratio xi/l."""
+        if name in self.series:
+            return self.series[name], None
+        link, force = self._of_section(name)
+        places, values = self._sections[link].law.extreme(force)
+        return values, places
+
+    def peak(self, name: str) -> Peak:
+        """The value of a quantity that is largest in size, over the instants; along a link exactly, whatever the grid of xi.
+
+        Between the instants it may be larger: :func:`.refine` gives the largest over all times.
+        """
+        values, places = self.extremes(name)
+        i = int(np.argmax(np.abs(values)))
+        return Peak(name, float(values[i]), self.unit(name), float(self.t[i]), None if places is None else float(places[i]))
+
+    def to_xarray(self) -> xarray.Dataset:
+        """All quantities as an ``xarray.Dataset`` over t and xi, with units. Raises where xarray is not installed."""
+        try:
+            import xarray
+        except ImportError:
+            raise LagrangeCasadiError("to_xarray needs xarray; install it with: pip install xarray") from None
+        data = {
+            name: (quantity_of(name).axes, self.array(name), {"units": self.unit(name)} | quantity_of(name).attributes)
+            for name in self.names()
+        }
+        coordinates = {"t": ("t", self.t, {"units": "s"}), "xi": ("xi", self.xi, {"units": "1", "long_name": "ratio xi/l"})}
+        return xarray.Dataset(data, coordinates, {"case": self.case})
+
+    @cached_property
+    def _sections(self) -> dict[str, Section]:
+        laws: dict[str, dict[str, Array]] = {}
+        stations: dict[str, dict[str, dict[str, Array]]] = {}
+        for name, values in self.series.items():
+            if name.startswith("section:"):
+                _, link, part, member = name.split(":")
+                if part == "law":
+                    laws.setdefault(link, {})[member] = values
+                else:
+                    stations.setdefault(link, {}).setdefault(part, {})[member] = values
+        return {link: self._section(link, law, stations.get(link, {})) for link, law in laws.items()}
+
+    def _section(self, link: str, law: Mapping[str, Array], stations: Mapping[str, Mapping[str, Array]]) -> Section:
+        body = self.description["bodies"][link]
+        loads = tuple(StationLoad(name, **members) for name, members in stations.items())
+        return Section(SectionLaw(body["length"], density_of(body), law, loads), self.xi)
+
+    def _of_section(self, name: str) -> tuple[str, str]:
+        """The link and the force of a section force's full name."""
+        group, _, rest = name.partition(":")
+        link, _, force = rest.partition(":")
+        if group != "section" or force not in FORCES:
+            raise UnknownNameError("quantity", name, self.names())
+        self.section(link)
+        return link, force
+
+    def multiplier(self, name: str) -> Array:
+        """Multiplier of a constraint or a non-holonomic row (t,)."""
+        return self._find("multiplier", "constraint or row with a multiplier", name, "")
+
+    def _find(self, group: str, kind: str, part: str, member: str) -> Array:
+        name = f"{group}:{part}{member}"
+        if name not in self.series:
+            parts = dict.fromkeys(
+                n.split(":")[1] for n in self.series if n.startswith(f"{group}:") and not n.endswith(("_rate", "_acceleration"))
+            )
+            raise UnknownNameError(kind, part, parts)
+        return self.series[name]

@@ -1,0 +1,347 @@
+"""Independent checks of a solution, from its own arrays: none shares the graphs that made them.
+
+The reported motions of the joints place every body anew, in plain arithmetic (:mod:`.placing`). The reported reactions, efforts,
+loads and multipliers must then balance every body (Newton-Euler), the power of drives and loads must be the change of kinetic
+energy, loops must close and the users' equations hold, and the sections at a link's base must give back what its joints do there.
+Each residual is relative, (t,).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from ..arithmetic.compensated import DTYPES, ROUNDING, Precision
+from ..declare.density import Array
+from ..declare.description import Description, density_of
+from ..instants.solution import Solution
+from .placing import Complex, Moving, axis_of, measured, oriented, place
+from .written import Written
+
+NEAR = 1e3
+_EDGE = 1e-9
+_BLOCK = 1 << 14
+_Matter = tuple[float, complex, float]
+_Action = tuple[str, Complex, Any, Any, bool]
+
+_TURNED, _ROUNDINGS = 100.0, 4.0
+TOLERANCE, LOOSE = 1e-9, 1e-3
+"""A residual above it means that the solution is wrong, not that it is rounded; in doubles, and where less was asked for."""
+
+
+@dataclass(eq=False)
+class _Tally:
+    """Forces on the bodies: what they sum to, about each centre, their power, and how large all these are.
+
+    ``pushes`` and ``twists`` are all forces and couples added up, ``flow`` the powers, none against another.
+    """
+
+    force: dict[str, Complex] = field(default_factory=dict)
+    moment: dict[str, Array] = field(default_factory=dict)
+    size: Array | float = 0.0
+    pushes: Array | float = 0.0
+    twists: Array | float = 0.0
+    power: Array | float = 0.0
+    flow: Array | float = 0.0
+
+    def bear(self, push: Array, twist: Array, size: float) -> None:
+        """Take a force and a couple into the sizes; ``size`` is the mechanism's."""
+        self.size = np.maximum(self.size, push + twist / size)
+        self.pushes, self.twists = self.pushes + push, self.twists + twist
+
+
+def certify(
+    solution: Solution,
+    equations: Sequence[Written] | None = None,
+    hidden: Mapping[str, Array] | None = None,
+    phases: Mapping[str, Array] | None = None,
+) -> dict[str, Array]:
+    """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``, ``ends``, each where it can be had.
+
+    ``equations`` are the constraints and rows of its mechanism, which a solution does not hold: without them, a solution of a
+    mechanism that has some is looked at for ``closure`` alone. ``hidden`` are forces that it does not give: multipliers that were
+    not wanted, and what is open, which takes some value all the same. ``phases`` are angles that are known up to whole turns more
+    closely than they are reported.
+    """
+    whole = replace(solution, series={**solution.series, **(hidden or {})}, undetermined=())
+    turned = replace(whole, series={**whole.series, **(phases or {})})
+    found: dict[str, list[Array]] = {}
+    scales: dict[str, float] = {}
+    for start in range(0, whole.t.size, _BLOCK):
+        block = slice(start, start + _BLOCK)
+        for name, (gaps, scale) in _residuals(whole.during(block), turned.during(block), equations).items():
+            found.setdefault(name, []).append(gaps)
+            scales[name] = max(scales.get(name, 0.0), scale)
+    return {name: np.concatenate(gaps) / (scales[name] or 1.0) for name, gaps in found.items()}
+
+
+def _residuals(solution: Solution, turned: Solution, equations: Sequence[Written] | None) -> dict[str, tuple[Array, float]]:
+    """Each residual, and the largest of what it is to be compared with; ``turned`` has angles without their turns."""
+    description = solution.description
+    joints = description["joints"]
+    if any(joint["coordinate"] and f"motion:{name}" not in solution.series for name, joint in joints.items()):
+        return {}
+    bodies = place(turned, equations or ())
+    if len(bodies) < len(description["bodies"]) + 1:
+        return {}
+    found = {"closure": (_closure(solution, bodies, equations or ()), _size(solution))}
+    wanted = [f"reaction:{name}:fx" for name in joints] + [f"load:{name}:fx" for name in description["loads"]]
+    wanted += [f"effort:{name}" for name, joint in joints.items() if joint["driven"] and name not in description["rows"].values()]
+    wanted += [f"multiplier:{name}" for name in (*description["constraints"], *description["rows"])]
+    told = equations is not None or not (description["constraints"] or description["rows"])
+    known = (name in solution.series and np.isfinite(solution.series[name]).all() for name in wanted)
+    if told and all(known):
+        matter = {name: _matter(body) for name, body in description["bodies"].items()}
+        acting = [*_acting(solution, bodies), *(push for e in equations or () for push in _held(solution, bodies, e))]
+        tally = _tally(solution, bodies, acting, matter)
+        found["balance"], found["power"] = _balance(solution, bodies, tally, matter)
+        if solution.links_with_sections:
+            found["ends"] = _ends(solution, bodies, acting, matter)
+    return found
+
+
+def tolerance(solution: Solution) -> float:
+    """What residuals are held to."""
+    exact = solution.provenance.precision == "double" and not any(
+        word in solution.provenance.rung for word in ("--newton", "--table")
+    )
+    return min(LOOSE, max(TOLERANCE, _TURNED * blur(solution))) if exact else LOOSE
+
+
+def blur(solution: Solution) -> float:
+    """What the reported angles leave open of a phase: one rounding of the largest of them [rad]."""
+    joints = solution.description["joints"]
+    angles = [f"motion:{name}" for name, joint in joints.items() if joint["coordinate"] == "angle"]
+    angles += [f"pose:{name}:angle" for name in solution.description["bodies"]]
+    reported = (solution.series[name] for name in angles if name in solution.series)
+    return _rounding(solution) * max((float(np.max(np.abs(values))) for values in reported), default=0.0)
+
+
+def _rounding(solution: Solution) -> float:
+    return ROUNDING["single" if solution.provenance.precision == "single" else "double"]
+
+
+def failure(solution: Solution) -> str:
+    """Which residuals of a solution fail, in words."""
+    worse = ", ".join(f"{name} {value:.2g}" for name, value in solution.failed.items())
+    return f"the certificate fails: {worse}, and no more than {solution.tolerance:.2g} is rounding"
+
+
+def summary(residuals: Mapping[str, Array]) -> str:
+    """The largest residuals, in one line; and how singular the loops are, where it matters."""
+    parts = [f"{name} {np.max(values):.1e}" for name, values in residuals.items() if name != "condition"]
+    said = "certificate: " + (", ".join(parts) if parts else "nothing to check, for want of outputs")
+    worst = float(np.max(residuals.get("condition", np.ones(1))))
+    return said + (f"; near a dead centre, where the loops magnify by {worst:.3g}" if worst > NEAR else "")
+
+
+def _matter(body: Description) -> _Matter:
+    """Mass, centre in the body's axes, and inertia about the centre."""
+    mass, length = body["mass"], body["length"]
+    if length is None or mass == 0.0:
+        return mass, 0j, 0.0
+    if "centre" in body:
+        return mass, body["centre"]["x"] + 1j * body["centre"]["y"], body["centre"]["inertia"]
+    _, first, second = (float(tail[0]) for tail in density_of(body).tails(np.zeros(1)))
+    middle = first / mass
+    return mass, middle * length + 0j, (second - first * middle) * length**2
+
+
+def _size(solution: Solution) -> float:
+    return sum(body["length"] or 0.0 for body in solution.description["bodies"].values()) or 1.0
+
+
+def _extent(solution: Solution) -> float:
+    """The size of the mechanism, and how far from the origin it stands: the largest of places."""
+    joints = solution.description["joints"].values()
+    points = [joint[side] for joint in joints for side in ("parent", "child")]
+    points += [point for load in solution.description["loads"].values() for point in load["points"]]
+    return _size(solution) + max((abs(p[k]) for p in points if p["body"] == "ground" for k in "xy"), default=0.0)
+
+
+def _least(solution: Solution) -> float:
+    """The force beside which what underflows is as small as a rounding."""
+    precision: Precision = "single" if solution.provenance.precision == "single" else "double"
+    return float(np.finfo(DTYPES[precision]).tiny) / ROUNDING[precision]
+
+
+def _coarseness(solution: Solution) -> float:
+    """What a rounding is of the least that fails."""
+    return _ROUNDINGS * _rounding(solution) / (LOOSE if solution.provenance.precision == "single" else TOLERANCE)
+
+
+def _closure(solution: Solution, bodies: dict[str, Moving], equations: Sequence[Written]) -> Array:
+    """Gaps of all joints, of the reported poses, and of the users' equations: over their slopes, times the length of all links."""
+    worst = np.zeros_like(solution.t)
+    for joint in solution.description["joints"].values():
+        (a, *_), (b, *_) = (bodies[p["body"]].point(p["x"], p["y"]) for p in (joint["parent"], joint["child"]))
+        slides = joint["kind"] in ("prismatic", "slot")
+        across = ((b - a) * np.conj(axis_of(joint, bodies[joint["parent"]["body"]]))).imag
+        worst = np.maximum(worst, np.abs(across if slides else b - a))
+        if joint["kind"] in ("prismatic", "weld") and oriented(solution.description, joint["child"]["body"]):
+            turned = bodies[joint["child"]["body"]].angle - bodies[joint["parent"]["body"]].angle - joint["angle"]
+            worst = np.maximum(worst, np.abs(np.exp(1j * turned) - 1.0) * _size(solution))
+    for name in solution.description["bodies"]:
+        pose = solution.pose(name)
+        worst = np.maximum(worst, np.abs(pose.x + 1j * pose.y - bodies[name].at))
+        if pose.angle is not None:
+            # An angle of many turns is reported to so many digits only.
+            off = np.abs(np.exp(1j * (pose.angle - bodies[name].angle)) - 1.0) - _ROUNDINGS * _rounding(solution) * np.abs(
+                pose.angle
+            )
+            worst = np.maximum(worst, off * _size(solution))
+    for equation in equations:
+        motion = [measured(solution, bodies, entry) for entry in equation.entries]
+        units = [1.0 if entry.kind in ("direction", "coordinate") else _size(solution) for entry in equation.entries]
+        moving = [unit + np.abs(entry[1 if equation.row else 0]) for unit, entry in zip(units, motion, strict=True)]
+        scale = np.sum(np.abs(equation.slopes_at(motion, solution.t)) * moving, axis=0)
+        missed = np.abs(equation.at(motion, solution.t)[0])
+        worst = np.maximum(worst, np.divide(missed, scale, out=missed.copy(), where=scale > 0.0) * _size(solution))
+    return worst
+
+
+def _acting(solution: Solution, bodies: dict[str, Moving]) -> Iterator[_Action]:
+    """Every force: the body, the place, the force and couple, and whether it does work."""
+    for name, joint in solution.description["joints"].items():
+        at = bodies[joint["child"]["body"]].point(joint["child"]["x"], joint["child"]["y"])[0]
+        reaction = solution.reaction(name)
+        force, couple = reaction.fx + 1j * reaction.fy, 0.0 if reaction.mz is None else reaction.mz
+        pushes: list[tuple[Any, Any, bool]] = [(force, couple, False)]
+        if f"effort:{name}" in solution.series:
+            effort = solution.effort(name)
+            axis = axis_of(joint, bodies[joint["parent"]["body"]])
+            pushes.append((0j, effort, True) if joint["coordinate"] == "angle" else (effort * axis, 0.0, True))
+        for push, twist, works in pushes:
+            yield joint["child"]["body"], at, push, twist, works
+            yield joint["parent"]["body"], at, -push, -twist, works
+    for name, load in solution.description["loads"].items():
+        fx, fy, mz = (solution.series[f"load:{name}:{k}"] for k in ("fx", "fy", "mz"))
+        for point, sign in zip(load["points"], (1.0, -1.0), strict=False):
+            at = bodies[point["body"]].point(point["x"], point["y"])[0]
+            yield point["body"], at, sign * (fx + 1j * fy), sign * mz, True
+
+
+def _held(solution: Solution, bodies: dict[str, Moving], equation: Written) -> Iterator[_Action]:
+    """What the multiplier of an equation does: along whatever stands in it."""
+    motion = [measured(solution, bodies, entry) for entry in equation.entries]
+    forces = solution.multiplier(equation.name) * equation.slopes_at(motion, solution.t)
+    push: Any
+    for entry, force in zip(equation.entries, forces, strict=True):
+        if entry.kind == "direction":
+            yield entry.part, bodies[entry.part].at, 0j, force, True
+        elif entry.kind != "coordinate":
+            yield entry.part, bodies[entry.part].point(*entry.point)[0], force * (1.0 if entry.kind == "x" else 1j), 0.0, True
+        else:
+            joint = solution.description["joints"][entry.part]
+            child, parent = joint["child"]["body"], joint["parent"]["body"]
+            at = bodies[child].point(joint["child"]["x"], joint["child"]["y"])[0]
+            turns = joint["coordinate"] == "angle"
+            push, twist = (0j, force) if turns else (force * axis_of(joint, bodies[parent]), 0.0)
+            yield child, at, push, twist, True
+            yield parent, at, -push, -twist, True
+
+
+def _tally(solution: Solution, bodies: dict[str, Moving], acting: Sequence[_Action], matter: Mapping[str, _Matter]) -> _Tally:
+    tally = _Tally()
+    for body, at, force, couple, works in acting:
+        if body == "ground":
+            continue
+        motion = bodies[body]
+        _, centre, _ = matter[body]
+        middle = motion.point(centre.real, centre.imag)[0]
+        moment = (np.conj(at - middle) * force).imag + couple
+        tally.force[body] = tally.force.get(body, 0j) + force
+        tally.moment[body] = tally.moment.get(body, 0.0) + moment
+        tally.bear(np.abs(force), np.abs(couple), _size(solution))
+        if works:
+            local = (at - motion.at) * np.exp(-1j * motion.angle)
+            speed = motion.point(local.real, local.imag)[1]
+            tally.power = tally.power + (np.conj(speed) * force).real + couple * motion.rate
+            tally.flow = tally.flow + np.abs(speed) * np.abs(force) + np.abs(couple * motion.rate)
+    return tally
+
+
+def _weight(solution: Solution, motion: Moving, mass: float, reach: float) -> Array:
+    """The inertia of a body and its weight [N], none against another: of its origin, and of what turns about it."""
+    turning = motion.rate**2 + np.abs(motion.acceleration)
+    return np.asarray(mass * (np.abs(motion.change) + turning * reach + abs(complex(*solution.description["gravity"]))))
+
+
+def _balance(
+    solution: Solution, bodies: dict[str, Moving], tally: _Tally, matter: Mapping[str, _Matter]
+) -> tuple[tuple[Array, float], tuple[Array, float]]:
+    """Newton-Euler for every body, beside the largest force; and power, beside all that flows.
+
+    And beside what reported digits leave open: those of places, which give arms, and of the joints' rates, of which the rates of
+    bodies are sums and differences.
+    """
+    gravity, size = complex(*solution.description["gravity"]), _size(solution)
+    worst, power = np.zeros_like(solution.t), np.zeros_like(solution.t)
+    for name, body in solution.description["bodies"].items():
+        mass, centre, inertia = matter[name]
+        motion = bodies[name]
+        _, speed, change = motion.point(centre.real, centre.imag)
+        inertial = mass * (change - gravity)
+        turning = inertia * motion.acceleration
+        weight = _weight(solution, motion, mass, abs(centre))
+        tally.bear(weight, np.abs(turning), size)
+        worst = np.maximum(worst, np.abs(tally.force.get(name, 0j) - inertial))
+        if body["length"] is not None:
+            worst = np.maximum(worst, np.abs(tally.moment.get(name, 0.0) - turning) / size)
+        power = power + (np.conj(speed) * inertial).real + turning * motion.rate
+        tally.flow = tally.flow + np.abs(speed) * weight + np.abs(turning * motion.rate)
+    turned, fastest = _rates(solution, bodies)
+    least, part = _least(solution), _coarseness(solution)
+    largest = tally.size * (1.0 + part * _extent(solution) / size)
+    flow = tally.flow + least * fastest + part * (tally.pushes * fastest + tally.twists * turned)
+    return (worst, max(float(np.max(largest)), least)), (np.abs(tally.power - power), float(np.max(flow)))
+
+
+def _rates(solution: Solution, bodies: dict[str, Moving]) -> tuple[Array, Array]:
+    """The largest rate of turning at each instant, of joints too, and a speed that none exceeds."""
+    turning = [np.abs(motion.rate) for motion in bodies.values()]
+    for name, joint in solution.description["joints"].items():
+        if joint["coordinate"] == "angle":
+            turning.append(np.abs(solution.motion(name).rate))
+    turned = np.max(turning, axis=0)
+    return turned, np.max([np.abs(motion.speed) for motion in bodies.values()], axis=0) + turned * _extent(solution)
+
+
+def _ends(
+    solution: Solution, bodies: dict[str, Moving], acting: Sequence[_Action], matter: Mapping[str, _Matter]
+) -> tuple[Array, float]:
+    """A link's section at its base is the opposite of all that acts on it there; beside the largest force on a link.
+
+    And beside what the rounding of places leaves open, which turns short links most.
+    """
+    worst, scale = np.zeros_like(solution.t), _least(solution)
+    size, blurred = _size(solution), _coarseness(solution) * _extent(solution)
+    base = np.zeros((solution.t.size, 1))
+    for link in solution.links_with_sections:
+        law = solution.section(link).law
+        # What slides over the base just now counts as at the base, here and there.
+        law = replace(law, loads=tuple(replace(x, station=np.where(np.abs(x.station) < _EDGE, 0.0, x.station)) for x in law.loads))
+        axial, shear, bending = (law.at(force, base)[:, 0] for force in ("axial", "shear", "bending"))
+        own = [part for part in acting if part[0] == link]
+        force, moment = _before(bodies[link], own, _EDGE * law.length)
+        flow = _weight(solution, bodies[link], matter[link][0], law.length)
+        for _, _, push, couple, _ in own:
+            flow = np.maximum(flow, np.abs(push) + np.abs(couple) / size)
+        worst = np.maximum(worst, np.abs(force + axial + 1j * shear) / (1.0 + blurred / law.length))
+        worst = np.maximum(worst, np.abs(moment + bending) / (size + blurred))
+        scale = max(scale, float(np.max(flow)))
+    return worst, scale
+
+
+def _before(motion: Moving, acting: Sequence[_Action], edge: float) -> tuple[Complex, Array]:
+    """The force in a link's axes, and the moment about its base, of all that acts at its base or beyond it."""
+    force, moment = np.zeros_like(motion.at), np.zeros_like(motion.angle)
+    for _, at, push, couple, _ in acting:
+        arm = (at - motion.at) * np.exp(-1j * motion.angle)
+        here = arm.real <= edge
+        force = force + np.where(here, push * np.exp(-1j * motion.angle), 0.0)
+        moment = moment + np.where(here, (np.conj(at - motion.at) * push).imag + couple, 0.0)
+    return force, moment

@@ -1,0 +1,341 @@
+"""A solution in an HDF5 file, and back: the schema is written down in ``docs/schema.md``.
+
+A file is written under a temporary name beside its place, flushed, sealed, and renamed: a reader finds the file of before, or the
+whole new one. What is read is held to its seal before HDF5 sees it (:mod:`.seal`), and looked at before it is believed
+(:mod:`.untrusted`).
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from ..declare.density import Array
+from ..declare.description import SHAPE as DESCRIPTION
+from ..errors import DeclarationError, PathError, StoreError, one_line
+from ..instants.section_law import FORCES
+from ..instants.solution import Provenance, Solution, in_order
+from ..judge.certificate import LOOSE, blur, certify
+from ..quantities import CF, CONVENTIONS, QUANTITIES, quantity_of
+from ..system.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
+from ..system.seal import Seen, kind_of, seal, verify
+from .scales import LARGE, Scales
+from .untrusted import check_chunks, check_dataset, check_links, parsed, shown, told_as
+
+SCHEMA = "lagrange-casadi"
+SCHEMA_VERSION = 2
+"""Files of version 1 have no seal; they are still read."""
+
+_CHUNK_BYTES = 1 << 20
+_BLOCK_BYTES = 1 << 23
+_AXES = {"t": ("s", "time"), "xi": ("1", "place along a link, ratio xi/l")}
+_PROVENANCE = ("backend", "precision", "compiler", "flags", "rung")
+_GRID_TOLERANCE = 1e-12
+_LAW = {quantity.member for quantity in QUANTITIES if quantity.group == "law"}
+_KIND = "the file of a run"
+_KNOWN = {SCHEMA: "that of a run, which `load` reads", f"{SCHEMA}-sweep": "that of a sweep, which `Sweep.open` reads"}
+
+
+def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") -> None:
+    """Write a solution, replacing the file at ``path`` whole or not at all.
+
+    ``figures`` is kept for :mod:`.figures`, which reads from it how the case wants to be drawn. Raises :class:`StoreError` where
+    the file cannot be written.
+    """
+    if not isinstance(solution, Solution) or not isinstance(path, (str, os.PathLike)):
+        raise DeclarationError(f"save: expected a solution and a path, got {solution!r} and {path!r}")
+    target = Path(path)
+    check_target(target)
+    _require_room(solution, target)
+    with replacing(target, hdf5=True) as draft:
+        with uninterrupted() as breathe, PatientFile(draft, "x+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
+            try:
+                _write(file, solution, figures, breathe)
+            except RuntimeError as error:  # of HDF5
+                raise StoreError(f"cannot write {target}: {one_line(error)}") from error
+            file.flush()
+            file.attrs["complete"] = True
+        seal(draft, SCHEMA)
+
+
+def check_target(target: Path) -> None:
+    """Raise :class:`PathError` where no file of a run can be put: it replaces another one, and nothing else that holds anything.
+
+    Raises :class:`BusyError` where another program writes what is there.
+    """
+    check_writable(target, hdf5=True)
+    place = settled(target)
+    if not place.exists() or not place.stat().st_size:
+        return
+    schema = kind_of(place)
+    if schema is None and is_hdf5(place):
+        try:
+            with h5py.File(place, "r") as file:
+                schema = str(file.attrs.get("schema", ""))
+        except Exception as error:
+            raise PathError(
+                f"cannot write {target}: what is there cannot be read ({one_line(error)}); choose another name"
+            ) from None
+    if schema != SCHEMA:
+        kind = {f"{SCHEMA}-sweep": "the file of a sweep", None: "no file of HDF5"}.get(schema, "an HDF5 file of something else")
+        raise PathError(f"cannot write {target}: it is {kind}; choose another name")
+
+
+def _require_room(solution: Solution, target: Path) -> None:
+    """Raise :class:`StoreError` where the disk has less room than the grids take."""
+    size = 8 * solution.t.size * (len(solution.series) + 3 * solution.xi.size * len(solution.links_with_sections))
+    try:
+        free = shutil.disk_usage(target.parent).free
+    except OSError:
+        return
+    if size > free:
+        raise StoreError(f"cannot write {target}: it takes {size / 1e9:.4g} GB, and the disk has {free / 1e9:.3g} GB left")
+
+
+def load(path: str | os.PathLike[str]) -> Solution:
+    """Read a solution. Raises :class:`StoreError` for what is not a whole file of this schema, :class:`PathError` for none."""
+    with reading(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+        return _read(file)
+
+
+def figure_specs(path: str | os.PathLike[str]) -> str:
+    """How the case wants to be drawn, as it was given to :func:`save`. Raises what :func:`load` does."""
+    with reading(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+        return shown(file.attrs.get("figures", ""))
+
+
+def check(path: str | os.PathLike[str]) -> list[str]:
+    """What is wrong with a file, one line each; nothing where it is whole and consistent.
+
+    Every dataset is read, so its checksum is verified; every value must be finite, every axis have its scale, every unit and sign
+    be the schema's; and the section grids must be what the laws give, to 1e-12 of their peak. Raises what :func:`load` does.
+    """
+    with reading(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+        solution = _read(file)
+        names = dict.fromkeys([*solution.names(), *solution.series, *(f"certificate:{name}" for name in solution.certificate)])
+        found = [f"{_place(name)}: missing" for name in parsed(file.attrs["outputs"], [str]) if name not in names]
+        if not found:
+            found += [finding for name in names for finding in _check_dataset(file, solution, name)]
+            found += _check_certificate(solution)
+    return found
+
+
+def schema_of(path: str | os.PathLike[str]) -> str | None:
+    """The schema that a file says it is of, by its seal, or where it has none by HDF5; None where there is no telling."""
+    try:
+        found: Any = kind_of(path)
+        if found is None:
+            verify(path)
+            with told_as("damaged", path), h5py.File(path, "r") as file:
+                found = file.attrs.get("schema")
+    except (PathError, StoreError):
+        return None
+    return found if isinstance(found, str) else None
+
+
+def _check_certificate(solution: Solution) -> Iterator[str]:
+    """The stored residuals, and the same computed anew from what is stored."""
+    worse = f"is worse than the tolerance {solution.tolerance:.3g}"
+    for name, value in solution.failed.items():
+        yield f"certificate/{name}: {value:.3g} {worse}"
+    # Of angles of very many turns not enough digits are reported to compute anything anew.
+    if solution.certificate and blur(solution) < LOOSE:
+        for name, value in replace(solution, certificate=certify(solution)).failed.items():
+            yield f"{name}: {value:.3g}, computed anew, {worse}"
+
+
+def _check_dataset(file: h5py.File, solution: Solution, name: str) -> Iterator[str]:
+    place = _place(name)
+    dataset = file[place]
+    quantity = quantity_of(name)
+    _check_numbers(dataset, [{"t": solution.t.size, "xi": solution.xi.size}[axis] for axis in quantity.axes])
+    gap, finite = _read_through(dataset, solution, name)
+    if solution.determined(name):
+        if not finite:
+            yield f"{place}: holds values that are not finite"
+        if quantity.axes == ("t", "xi") and gap > _GRID_TOLERANCE * abs(solution.peak(name).value):
+            yield f"{place}: differs from its law by {gap:.3g} {solution.unit(name)}"
+    if dataset.attrs.get("units") != solution.unit(name):
+        yield f"{place}: units {dataset.attrs.get('units')!r}, expected {solution.unit(name)!r}"
+    for key, value in quantity.attributes.items():
+        if dataset.attrs.get(key) != value:
+            yield f"{place}: {key} is not the schema's"
+    for axis, scale in enumerate(quantity.axes):
+        if file[scale] not in dataset.dims[axis].values():
+            yield f"{place}: axis {axis} has no scale /{scale}"
+
+
+def _read_through(dataset: h5py.Dataset, solution: Solution, name: str) -> tuple[float, bool]:
+    """How far a grid is from its law, and whether all values are finite, block by block."""
+    gap, finite = 0.0, True
+    height = max(1, _BLOCK_BYTES // (8 * math.prod(dataset.shape[1:])))
+    link, force = name.split(":")[1:] if dataset.ndim == 2 else ("", "")
+    law = solution.section(link).law if link else None
+    basis = law.basis(solution.xi) if law else None
+    for start in range(0, dataset.shape[0], height):
+        block = slice(start, start + height)
+        stored = dataset[block]
+        finite = finite and bool(np.isfinite(stored).all())
+        if law and basis:
+            gap = float(np.fmax(gap, np.max(np.abs(stored - law.during(block).on_grid(force, basis)))))
+    return gap, finite
+
+
+def _place(name: str) -> str:
+    return name.replace(":", "/")
+
+
+def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[[], None]) -> None:
+    for axis, values in (("t", solution.t), ("xi", solution.xi)):
+        scale = file.create_dataset(axis, data=values, fletcher32=True, fillvalue=np.nan, **LARGE)
+        scale.attrs["units"], scale.attrs["long_name"] = _AXES[axis]
+        scale.make_scale(axis)
+    scales = Scales(file)
+    for name, values in solution.series.items():
+        breathe()
+        _add(file, scales, solution, name, values)
+    for name, values in solution.certificate.items():
+        _add(file, scales, solution, f"certificate:{name}", values)
+    for link in solution.links_with_sections:
+        for force in FORCES:
+            _add_grid(file, scales, solution, link, force, breathe)
+    scales.finish()
+    provenance = solution.provenance
+    file.attrs["schema"] = SCHEMA
+    file.attrs["schema_version"] = SCHEMA_VERSION
+    file.attrs["case"] = solution.case
+    file.attrs["Conventions"], file.attrs["conventions"] = CF, CONVENTIONS
+    file.attrs["mechanism"] = json.dumps(solution.description)
+    file.attrs["parameters"] = json.dumps({k: v["value"] for k, v in solution.description["parameters"].items()})
+    file.attrs["certified"] = solution.certified
+    file.attrs["certificate_tolerance"] = solution.tolerance
+    file.attrs["outputs"] = json.dumps(list(solution.series))
+    file.attrs["undetermined"] = json.dumps(solution.undetermined)
+    file.attrs["versions"] = json.dumps(dict(provenance.versions))
+    for key in _PROVENANCE:
+        file.attrs[key] = getattr(provenance, key)
+    file.attrs["figures"] = figures
+
+
+def _add(file: h5py.File, scales: Scales, solution: Solution, name: str, values: Array) -> None:
+    _create(file, scales, solution, name, values.shape)[...] = values
+
+
+def _add_grid(file: h5py.File, scales: Scales, solution: Solution, link: str, force: str, breathe: Callable[[], None]) -> None:
+    """A grid block by block: it need not fit into memory."""
+    law, xi = solution.section(link).law, solution.xi
+    dataset = _create(file, scales, solution, f"section:{link}:{force}", (solution.t.size, xi.size))
+    height, width = dataset.chunks
+    height *= max(1, _BLOCK_BYTES // (8 * height * width))
+    for left in range(0, xi.size, width):
+        basis = law.basis(xi[left : left + width])
+        for start in range(0, solution.t.size, height):
+            breathe()
+            block = law.during(slice(start, start + height))
+            dataset[start : start + height, left : left + width] = block.on_grid(force, basis)
+
+
+def _create(file: h5py.File, scales: Scales, solution: Solution, name: str, shape: tuple[int, ...]) -> h5py.Dataset:
+    quantity = quantity_of(name)
+    width = tuple(min(size, _CHUNK_BYTES // 8) for size in shape[1:])
+    chunks = (min(shape[0], max(1, _CHUNK_BYTES // (8 * math.prod(width)))), *width)
+    dataset = file.create_dataset(_place(name), shape, np.float64, chunks=chunks, fletcher32=True, fillvalue=np.nan)
+    dataset.attrs["units"] = solution.unit(name)
+    for key, text in quantity.attributes.items():
+        dataset.attrs[key] = text
+    if name in solution.errors:
+        dataset.attrs["error_estimate"] = solution.errors[name]
+    scales.attach(dataset, quantity.axes)
+    return dataset
+
+
+def _read(file: h5py.File) -> Solution:
+    check_links(file)
+    description = parsed(file.attrs["mechanism"], DESCRIPTION, "mechanism")
+    t, xi = (_numbers(file[axis]) for axis in _AXES)
+    if t.ndim != 1 or xi.ndim != 1 or not t.size or not xi.size:
+        raise ValueError(f"t and xi have the shapes {t.shape} and {xi.shape}")
+    series: dict[str, Array] = {}
+    errors: dict[str, float] = {}
+
+    def visit(place: str, item: Any) -> None:
+        if isinstance(item, h5py.Dataset) and place not in _AXES:
+            name = place.replace("/", ":")
+            if "error_estimate" in item.attrs:
+                errors[name] = float(item.attrs["error_estimate"])
+            if quantity_of(name).axes == ("t",) and not name.startswith("certificate:"):
+                series[name] = _numbers(item, t.shape)
+
+    file.visititems(visit)
+    words = {key: shown(file.attrs[key]) for key in _PROVENANCE}
+    provenance = Provenance(**words, versions=parsed(file.attrs["versions"], {str: str}, "versions"))
+    undetermined = tuple(parsed(file.attrs["undetermined"], [str], "undetermined"))
+    certificate = {name: _numbers(file["certificate"][name], t.shape) for name in file.get("certificate", ())}
+    case = shown(file.attrs["case"])
+    ordered, limit = in_order(series, description), float(file.attrs["certificate_tolerance"])
+    solution = Solution(case, t, xi, ordered, description, provenance, undetermined, certificate, errors, limit)
+    for link in solution.links_with_sections:
+        law = solution.section(link).law
+        if set(law.coefficients) != _LAW or len(law.density.breaks) != len(law.density.cells) + 1:
+            raise ValueError(f"the law or the density of '{link}' is not whole")
+    return solution
+
+
+def _numbers(dataset: Any, shape: tuple[int, ...] | None = None) -> Array:
+    _check_numbers(dataset, shape)
+    return np.asarray(dataset[()], np.float64)
+
+
+def _check_numbers(dataset: Any, shape: Sequence[int] | None) -> None:
+    check_dataset(dataset, shape)
+    check_chunks(dataset)
+
+
+@contextmanager
+def reading(
+    path: str | os.PathLike[str], schema: str, version: int, kind: str, of: str = "", seen: Seen | None = None
+) -> Iterator[h5py.File]:
+    """A whole file of a schema, which messages call ``kind``, its versions those ``of`` it.
+
+    All of it is held to its seal, unless it is still the one that was ``seen``. Raises :class:`PathError` for none,
+    :class:`StoreError` for another file, another version, and one that was not finished or is not as it was written; whatever
+    reading it raises becomes a :class:`StoreError`.
+    """
+    if not seen or not seen.is_at(path):
+        _refuse_other(path, kind_of(path) or schema, schema, kind)
+        seen = verify(path)
+    with told_as("damaged", path):
+        try:
+            file = h5py.File(path, "r")
+        except BlockingIOError:
+            raise StoreError(f"{path}: another program has it open to write") from None
+        with file:
+            if not seen.is_at(path):
+                raise StoreError(f"{path}: was changed while it was read")
+            _refuse_other(path, file.attrs.get("schema"), schema, kind)
+            written = file.attrs.get("schema_version")
+            if not isinstance(written, np.integer) or not 1 <= written <= version:
+                told = written if isinstance(written, np.integer) else repr(written)
+                raise StoreError(f"{path}: schema version {told}{of}, this program reads versions 1 to {version}")
+            if written > 1 and not seen.sealed:
+                raise StoreError(f"{path}: damaged: it has lost its seal, as where another program has changed it")
+            if not file.attrs.get("complete", False):
+                raise StoreError(f"{path}: was not written to its end")
+            yield file
+
+
+def _refuse_other(path: str | os.PathLike[str], found: Any, schema: str, kind: str) -> None:
+    """Raise :class:`StoreError` for a file of another schema."""
+    if not isinstance(found, str) or found != schema:
+        what = f"but {_KNOWN[found]}" if isinstance(found, str) and found in _KNOWN else f"its attribute 'schema' is {found!r}"
+        raise StoreError(f"{path}: not {kind}, {what}")

@@ -1,0 +1,1 @@
+"""What is asked of results: peaks between instants, and what speed costs in accuracy."""

@@ -1,0 +1,300 @@
+"""Peaks between instants: where a quantity is largest over all times of a solution's span.
+
+A peak of sampled values falls short of the true one by a part that goes with the square of the step. :mod:`.summits` searches
+between them; here the time derivatives that automatic differentiation gives then say at which time a smooth peak is.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import casadi as ca
+import numpy as np
+
+from ..codegen.stages import Stages, compensated, counts, plain
+from ..declare.density import Array
+from ..declare.motion import jerk_function
+from ..declare.scene import Scene, checked
+from ..equations.derive import assembled, derive
+from ..equations.mobility import LAW, PLACE_FIRST
+from ..equations.reciprocals import differentiable
+from ..equations.scene_graph import SceneGraph
+from ..errors import DeclarationError
+from ..evaluate import evaluate
+from ..instants.backends import follow
+from ..instants.section_law import SectionLaw, Side, StationLoad
+from ..instants.signals import Quantity, SectionForce, Signals
+from ..instants.solution import Peak, Solution
+from ..summits.search import Peaks
+from ..summits.sharpness import Sharpness
+
+_SAME = 1e-6
+"""How closely a graph must give what a solution has, over the largest value of the same unit."""
+
+_NOTHING = 1e-12
+"""What is zero but for rounding, over what is largest."""
+
+_NEAR, _LESS = 1e-4, 1e-13
+"""How near to where it was found a smooth peak is, in steps between instants, and how much lower rounding may put it, of itself."""
+
+_TRIALS = 5
+
+
+def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None) -> list[Peak]:
+    """The peaks of quantities of a solution, by full name, or of all: as :meth:`.Solution.peak`, but over all times of its span.
+
+    A smooth peak is exact to rounding, its time to 1e-12 of the step or the derivative's rounding, and so is one at a kink or on
+    the higher side of a jump. Where a quantity grows without bound, as where the drive that a row replaces could do nothing, the
+    peak is infinite. No peak is below that of the instants. Of several that are as large but for rounding the first is told.
+
+    Where more hides between the instants than is worth the search, a peak is not told: its value is NaN, and ``least`` the largest
+    that was found; more instants may help. What equilibrium does not determine is NaN here too, without a ``least``.
+
+    Raises :class:`DeclarationError` where the solution is not of this scene, :class:`UnknownNameError` for a name that is none.
+    """
+    return _Cycle.of(scene, solution).peaks(list(solution.names() if names is None else names))
+
+
+@dataclass(frozen=True)
+class Shortfall:
+    """How far the peaks over ``count`` instants fall short of the true ones, over the true ones: the worst and the median force.
+
+    ``sampled`` is at the instants, ``refined`` between them by :func:`refine`.
+    """
+
+    count: int
+    sampled_worst: float
+    sampled_median: float
+    refined_worst: float
+    refined_median: float
+
+
+def shortfall(
+    scene: Scene, counts: Sequence[int], names: Iterable[str] | None = None, *, parameters: Mapping[str, float] | None = None
+) -> list[Shortfall]:
+    """How far peaks fall short where the scene's own span of time is cut into so many instants, a row for each of ``counts``.
+
+    ``names`` are full names of quantities; by default all efforts, reactions and section forces that are wanted and determined.
+    Those that are zero but for rounding, grow without bound or are not told are left out. The true peaks are the largest refined
+    ones, of all counts and of twice as many instants. Raises :class:`DeclarationError` for no counts or where no quantity is left,
+    and what :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
+    """
+    start, stop, own = checked("t", scene.t)
+    if not counts:
+        raise DeclarationError("shortfall: expected at least one number of instants")
+    solutions = [
+        evaluate(scene, t=(start, stop, count), parameters=parameters, backend="vm", certificate=False)
+        for count in (*counts, 2 * max(*counts, own))
+    ]
+    last = solutions[-1]
+    chosen = [name for name in (forces(last) if names is None else names) if last.determined(name)]
+    refined = np.array([[abs(peak.value) for peak in refine(scene, solution, chosen)] for solution in solutions])
+    sampled = np.array([[abs(solution.peak(name).value) for name in chosen] for solution in solutions])
+    true = refined.max(axis=0, initial=0.0)
+    finite = np.where(np.isfinite(true), true, 0.0)
+    units = np.array([last.unit(name) for name in chosen])
+    there = np.array([x > _NOTHING * finite[units == unit].max() for x, unit in zip(finite, units, strict=True)], dtype=bool)
+    if not there.any():
+        raise DeclarationError("shortfall: no quantity is there that is determined and not zero")
+    missing = [1.0 - peaks[:-1, there] / true[there] for peaks in (sampled, refined)]
+    columns = [spread(rows, axis=1) for rows in missing for spread in (np.max, np.median)]
+    return [Shortfall(count, *map(float, row)) for count, *row in zip(counts, *columns, strict=True)]
+
+
+def forces(solution: Solution) -> list[str]:
+    """The full names of a solution's efforts, reactions and section forces that equilibrium determines."""
+    wanted = (name for name in solution.names() if name.startswith(("effort:", "reaction:", "section:")))
+    return [name for name in wanted if solution.determined(name)]
+
+
+@functools.lru_cache(maxsize=32)
+def rates(graph: SceneGraph) -> ca.Function:
+    """The columns of a graph and, where loops are closed, their time derivatives along the motion.
+
+    ``rates(tz, p) -> (out, out_rate)``, where ``tz`` is the time above the iterated coordinates.
+    """
+    instant, newton, laws = differentiable(graph.instant), graph.newton, graph.scene.motion
+    tz, p = ca.MX.sym("tz", 1 + instant.size1_in("z")), ca.MX.sym("p", instant.size1_in("p"))
+    t, z = tz[0], tz[1:]
+    still = ca.DM.zeros(p.numel())
+    d, d_rate, d_acceleration = graph.motion(t, p)
+    d_jerk = jerk_function({joint: laws[joint] for joint in graph.driven}, graph.scene.mechanism.symbols)(t, p)
+    z_rate = ca.MX(0, 1)
+    if newton is not None:
+        # The correction is -Phi_z^-1 Phi, and where Phi = 0 its time derivative at fixed z is z'.
+        closed = (z, t, d, p)
+        z_rate = newton.step.forward(1)(*closed, *newton.step(*closed), ca.DM.zeros(z.numel()), 1, d_rate, still)[0]
+    place = (t, d, d_rate, d_acceleration, z, p)
+    out = instant(*place)
+    out_rate = instant.forward(1)(*place, out, 1, d_rate, d_acceleration, d_jerk, z_rate, still)
+    both = ca.Function("rates", [tz, p], [out, ca.densify(out_rate)], ["tz", "p"], ["out", "out_rate"])
+    return both if any(laws[joint].spline for joint in graph.driven) else both.expand("rates", {"cse": True})
+
+
+@dataclass(frozen=True, eq=False)
+class _Cycle:
+    """A solution, and what its quantities and their time derivatives are at any time of its span."""
+
+    graph: SceneGraph
+    stages: Stages
+    solution: Solution
+    p: Array
+    z: Array
+    rows: Mapping[str, int]
+
+    @classmethod
+    def of(cls, scene: Scene, solution: Solution) -> _Cycle:
+        mechanism = scene.mechanism
+        told = mechanism.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
+        wanted = list(dict.fromkeys(_output(name) for name in solution.series))
+        graph = derive(assembled(scene, told, wanted), wanted)
+        p = np.array(list(told.values()))
+        stages = compensated(graph, "double") if counts(graph, solution.t, p) else plain(graph)
+        z, _ = follow(graph, solution.t, p, stages=stages)
+        cycle = cls(graph, stages, solution, p, z, {name: k for k, name in enumerate(graph.columns)})
+        if not cycle.agrees():
+            raise DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{mechanism.name}'")
+        return cycle
+
+    def agrees(self) -> bool:
+        """Whether the graph gives what the solution has: at one of three instants, for at a jump rounding decides."""
+        solution = self.solution
+        names = [name for name in solution.series if name not in solution.undetermined]
+        if not all(name in self.rows for name in names):
+            return False
+        names = [name for name in names if name not in self.graph.wrapped]
+        some = np.array([0, solution.t.size // 2, solution.t.size - 1])
+        out = self.stages.instant(*self.stages.drive(solution.t[None, some], self.p), self.z[:, some], self.p).full()
+        sizes = dict.fromkeys(map(solution.unit, names), 0.0)
+        for name in names:
+            sizes[solution.unit(name)] = max(sizes[solution.unit(name)], float(np.max(np.abs(solution.series[name]))))
+        rounding = _NOTHING * max(sizes.values(), default=0.0)
+        gaps = [np.abs(out[self.rows[name]] - solution.series[name][some]) for name in names]
+        limits = [_SAME * sizes[solution.unit(name)] + rounding for name in names]
+        return bool(np.all([gap <= limit for gap, limit in zip(gaps, limits, strict=True)], axis=0).any())
+
+    def peaks(self, names: Sequence[str]) -> list[Peak]:
+        """The peaks of quantities over all times."""
+        solution = self.solution
+        found = {name: solution.peak(name) for name in names}
+        sought = [name for name in found if solution.determined(name)]
+        if not sought or solution.t.size == 1:
+            return [found[name] for name in names]
+        signals = self.signals(sought)
+        units, scales = self.scales(sought)
+        searched = signals.peaks(units, scales)
+        value, t, xi = self.timed(signals, sought, searched)
+        for k, name in enumerate(sought):
+            sampled = found[name]
+            along = None if sampled.xi is None else float(xi[k])
+            if not searched.told[k]:
+                least = max(abs(sampled.value), float(abs(value[k])))
+                found[name] = Peak(name, math.nan, sampled.unit, float(t[k]), along, least)
+            elif abs(value[k]) > abs(sampled.value):
+                found[name] = Peak(name, float(value[k]), sampled.unit, float(t[k]), along)
+        return [found[name] for name in names]
+
+    def signals(self, names: Sequence[str]) -> Signals:
+        """Quantities as curves over time."""
+        quantities = [self.quantity(name) for name in names]
+        columns = {k for quantity in quantities for k in _columns(quantity)}
+        sharpness = Sharpness.of(self.graph, sorted(columns))
+        turned = {k: self.solution.series[name] for k, name in enumerate(names) if name in self.graph.wrapped}
+        return Signals(self.graph, self.stages, sharpness, quantities, self.solution.t, self.p, self.z, turned=turned)
+
+    def quantity(self, name: str) -> Quantity:
+        """Where a quantity is among the columns."""
+        if not name.startswith("section:"):
+            return (self.rows[name],)
+        _, link, force = name.split(":")
+        law, start = self.solution.section(link).law, f"section:{link}"
+        stations = tuple(tuple(self.rows[f"{start}:{load.name}:{member}"] for member in PLACE_FIRST) for load in law.loads)
+        coefficients = tuple(self.rows[f"{start}:law:{member}"] for member in LAW)
+        return SectionForce(force, coefficients, stations, law.length, law.density)
+
+    def scales(self, names: Sequence[str]) -> tuple[list[int], list[float]]:
+        """The units of quantities, by number, and the largest size of anything that has each."""
+        solution = self.solution
+        units = {unit: k for k, unit in enumerate(dict.fromkeys(map(solution.unit, names)))}
+        scales = [0.0] * len(units)
+        for name in solution.names():
+            if name in solution.series and solution.determined(name) and solution.unit(name) in units:
+                k = units[solution.unit(name)]
+                scales[k] = max(scales[k], float(np.abs(solution.series[name]).max()))
+        return [units[solution.unit(name)] for name in names], scales
+
+    def timed(self, signals: Signals, names: Sequence[str], peaks: Peaks) -> tuple[Array, Array, Array]:
+        """Values, times and ratios of peaks, the smooth ones at the times where their derivative is zero, by the secant method."""
+        value, t, xi, instants = peaks.value.copy(), peaks.t.copy(), peaks.xi.copy(), self.solution.t
+        reach = _NEAR * (instants[-1] - instants[0]) / (instants.size - 1)
+        some = np.flatnonzero(np.isfinite(value) & ~np.isin(t, instants)).tolist()
+        if not some or any(law.spline and not law.knots for law in self.graph.scene.motion.values()):
+            return value, t, xi
+        chosen, first = [names[k] for k in some], t[some]
+        before, now = first, np.clip(first + reach / 2, instants[0], instants[-1])
+        _, _, slope_first = self.slopes(signals, chosen, first)
+        slope_before = slope_first
+        for _ in range(_TRIALS):
+            _, _, slope = self.slopes(signals, chosen, now)
+            with np.errstate(all="ignore"):
+                ahead = now - slope * ((now - before) / (slope - slope_before))
+            going = np.abs(ahead - first) < reach
+            before, slope_before = np.where(going, now, before), np.where(going, slope, slope_before)
+            now = np.where(going, ahead, now)
+        sizes, places, slope = self.slopes(signals, chosen, now)
+        better = (np.abs(sizes) >= np.abs(value[some]) * (1.0 - _LESS)) & (np.abs(slope) < np.abs(slope_first))
+        t[some], xi[some] = np.where(better, now, first), np.where(better, places, xi[some])
+        value[some] = np.where(better & (np.abs(sizes) > np.abs(value[some])), sizes, value[some])
+        return value, t, xi
+
+    def slopes(self, signals: Signals, names: Sequence[str], t: Array) -> tuple[Array, Array, Array]:
+        """Of each quantity, at a time of its own: value, ratio, and the time derivative of its size.
+
+        Where along a link a force is largest moves, but for the rate of its size only at a station does that count.
+        """
+        near = signals.near(t)
+        z, _ = signals.closed(t, near)
+        out, out_rate = (x.full() for x in rates(self.graph)(np.vstack([t, z]), self.p))
+        found = np.full((3, len(names)), np.nan)
+        for k, name in enumerate(names):
+            columns, changes = out[:, [k]], out_rate[:, [k]]
+            if name.startswith("section:"):
+                _, link, force = name.split(":")
+                law, law_rate = self.law(link, columns), self.law(link, changes)
+                place, value = law.extreme(force)
+                sides: tuple[Side, Side] = ("tip", "base")
+                sizes = [abs(law.at(force, place[:, None], side)[0, 0]) for side in sides]
+                rate = law.rate(force, law_rate, place[:, None], sides[int(np.argmax(sizes))])[0, 0]
+                found[:, k] = value[0], place[0], np.sign(value[0]) * rate
+            else:
+                value = columns[self.rows[name], 0]
+                if name in self.graph.wrapped:
+                    value += math.tau * np.round((self.solution.series[name][near[k]] - value) / math.tau)
+                found[:, k] = value, np.nan, np.sign(value) * changes[self.rows[name], 0]
+        return found[0], found[1], found[2]
+
+    def law(self, link: str, columns: Array) -> SectionLaw:
+        """A link's law with columns of the graph, or of their rates, for its coefficients, loads and stations."""
+        law, start = self.solution.section(link).law, f"section:{link}"
+        coefficients = {name: columns[self.rows[f"{start}:law:{name}"]] for name in law.coefficients}
+        loads = (
+            StationLoad(load.name, *(columns[self.rows[f"{start}:{load.name}:{member}"]] for member in PLACE_FIRST))
+            for load in law.loads
+        )
+        return replace(law, coefficients=coefficients, loads=tuple(loads))
+
+
+def _columns(quantity: Quantity) -> set[int]:
+    """The columns that a quantity is made of."""
+    if isinstance(quantity, SectionForce):
+        return {*quantity.law, *(column for station in quantity.stations for column in station)}
+    return set(quantity)
+
+
+def _output(name: str) -> str:
+    """The output that a quantity is part of."""
+    kind, part, *_ = name.split(":")
+    return {"effort": "effort", "motion": "motion", "pose": "motion"}.get(kind, f"{kind}:{part}")

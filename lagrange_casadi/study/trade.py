@@ -1,0 +1,218 @@
+"""The trade between speed and accuracy, measured: every rung on one scene, side by side on this machine.
+
+Errors are against the scene's own graphs in many digits (:mod:`.reference`), at instants of the scene's own grid, relative to the
+peak of each quantity over them; of what is zero by structure, relative to the largest peak of its unit. Times are of the
+instants alone, nothing derived or compiled, on one thread, taken in turns so that whatever else the machine does meets all.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..codegen import find_compiler
+from ..declare.density import Array
+from ..declare.scene import Grid, Scene, checked, points
+from ..equations.derive import assembled, derive
+from ..equations.scene_graph import SceneGraph
+from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
+from ..instants.backends import Table, run
+from ..instants.reading import columns
+from ..instants.rung import Rung
+from ..judge.reference import reference
+from ..quantities import quantity_of
+from .peaks import Shortfall, shortfall
+
+INSTANTS = 10_000
+"""Instants that are timed, over the scene's own span of time; of the virtual machine a tenth."""
+
+COMPARED = 101
+COUNTS = (25, 50, 100, 200, 400, 800)
+"""Instants of a cycle, for what they miss of the peaks."""
+
+ROUNDS = 7
+_NIL = 1e-9
+_LEAST = 2e-3
+
+COMPILED = (
+    *(Rung(backend, precision) for precision in ("double", "single") for backend in ("lanes", "c")),
+    *(Rung("c", flags=flags) for flags in ("-O1", "-march=native -ffp-contract=fast", "-ffast-math")),
+    Rung("lanes", flags="-ffast-math"),
+    *(Rung("lanes", newton=steps) for steps in (1, 2, 3)),
+    *(Rung("c", table=accuracy) for accuracy in (1e-3, 1e-6, 1e-9, 1e-12)),
+    *(Rung("c", "single", table=accuracy) for accuracy in (1e-3, 1e-5)),
+)
+RUNGS = (*COMPILED, Rung("vm"))
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """What a rung costs and gives: seconds an instant, and errors relative to each quantity's peak.
+
+    ``largest`` is over all quantities and instants, ``median`` over the quantities' largest; ``worst`` names the quantity that errs
+    most. ``note`` says what else there is to know, such as how many nodes a table has.
+    """
+
+    rung: Rung
+    seconds: float
+    largest: float
+    median: float
+    worst: str
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Trade:
+    """The rungs of one scene, fastest first, and those that it has not, with the reason.
+
+    ``peaks`` says how far peaks fall short, by how many instants a cycle is sampled at; empty where that cannot be said.
+    """
+
+    case: str
+    instants: int
+    compared: int
+    measurements: tuple[Measurement, ...]
+    refused: Mapping[str, str]
+    peaks: tuple[Shortfall, ...] = ()
+
+    @property
+    def front(self) -> tuple[Measurement, ...]:
+        """The rungs that no other one beats in both speed and accuracy, fastest first."""
+        found: list[Measurement] = []
+        for one in self.measurements:
+            if not found or one.largest < found[-1].largest:
+                found.append(one)
+        return tuple(found)
+
+    def fastest(self, accuracy: float) -> Measurement:
+        """The fastest rung whose largest error is at most ``accuracy``, relative to the peak.
+
+        Raises :class:`AccuracyError` where none is; it names the most accurate one.
+        """
+        if not accuracy > 0.0:
+            raise DeclarationError(f"accuracy: expected a number above 0, got {accuracy!r}")
+        for one in self.measurements:
+            if one.largest <= accuracy:
+                return one
+        best = min(self.measurements, key=lambda one: one.largest)
+        raise AccuracyError(
+            f"no rung of '{self.case}' keeps {accuracy:g} of the peak; the best, {best.rung.options}, keeps {best.largest:.2g} "
+            f"({best.worst} is worst)"
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """All of it as plain numbers and words, for JSON."""
+        rungs = [asdict(one) | {"options": one.rung.options, "front": one in self.front} for one in self.measurements]
+        found = {"case": self.case, "instants": self.instants, "compared": self.compared, "rungs": rungs}
+        return found | {"refused": dict(self.refused), "peaks": [asdict(row) for row in self.peaks]}
+
+
+def trade(
+    scene: Scene,
+    *,
+    parameters: Mapping[str, float] | None = None,
+    t: Grid | None = None,
+    wanted: Sequence[str] | None = None,
+    rungs: Sequence[Rung] = RUNGS,
+    progress: Callable[[Rung], None] = lambda rung: None,
+) -> Trade:
+    """Measure every rung on a scene; ``progress`` is told of each before it is taken.
+
+    Raises :class:`LagrangeCasadiError` where mpmath is not installed, :class:`DeclarationError` for graphs that call functions of
+    their own, and what :func:`.evaluate` raises where the scene has no result.
+    """
+    told = scene.mechanism.values(parameters)
+    values = np.array(list(told.values()))
+    times = points(checked("t", scene.t if t is None else t))
+    scene = assembled(scene, told, wanted)
+    graphs = {iterate: derive(scene, wanted, iterate=iterate) for iterate in (False, True)}
+    compared = np.unique(np.linspace(0, times.size - 1, min(times.size, COMPARED)).astype(int))
+    truth = _Truth(graphs[False], times, compared, values)
+    refused: dict[str, str] = {}
+    works: dict[Rung, tuple[Callable[[], Any], int]] = {}
+    found: dict[Rung, tuple[float, float, str, str]] = {}
+    for rung in rungs:
+        progress(rung)
+        if _same(rung, graphs):
+            continue
+        graph = graphs[rung.newton is not None]
+        try:
+            table, _ = columns(graph, times, values, rung, 1)
+            if table.status.any():
+                raise AssemblyError("some instants have no result")
+            works[rung] = _work(graph, times, values, rung)
+        except (AssemblyError, CompilerError, DeclarationError) as error:
+            refused[rung.options] = str(error)
+            continue
+        nodes = "" if table.cycle is None else f"{table.cycle.nodes} nodes, {table.cycle.nbytes / 1000:.3g} kB"
+        found[rung] = (*truth.errors(graph, table), nodes)
+    seconds = _in_turns(works)
+    measured = [Measurement(rung, seconds[rung], *found[rung]) for rung in works]
+    ordered = tuple(sorted(measured, key=lambda one: one.seconds))
+    sampled = replace(scene, t=scene.t if t is None else t, wanted=scene.wanted if wanted is None else wanted)
+    try:
+        peaks = tuple(shortfall(sampled, COUNTS, parameters=parameters))
+    except (AssemblyError, DeclarationError):
+        peaks = ()
+    return Trade(scene.mechanism.name, INSTANTS, compared.size, ordered, refused, peaks)
+
+
+class _Truth:
+    """The reference at some instants, and how far a table is from it."""
+
+    def __init__(self, graph: SceneGraph, t: Array, compared: Array, p: Array) -> None:
+        table, _ = run(graph, t, p, Rung("c" if find_compiler() else "vm"), 1)
+        self.compared = compared
+        rows = reference(graph, list(t[compared]), list(p), z=table.iterated[:, compared])
+        self.columns = {name: [row[k] for row in rows] for k, name in enumerate(graph.columns) if not name.startswith("_")}
+        self.angles = graph.wrapped
+        peaks = {name: max(abs(float(x)) for x in column) for name, column in self.columns.items()}
+        largest: dict[str, float] = {}
+        for name, peak in peaks.items():
+            unit = quantity_of(name).unit
+            largest[unit] = max(largest.get(unit, 0.0), peak)
+        of_unit = {name: largest[quantity_of(name).unit] for name in peaks}
+        self.scales = {name: (peak if peak > _NIL * of_unit[name] else of_unit[name]) or 1.0 for name, peak in peaks.items()}
+
+    def errors(self, graph: SceneGraph, table: Table) -> tuple[float, float, str]:
+        """The largest and the median error relative to the peaks, and which quantity errs most."""
+        worst = {}
+        for k, name in enumerate(graph.columns):
+            if name in self.columns:
+                gaps = [float(x - float(y)) for x, y in zip(self.columns[name], table.out[k, self.compared], strict=True)]
+                if name in self.angles:
+                    gaps = [math.remainder(gap, math.tau) for gap in gaps]
+                worst[name] = max(abs(gap) for gap in gaps) / self.scales[name]
+        name = max(worst, key=lambda name: worst[name])
+        return worst[name], float(np.median(list(worst.values()))), name
+
+
+def _same(rung: Rung, graphs: Mapping[bool, SceneGraph]) -> bool:
+    """Whether a rung of Newton steps is no other than the default, for want of loops."""
+    return rung.newton is not None and graphs[True].newton is None
+
+
+def _work(graph: SceneGraph, t: Array, p: Array, rung: Rung) -> tuple[Callable[[], Any], int]:
+    """What is timed, made ready, and its instants."""
+    count = INSTANTS // 10 if rung.backend == "vm" else INSTANTS
+    dense = np.linspace(t[0], t[-1], count)
+    table, _ = columns(graph, dense, p, rung, 1)
+    return lambda: columns(graph, dense, p, rung, 1, into=table), count
+
+
+def _in_turns(works: Mapping[Rung, tuple[Callable[[], Any], int]]) -> dict[Rung, float]:
+    """Seconds an instant: the median over rounds in which each rung has its turn, long enough to be read off a clock."""
+    taken: dict[Rung, list[float]] = {rung: [] for rung in works}
+    for _ in range(ROUNDS):
+        for rung, (work, count) in works.items():
+            calls, start = 0, time.perf_counter()
+            while (passed := time.perf_counter() - start) < _LEAST or not calls:
+                work()
+                calls += 1
+            taken[rung].append(passed / (calls * count))
+    return {rung: float(np.median(times)) for rung, times in taken.items()}

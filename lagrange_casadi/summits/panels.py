@@ -1,0 +1,108 @@
+"""A panel: equal steps of time with the values at their ends, what gives more of these, and what is looked at in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from ..declare.density import Array
+from . import fits
+from .between import beyond, passed
+from .sharpness import Watch
+
+SIDE = 2e-13
+"""Of a step between instants: how near to a kink or a jump its sides are."""
+
+SPACING = 4 * float(np.finfo(float).eps)
+"""Of the time: the shortest step."""
+
+_TRIALS, _WATCHED = 3, 2
+
+
+class Samples(NamedTuple):
+    """At n times: curves (c, n), the ratios xi/l at which they are taken (c, n), and what is watched (w, n)."""
+
+    values: Array
+    places: Array
+    watched: Array
+
+    def some(self, which: slice) -> Samples:
+        """At some of the times."""
+        return Samples(*(rows[:, which] for rows in self))
+
+
+class Source(Protocol):
+    """What gives curves at any times; where they have no value, NaN."""
+
+    def at(self, t: Array) -> Samples:
+        """At times of the span."""
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """Times at equal steps, and what there is at them."""
+
+    t: Array
+    samples: Samples
+
+    @property
+    def step(self) -> float:
+        """The length of one."""
+        return float(self.t[-1] - self.t[0]) / (self.t.size - 1)
+
+
+@dataclass
+class Summit:
+    """A value beside which a curve may rise, by its number in a panel: where to look, and what is expected there (:class:`.Fit`).
+
+    ``kink`` has the times at which to look for a kink, and the sizes expected there.
+    """
+
+    curve: int
+    at: int
+    sign: float
+    t: float
+    size: float
+    slope: float
+    bend: float
+    steep: float
+    rough: float
+    trust: float
+    kink: Sequence[tuple[float, float]]
+    closed: bool = False
+    again: bool = False
+
+
+def sides(source: Source, panel: Panel, step: int, watches: Sequence[Watch], beside: float) -> tuple[Array, Samples] | None:
+    """The times just before and just after a kink or a jump in a step, and of itself, and what there is; None where none is found.
+
+    They are ``beside`` it, as far as the step goes. What is watched tells where it is: between both it passes its number.
+    """
+    start, stop = panel.t[step], panel.t[step + 1]
+    beside = max(beside, SPACING * float(np.abs(panel.t).max()))
+    if panel.t.size < fits.SEVEN or not stop - start > 8 * beside:
+        return None
+    for _, (k, level) in zip(range(_WATCHED), passed(panel.samples.watched, watches, step, panel.step), strict=False):
+        row, kind = panel.samples.watched[k], watches[k].kind
+        place, slope = fits.where(row, step, level), row[step + 1] - row[step]
+        before: tuple[float, float] | None = None
+        for _ in range(_TRIALS):
+            at = start + place * (stop - start)
+            t = np.clip(np.array([at - beside, at + beside, at]), start, stop)
+            found = source.at(t)
+            ends = found.watched[k].tolist()
+            apart = all(
+                t[j] == end or beyond(kind, ends[j], level) == beyond(kind, row[step + j], level)
+                for j, end in enumerate((start, stop))
+            )
+            if apart and np.isfinite(found.values).all():
+                return t, found
+            slope = slope if before is None else (ends[2] - before[1]) / (place - before[0])
+            before = place, ends[2]
+            place += (level - ends[2]) / slope
+            if not 0.0 <= place <= 1.0:
+                break
+    return None

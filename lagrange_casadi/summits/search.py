@@ -1,0 +1,379 @@
+"""The largest size of curves over all times of a span, by their values at equal steps, and at more times where these leave it open.
+
+A panel is a row of equal steps with the values at their ends. In each step :mod:`.between` bounds every curve. What could rise
+above the largest size so far is looked at: a polynomial through seven values around a summit says where, and what it misses there
+says whether it is to be believed. A step that this leaves open, or in which something may hide, becomes a panel of its own, or two
+where it is known when in it a kink or a jump is, of steps a ninth as long, and so on, until all are closed, or so short that
+nothing but a jump, a kink or a pole is left in them. Where that takes too many panels, or a quantity grows on slowly without an
+end, its peak is not told.
+
+The emitted C does the same for many designs (``codegen/summits.c``, ``looks.c``, ``parts.c``), and is tested against this.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..declare.density import Array
+from . import fits
+from .between import Flags, highest, unresolved
+from .panels import SIDE, SPACING, Panel, Samples, Source, Summit, sides
+from .sharpness import Watch
+
+INNER = 8
+"""Times inside a step that becomes a panel."""
+
+DEEPEST = 14
+"""Panels within each other: the last one's steps are 4e-14 of those between the instants."""
+
+PANELS = 2048
+"""Panels of a search, and four more for each instant."""
+
+ROUNDING = 1e-13
+"""By how much of itself a peak may be off: less is not worth another look."""
+
+BESIDE = 1e-2
+"""What of a unit's largest size counts as a quantity's own where its rounding is told."""
+
+NOTHING = 1e-12
+"""What is zero but for rounding, over the largest of its unit."""
+
+NOISE = 1e-6
+"""Of itself: how far rounding may throw a quantity, as near a dead centre, and be no more than that."""
+
+TRUST, TRUST_ASIDE = 1e-5, 1e-6
+"""What a polynomial may miss, of its curve, in its middle and near its ends: where it misses more, its slope may be off by other
+things as well."""
+
+CLOSE = 8 * float(np.finfo(float).eps)
+"""Of its largest size: by how much a value may be off by its own rounding."""
+
+STRETCH = 1e-4
+"""What a polynomial may miss in the middle of an end step, of its least slope there, which is then off by nine times that."""
+
+ENDLESS, LAST = 0.1, 1e-11
+"""By how much of itself a quantity grows over the last step towards a pole, and where it has come to its end."""
+
+QUIET = 10
+"""Values from whose differences rounding is told."""
+
+RAGGED = 0.3
+"""Of the values around: the second differences of what is nothing but rounding."""
+
+ROUGH = 0.1
+"""Of its curve: how large the sixth difference of a polynomial may be that is believed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """Of which quantity each curve is, which unit each quantity has, and what is watched.
+
+    The peak of a quantity is that of the curve of its own that goes furthest: those of a section force are the force at the link's
+    ends and stations, and where it turns along the link. ``scales`` are of each unit how large others are, ``knots`` times of
+    kinks.
+    """
+
+    quantities: tuple[int, ...]
+    units: tuple[int, ...]
+    scales: tuple[float, ...] = ()
+    watches: tuple[Watch, ...] = ()
+    knots: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Peaks:
+    """Of each quantity its value largest in size, with its sign, the time and the ratio xi/l where it is, and whether it is told.
+
+    A peak that is not told is at least this, which was found.
+    """
+
+    value: Array
+    t: Array
+    xi: Array
+    told: Flags
+
+
+def peaks(source: Source, curves: Curves, t: Array, samples: Samples, hiding: Flags) -> Peaks:
+    """The peaks of quantities over the span of equally spaced instants ``t``, of which ``samples`` are.
+
+    ``hiding`` (n - 1,) tells in which of their steps something is known to hide. No peak is below the largest sample. Of several
+    that are as large but for rounding the first is told, for else rounding would choose their sign.
+    """
+    search = _Search(source, curves, t, samples)
+    if t.size > 1:
+        search.panel(Panel(t, samples), 0, hiding)
+    return search.found(t, samples)
+
+
+class _Search:
+    """What is known so far of each quantity: its largest size, and where one as large was found first."""
+
+    def __init__(self, source: Source, curves: Curves, t: Array, samples: Samples) -> None:
+        self.source, self.curves = source, curves
+        self.quantity, self.knots = np.array(curves.quantities, dtype=int), np.array(curves.knots)
+        self.best = np.zeros(len(curves.units))
+        np.maximum.at(self.best, self.quantity, np.abs(samples.values).max(axis=1))
+        scales = np.zeros(max(curves.units) + 1)
+        np.maximum.at(scales, np.array(curves.units), self.best)
+        scales[: len(curves.scales)] = np.fmax(scales[: len(curves.scales)], curves.scales)
+        self.scale = scales[list(curves.units)]
+        self.size, self.t, self.xi, self.sign = (np.full(self.best.size, x) for x in (-1.0, np.inf, np.nan, 1.0))
+        self.told, self.going = np.ones(self.best.size, bool), np.zeros(self.best.size)
+        self.samples, self.hidden = samples.values, 0
+        self.step = float(t[-1] - t[0]) / max(t.size - 1, 1)
+        self.left = PANELS + 4 * t.size
+
+    @property
+    def rounding(self) -> Array:
+        """What is no more than rounding, of each quantity."""
+        return ROUNDING * (self.best + BESIDE * self.scale)
+
+    @property
+    def limit(self) -> Array:
+        """What each curve must rise above to matter; one of what is nothing beside others of its unit never does."""
+        limit = np.where(self.best > NOTHING * self.scale, self.best + self.rounding, np.inf)
+        return np.asarray(limit[self.quantity])
+
+    def note(self, curve: int, value: float, t: float, xi: float) -> None:
+        """Take in what a curve is at a time."""
+        q, size = self.quantity[curve], abs(value)
+        rounding = float(self.rounding[q])
+        if not math.isfinite(size):
+            return
+        if size > self.best[q]:
+            self.best[q] = size
+            taken = not (self.size[q] >= size - rounding and self.t[q] < t - self.step / 2)
+        else:
+            taken = size >= self.best[q] - rounding and t < self.t[q] - self.step / 2
+        if taken:
+            self.size[q], self.t[q], self.xi[q], self.sign[q] = size, t, xi, math.copysign(1.0, value)
+
+    def found(self, t: Array, samples: Samples) -> Peaks:
+        """The peaks; of those at instants, only now the first is sought."""
+        for q in np.flatnonzero(np.isfinite(self.best)):
+            rows, least = np.flatnonzero(self.quantity == q), self.best[q] - self.rounding[q]
+            sizes = np.abs(samples.values[rows])
+            i = int(np.argmax((sizes >= least).any(axis=0)))
+            row = int(rows[np.argmax(sizes[:, i])])
+            if abs(samples.values[row, i]) >= least and (self.size[q] < least or t[i] < self.t[q] - self.step / 2):
+                self.t[q], self.xi[q], self.sign[q] = t[i], samples.places[row, i], math.copysign(1.0, samples.values[row, i])
+        told = (self.told & (self.going <= self.best / 2)) | np.isinf(self.best)
+        return Peaks(np.copysign(self.best, self.sign), self.t, self.xi, told)
+
+    def panel(self, panel: Panel, depth: int, hiding: Flags) -> None:
+        """Search a panel; in ``hiding`` steps something is known to hide."""
+        n, values = panel.t.size, panel.samples.values
+        if n < fits.SEVEN:
+            hiding, bound = np.ones(n - 1, bool), np.full((values.shape[0], n - 1), -np.inf)
+        else:
+            kinks = np.histogram(self.knots, panel.t)[0] if depth and self.knots.size else None
+            unseen, kinked = unresolved(panel.samples.watched, self.curves.watches, panel.step, kinks)
+            hiding = hiding | unseen
+            bound = np.fmax(highest(values), highest(-values))
+            self.hidden += np.count_nonzero(hiding) if depth == 0 else 0
+            self.stretches(panel, bound, hiding | kinked)
+            self.settle(panel, bound)
+            open_ = (bound > self.limit[:, None]).any(axis=1)
+            bound[[curve for curve in np.flatnonzero(open_).tolist() if self.rounded(curve)]] = -np.inf
+        size = np.fmax(self.best, np.finfo(float).tiny)[self.quantity]
+        while True:
+            rise = np.max((bound - self.limit[:, None]) / size[:, None], axis=0)
+            step = int(np.argmax(rise if rise.max() > 0.0 else hiding))
+            if not (rise[step] > 0.0 or hiding[step]):
+                return
+            risen = bound[:, step] > self.limit
+            if depth == DEEPEST or panel.step <= SPACING * np.abs(panel.t).max():
+                self.end(panel, step, risen, depth == DEEPEST)
+            elif self.left > 0:
+                self.left -= 1
+                self.inside(panel, step, depth)
+            else:
+                self.told[self.quantity[risen | hiding[step]]] = False
+            hiding[step], bound[:, step] = False, -np.inf
+
+    def inside(self, panel: Panel, step: int, depth: int) -> None:
+        """Search a step as a panel of its own, or as two if it is known where in it a kink or a jump is."""
+        start, stop = panel.t[step], panel.t[step + 1]
+        first, last = panel.samples.some(slice(step, step + 1)), panel.samples.some(slice(step + 1, step + 2))
+        beside = SIDE * self.step
+        found = sides(self.source, panel, step, self.curves.watches, beside)
+        if found is None:
+            self.part(start, stop, first, last, depth)
+            return
+        t, samples = found
+        for j, time in enumerate(t):
+            for curve in range(samples.values.shape[0]):
+                self.note(curve, samples.values[curve, j], time, samples.places[curve, j])
+        self.left -= 1
+        if t[0] - start > 2 * beside:
+            self.part(start, t[0], first, samples.some(slice(0, 1)), depth)
+        if stop - t[1] > 2 * beside:
+            self.part(t[1], stop, samples.some(slice(1, 2)), last, depth)
+
+    def part(self, a: float, b: float, first: Samples, last: Samples, depth: int) -> None:
+        """Search what is between two times as a panel."""
+        t = np.append(a + np.arange(INNER + 1) * ((b - a) / (INNER + 1)), b)
+        samples = self.source.at(t[1:-1])
+        joined = (np.concatenate(rows, axis=1) for rows in zip(first, samples, last, strict=True))
+        # What has no value is nothing, and hides what is beside it.
+        values, places, watched = joined
+        broken = np.asarray(~np.isfinite(values).all(axis=0))
+        values = np.where(np.isfinite(values), values, 0.0)
+        for curve in range(values.shape[0]):
+            for j in np.flatnonzero(np.abs(values[curve, 1:-1]) > self.best[self.quantity[curve]]) + 1:
+                self.note(curve, values[curve, j], t[j], places[curve, j])
+        self.panel(Panel(t, Samples(values, places, watched)), depth + 1, broken[:-1] | broken[1:])
+
+    def end(self, panel: Panel, step: int, risen: Flags, deepest: bool) -> None:
+        """What is left in a step that is as short as can be: a kink, a jump, or what grows on without an end."""
+        for curve in np.flatnonzero(risen):
+            q, row, endless = self.quantity[curve], panel.samples.values[curve], -1
+            for at, along in ((step, -1), (step + 1, 1), (step, 1), (step + 1, -1)):
+                near = at + along * np.arange(3)
+                if near.min() < 0 or near.max() >= row.size:
+                    continue
+                # Towards a pole both steps grow, of two beside this one or of this one and the next; at a jump at most one does.
+                sizes = np.abs(row[near])
+                growth = sizes[:2] - sizes[1:]
+                if sizes[0] >= self.best[q] / 2 and sizes[2] > NOISE * sizes[0] and (growth > ENDLESS * sizes[:2]).all():
+                    endless = at
+                beside = (at == step) == (along < 0)
+                if beside and deepest and sizes[0] >= self.best[q] / 2 and (growth > LAST * self.best[q]).all():
+                    self.going[q] = max(self.going[q], sizes[0])
+            if endless >= 0:
+                self.best[q], self.t[q], self.xi[q] = np.inf, panel.t[endless], panel.samples.places[curve, endless]
+                self.sign[q] = math.copysign(1.0, row[endless])
+
+    def stretches(self, panel: Panel, bound: Array, kinked: Flags) -> None:
+        """Look at the middles of the end steps, where polynomials go through them straight on, and close those that do."""
+        t, n = panel.t, panel.t.size
+        for step, end in ((0, slice(0, fits.SEVEN)), (n - 2, slice(n - 1, n - fits.SEVEN - 1 if n > fits.SEVEN else None, -1))):
+            if kinked[step] or ((self.knots > t[step]) & (self.knots < t[step + 1])).any():
+                continue
+            curves = np.flatnonzero(bound[:, step] > self.limit)
+            y = panel.samples.values[curves][:, end].T
+            middle, least = fits.stretch(y)
+            rounding = self.rounding[self.quantity[curves]]
+            straight = (least > 0.0) & (np.abs(np.diff(y, 6, axis=0))[0] <= rounding + ROUGH * least)
+            if not straight.any():
+                continue
+            time = (t[step] + t[step + 1]) / 2
+            values, places, _ = self.source.at(np.array([time]))
+            for curve in curves[straight].tolist():
+                self.note(curve, values[curve, 0], time, places[curve, 0])
+            passed = straight & (np.abs(values[curves, 0] - middle) <= np.maximum(rounding, STRETCH * least))
+            bound[curves[passed], step] = -np.inf
+
+    def settle(self, panel: Panel, bound: Array) -> None:
+        """Look for the summits of curves that may rise above what is known; what this closes is bounded no more."""
+        summits = list(self.summits(panel, bound))
+        opened = [summit for summit in summits if not summit.closed]
+        found = self.look([(summit, t) for summit in opened for t in (summit.t, *(t for t, _ in summit.kink))])
+        for summit in opened:
+            first, kink = next(found), [abs(next(found) - size) for _, size in summit.kink]
+            tipped = bool(kink) and max(kink) <= self.rounding[self.quantity[summit.curve]]
+            summit.closed = self.closed(panel, summit, first) or tipped
+        again = [summit for summit in opened if summit.again and not summit.closed]
+        for summit, size in zip(again, self.look([(summit, summit.t) for summit in again]), strict=True):
+            missed, rounding = abs(size - summit.size), self.rounding[self.quantity[summit.curve]]
+            # What was missed now bends the slope in turn.
+            summit.closed = missed <= rounding or 10 * missed**2 * (1 + summit.steep**2) <= -summit.bend * rounding
+        for summit in summits:
+            if summit.closed:
+                bound[summit.curve, max(summit.at - 1, 0) : summit.at + 1] = -np.inf
+            else:
+                for t in (summit.t, *(t for t, _ in summit.kink)):
+                    bound[summit.curve, np.clip(np.searchsorted(panel.t, t, side="right") - 1, 0, panel.t.size - 2)] = np.inf
+
+    def summits(self, panel: Panel, bound: Array) -> Iterator[Summit]:
+        """The summits of curves that may rise above what is known."""
+        found: list[tuple[int, int]] = []
+        n = panel.t.size
+        for curve in np.flatnonzero((bound > self.limit[:, None]).any(axis=1)).tolist():
+            row, limit = panel.samples.values[curve], self.limit[curve]
+            sizes = np.abs(row)
+            bound[curve, self.told_before(panel.samples.values, curve)] = -np.inf
+            for step in np.flatnonzero(bound[curve] > limit).tolist():
+                if bound[curve, step] <= limit + self.noise(curve, row, step):
+                    bound[curve, step] = -np.inf
+                    continue
+                for at in (step, step + 1):
+                    top = (at == 0 or sizes[at - 1] < sizes[at]) and (at == n - 1 or sizes[at] >= sizes[at + 1])
+                    if top and (curve, at) not in found[-1:]:
+                        found.append((curve, at))
+        if not found:
+            return
+        signs = [math.copysign(1.0, panel.samples.values[curve, at]) for curve, at in found]
+        firsts = [fits.window(at, n) for _, at in found]
+        ys = [panel.samples.values[curve, first : first + fits.SEVEN] for (curve, _), first in zip(found, firsts, strict=True)]
+        ys = [sign * y for sign, y in zip(signs, ys, strict=True)]
+        fit = fits.summit(np.stack(ys, axis=1), *np.transpose([fits.bounds(at, n) for _, at in found]))
+        for k, (curve, at) in enumerate(found):
+            x, size, slope, bend, steep, rough = (float(values[k]) for values in fit)
+            start, q = panel.t[firsts[k]], self.quantity[curve]
+            trust = TRUST if abs(x) < 2.0 else TRUST_ASIDE
+            kink = fits.kink(ys[k]) if firsts[k] == at - fits.SEVEN // 2 else []
+            times = [(float(panel.t[at] + panel.step * place), tip) for place, tip in kink]
+            t = float(start + panel.step * (x + fits.SEVEN // 2))
+            summit = Summit(curve, at, signs[k], t, size, slope, bend, steep, rough, trust, times)
+            summit.closed = bend < 0.0 and rough <= -ROUGH * bend and size + rough < self.best[q] - self.rounding[q]
+            yield summit
+
+    def told_before(self, values: Array, curve: int) -> Flags:
+        """In which steps a curve is, all around, what others of its quantity are: as one that turns only beyond its link's end."""
+        others = np.flatnonzero(self.quantity[:curve] == self.quantity[curve])
+        same = np.ones(values.shape[1] + 2, bool)
+        same[1:-1] = (np.abs(values[others] - values[curve]) <= self.rounding[self.quantity[curve]]).any(axis=0)
+        return np.asarray(same[:-3] & same[1:-2] & same[2:-1] & same[3:])
+
+    def noise(self, curve: int, row: Array, step: int) -> float:
+        """What a curve's values beside a step are off by rounding: where third differences are no smaller than second ones."""
+        if row.size < QUIET:
+            return 0.0
+        first = min(max(step - QUIET // 2 + 1, 0), row.size - QUIET)
+        second, third = (float(np.median(np.abs(np.diff(row[first : first + QUIET], k)))) for k in (2, 3))
+        q = self.quantity[curve]
+        return 3 * third if second <= third <= NOISE * (self.best[q] + BESIDE * self.scale[q]) else 0.0
+
+    def rounded(self, curve: int) -> bool:
+        """Whether a curve is nothing but rounding: it zigzags at the instants, though between most of them nothing hides."""
+        row = self.samples[curve]
+        if row.size < 2 * QUIET or 2 * self.hidden > row.size:
+            return False
+        bends, sizes = np.diff(row, 2), np.abs(row)
+        ragged = np.abs(bends) > RAGGED * np.fmax(sizes[1:-1], np.fmax(sizes[:-2], sizes[2:]))
+        turns = ragged[:-1] & ragged[1:] & ((bends[:-1] > 0.0) != (bends[1:] > 0.0))
+        return bool(2 * np.count_nonzero(turns) >= row.size)
+
+    def look(self, places: Sequence[tuple[Summit, float]]) -> Iterator[float]:
+        """The sizes of curves where they are looked at."""
+        if not places:
+            return
+        values, ratios, _ = self.source.at(np.array([t for _, t in places]))
+        for k, (summit, t) in enumerate(places):
+            self.note(summit.curve, values[summit.curve, k], t, ratios[summit.curve, k])
+            yield summit.sign * values[summit.curve, k]
+
+    def closed(self, panel: Panel, summit: Summit, found: float) -> bool:
+        """Whether what was found closes both steps beside a summit; else, if it is worth another look, the summit says where."""
+        rounding, missed = float(self.rounding[self.quantity[summit.curve]]), found - summit.size
+        if not (summit.bend < 0.0 and summit.rough <= rounding - ROUGH * summit.bend):
+            return False
+        if not (abs(missed) <= rounding or abs(missed) <= -summit.trust * summit.bend):
+            return False
+        # What is missed by rounding says nothing of the slope, however near a value is.
+        slope = summit.slope + (missed * summit.steep if abs(missed) > CLOSE * self.best[self.quantity[summit.curve]] else 0.0)
+        gain = slope**2 / (-2 * summit.bend)
+        if not math.isfinite(slope) or gain <= rounding:
+            return True
+        # At an end from which it falls there is nothing more to find.
+        if (summit.at == 0 and slope < 0.0) or (summit.at == panel.t.size - 1 and slope > 0.0):
+            return bool(found < summit.sign * panel.samples.values[summit.curve, summit.at])
+        summit.again = True
+        summit.t -= panel.step * slope / summit.bend
+        summit.size = found + gain
+        return False

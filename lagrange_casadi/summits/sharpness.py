@@ -1,0 +1,244 @@
+"""Where a scene may be sharper than its instants: what its graph divides by, compares, turns by and raises, to be watched.
+
+Every quantity is made of time by a graph of operations. Sums and products make nothing sharp; what does is a divisor that nearly
+vanishes, a comparison that changes, an angle that turns far between two instants, or a steep function. The arguments of all such
+operations are smooth wherever those inside them are, so their values at the instants tell between which of them something may
+rise and fall unseen. :mod:`.between` reads them.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from ..arithmetic.interpret import followable, steps
+from ..declare.density import Array
+from ..equations.scene_graph import SceneGraph
+
+
+class Kind(enum.IntEnum):
+    """What a watched argument does to what is made of it."""
+
+    RATE = 0
+    """It is the rate [rad/s] of an angle under a sine or cosine."""
+    TURN = 1
+    """It is such an angle itself, known up to whole turns."""
+    POLE = 2
+    """What it divides is without bound where it is zero."""
+    ROOT = 3
+    """A kink, at most, where it is zero."""
+    SWITCH = 4
+    """A jump or a kink where it passes one of some numbers."""
+    STEP = 5
+    """The same at every whole number."""
+    SOFT = 6
+    """A steep change within some number of zero, and nothing beyond."""
+    POWER = 7
+    """An exponent."""
+
+
+@dataclass(frozen=True)
+class Watch:
+    """A watched argument; ``at`` are the numbers at which it switches, or the one beyond which it changes nothing."""
+
+    kind: Kind
+    at: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Sharpness:
+    """What is to be watched of a scene.
+
+    ``watched(t, d, d_rate, d_acceleration, z, p) -> out`` has a row for each of ``watches``. ``knots`` are the times at which the
+    second derivative of a motion by samples has a kink.
+    """
+
+    watched: Any
+    watches: tuple[Watch, ...]
+    knots: tuple[float, ...]
+
+    @classmethod
+    def of(cls, graph: SceneGraph, columns: Sequence[int]) -> Sharpness:
+        """Of what some columns of a scene's graph are made of."""
+        inputs = graph.instant.sx_in()
+        names = [graph.instant.name_in(i) for i in range(len(inputs))]
+        found = _Found(inputs)
+        if followable(graph.instant):
+            out = graph.instant(*inputs)[list(columns)]
+            found.look(ca.Function("wanted", inputs, [out], {"cse": True}), inputs)
+        if followable(graph.laws.smooth):
+            found.look(graph.laws.smooth, [inputs[0], inputs[-1]])
+        rows = ca.densify(ca.vertcat(ca.SX(0, 1), *(row for row, _ in found.kept.values())))
+        knots = sorted({t for name in graph.driven for t in graph.scene.motion[name].knots})
+        watched = ca.Function("watched", inputs, [rows], names, ["out"], {"cse": True})
+        return cls(watched, tuple(watch for _, watch in found.kept.values()), tuple(knots))
+
+
+def with_watched(graph: SceneGraph, sharpness: Sharpness) -> SceneGraph:
+    """The graph with what is watched as further columns, ``_watched:NUMBER``, the last ones."""
+    inputs = graph.instant.sx_in()
+    names = [graph.instant.name_in(i) for i in range(len(inputs))]
+    out = ca.vertcat(graph.instant(*inputs), sharpness.watched(*inputs))
+    instant = ca.Function("instant", inputs, [out], names, ["out"], {"cse": True})
+    return replace(graph, instant=instant, columns=(*graph.columns, *(f"_watched:{k}" for k in range(len(sharpness.watches)))))
+
+
+def bent(graph: SceneGraph, sharpness: Sharpness, t: Array, p: Array) -> npt.NDArray[np.bool_]:
+    """Between which of the instants ``t`` a motion by samples bends more than the instants show, (t - 1,)."""
+    found = np.zeros(max(t.size - 1, 0), bool)
+    knots = np.array([knot for knot in sharpness.knots if t[0] < knot < t[-1]])
+    if not knots.size or t.size < 3:
+        return found | (t.size < 3)
+    here, there = (np.atleast_2d(graph.motion(times[None], p)[2].full()) for times in (t, knots))
+    bends = np.abs(np.diff(here, 2))
+    bends = np.concatenate([bends[:, :1], bends, bends[:, -1:]], axis=1)
+    allowed = np.maximum(bends[:, :-1], bends[:, 1:]) / 2 + _ROUNDING * np.abs(here).max(axis=1, keepdims=True)
+    place = np.clip(np.searchsorted(t, knots, side="right") - 1, 0, t.size - 2)
+    share = (knots - t[place]) / (t[place + 1] - t[place])
+    chord = here[:, place] * (1 - share) + here[:, place + 1] * share
+    np.logical_or.at(found, place, (np.abs(there - chord) > allowed[:, place]).any(axis=0))
+    return found
+
+
+_ROUNDING = 1e-12
+_FLAT = {ca.OP_TANH: 20.0, ca.OP_ERF: 6.0}
+"""Beyond which these are one, but for less than a rounding."""
+
+
+class _Found:
+    """What has been found to be watched, by kind and argument, and the symbols that it is of."""
+
+    def __init__(self, inputs: Sequence[Any]) -> None:
+        t, d, rate, acceleration, z, _ = inputs
+        self.moving = ca.vertcat(t, d, rate, acceleration, z)
+        self.place, self.place_rate = ca.vertcat(t, d), ca.vertcat(1, rate)
+        self.others = ca.vertcat(rate, acceleration, z)
+        self.kept: dict[tuple[Kind, int], tuple[Any, Watch]] = {}
+        self.held: list[Any] = []
+
+    def look(self, function: Any, inputs: Sequence[Any]) -> None:
+        """Go through the operations of a function of ``inputs``."""
+        for operation, operands in _operations(function, inputs):
+            self.held += operands  # so that no other node takes the place of one that is known by its number
+            for kind, argument, at in _watched(operation, operands):
+                self.add(kind, argument, at)
+
+    def add(self, kind: Kind, argument: Any, at: tuple[float, ...]) -> None:
+        """Watch an argument, unless parameters alone set it."""
+        argument = self.bare(argument) if kind in (Kind.POLE, Kind.ROOT) else argument
+        if not self.moves(argument):
+            return
+        self.held.append(argument)
+        row = argument
+        if kind is Kind.TURN and not ca.depends_on(argument, self.others):
+            kind, row = Kind.RATE, ca.jtimes(argument, self.place, self.place_rate)
+        elif kind is Kind.TURN and argument.is_symbolic():
+            return  # an iterated angle, which is followed from instant to instant
+        key = kind, argument.element_hash()
+        if kind is Kind.ROOT and (Kind.POLE, key[1]) in self.kept:
+            return
+        if kind is Kind.POLE:
+            self.kept.pop((Kind.ROOT, key[1]), None)
+        known = self.kept[key][1].at if key in self.kept else ()
+        self.kept[key] = row, Watch(kind, tuple(sorted({*known, *at})))
+
+    def moves(self, expression: Any) -> bool:
+        return not expression.is_constant() and bool(ca.depends_on(expression, self.moving))
+
+    def bare(self, divisor: Any) -> Any:
+        """A divisor without what is zero where it is, or nowhere: roots, squares, signs, and what parameters alone set."""
+        while not (divisor.is_constant() or divisor.is_symbolic()):
+            operation = divisor.op()
+            if operation in _ALIKE:
+                divisor = divisor.dep(0)
+            elif operation in (ca.OP_MUL, ca.OP_DIV):
+                moving = [part for part in (divisor.dep(0), divisor.dep(1)) if self.moves(part)]
+                if len(moving) != 1:
+                    return divisor
+                divisor = moving[0]
+            else:
+                return divisor
+        return divisor
+
+
+_ALIKE = {ca.OP_NEG, ca.OP_INV, ca.OP_SQ, ca.OP_SQRT, ca.OP_TWICE, ca.OP_FABS, ca.OP_COPYSIGN, ca.OP_CONSTPOW}
+
+
+def _operations(function: Any, inputs: Sequence[Any]) -> Iterator[tuple[int, list[Any]]]:
+    """Every operation of an SX function, with what it is applied to."""
+    work: dict[int, Any] = {}
+    for step in steps(function):
+        if step.operation == ca.OP_OUTPUT:
+            continue
+        if step.operation == ca.OP_CONST:
+            found = ca.SX(step.constant)
+        elif step.operation == ca.OP_INPUT:
+            found = inputs[step.arguments[0]].nz[step.arguments[1]]
+        else:
+            operands = [work[place] for place in step.arguments]
+            yield step.operation, operands
+            found = ca.SX.unary(step.operation, *operands) if len(operands) == 1 else ca.SX.binary(step.operation, *operands)
+        work[step.results[0]] = found
+
+
+def _watched(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Kind, Any, tuple[float, ...]]]:
+    """What is to be watched of an operation."""
+    x, y = operands[0], operands[-1]
+    if operation in (ca.OP_DIV, ca.OP_INV):
+        yield Kind.POLE, y, ()
+    elif operation in (ca.OP_SIN, ca.OP_COS):
+        yield Kind.TURN, x, ()
+    elif operation == ca.OP_TAN:
+        yield Kind.TURN, x, ()
+        yield Kind.POLE, ca.cos(x), ()
+    elif operation in (ca.OP_SQRT, ca.OP_HYPOT):
+        yield Kind.ROOT, x if operation == ca.OP_SQRT else x * x + y * y, ()
+    elif operation in (ca.OP_LT, ca.OP_LE) and y.is_constant():
+        yield Kind.SWITCH, x, (float(y),)
+    elif operation in (ca.OP_LT, ca.OP_LE) and x.is_constant():
+        yield Kind.SWITCH, y, (float(x),)
+    elif operation in (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_FMIN, ca.OP_FMAX):
+        yield Kind.SWITCH, x - y, (0.0,)
+    elif operation in (ca.OP_FABS, ca.OP_SIGN):
+        yield Kind.SWITCH, x, (0.0,)
+    elif operation == ca.OP_COPYSIGN:
+        # That of a root or a reciprocal keeps a sign through a division or a reflection, and makes no jump.
+        if x.is_constant() or x.is_symbolic() or x.op() not in (ca.OP_SQRT, ca.OP_INV):
+            yield Kind.SWITCH, y, (0.0,)
+    elif operation in (ca.OP_FLOOR, ca.OP_CEIL):
+        yield Kind.STEP, x, ()
+    elif operation in (ca.OP_FMOD, ca.OP_REMAINDER):
+        yield Kind.STEP, x / y + (0.5 if operation == ca.OP_REMAINDER else 0.0), ()
+        yield Kind.POLE, y, ()
+    elif operation in _FLAT:
+        yield Kind.SOFT, x, (_FLAT[operation],)
+    elif operation in (ca.OP_EXP, ca.OP_EXPM1, ca.OP_SINH, ca.OP_COSH):
+        yield Kind.POWER, x, ()
+        if operation in (ca.OP_SINH, ca.OP_COSH):
+            yield Kind.POWER, -x, ()
+    elif operation in (ca.OP_LOG, ca.OP_LOG1P):
+        yield Kind.POLE, x if operation == ca.OP_LOG else 1 + x, ()
+    elif operation in (ca.OP_ASIN, ca.OP_ACOS, ca.OP_ATANH):
+        yield Kind.POLE if operation == ca.OP_ATANH else Kind.ROOT, 1 - x * x, ()
+    elif operation == ca.OP_ACOSH:
+        yield Kind.ROOT, x * x - 1, ()
+    elif operation in (ca.OP_ATAN, ca.OP_ASINH):
+        yield Kind.POLE, 1 + x * x, ()
+    elif operation == ca.OP_ATAN2:
+        yield Kind.POLE, x * x + y * y, ()
+    elif operation in (ca.OP_POW, ca.OP_CONSTPOW):
+        power = float(y) if y.is_constant() else None
+        if power is None or power < 0 or power != int(power):
+            yield Kind.POLE, x, ()
+        if power is None or abs(power) > _SMOOTH:
+            yield Kind.POWER, y * ca.log(ca.fabs(x)), ()
+
+
+_SMOOTH = 8
+"""Up to this power nothing hides between instants."""

@@ -1,0 +1,178 @@
+"""The user's cache folder: what was derived and built before, kept whole or not at all, and no more of it than fits a limit.
+
+All files of one thing begin with the same hash. What was used longest ago goes first. Any number of processes may read, keep and
+remove at once: a thing of which a file is gone is not there, and is made again; one that is open, or loaded, stays so.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import re
+import shutil
+import tempfile
+import time
+import warnings
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import platformdirs
+
+from ..errors import DeclarationError, lacking
+from .numerals import real
+
+VARIABLE = "LAGRANGE_CASADI_CACHE_SIZE"
+"""The variable that sets another limit: bytes, or a number and k, M, G or T; 0 keeps nothing."""
+
+LIMIT = 500_000_000
+"""Bytes that are kept at most, unless the variable says otherwise."""
+
+_UNITS = {"": 1, "k": 10**3, "M": 10**6, "G": 10**9, "T": 10**12}
+_OURS = re.compile(r"([0-9a-f]{32}(?:-iterated)?)\.(?:graph|c|cpp|so|sha256|log)")
+_DRAFT, _FORGOTTEN = "build-", 86_400.0
+"""How folders of files that are being put here begin; and seconds after which whoever made one is gone."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One thing that is kept: its files, their size in bytes, and when it was last used, in seconds of the system's clock."""
+
+    files: tuple[Path, ...]
+    size: int
+    used: float
+
+
+def limit() -> int:
+    """Bytes that are kept at most. Raises :class:`DeclarationError` where the variable says no size."""
+    text = os.environ.get(VARIABLE, "").strip()
+    if not text:
+        return LIMIT
+    found = re.fullmatch(r"([0-9.]+) ?([kMGT]?)B?", text)
+    with suppress(ValueError, OverflowError):
+        if found:
+            return int(real(found[1]) * _UNITS[found[2]])
+    raise DeclarationError(f"${VARIABLE} = '{text}': expected bytes, as in 200000000, 200M or 2G; 0 keeps nothing")
+
+
+def place() -> Path:
+    """Where the folder is, or would be."""
+    return Path(platformdirs.user_cache_dir("lagrange_casadi", appauthor=False))
+
+
+def folder() -> Path | None:
+    """Where things are kept, or None: nothing is to be kept, or, with a warning once, that cannot be written."""
+    if limit() == 0:
+        return None
+    try:
+        return place() if _writable(place()) else None
+    except OSError as error:
+        warnings.warn(f"cannot use the cache folder {place()} now: {error.strerror}", stacklevel=3)
+        return None
+
+
+@functools.lru_cache
+def _writable(place: Path) -> bool:
+    """Whether the folder can be written. Raises ``OSError`` where that may be otherwise soon."""
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=place):
+            return True
+    except OSError as error:
+        if lacking(error):
+            raise
+        warnings.warn(f"cannot write into the cache folder {place}: {error.strerror}; nothing is kept", stacklevel=3)
+        return False
+
+
+def read(name: str) -> str | None:
+    """A text that was kept, or None; a damaged one is said to be."""
+    place = folder()
+    if place is None:
+        return None
+    try:
+        seal, _, text = (place / name).read_text(encoding="utf-8").partition("\n")
+    except FileNotFoundError:
+        return None
+    except (OSError, UnicodeDecodeError):
+        seal, text = "", ""
+    if seal == digest(text.encode()):
+        use(place / name)
+        return text
+    warnings.warn(f"the cached {place / name} was damaged and is made again", stacklevel=2)
+    return None
+
+
+def write(name: str, text: str) -> None:
+    """Keep a text; where the folder is full, do without."""
+    place = folder()
+    if place is None:
+        return
+    with suppress(OSError), tempfile.TemporaryDirectory() as work:
+        draft = Path(work) / name
+        draft.write_text(f"{digest(text.encode())}\n{text}", encoding="utf-8")
+        keep([draft], place)
+
+
+def keep(files: Sequence[Path], place: Path) -> None:
+    """Copy files into the cache, each whole or not at all, and make room for them. Raises ``OSError``."""
+    with tempfile.TemporaryDirectory(dir=place, prefix=_DRAFT) as near:
+        for file in files:
+            shutil.copyfile(file, Path(near) / file.name)
+        for file in files:
+            os.replace(Path(near) / file.name, place / file.name)
+    _make_room(place, {file.name.partition(".")[0] for file in files})
+
+
+def use(file: Path) -> None:
+    """Note that what a file belongs to was used now."""
+    with suppress(OSError):
+        os.utime(file)
+
+
+def digest(content: bytes) -> str:
+    """What tells whether a content is whole."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def entries(place: Path) -> dict[str, Entry]:
+    """What is kept in a folder by its hash, what was used longest ago first. Raises ``OSError``."""
+    found: dict[str, list[tuple[Path, os.stat_result]]] = {}
+    for file in os.scandir(place):
+        if ours := _OURS.fullmatch(file.name):
+            with suppress(FileNotFoundError):
+                there = Path(file.path), file.stat()
+                found.setdefault(ours[1], []).append(there)
+    listed = {
+        name: Entry(tuple(path for path, _ in files), sum(s.st_size for _, s in files), max(s.st_mtime for _, s in files))
+        for name, files in found.items()
+    }
+    return dict(sorted(listed.items(), key=lambda item: item[1].used))
+
+
+def remove(entries: Iterable[Entry]) -> int:
+    """Remove things; how many bytes that were. What cannot be removed stays."""
+    removed = 0
+    for entry in entries:
+        with suppress(OSError):
+            # A seal first: without it a library is not believed, whoever looks meanwhile.
+            for file in sorted(entry.files, key=lambda file: file.suffix != ".sha256"):
+                file.unlink(missing_ok=True)
+            removed += entry.size
+    return removed
+
+
+def _make_room(place: Path, fresh: set[str]) -> None:
+    """Remove what was used longest ago, until the rest is within the limit; what is ``fresh`` stays."""
+    with suppress(OSError):
+        kept = entries(place)
+        beyond = sum(entry.size for entry in kept.values()) - limit()
+        for name, entry in kept.items():
+            if beyond > 0 and name not in fresh:
+                beyond -= remove([entry])
+        forgotten = time.time() - _FORGOTTEN
+        for draft in place.glob(f"{_DRAFT}*"):
+            if draft.stat().st_mtime < forgotten:
+                shutil.rmtree(draft, ignore_errors=True)

@@ -1,0 +1,53 @@
+"""Which signals stop the program, and what they do before it can do better: while its modules are imported.
+
+The package imports this first. In any other program than its own it changes nothing.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from contextlib import suppress
+from pathlib import Path
+from types import FrameType
+
+STATUS = 130
+"""The exit status of a program that was interrupted."""
+
+SENTENCE = "interrupted; nothing was left half-written"
+
+_NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
+
+
+def interrupts() -> list[signal.Signals]:
+    """Ctrl-C, a wish to end, and a terminal that goes, where the platform has them and they are not ignored.
+
+    ``nohup``, and a shell for what it runs in the background, start a program that ignores some: those stay ignored.
+    """
+    numbers = [getattr(signal, name) for name in _NAMES if hasattr(signal, name)]
+    return [number for number in numbers if signal.getsignal(number) not in (signal.SIG_IGN, None)]
+
+
+def is_program() -> bool:
+    """Whether this process is the command line: the installed script, or ``python -m`` while that looks for the package.
+
+    A process that the program started has the same name.
+    """
+    helpers = sys.modules.get("multiprocessing.process")
+    if helpers is not None and helpers.parent_process() is not None:
+        return False
+    name = sys.argv[0] if sys.argv else ""
+    return Path(name).stem == "lagrange-casadi" or (name == "-m" and __package__.partition(".")[0] in sys.orig_argv)
+
+
+def _end(_number: int, _frame: FrameType | None) -> None:
+    # No exception: what is being imported may take one for its own.
+    with suppress(OSError):
+        os.write(2, f"error: {SENTENCE}\n".encode())
+    os._exit(STATUS)
+
+
+if is_program():
+    for _signal in interrupts():
+        signal.signal(_signal, _end)

@@ -1,0 +1,71 @@
+"""Devices, pipes, and what standard output goes to: they are written straight to, for no file may be put in their place."""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+import sys
+import time
+from pathlib import Path
+from typing import BinaryIO
+
+from ..errors import StoreError
+
+SOCKET = "a socket"
+"""What cannot be written to by its path."""
+
+_PATIENCE = 10.0
+_PAUSE = 0.02
+_FLAGS = os.O_WRONLY | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_NONBLOCK", 0)
+
+
+def stream_word(path: Path) -> str:
+    """What a path is that takes bytes and keeps no file, in words; nothing where it may be a file. Raises ``OSError``."""
+    try:
+        mode = os.stat(path).st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return ""
+    if _standard(path) is not None:
+        return "what standard output or error goes to"
+    if stat.S_ISREG(mode) or stat.S_ISDIR(mode):
+        return ""
+    return "a pipe" if stat.S_ISFIFO(mode) else SOCKET if stat.S_ISSOCK(mode) else "a device"
+
+
+def open_stream(path: Path) -> BinaryIO:
+    """What a path leads to, to write. Raises ``OSError``, and :class:`StoreError` for a pipe that nobody begins to read."""
+    number = _standard(path)
+    if number is not None:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        return os.fdopen(os.dup(number), "wb")
+    until = time.monotonic() + _PATIENCE
+    while True:
+        try:
+            number = os.open(path, _FLAGS)
+        except OSError as error:
+            if error.errno != errno.ENXIO:
+                raise
+            if time.monotonic() > until:
+                raise StoreError(f"cannot write {path}: nothing reads from it") from None
+            time.sleep(_PAUSE)
+        else:
+            os.set_blocking(number, True)
+            return os.fdopen(number, "wb")
+
+
+def is_standard_output(path: Path) -> bool:
+    """Whether a path leads to where the program's own words go."""
+    return _standard(path) == 1
+
+
+def _standard(path: Path) -> int | None:
+    """Which of standard output and error a path leads to."""
+    for number in (1, 2):
+        try:
+            if os.path.samestat(os.stat(path), os.fstat(number)):
+                return number
+        except OSError:
+            continue
+    return None
