@@ -106,8 +106,7 @@ def evaluate(
     solution = replace(solution, tolerance=tolerance(solution))
     if not certificate:
         return solution
-    residuals = _closed(graph, out, p)
-    residuals |= certify(solution, written(scene.mechanism, values), hidden(graph, out, left_open), within)
+    residuals = _closed(graph, out, p) | residuals_of(solution, graph, out, p, within)
     errors = explained(solution, residuals, estimate(graph, found, solution, p))
     solution = replace(solution, certificate=residuals | _condition(graph, found), errors=errors)
     if solution.failed:
@@ -147,7 +146,10 @@ def checked_laws(scene: Scene, span: tuple[float, float], p: tuple[float, ...]) 
 
 
 def outputs_of(graph: SceneGraph, out: Array) -> dict[str, Array]:
-    """The outputs among the columns ``out`` (columns, ..., t) of a graph, by name; angles go on where they would jump by a turn."""
+    """The outputs among the columns ``out`` (columns, ..., t) of a graph, by name; angles go on where they would jump by a turn.
+
+    They are those columns, not copies: in ``out`` too angles go on after this.
+    """
     series = {name: out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
     parts = {part: out[graph.columns.index(part)] for signs in graph.wrapped.values() for part in signs}
     turns = {
@@ -160,7 +162,17 @@ def outputs_of(graph: SceneGraph, out: Array) -> dict[str, Array]:
     return series
 
 
-def hidden(graph: SceneGraph, out: Array, undetermined: Sequence[str]) -> dict[str, Array]:
+def residuals_of(solution: Solution, graph: SceneGraph, out: Array, p: Array, within: Mapping[str, Array]) -> dict[str, Array]:
+    """What :func:`.certify` finds of a solution that was made of the columns ``out`` (columns, t) of a graph, for parameters ``p``.
+
+    ``within`` are the angles of ``out`` without their turns (:func:`.phases`), as they were before the solution was made of it.
+    """
+    mechanism = graph.scene.mechanism
+    equations = written(mechanism, dict(zip(mechanism.parameters, p.tolist(), strict=True)))
+    return certify(solution, equations, _hidden(graph, out, solution.undetermined), within)
+
+
+def _hidden(graph: SceneGraph, out: Array, undetermined: Sequence[str]) -> dict[str, Array]:
     """Forces that a solution does not give, and its certificate needs: multipliers that were not wanted, and what is open."""
     unwanted = {name[1:]: out[k] for k, name in enumerate(graph.columns) if name.startswith("_multiplier:")}
     return unwanted | {name: out[graph.columns.index(name)] for name in undetermined if name in graph.columns}

@@ -280,10 +280,9 @@ def stiff_springs(rng):
     return linkage(rng, "stiff_springs", ["OA", "AB", "CB"], "OC", ["OA"], decorate=sprung, swing=swing)
 
 
-def scissors(rng):
-    """A lift of crossed links, light ones under a large load."""
-    m, stages = Mechanism("scissors"), int(rng.integers(1, 6))
-    mass, l = float(10 ** rng.uniform(-9, 1)), float(rng.uniform(0.4, 1.5))
+def lift(stages, mass, l, forces, count=COUNT):
+    """A lift of crossed links, with forces down on its left and its right."""
+    m = Mechanism("scissors")
     foot = m.point_mass("foot", mass)
     m.prismatic("slide", m.ground, foot, axis=(1, 0))
     left, right, posture = m.ground, foot, {}
@@ -294,10 +293,16 @@ def scissors(rng):
         m.revolute(f"M{i}", a.at(l / 2), b.at(l / 2))
         posture |= {a.name: 0.6, b.name: math.pi - 0.6}
         left, right = b.tip, a.tip
+    m.force("left", left, y=-forces[0])
+    m.force("right", right, y=-forces[1])
+    return Scene(m, {"slide": harmonic(l * 0.8, l * 0.15, 0.5)}, posture=posture, t=(0.0, 1.0, count))
+
+
+def scissors(rng):
+    """A lift of light links under a large load."""
+    stages, mass, l = int(rng.integers(1, 6)), float(10 ** rng.uniform(-9, 1)), float(rng.uniform(0.4, 1.5))
     load = float(10 ** rng.uniform(1, 6))
-    m.force("left", left, y=-load)
-    m.force("right", right, y=-load * float(rng.uniform(0, 2)))
-    return Scene(m, {"slide": harmonic(l * 0.8, l * 0.15, 0.5)}, posture=posture, t=(0.0, 1.0, COUNT))
+    return lift(stages, mass, l, (load, load * float(rng.uniform(0, 2))))
 
 
 def light_links(rng):

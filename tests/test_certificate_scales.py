@@ -16,22 +16,9 @@ from lagrange_casadi.judge.written import written
 MILLIONTH = 1.0 + 1e-6
 
 
-def scissors(stages=5, mass=1e-9, load=1e6):
-    """A lift of crossed links under a load."""
-    m, l = Mechanism("scissors"), 1.0
-    foot = m.point_mass("foot", mass)
-    m.prismatic("slide", m.ground, foot, axis=(1, 0))
-    left, right, posture = m.ground, foot, {}
-    for i in range(stages):
-        a, b = m.link(f"a{i}", length=l, mass=mass), m.link(f"b{i}", length=l, mass=mass)
-        m.revolute(f"L{i}", left, a)
-        m.revolute(f"R{i}", right, b)
-        m.revolute(f"M{i}", a.at(l / 2), b.at(l / 2))
-        posture |= {a.name: 0.6, b.name: math.pi - 0.6}
-        left, right = b.tip, a.tip
-    m.force("left", left, y=-load)
-    m.force("right", right, y=-load)
-    return Scene(m, {"slide": harmonic(0.8, 0.15, 0.5)}, posture=posture, t=(0.0, 1.0, 61))
+def scissors():
+    """Five stages of links of a microgram under a meganewton on either side."""
+    return kinds.lift(5, 1e-9, 1.0, (1e6, 1e6), 61)
 
 
 def pendulum(mass=1e-9, load=1e6):
@@ -82,7 +69,7 @@ def far(distance=1e7):
 
 
 RIGHT = {
-    "five light stages under 1 MN": (lambda: scissors(), {}),
+    "five light stages under 1 MN": (scissors, {}),
     "a link of 1e-9 kg under 1 MN": (lambda: pendulum(), {}),
     "a link of 1e-200 kg": (lambda: pendulum(1e-200, 1e-199), {}),
     "a link of 1e200 kg": (lambda: pendulum(1e200, 1e6), {}),

@@ -15,13 +15,12 @@ from ..declare.density import Array
 from ..declare.description import describe
 from ..declare.scene import Scene
 from ..equations.derive import derive
-from ..evaluate import hidden, outputs_of
+from ..evaluate import outputs_of, residuals_of
 from ..instants.backends import run
 from ..instants.phases import phases
 from ..instants.rung import Rung
 from ..instants.solution import Solution
-from ..judge.certificate import LOOSE, certify, tolerance
-from ..judge.written import written
+from ..judge.certificate import LOOSE, tolerance
 
 INSTANTS = 5
 _AGREES = 1e-6
@@ -40,12 +39,10 @@ def failures(scene: Scene, p: Array, t: Array, rung: Rung, columns: Sequence[str
     rows = table.out[:, some] if graph.newton is not None else table.out
     values = dict(zip(scene.mechanism.parameters, p.tolist(), strict=True))
     within = phases(graph, rows, t[some], p)
-    series = outputs_of(graph, rows.copy())
-    description = describe(scene.mechanism, values, scene.motion)
+    series, description = outputs_of(graph, rows), describe(scene.mechanism, values, scene.motion)
     whole = Solution(scene.mechanism.name, t[some], np.zeros(0), series, description, provenance)
-    residuals = certify(whole, written(scene.mechanism, values), hidden(graph, rows, ()), within)
     limit = tolerance(whole) if rung.newton is None else LOOSE
-    found = {name: float(np.max(gaps)) for name, gaps in residuals.items()}
+    found = {name: float(np.max(gaps)) for name, gaps in residuals_of(whole, graph, rows, p, within).items()}
     failed = {name: gap for name, gap in found.items() if not gap <= limit}
     allowed = max(_AGREES, limit) if rung.precision == "double" else LOOSE
     agreement = _agreement(whole, dict(zip(columns, out[:, some], strict=True)))
