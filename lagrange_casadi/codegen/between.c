@@ -134,13 +134,13 @@ static int designs_is_sharp(designs_real* row, casadi_int n, int kind, double st
   for (i = 0; i < n; i += LANES) {
     memcpy(&here, row + i, sizeof here);
     if (kind == DESIGNS_IS_RATE) {
-      if (lanes_any_less(rate, designs_size(here))) return 1;
+      if (lanes_where_less(rate, designs_size(here))) return 1;
       continue;
     }
     memcpy(&before, row + i - 1, sizeof here);
     memcpy(&after, row + i + 1, sizeof here);
     bend = before - here + (after - here);
-    if (lanes_any_less(designs_size(here), 16*designs_size(bend)) || lanes_any_less(here*after, DESIGNS_LEAST)) return 1;
+    if (lanes_where_less(designs_size(here), 16*designs_size(bend)) || lanes_where_less(here*after, DESIGNS_LEAST)) return 1;
   }
   return 0;
 }

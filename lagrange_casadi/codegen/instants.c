@@ -63,6 +63,8 @@ static void designs_at(const designs_now* now, const double* t, const casadi_int
    watched. */
 static void designs_sample(designs_now* now, double* history) {
   casadi_real at[DESIGNS_INPUTS], y[DESIGNS_COLUMNS], value[DESIGNS_CURVES], place[DESIGNS_SOME(DESIGNS_PLACES)], sum[4];
+  const casadi_int stride = now->stride;
+  designs_real* row;
   casadi_int i, j;
   int k;
   for (k = 0; k < DESIGNS_CURVES; ++k) now->most[k] = 0;
@@ -71,22 +73,21 @@ static void designs_sample(designs_now* now, double* history) {
     for (k = 0; k < DESIGNS_NZ; ++k) memcpy(at + DESIGNS_PLACE + k, now->z + k*now->stride + i, sizeof *at);
     designs_columns(now->parameters, now->constants, now->p, at, y);
     designs_curves(y, now->matter, ~0ull, value, place);
-    for (k = 0; k < DESIGNS_CURVES; ++k) {
-      memcpy(designs_row(now, k) + i, value + k, sizeof *value);
+    row = now->rows + LANES + i;
+    for (k = 0; k < DESIGNS_CURVES; ++k, row += stride) {
+      memcpy(row, value + k, sizeof *value);
       now->most[k] = designs_larger(now->most[k], designs_size(value[k]));
     }
-    for (k = 0; k < DESIGNS_PLACES; ++k) memcpy(designs_row(now, DESIGNS_CURVES + k) + i, place + k, sizeof *place);
-    for (k = 0; k < DESIGNS_CHECKS; ++k) memcpy(designs_row(now, DESIGNS_CHECKED + k) + i, y + designs_checked[k], sizeof *y);
+    for (k = 0; k < DESIGNS_PLACES; ++k, row += stride) memcpy(row, place + k, sizeof *place);
+    for (k = 0; k < DESIGNS_CHECKS; ++k, row += stride) memcpy(row, y + designs_checked[k], sizeof *y);
     for (k = 0; k < 4; ++k) sum[k] = 0;
     for (k = 0; k + 4 <= DESIGNS_OUTPUTS; k += 4) {
       for (j = 0; j < 4; ++j) sum[j] = sum[j] + y[k + j];
     }
     for (; k < DESIGNS_OUTPUTS; ++k) sum[0] = sum[0] + y[k];
     sum[0] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-    memcpy(designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS) + i, sum, sizeof *sum);
-    for (k = 0; k < DESIGNS_WATCHES; ++k) {
-      memcpy(designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS + 1 + k) + i, y + DESIGNS_OUTPUTS + k, sizeof *y);
-    }
+    memcpy(row, sum, sizeof *sum);
+    for (k = 0; k < DESIGNS_WATCHES; ++k) memcpy(row += stride, y + DESIGNS_OUTPUTS + k, sizeof *y);
     if (history) {
       for (k = 0; k < DESIGNS_OUTPUTS; ++k) {
         for (j = 0; j < LANES && i + j < now->n; ++j) history[k*now->n + i + j] = designs_lane(y + k, (int) j);

@@ -109,48 +109,33 @@ LANES_INLINE lanes_real lanes_sign(lanes_real x) { return x < 0 ? -1 : x > 0 ? 1
 
 /* a where x < y, else b; and whether x < y in any lane. */
 LANES_INLINE lanes_pack lanes_less(lanes_pack x, lanes_pack y, lanes_pack a, lanes_pack b) { return lanes_pick(x.v < y.v, a, b); }
-/* Whether any lane of a comparison is true. */
-LANES_INLINE int lanes_any(lanes_mask where) {
-#if LANES_BYTES == 64
-  typedef long long lanes_half __attribute__((vector_size(32)));
-  lanes_half halves[2];
-  memcpy(halves, &where, 64);
-  halves[0] |= halves[1];
+/* In which lanes x < y, a bit each; and whether any lane is no number. */
+#if defined(__AVX512F__) && !defined(__clang__)
+/* gcc writes masks out as vectors; these stay masks. */
+#ifdef LANES_SINGLE
+#define LANES_COMPARED(x, y, how) __builtin_ia32_cmpps512_mask((x).v, (y).v, how, -1, 4)
 #else
-  const lanes_mask* halves = &where;
+#define LANES_COMPARED(x, y, how) __builtin_ia32_cmppd512_mask((x).v, (y).v, how, -1, 4)
 #endif
-#if LANES_BYTES >= 32
-  /* A lane of a comparison has all its bits set, or none: whether it holds floats or doubles, signs of floats tell. */
-  typedef float lanes_signs __attribute__((vector_size(32)));
-  return __builtin_ia32_movmskps256((lanes_signs)halves[0]) != 0;
+LANES_INLINE unsigned lanes_where_less(lanes_pack x, lanes_pack y) { return LANES_COMPARED(x, y, 17); }
+LANES_INLINE int lanes_any_nan(lanes_pack x) { return LANES_COMPARED(x, x, 3) != 0; }
 #else
-  long long words[LANES_BYTES / 8], any = 0;
-  memcpy(words, halves, sizeof words);
-  for (unsigned i = 0; i < sizeof words / 8; ++i) any |= words[i];
-  return any != 0;
+LANES_INLINE unsigned lanes_where(lanes_mask where) {
+#if defined(__AVX__) && LANES_BYTES == 32
+#ifdef LANES_SINGLE
+  return (unsigned)__builtin_ia32_movmskps256((lanes_vector)where);
+#else
+  return (unsigned)__builtin_ia32_movmskpd256((lanes_vector)where);
+#endif
+#else
+  unsigned bits = 0;
+  for (unsigned i = 0; i < LANES; ++i) bits |= (where[i] != 0 ? 1u : 0u) << i;
+  return bits;
 #endif
 }
-LANES_INLINE int lanes_any_less(lanes_pack x, lanes_pack y) { return lanes_any(x.v < y.v); }
-LANES_INLINE int lanes_any_nan(lanes_pack x) { return lanes_any(x.v != x.v); }
-
-/* Each lane of two packs, one after the other, that is before one of the second, and after one of the first. */
-#ifdef __clang__
-LANES_INLINE lanes_pack lanes_window(lanes_pack a, lanes_pack b, int first) {
-  lanes_real both[2*LANES];
-  memcpy(both, &a, sizeof a);
-  memcpy(both + LANES, &b, sizeof b);
-  memcpy(&a, both + first, sizeof a);
-  return a;
-}
-#else
-LANES_INLINE lanes_pack lanes_window(lanes_pack a, lanes_pack b, int first) {
-  lanes_mask which;
-  for (int i = 0; i < LANES; ++i) which[i] = first + i;
-  return __builtin_shuffle(a.v, b.v, which);
-}
+LANES_INLINE unsigned lanes_where_less(lanes_pack x, lanes_pack y) { return lanes_where(x.v < y.v); }
+LANES_INLINE int lanes_any_nan(lanes_pack x) { return lanes_where(x.v != x.v) != 0; }
 #endif
-LANES_INLINE lanes_pack lanes_before(lanes_pack a, lanes_pack b) { return lanes_window(a, b, LANES - 1); }
-LANES_INLINE lanes_pack lanes_after(lanes_pack a, lanes_pack b) { return lanes_window(a, b, 1); }
 
 LANES_INLINE lanes_pack LANES_OF(fmin)(lanes_pack a, lanes_pack b) { return lanes_pick((a.v < b.v) | (b.v != b.v), a, b); }
 LANES_INLINE lanes_pack LANES_OF(fmax)(lanes_pack a, lanes_pack b) { return lanes_pick((a.v > b.v) | (b.v != b.v), a, b); }
@@ -158,7 +143,18 @@ LANES_INLINE lanes_pack LANES_OF(copysign)(lanes_pack a, lanes_pack b) {
   const lanes_mask sign = (lanes_mask)lanes_pack(-lanes_real(0)).v;
   return lanes_bits(sign, b, a);
 }
-LANES_INLINE lanes_pack LANES_OF(fabs)(lanes_pack a) { return LANES_OF(copysign)(a, lanes_real(1)); }
+LANES_INLINE lanes_pack LANES_OF(fabs)(lanes_pack a) { return (lanes_vector)((lanes_mask)a.v & ~(lanes_mask)lanes_pack(-lanes_real(0)).v); }
+
+/* b where a < b, else a: what is no number in a stays, in b it does not count. One instruction, which compilers do not find. */
+#if defined(__AVX512F__) && !defined(__clang__)
+#ifdef LANES_SINGLE
+LANES_INLINE lanes_pack lanes_larger(lanes_pack a, lanes_pack b) { return (lanes_vector)__builtin_ia32_maxps512_mask(b.v, a.v, a.v, -1, 4); }
+#else
+LANES_INLINE lanes_pack lanes_larger(lanes_pack a, lanes_pack b) { return (lanes_vector)__builtin_ia32_maxpd512_mask(b.v, a.v, a.v, -1, 4); }
+#endif
+#else
+LANES_INLINE lanes_pack lanes_larger(lanes_pack a, lanes_pack b) { return lanes_pick(a.v < b.v, b, a); }
+#endif
 
 #define LANES_EACH(name)                               \
   LANES_INLINE lanes_pack name(lanes_pack a) {         \

@@ -187,37 +187,41 @@ static void designs_open(designs_now* now, const designs_panel* panel, designs_l
   ++list->open;
 }
 
-/* Where polynomials through the values around each summit say to look. */
+/* Where polynomials through the values around each summit say to look. All are begun, then all solved: what is solved waits for
+   divisions, in which the next may begin. */
 static void designs_aim(const designs_now* now, const designs_panel* panel, designs_list* list) {
   const double step = (panel->t[panel->n - 1] - panel->t[0])/(double) (panel->n - 1);
-  designs_fit fit;
+  designs_fit fits[DESIGNS_SUMMITS/LANES], *fit;
   casadi_int first;
   int j, k, lane;
   for (j = 0; j < list->looks; j += LANES) {
+    fit = fits + j/LANES;
     for (lane = 0; lane < LANES; ++lane) {
       const designs_summit* summit = list->summits + (j + lane < list->looks ? j + lane : list->looks - 1);
       const designs_real* row = designs_panel_row(panel, summit->curve);
       first = designs_window(summit->at, panel->n);
-      for (k = 0; k < DESIGNS_FIT; ++k) fit.y[k][lane] = summit->sign*row[first + k];
-      designs_begin(&fit, lane, summit->at, first, panel->n);
+      for (k = 0; k < DESIGNS_FIT; ++k) fit->y[k][lane] = summit->sign*row[first + k];
+      designs_begin(fit, lane, summit->at, first, panel->n);
     }
-    designs_solve(&fit);
-    for (lane = 0; lane < LANES && j + lane < list->looks; ++lane) {
-      designs_summit* summit = list->summits + j + lane;
-      const designs_peak* peak = now->peaks + designs_of[summit->curve];
-      first = designs_window(summit->at, panel->n);
-      summit->t = panel->t[first] + step*(double) (fit.x[lane] + 3);
-      summit->size = fit.size[lane];
-      summit->slope = fit.slope[lane];
-      summit->curve_there = fit.curve[lane];
-      summit->steep = fit.steep[lane];
-      summit->rough = fit.rough[lane];
-      summit->trust = fit.x[lane] > -2 && fit.x[lane] < 2 ? DESIGNS_TRUST : DESIGNS_TRUST_ASIDE;
-      summit->kinked = 0;
-      if (first == summit->at - 3) designs_kink(designs_panel_row(panel, summit->curve) + summit->at, summit, panel->t[summit->at], step);
-      summit->closed = summit->curve_there < 0 && summit->rough <= -DESIGNS_ROUGH*summit->curve_there &&
-                       summit->size + summit->rough < peak->best - now->peaks[designs_of[summit->curve]].rounding;
-    }
+  }
+  for (j = 0; j < list->looks; j += LANES) designs_solve(fits + j/LANES);
+  for (j = 0; j < list->looks; ++j) {
+    designs_summit* summit = list->summits + j;
+    const designs_peak* peak = now->peaks + designs_of[summit->curve];
+    fit = fits + j/LANES;
+    lane = j % LANES;
+    first = designs_window(summit->at, panel->n);
+    summit->t = panel->t[first] + step*(double) (fit->x[lane] + 3);
+    summit->size = fit->size[lane];
+    summit->slope = fit->slope[lane];
+    summit->curve_there = fit->curve[lane];
+    summit->steep = fit->steep[lane];
+    summit->rough = fit->rough[lane];
+    summit->trust = fit->x[lane] > -2 && fit->x[lane] < 2 ? DESIGNS_TRUST : DESIGNS_TRUST_ASIDE;
+    summit->kinked = 0;
+    if (first == summit->at - 3) designs_kink(designs_panel_row(panel, summit->curve) + summit->at, summit, panel->t[summit->at], step);
+    summit->closed = summit->curve_there < 0 && summit->rough <= -DESIGNS_ROUGH*summit->curve_there &&
+                     summit->size + summit->rough < peak->best - peak->rounding;
   }
 }
 

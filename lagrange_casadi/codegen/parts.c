@@ -46,7 +46,7 @@ static void designs_part(designs_now* now, double start, double stop, const desi
     designs_curves(y, now->matter, ~0ull, value, place);
     for (k = 0; k < DESIGNS_CURVES; ++k) {
       memcpy(designs_panel_row(&within, k) + 1 + i, value + k, sizeof *value);
-      if (!lanes_any_less(now->peaks[designs_of[k]].best, designs_size(value[k])) && !lanes_any_nan(value[k])) continue;
+      if (!lanes_where_less(now->peaks[designs_of[k]].best, designs_size(value[k])) && !lanes_any_nan(value[k])) continue;
       for (j = 1 + i; j <= DESIGNS_INNER && j < 1 + i + LANES; ++j) {
         x = designs_panel_row(&within, k)[j];
         if ((x < 0 ? -x : x) > now->peaks[designs_of[k]].best) designs_note(now, k, x, t[j], designs_ratio(k, place, j - 1 - i));

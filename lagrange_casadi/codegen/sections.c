@@ -10,15 +10,14 @@
 #else
 #define DESIGNS_INLINE static inline
 #define lanes_less(x, y, a, b) ((x) < (y) ? (a) : (b))
-#define lanes_any_less(x, y) ((x) < (y))
+#define lanes_larger(x, y) ((x) < (y) ? (y) : (x))
+#define lanes_where_less(x, y) ((x) < (y))
 #define lanes_any_nan(x) ((x) != (x))
-#define lanes_before(x, y) (x)
-#define lanes_after(x, y) (y)
 #endif
 
 DESIGNS_INLINE casadi_real designs_size(casadi_real x) { return DESIGNS_FABS(x); }
 
-DESIGNS_INLINE casadi_real designs_larger(casadi_real x, casadi_real y) { return lanes_less(x, y, y, x); }
+DESIGNS_INLINE casadi_real designs_larger(casadi_real x, casadi_real y) { return lanes_larger(x, y); }
 
 /* A ratio on the link; 0 for what is none. */
 DESIGNS_INLINE casadi_real designs_on_link(casadi_real u) { return lanes_less(0, u, lanes_less(u, 1, u, 1), 0); }
@@ -158,7 +157,7 @@ static inline casadi_real designs_zero(const designs_link* link, int cell, casad
     next = lanes_less(low, next, lanes_less(next, high, next, DESIGNS_HALF*(low + high)), DESIGNS_HALF*(low + high));
     p = designs_size(next - u);
     u = next;
-    if (!lanes_any_less(DESIGNS_CLOSE, lanes_less(low, high, p, 0))) break;
+    if (!lanes_where_less(DESIGNS_CLOSE, lanes_less(low, high, p, 0))) break;
   }
   return u;
 }
@@ -186,7 +185,7 @@ static inline casadi_real designs_zero_between(const designs_link* link, casadi_
     begin = lanes_less(designs_shear(link, k, from) + acting, 0, -1, 1);
     end = lanes_less(designs_shear(link, k, to) + acting, 0, -1, 1)*begin;
     to = lanes_less(end, 0, to, from);
-    if (!lanes_any_less(from, to)) continue;
+    if (!lanes_where_less(from, to)) continue;
     zero = lanes_less(from, to, designs_zero(link, k, acting, from, to, begin), zero);
   }
   return zero;

@@ -140,19 +140,18 @@ static void designs_list_step(designs_now* now, const designs_panel* panel, int 
   if (!topped) designs_open(now, panel, list, curve, step, 0);
 }
 
-/* List where a curve may rise above what is known, next to some values of which the reach is told. */
-static void designs_list_steps(designs_now* now, const designs_panel* panel, int curve, casadi_int first, const casadi_real* reach,
+/* List where a curve may rise above what is known, beside the values of a pack that say so. */
+static void designs_list_steps(designs_now* now, const designs_panel* panel, int curve, casadi_int first, unsigned where,
                                designs_list* list, int depth) {
   const designs_real* row = designs_panel_row(panel, curve);
   const casadi_int n = panel->n;
-  designs_real limit = now->peaks[designs_of[curve]].limit, lanes[LANES];
+  designs_real limit = now->peaks[designs_of[curve]].limit;
   casadi_int i, step;
   int j;
-  memcpy(lanes, reach, sizeof lanes);
   for (j = 0; j < LANES && first + j < n; ++j) {
-    if (!(lanes[j] > limit)) continue;
+    if (!(where >> j & 1)) continue;
     i = first + j;
-    for (step = i > 0 && !(j > 0 && lanes[j - 1] > limit) ? i - 1 : i; step <= i && step < n - 1; ++step) {
+    for (step = i > 0 && !(j > 0 && where >> (j - 1) & 1) ? i - 1 : i; step <= i && step < n - 1; ++step) {
       if (!(designs_furthest(row, step, n) > limit)) continue;
       designs_list_step(now, panel, curve, step, list);
       if (list->looks < DESIGNS_SUMMITS - 1 && list->ends < DESIGNS_SUMMITS && list->open < DESIGNS_SUMMITS) continue;
@@ -162,46 +161,53 @@ static void designs_list_steps(designs_now* now, const designs_panel* panel, int
   }
 }
 
-/* List where a curve may rise above what is known, a limit. */
+/* List where a curve may rise above what is known, a limit. From a value it reaches no further than half of what bends it there takes
+   it; where that is towards zero, its neighbours are larger, and known. */
 static void designs_screen(designs_now* now, const designs_panel* panel, int curve, designs_real limit, designs_list* list, int depth) {
   const designs_real* row = designs_panel_row(panel, curve);
   const casadi_int n = panel->n;
-  casadi_real here, before, next, reach[DESIGNS_CHUNK], most;
+  casadi_real here, before, after, twice[DESIGNS_CHUNK], most;
+  unsigned where;
   casadi_int i;
   int k, many;
-  memcpy(&before, row - LANES, sizeof before);
-  memcpy(&here, row, sizeof here);
   for (i = 0; i < n; i += DESIGNS_CHUNK*LANES) {
     many = n - i < DESIGNS_CHUNK*LANES ? (int) ((n - i + LANES - 1)/LANES) : DESIGNS_CHUNK;
     most = 0;
     for (k = 0; k < many; ++k) {
-      memcpy(&next, row + i + (k + 1)*LANES, sizeof next);
-      reach[k] = designs_size(here) + designs_size(DESIGNS_HALF*(lanes_before(before, here) + lanes_after(here, next)) - here);
-      most = designs_larger(most, reach[k]);
-      before = here;
-      here = next;
+      memcpy(&before, row + i + k*LANES - 1, sizeof before);
+      memcpy(&here, row + i + k*LANES, sizeof here);
+      memcpy(&after, row + i + k*LANES + 1, sizeof after);
+      twice[k] = designs_size(4*here - (before + after));
+      most = designs_larger(most, twice[k]);
     }
-    if (!lanes_any_less(limit, most)) continue;
+    if (!lanes_where_less(2*limit, most)) continue;
     for (k = 0; k < many; ++k) {
-      if (lanes_any_less(limit, reach[k])) designs_list_steps(now, panel, curve, i + k*LANES, reach + k, list, depth);
+      where = lanes_where_less(2*limit, twice[k]);
+      if (where) designs_list_steps(now, panel, curve, i + k*LANES, where, list, depth);
     }
   }
 }
 
-/* Beside a row, what bends it there as much again as at the next value. */
+/* Beside an end, what bends a row there away from zero, twice as much as it is bent at the next value. */
+static designs_real designs_beyond_end(designs_real end, designs_real next, designs_real third) {
+  const designs_real bend = 2*designs_magnitude(2*next - end - third);
+  return 2*end - next - (end < 0 ? -bend : bend);
+}
+
 static void designs_edge(const designs_panel* panel) {
   const casadi_int n = panel->n;
   designs_real* row;
   int k;
   for (k = 0; k < DESIGNS_CURVES; ++k) {
     row = designs_panel_row(panel, k);
-    row[-1] = 4*row[0] - 5*row[1] + 2*row[2];
-    row[n] = 4*row[n - 1] - 5*row[n - 2] + 2*row[n - 3];
+    row[-1] = designs_beyond_end(row[0], row[1], row[2]);
+    row[n] = designs_beyond_end(row[n - 1], row[n - 2], row[n - 3]);
   }
 }
 
 /* Search a panel. */
 static void designs_search(designs_now* now, const designs_panel* panel, int depth) {
+  const signed char *step, *const steps = panel->hiding + panel->n - 1;
   designs_list list;
   designs_real limit;
   casadi_int i;
@@ -212,19 +218,19 @@ static void designs_search(designs_now* now, const designs_panel* panel, int dep
   } else {
     designs_edge(panel);
     designs_hide(panel, depth > 0);
-    for (i = 0; depth == 0 && i < panel->n - 1; ++i) now->hidden += panel->hiding[i] & DESIGNS_HIDES;
+    if (depth == 0) for (i = 0; i < panel->n - 1; ++i) now->hidden += panel->hiding[i] & DESIGNS_HIDES;
     for (q = 0; q < DESIGNS_QUANTITIES; ++q) {
       limit = now->peaks[q].limit;
       for (k = designs_first[q]; limit < DESIGNS_LARGEST && k < designs_first[q + 1]; ++k) {
         /* Nowhere does a curve reach further than three times its size. */
-        if (depth == 0 && !lanes_any_less(limit, 3*now->most[k])) continue;
+        if (depth == 0 && !lanes_where_less(limit, 3*now->most[k])) continue;
         designs_screen(now, panel, k, limit, &list, depth);
       }
     }
     designs_flush(now, panel, &list, depth);
   }
-  for (i = 0; i < panel->n - 1; ++i) {
-    if (panel->hiding[i] == DESIGNS_HIDES) designs_enter(now, panel, i, depth);
+  for (step = panel->hiding; (step = (const signed char*) memchr(step, DESIGNS_HIDES, (size_t) (steps - step))) != 0; ++step) {
+    designs_enter(now, panel, step - panel->hiding, depth);
   }
 }
 
@@ -265,7 +271,7 @@ static void designs_sampled(designs_now* now, const designs_panel* panel, int q)
   int k, j, curve = -1;
   if (peak->sampled < least) return;
   for (k = designs_first[q]; k < designs_first[q + 1]; ++k) {
-    if (!lanes_any_less(under, now->most[k])) continue;
+    if (!lanes_where_less(under, now->most[k])) continue;
     row = designs_panel_row(panel, k);
     for (i = 0; i <= first && i < panel->n; i += DESIGNS_CHUNK*LANES) {
       most = 0;
@@ -273,7 +279,7 @@ static void designs_sampled(designs_now* now, const designs_panel* panel, int q)
         memcpy(&pack, row + i + j*LANES, sizeof pack);
         most = designs_larger(most, designs_size(pack));
       }
-      if (!lanes_any_less(under, most)) continue;
+      if (!lanes_where_less(under, most)) continue;
       for (j = 0; j < DESIGNS_CHUNK*LANES && i + j < panel->n && i + j <= first; ++j) {
         x = designs_magnitude(row[i + j]);
         if (!(x >= least) || (i + j == first && !(x > size))) continue;
