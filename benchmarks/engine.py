@@ -13,8 +13,9 @@ from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.equations.scene_graph import SceneGraph
 from lagrange_casadi.instants.backends import rows, run
 from lagrange_casadi.instants.rung import Backend, Rung
-from lagrange_casadi.instants.section_law import FORCES, SectionLaw
+from lagrange_casadi.instants.section_law import SectionLaw
 from lagrange_casadi.instants.solution import Provenance, Solution, in_order
+from lagrange_casadi.quantities import FORCES
 from lagrange_casadi.system.room import cores
 
 from .peers.paper_case import Array, SliderCrank, Work
@@ -90,7 +91,7 @@ def efforts(n: int, t: Array, backend: Backend = "lanes", threads: int = 1) -> W
 
 def columns() -> tuple[str, ...]:
     """The names of what :func:`instants` gives."""
-    return _outputs(derive(SCENE, ["all"]))
+    return tuple(map(str, derive(SCENE, ["all"]).outputs))
 
 
 def _columns(graph: SceneGraph, p: Array, t: Array, backend: Backend, threads: int) -> Work:
@@ -100,7 +101,7 @@ def _columns(graph: SceneGraph, p: Array, t: Array, backend: Backend, threads: i
         raise RuntimeError(f"no compiler for the backend {backend}")
     out, status = rows(len(graph.columns), t.size), np.zeros(t.size, dtype=np.int32)
     library, z = codegen.load(codegen.emit(graph), compiler), np.empty((0, t.size))
-    first = sum(name.startswith("_") for name in graph.columns)
+    first = len(graph.columns) - len(graph.outputs)
 
     def call() -> Array:
         if backend == "vm":
@@ -119,9 +120,5 @@ def _law(case: SliderCrank, t: Array, backend: Backend, threads: int) -> tuple[W
     mechanism = graph.scene.mechanism
     values = mechanism.values(dict(zip(mechanism.parameters, case.parameters, strict=True)))
     description = describe(mechanism, values, graph.scene.motion)
-    series = in_order(dict(zip(_outputs(graph), work(), strict=True)), description)
-    return work, Solution("slider_crank", t, t, series, description, Provenance("", "", "", "", "", {})).section("rod").law
-
-
-def _outputs(graph: SceneGraph) -> tuple[str, ...]:
-    return tuple(name for name in graph.columns if not name.startswith("_"))
+    outputs = in_order(dict(zip(graph.outputs, work(), strict=True)), description)
+    return work, Solution("slider_crank", t, t, outputs, description, Provenance("", "", "", "", "", {})).section("rod").law

@@ -15,6 +15,7 @@ from .declare.density import Array
 from .declare.description import describe
 from .declare.motion import refuse_kinked
 from .declare.scene import Grid, Scene, checked, checked_ratios, points
+from .equations.checks import Check
 from .equations.derive import assembled, derive
 from .equations.scene_graph import SceneGraph
 from .errors import CertificateWarning, DeclarationError
@@ -29,6 +30,7 @@ from .instants.solution import Solution, in_order
 from .judge.accuracy import estimate, explained
 from .judge.certificate import certify, failure, tolerance
 from .judge.written import written
+from .quantities import Output
 from .system.room import MOST_THREADS, cores, in_words, require
 
 _BESIDE, _CHECKED = 8, 2
@@ -91,7 +93,7 @@ def evaluate(
     _announce(graph, count, rung, threads or cores())
     times, places = points((start, stop, count)), points(ratios)
     p = np.array(list(values.values()))
-    left_open: tuple[str, ...] = ()
+    left_open: tuple[Output, ...] = ()
     if table is not None:
         graph, left_open = determinate(graph, times, p)
     found, provenance = columns(graph, times, p, rung, threads)
@@ -99,16 +101,17 @@ def evaluate(
     out = np.asarray(found.out, float)
     left_open += undetermined(graph, out, p, rung)
     within = phases(graph, out, times, p) if certificate else {}
-    series = outputs_of(graph, out) | {name: np.full(times.size, np.nan) for name in left_open}
+    outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
     description = describe(scene.mechanism, values, scene.motion)
-    ordered = in_order(series, description)
+    ordered = in_order(outputs, description)
     solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open)
     solution = replace(solution, tolerance=tolerance(solution))
     if not certificate:
         return solution
     residuals = _closed(graph, out, p) | residuals_of(solution, graph, out, p, within)
     errors = explained(solution, residuals, estimate(graph, found, solution, p))
-    solution = replace(solution, certificate=residuals | _condition(graph, found), errors=errors)
+    named = {str(output): error for output, error in errors.items()}
+    solution = replace(solution, certificate=residuals | _condition(graph, found), errors=named)
     if solution.failed:
         warnings.warn(f"{failure(solution)}; the solution is not certified", CertificateWarning, stacklevel=2)
     return solution
@@ -145,43 +148,43 @@ def checked_laws(scene: Scene, span: tuple[float, float], p: tuple[float, ...]) 
     refuse_kinked(scene.motion, scene.mechanism.symbols, p, span)
 
 
-def outputs_of(graph: SceneGraph, out: Array) -> dict[str, Array]:
-    """The outputs among the columns ``out`` (columns, ..., t) of a graph, by name; angles go on where they would jump by a turn.
+def outputs_of(graph: SceneGraph, out: Array) -> dict[Output, Array]:
+    """The outputs among the columns ``out`` (columns, ..., t) of a graph; angles go on where they would jump by a turn.
 
     They are those columns, not copies: in ``out`` too angles go on after this.
     """
-    series = {name: out[k] for k, name in enumerate(graph.columns) if not name.startswith("_")}
+    found = {output: out[k] for output, k in graph.outputs.items()}
     parts = {part: out[graph.columns.index(part)] for signs in graph.wrapped.values() for part in signs}
     turns = {
-        name: math.tau * (row - row[..., :1]) if name.startswith("_turns:") else np.unwrap(row) - row for name, row in parts.items()
+        part: math.tau * (row - row[..., :1]) if isinstance(part, Check) else np.unwrap(row) - row for part, row in parts.items()
     }
-    for name, signs in graph.wrapped.items():
+    for angle, signs in graph.wrapped.items():
         for part, sign in signs.items():
-            series[name] += sign * turns[part]
-        series[name] -= math.tau * np.ceil(series[name][..., :1] / math.tau - 0.5)
-    return series
+            found[angle] += sign * turns[part]
+        found[angle] -= math.tau * np.ceil(found[angle][..., :1] / math.tau - 0.5)
+    return found
 
 
-def residuals_of(solution: Solution, graph: SceneGraph, out: Array, p: Array, within: Mapping[str, Array]) -> dict[str, Array]:
+def residuals_of(solution: Solution, graph: SceneGraph, out: Array, p: Array, within: Mapping[Output, Array]) -> dict[str, Array]:
     """What :func:`.certify` finds of a solution that was made of the columns ``out`` (columns, t) of a graph, for parameters ``p``.
 
     ``within`` are the angles of ``out`` without their turns (:func:`.phases`), as they were before the solution was made of it.
     """
     mechanism = graph.scene.mechanism
     equations = written(mechanism, dict(zip(mechanism.parameters, p.tolist(), strict=True)))
-    return certify(solution, equations, _hidden(graph, out, solution.undetermined), within)
+    return certify(solution, equations, _hidden(graph, out, solution.left_open), within)
 
 
-def _hidden(graph: SceneGraph, out: Array, undetermined: Sequence[str]) -> dict[str, Array]:
+def _hidden(graph: SceneGraph, out: Array, left_open: Sequence[Output]) -> dict[Output, Array]:
     """Forces that a solution does not give, and its certificate needs: multipliers that were not wanted, and what is open."""
-    unwanted = {name[1:]: out[k] for k, name in enumerate(graph.columns) if name.startswith("_multiplier:")}
-    return unwanted | {name: out[graph.columns.index(name)] for name in undetermined if name in graph.columns}
+    unwanted = {Output("multiplier", name): out[k] for name, k in graph.checks("multiplier").items()}
+    return unwanted | {output: out[graph.outputs[output]] for output in left_open if output in graph.outputs}
 
 
 def _closed(graph: SceneGraph, out: Array, p: Array) -> dict[str, Array]:
     """What is left of the loops' equations, over the mechanism's extent."""
-    gaps = [np.abs(out[k]) / graph.extent(p) for k, name in enumerate(graph.columns) if name.startswith("_gap:")]
-    gaps += [np.abs(out[k]) for k, name in enumerate(graph.columns) if name.startswith("_misfit:")]
+    gaps = [np.abs(out[k]) / graph.extent(p) for k in graph.checks("gap").values()]
+    gaps += [np.abs(out[k]) for k in graph.checks("misfit").values()]
     return {"closure": np.max(gaps, axis=0)} if gaps else {}
 
 
@@ -191,7 +194,6 @@ def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:
     2/volume bounds the condition number of a matrix whose columns have length one (Guggenheimer, Edelman, Johnson 1995).
     """
     worst: list[Array] = []
-    for name, values in zip(graph.columns, table.out, strict=True):
-        if name.startswith("_closure:"):
-            worst.append(2.0 / values if graph.iterates(name.partition(":")[2]) else 1.0 / np.sqrt(values))
+    for name, k in graph.checks("closure").items():
+        worst.append(2.0 / table.out[k] if graph.iterates(name) else 1.0 / np.sqrt(table.out[k]))
     return {"condition": np.max(worst, axis=0)} if worst else {}

@@ -1,7 +1,8 @@
 """The one table of every output: its name, axes, unit, sign and meaning.
 
-A quantity's full name is ``group:part:member`` (``section:rod:bending``, ``reaction:guide:fy``, ``effort:O``); the same name
-with slashes is its place in the file. Nothing else in the package states a unit or a sign.
+An output is a :class:`Output` wherever it is worked with. Its full name is a text, ``group:part:member`` (``section:rod:bending``,
+``reaction:guide:fy``, ``effort:O``), which users write and read; the same name with slashes is its place in the file. Nothing else
+in the package states a unit or a sign, or takes a name apart.
 """
 
 from __future__ import annotations
@@ -93,12 +94,72 @@ QUANTITIES = (
 )  # fmt: skip
 
 _BY_KEY = {(q.group, q.member): q for q in QUANTITIES}
+LAW = tuple(q.member for q in QUANTITIES if q.group == "law")
+STATION = tuple(q.member for q in QUANTITIES if q.group == "station")
+PLACE_FIRST = ("station", "n", "f", "m")
+"""The same as ``STATION``, in the order in which emitted C and :class:`.StationLoad` take them."""
+
+FORCES = tuple(q.member for q in QUANTITIES if q.group == "section")
+_ENDINGS = {"rate": "_rate", "acceleration": "_acceleration"}
+_COORDINATE = ".coordinate"
 
 
-def unit_in(joints: Mapping[str, Any], name: str) -> str:
-    """The unit of a full name in a mechanism of such joints, by name."""
-    joint = joints.get(name.split(":")[1].removesuffix("_rate").removesuffix("_acceleration"))
-    return quantity_of(name).unit_for((joint and joint.coordinate) or "angle")
+@dataclass(frozen=True)
+class Output:
+    """One output of a mechanism: what it is of its ``part``.
+
+    ``group`` and ``member`` are those of its :class:`Quantity`. Without a ``member`` a reaction is the size
+    of the force. The certificate is of no ``part``. ``station`` names what acts on a link at a station.
+    """
+
+    group: str
+    part: str
+    member: str = ""
+    station: str = ""
+
+    @classmethod
+    def of(cls, name: str | Output) -> Output:
+        """The output that a full name says. Raises ``KeyError`` for a text that is none."""
+        if isinstance(name, Output):
+            return name
+        group, _, text = name.partition(":")
+        part, *rest = text.split(":")
+        if group == "motion" and not rest:
+            for member, ending in (("", _COORDINATE), *_ENDINGS.items()):
+                if part.endswith(ending):
+                    return cls(group, part.removesuffix(ending), member)
+        if group == "section" and len(rest) == 2:
+            station, member = rest
+            return cls("law", part, member) if station == "law" and member in LAW else cls("station", part, member, station)
+        if group == "certificate" and not rest:
+            return cls(group, "", part)
+        if len(rest) > 1:
+            raise KeyError(name)
+        return cls(group, part, *rest)
+
+    def __str__(self) -> str:
+        """The full name."""
+        if self.group == "motion":
+            plain = _COORDINATE if self.part.endswith(tuple(_ENDINGS.values())) else ""
+            return f"motion:{self.part}{_ENDINGS.get(self.member, plain)}"
+        if self.group in ("law", "station"):
+            return f"section:{self.part}:{self.station or 'law'}:{self.member}"
+        return ":".join(word for word in (self.group, self.part, self.member) if word)
+
+    @property
+    def quantity(self) -> Quantity:
+        """Its row of the table. Raises ``KeyError`` where there is none."""
+        return _BY_KEY[self.group, self.member]
+
+    @property
+    def along(self) -> bool:
+        """Whether it goes into the section forces of a link."""
+        return self.group in ("law", "station")
+
+    def unit(self, joints: Mapping[str, Any]) -> str:
+        """The unit in a mechanism of such joints, by name."""
+        joint = joints.get(self.part) if self.group in ("motion", "effort") else None
+        return self.quantity.unit_for((joint and joint.coordinate) or "angle")
 
 
 def quantity_of(name: str) -> Quantity:
@@ -106,14 +167,4 @@ def quantity_of(name: str) -> Quantity:
 
     Raises ``KeyError`` for a name that is none of the table's.
     """
-    group, *rest = name.split(":")
-    if group == "motion":
-        for member in ("rate", "acceleration"):
-            if rest[0].endswith(f"_{member}"):
-                return _BY_KEY[group, member]
-        return _BY_KEY[group, ""]
-    if group in ("effort", "multiplier"):
-        return _BY_KEY[group, ""]
-    if group == "section" and len(rest) == 3:
-        return _BY_KEY["law" if rest[1] == "law" else "station", rest[2]]
-    return _BY_KEY[group, rest[-1]]
+    return Output.of(name).quantity

@@ -98,7 +98,7 @@ def columns_at(graph, t, values):
     p = list(values.values())
     driven = np.array([x.full().ravel() for x in graph.motion(t, p)])
     found = graph.instant(t, *driven, settle(graph, t, p, graph.scene.t[0]), p).full().ravel()
-    return dict(zip(graph.columns, found, strict=True)), {joint: tuple(driven[:, i]) for i, joint in enumerate(graph.driven)}
+    return dict(zip(graph.names, found, strict=True)), {joint: tuple(driven[:, i]) for i, joint in enumerate(graph.driven)}
 
 
 def postures(m, found, drives, nudge, rough=()):

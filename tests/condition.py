@@ -21,8 +21,8 @@ from precise import precise
 
 from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING
 from lagrange_casadi.arithmetic.interpret import interpret
-from lagrange_casadi.instants.section_law import FORCES
 from lagrange_casadi.judge.reference import arithmetic
+from lagrange_casadi.quantities import FORCES
 
 DIGITS = 50
 LEAST = 1e-30
@@ -149,7 +149,7 @@ def _closed(graph, z, time, driven, p):
 def _outputs(graph, time, driven, z, p, places):
     """Values at places, by default those that the outputs themselves suggest."""
     (found,) = interpret(graph.instant, [[time], *driven, z, p], arithmetic())
-    named = {name: value for name, value in zip(graph.columns, found, strict=True) if not name.startswith("_")}
+    named = {name: value for name, value in zip(graph.names, found, strict=True) if not name.startswith("_")}
     laws = {name.split(":")[1]: {} for name in named if name.startswith("section:")}
     for name in [name for name in named if name.startswith("section:")]:
         _, link, part, member = name.split(":")
@@ -268,6 +268,6 @@ def _gaps(solution, graph, meant):
                 mine = law(link).at(force, np.array([[float(place.ratio)]]))[0, 0]
             with mp.workdps(DIGITS):
                 gap = mp.mpf(float(mine)) - value
-                if place.name in graph.wrapped:
+                if place.name in map(str, graph.wrapped):
                     gap -= 2 * mp.pi * mp.nint(gap / (2 * mp.pi))
             yield place, abs(gap), instant.changes[place]

@@ -26,6 +26,7 @@ from lagrange_casadi.errors import AssemblyError, CertificateWarning
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.judge.accuracy import explained
 from lagrange_casadi.judge.certificate import LOOSE, TOLERANCE, certify, tolerance
+from lagrange_casadi.quantities import Output
 
 COUNT = 101
 """Instants of a grid: half of them estimates do not look at."""
@@ -307,7 +308,8 @@ def test_the_second_instant_may_be_the_worst():
 
 def test_a_residual_that_rounding_does_not_explain_is_an_error(solution):
     """One reaction a thousandth too large: every force may be as far off as the balance is."""
-    wrong = replace(solution, series=dict(solution.series) | {"reaction:A:fx": 1.001 * solution.series["reaction:A:fx"]})
+    fx = Output("reaction", "A", "fx")
+    wrong = replace(solution, outputs=dict(solution.outputs) | {fx: 1.001 * solution.outputs[fx]})
     balance = {"balance": np.array([1e-16, 3e-4]), "closure": np.array([1e-16, 1e-15])}
     raised = explained(wrong, balance, solution.errors)
     for name in solution.names():
@@ -325,7 +327,7 @@ def test_wrong_formulas_raise_the_estimates(monkeypatch):
     graph, before = derive(scene), evaluate(scene)
     inputs = graph.instant.sx_in()
     out = graph.instant(*inputs)
-    out[graph.columns.index("reaction:A:fx")] *= 1.001
+    out[graph.names.index("reaction:A:fx")] *= 1.001
     names = [graph.instant.name_in(k) for k in range(graph.instant.n_in())]
     wrong = replace(graph, instant=ca.Function("instant", inputs, [out], names, ["out"]))
     monkeypatch.setattr(sys.modules["lagrange_casadi.evaluate"], "derive", lambda *arguments, **keywords: wrong)
@@ -343,7 +345,7 @@ def test_what_the_code_did_wrong_is_an_error_of_what_it_did_wrong(monkeypatch):
 
     def spoilt(*arguments, **keywords):
         table, provenance = run(*arguments, **keywords)
-        table.out[arguments[0].columns.index("reaction:A:fx")] *= 1.001
+        table.out[arguments[0].names.index("reaction:A:fx")] *= 1.001
         return table, provenance
 
     monkeypatch.setattr(sys.modules["lagrange_casadi.instants.reading"], "run", spoilt)

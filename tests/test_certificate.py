@@ -24,6 +24,7 @@ from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.instants.solution import Solution
 from lagrange_casadi.judge.certificate import LOOSE, certify
 from lagrange_casadi.judge.written import written
+from lagrange_casadi.quantities import Output
 from lagrange_casadi.store.runs import check, load
 
 WHOLE = {"closure", "balance", "power", "ends"}
@@ -103,7 +104,7 @@ def test_a_wrong_multiplier_is_seen():
     """Off by a thousandth, the balance is too: the equation's own slopes are what it acts by."""
     scene = geared()
     solution = evaluate(scene)
-    wrong = {"multiplier:mesh": solution.multiplier("mesh") * 1.001}
+    wrong = {Output("multiplier", "mesh"): solution.multiplier("mesh") * 1.001}
     equations = written(scene.mechanism, {})
     assert certify(solution, equations)["balance"].max() < 1e-14
     assert certify(solution, equations, wrong)["balance"].max() > 1e-5

@@ -12,6 +12,7 @@ from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.declare.motion import harmonic, polynomial
 from lagrange_casadi.judge.certificate import certify
 from lagrange_casadi.judge.written import written
+from lagrange_casadi.quantities import Output
 
 MILLIONTH = 1.0 + 1e-6
 
@@ -114,7 +115,7 @@ def test_random_mechanisms_pass(kind):
 def wrong(scene, solution, name):
     """The largest residuals of a solution with one output that is off by a millionth."""
     values = solution.series[name] * MILLIONTH
-    residuals = certify(solution, written(scene.mechanism, scene.mechanism.values(None)), {name: values})
+    residuals = certify(solution, written(scene.mechanism, scene.mechanism.values(None)), {Output.of(name): values})
     return {residual: float(gaps.max()) for residual, gaps in residuals.items()}
 
 

@@ -15,7 +15,7 @@ from test_notes import bracket
 from test_turns import DRAG_LINK, sprung
 
 from lagrange_casadi import codegen, evaluate, export, load_case
-from lagrange_casadi.instants.section_law import FORCES
+from lagrange_casadi.quantities import FORCES
 
 CONSUMERS = Path(__file__).parent / "consumers"
 CASES = Path(__file__).parents[1] / "cases"

@@ -43,7 +43,7 @@ def instants_of(scene, stages):
 def of_load(scene, stages="double", change=lambda out, row: None):
     """What errors do to the load, (trials and the result, n), and the load; ``change`` has its will on the result's load."""
     graph, instants, out, angles = instants_of(scene, stages)
-    row = graph.columns.index("load:t:mz")
+    row = graph.names.index("load:t:mz")
     change(out, row)
     changes, columns = effects(instants, out, angles)
     return changes[row], columns[row]

@@ -153,7 +153,7 @@ def test_a_reference_means_whole_turns():
     """The double nearest to a turn would be off by 3e-9 rad after 1.25e7 of them."""
     graph, values = derive(slider_crank(), ["motion"]), slider_crank().mechanism.values({"change": 0.0})
     (row,) = reference(graph, [1e6], list(values.values()))
-    found = dict(zip(graph.columns, row, strict=True))
+    found = dict(zip(graph.names, row, strict=True))
     with mp.workdps(50):
         turns = (found["pose:rod:angle"] - found["motion:O"] - found["motion:A"]) / (2 * mp.pi)
         assert abs(turns - mp.nint(turns)) < 1e-30

@@ -23,8 +23,8 @@ from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, DeclarationError, LagrangeCasadiError
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.instants.section_law import FORCES
 from lagrange_casadi.judge.reference import arithmetic, reference
+from lagrange_casadi.quantities import FORCES
 
 MP = mpmath.mp
 EXACT = replace(arithmetic(), constant=meant(MP.mpf))
@@ -46,7 +46,7 @@ def test_formulas_to_forty_digits(name, monkeypatch):
         for moment, row in zip(t, rows, strict=True):
             driven = interpret(graph.motion, [[MP.mpf(moment)], [MP.mpf(x) for x in p]], EXACT)
             drives = {joint: tuple(order[k] for order in driven) for k, joint in enumerate(graph.driven)}
-            expected, found = precise(scene, float(moment), drives), dict(zip(graph.columns, row, strict=True))
+            expected, found = precise(scene, float(moment), drives), dict(zip(graph.names, row, strict=True))
             assert_equal(expected, found, scene.mechanism)
 
 
@@ -97,7 +97,7 @@ def test_a_reference_has_the_digits_that_are_asked_for():
     graph = derive(scene, ["effort"])
     z = np.array(graph.newton.guess)[:, None]
     rows = {digits: reference(graph, [scene.t[0]], [], z=z, digits=digits)[0] for digits in (25, 60)}
-    for name, few, many in zip(graph.columns, rows[25], rows[60], strict=True):
+    for name, few, many in zip(graph.names, rows[25], rows[60], strict=True):
         if name.startswith("_gap:"):  # which is nothing but what the digits leave
             continue
         with MP.workdps(60):

@@ -10,7 +10,8 @@ from lagrange_casadi import evaluate, load, save
 from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.errors import DeclarationError, SizeError
 from lagrange_casadi.instants import grids
-from lagrange_casadi.instants.section_law import FORCES, SectionLaw, StationLoad
+from lagrange_casadi.instants.section_law import SectionLaw, StationLoad
+from lagrange_casadi.quantities import FORCES
 
 random = np.random.default_rng(4)
 

@@ -106,7 +106,7 @@ def test_forces_scale_with_speed():
     p = [0.1, 0.2, 0.1, 0.1, 0.1]
     for angle in np.linspace(0.0, 6.0, 13):
         still, slow, fast = (graph.instant(0.0, angle, rate, 0.0, [], p).full().ravel() for rate in (0.0, 5.0, 10.0))
-        forces = [k for k, name in enumerate(graph.columns) if name.startswith(("effort", "reaction", "section"))]
+        forces = [k for k, name in enumerate(graph.names) if name.startswith(("effort", "reaction", "section"))]
         gap = (fast - still - 4 * (slow - still))[forces]
         assert cycle(gap) < 1e-13 * cycle(fast[forces])
 

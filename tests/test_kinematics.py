@@ -26,7 +26,7 @@ def test_rates_are_the_derivatives_of_positions(scene):
     h = 1e-4
     graph = derive(scene, ["motion"])
     rows = [instant_at(graph, INSTANT + k * h).full().ravel() for k in range(-3, 4)]
-    columns = dict(zip(graph.columns, np.unwrap(np.array(rows), axis=0).T, strict=True))
+    columns = dict(zip(graph.names, np.unwrap(np.array(rows), axis=0).T, strict=True))
     for name, values in columns.items():
         if name.startswith("motion:") and f"{name}_rate" in columns:
             first = (-values[0] + 9 * values[1] - 45 * values[2] + 45 * values[4] - 9 * values[5] + values[6]) / (60 * h)

@@ -28,7 +28,7 @@ def test_packs_agree_with_scalar_c(name, precision):
     graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 157)
     p = np.array(list(scene.mechanism.values().values()))
     packs, scalar = (columns(graph, t, language, precision=precision) for language in ("c++", "c"))
-    kinds = [(column.split(":")[0], column.split(":")[-1] if column.count(":") > 1 else "") for column in graph.columns]
+    kinds = [(column.split(":")[0], column.split(":")[-1] if column.count(":") > 1 else "") for column in graph.names]
     for kind in set(kinds):
         rows = [i for i, other in enumerate(kinds) if other == kind]
         # A gap is rounding, of lengths.
@@ -65,7 +65,7 @@ def test_a_tail_that_cannot_be_closed_is_found_in_its_pack(precision):
     p = np.array([0.1, 0.1 * np.sin(1.2), 0.1, 0.1, 0.1])
     table, _ = run(graph, t, p, Rung("lanes", precision))
     out, status = table.out, table.status
-    reach = np.abs(np.sin(out[graph.columns.index("motion:O")])) < np.sin(1.2)
+    reach = np.abs(np.sin(out[graph.names.index("motion:O")])) < np.sin(1.2)
     assert 0 < reach.sum() < t.size
     assert np.array_equal(status == 0, reach)
     assert np.isfinite(out[:, reach]).all()

@@ -75,5 +75,5 @@ def test_a_load_outside_its_link_is_named():
 def test_instants_are_functions_of_time_where_loads_are():
     scene = crank_and_rod({"mass": 0.5}, loads=loads_on)
     graph = derive(scene, ["load:wind"])
-    k = graph.columns.index("load:wind:fx")
+    k = graph.names.index("load:wind:fx")
     assert float(instant_at(graph, 0.5)[k]) == pytest.approx(4.0 * math.sin(3.5))

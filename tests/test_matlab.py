@@ -15,7 +15,7 @@ from lagrange_casadi.arithmetic.compensated import ROUNDING
 from lagrange_casadi.case import load_case
 from lagrange_casadi.export import export
 from lagrange_casadi.export.golden import ALLOWED
-from lagrange_casadi.instants.section_law import FORCES
+from lagrange_casadi.quantities import FORCES
 
 ABSENT = [tool for tool in ("octave-cli", "mkoctfile", "gcc") if shutil.which(tool) is None]
 pytestmark = pytest.mark.skipif(bool(ABSENT), reason=f"there is no {', '.join(ABSENT)}")

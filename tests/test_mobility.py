@@ -252,7 +252,7 @@ def test_random_four_bars(length, mass, frame, turned):
 def _transmission(scene):
     """How far a scene's loop is from a dead centre: the closure of loops.py, at its first instant."""
     graph = derive(scene)
-    return float(instant_at(graph, scene.t[0])[graph.columns.index("_closure:B")])
+    return float(instant_at(graph, scene.t[0])[graph.names.index("_closure:B")])
 
 
 @settings(max_examples=15, deadline=None)
@@ -281,7 +281,7 @@ def test_random_six_bars(x, y, mass, arm, turned):
         graph = derive(scene)
     except AssemblyError:
         return
-    closures = [float(instant_at(graph, INSTANT)[k]) for k, name in enumerate(graph.columns) if name.startswith("_closure")]
+    closures = [float(instant_at(graph, INSTANT)[k]) for k, name in enumerate(graph.names) if name.startswith("_closure")]
     worst, gap = compare(scene, nudge=1e-3)
     if min(closures) > 1e-2:
         assert gap < 1e-10, worst

@@ -50,7 +50,7 @@ def graph():
 
 def engine(graph, x):
     out = graph.instant(0.0, [x.angle], [x.rate], [x.acceleration], [], [x.r, x.l, x.m1, x.m2, x.m3])
-    return dict(zip(graph.columns, out.full().ravel(), strict=True))
+    return dict(zip(graph.names, out.full().ravel(), strict=True))
 
 
 def torque_14(x, corrected):

@@ -52,8 +52,8 @@ def test_rates_are_those_of_differences(name):
         near = [columns(graph, t + k * e, p)[0] for k in (-2, -1, 1, 2)]
         difference = (near[0] - 8 * near[1] + 8 * near[2] - near[3]) / (12 * e)
         allowed = 1e-9 * (np.abs(rate) + np.abs(out) / span) + 1e-14 * np.abs(out).max() / e
-        assert not [graph.columns[k] for k in np.flatnonzero(~(np.abs(difference - rate) <= allowed))]
-        moving = ~np.array([name.startswith("_") for name in graph.columns])
+        assert not [graph.names[k] for k in np.flatnonzero(~(np.abs(difference - rate) <= allowed))]
+        moving = ~np.array([name.startswith("_") for name in graph.names])
         assert np.mean(np.abs(rate[moving]) > 100 * allowed[moving]) > 0.4
 
 
@@ -73,7 +73,7 @@ def test_rates_are_those_of_a_closed_form():
             "reaction:pin:fx": -MASS * h * (j * s + a * c * w + 2 * w * a * c - w**3 * s),
             "reaction:pin:fy": MASS * h * (j * c - a * s * w - 2 * w * a * s - w**3 * c),
         }
-        found = dict(zip(graph.columns, columns(graph, t, [])[1], strict=True))
+        found = dict(zip(graph.names, columns(graph, t, [])[1], strict=True))
         assert {name: found[name] for name in exact} == pytest.approx(exact, rel=1e-12, abs=1e-12)
 
 

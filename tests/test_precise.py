@@ -15,7 +15,7 @@ from test_redundancy import parallelogram
 from test_reference import SIXTY_DIGITS
 
 from lagrange_casadi import evaluate, load_case
-from lagrange_casadi.instants.section_law import FORCES
+from lagrange_casadi.quantities import FORCES
 
 RATIOS = (0.0, 0.1234567, 0.5012345, 0.9034567, 1.0)
 INSTANTS = (0, 7, 16)

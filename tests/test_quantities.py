@@ -1,8 +1,10 @@
 """The table of outputs."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from lagrange_casadi.quantities import QUANTITIES, quantity_of
+from lagrange_casadi.quantities import QUANTITIES, Output, quantity_of
 
 
 @pytest.mark.parametrize(
@@ -39,3 +41,36 @@ def test_the_table_is_complete():
 def test_other_names_are_refused(name):
     with pytest.raises(KeyError):
         quantity_of(name)
+
+
+@pytest.mark.parametrize(
+    ("output", "name"),
+    [
+        (Output("motion", "O"), "motion:O"),
+        (Output("motion", "O", "rate"), "motion:O_rate"),
+        (Output("motion", "O_rate"), "motion:O_rate.coordinate"),
+        (Output("motion", "O_rate", "rate"), "motion:O_rate_rate"),
+        (Output("motion", "O_acceleration"), "motion:O_acceleration.coordinate"),
+        (Output("effort", "O_rate"), "effort:O_rate"),
+        (Output("section", "law", "bending"), "section:law:bending"),
+        (Output("law", "rod", "n0"), "section:rod:law:n0"),
+        (Output("station", "rod", "n", "law"), "section:rod:law:n"),
+        (Output("station", "rod", "station", "A"), "section:rod:A:station"),
+        (Output("reaction", "A"), "reaction:A"),
+        (Output("certificate", "", "balance"), "certificate:balance"),
+    ],
+)
+def test_an_output_and_its_name_are_one(output, name):
+    assert str(output) == name
+    assert Output.of(name) == output
+
+
+NAMES = st.from_regex(r"[A-Za-z]\w{0,3}(_rate|_acceleration|_coordinate)?", fullmatch=True, alphabet=st.characters(codec="ascii"))
+
+
+@given(part=NAMES | st.just("law"), station=NAMES | st.just("law"), quantity=st.sampled_from(QUANTITIES))
+def test_no_two_outputs_have_one_name(part, station, quantity):
+    of_station, of_part = quantity.group == "station", quantity.group != "certificate"
+    output = Output(quantity.group, part if of_part else "", quantity.member, station if of_station else "")
+    assert Output.of(str(output)) == output
+    assert output.quantity is quantity

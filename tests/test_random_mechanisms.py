@@ -14,6 +14,7 @@ from random_mechanisms import draw
 from random_verdict import compare, is_regular, judge
 
 from lagrange_casadi import evaluate
+from lagrange_casadi.quantities import Output
 
 QUICK, LONG = range(100), range(100, 1000)
 REFUSED, OPEN = 0.02, 0.06
@@ -153,7 +154,8 @@ def test_a_small_fault_in_any_quantity_is_found(right):
             continue  # what these are multiplied by is the link's mass
         if np.min(solution.series.get(f"{name.rpartition(':')[0]}:station", 1.0)) <= 0.0:
             continue  # no section of the link sees it
-        found = compare(drawn, replace(solution, series={**solution.series, name: values + 1e-6 * max(kinds.values())}))
+        off = {Output.of(name): values + 1e-6 * max(kinds.values())}
+        found = compare(drawn, replace(solution, outputs={**solution.outputs, **off}))
         assert found.kind == "wrong", name
         seen += 1
     assert seen > 10
@@ -162,10 +164,11 @@ def test_a_small_fault_in_any_quantity_is_found(right):
 def test_what_is_not_finite_is_found(right):
     drawn, solution = right
     name = next(name for name in solution.series if name.startswith("reaction:"))
-    assert compare(drawn, replace(solution, series={**solution.series, name: np.full_like(solution.t, np.nan)})).kind == "wrong"
+    nothing = {Output.of(name): np.full_like(solution.t, np.nan)}
+    assert compare(drawn, replace(solution, outputs={**solution.outputs, **nothing})).kind == "wrong"
 
 
 def test_another_motion_is_found(right):
     drawn, solution = right
-    late = {name: np.roll(values, 1) if solution.t.size > 2 else values[::-1] for name, values in solution.series.items()}
-    assert compare(drawn, replace(solution, series=late)).kind == "wrong"
+    late = {output: np.roll(values, 1) if solution.t.size > 2 else values[::-1] for output, values in solution.outputs.items()}
+    assert compare(drawn, replace(solution, outputs=late)).kind == "wrong"

@@ -21,7 +21,7 @@ def instants(slider_crank):
     graph = derive(slider_crank.scene)
     p = list(slider_crank.scene.mechanism.values().values())
     rows = [instant_at(graph, float(row["t"]), p).full().ravel() for row in SIXTY_DIGITS["rows"]]
-    return dict(zip(graph.columns, np.array(rows).T, strict=True))
+    return dict(zip(graph.names, np.array(rows).T, strict=True))
 
 
 def reference(key, index=None):

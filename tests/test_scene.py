@@ -17,7 +17,7 @@ def test_outputs():
 
 
 def groups(graph):
-    return {name.split(":")[0] for name in graph.columns if not name.startswith("_")}
+    return {name.split(":")[0] for name in graph.names if not name.startswith("_")}
 
 
 @pytest.mark.parametrize(
@@ -89,7 +89,7 @@ def test_loops_are_closed_alike_whatever_is_wanted():
     for wanted in (["effort"], ["section:b"], ["all"]):
         graph = derive(scene, wanted)
         assert graph.newton is None
-        assert "_closure:P" in graph.columns
+        assert "_closure:P" in graph.names
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lagrange_casadi.declare.density import NumericDensity
-from lagrange_casadi.instants.section_law import FORCES, SectionLaw, StationLoad
+from lagrange_casadi.instants.section_law import SectionLaw, StationLoad
+from lagrange_casadi.quantities import FORCES
 
 NAMES = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
 numbers = st.floats(-100, 100)

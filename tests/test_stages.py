@@ -37,12 +37,12 @@ def gap(graph, t, rung, truth=None):
     assert not table.status.any()
     truth = exact(graph, t, z=table.iterated) if truth is None else truth
     size = {}
-    for name, row in zip(graph.columns, truth, strict=True):
+    for name, row in zip(graph.names, truth, strict=True):
         size[kind(name)] = max(size.get(kind(name), 0.0), np.max(np.abs(row)))
     worst = 0.0
-    for name, row, expected in zip(graph.columns, np.asarray(table.out, float), truth, strict=True):
+    for name, row, expected in zip(graph.names, np.asarray(table.out, float), truth, strict=True):
         off = row - expected
-        if name in graph.wrapped or name.startswith("_angle"):
+        if name in map(str, graph.wrapped):
             off = off - math.tau * np.rint(off / math.tau)
         if not name.startswith("_"):
             worst = max(worst, np.max(np.abs(off)) / (size[kind(name)] or 1.0))
@@ -255,7 +255,7 @@ def test_steady_drives_beside_samples():
     table, _ = run(graph, t, values(graph), SINGLE[0])
     for member in ("x", "y"):
         # The arm's pin is the crank's tip.
-        row = graph.columns.index(f"pose:arm:{member}")
+        row = graph.names.index(f"pose:arm:{member}")
         assert np.max(np.abs(table.out[row] - truth[row])) < 1e-6 * 0.1
 
 
@@ -289,8 +289,8 @@ def test_iterated_angles_are_kept_within_a_turn():
         assert not one.status.any()
         assert np.max(np.abs(one.iterated)) <= math.pi * (1 + 1e-6)
         for name in ("effort:O", "reaction:B:fx"):
-            gaps = np.abs(one.out[iterated.columns.index(name)] - two.out[closed.columns.index(name)])
-            assert np.max(gaps[-100:]) < allowed * np.max(np.abs(two.out[closed.columns.index(name)]))
+            gaps = np.abs(one.out[iterated.names.index(name)] - two.out[closed.names.index(name)])
+            assert np.max(gaps[-100:]) < allowed * np.max(np.abs(two.out[closed.names.index(name)]))
 
 
 @pytest.mark.parametrize(("rungs", "later", "allowed"), [(DOUBLE, 1e6, 1e-13), (SINGLE, 1e4, 1e-5)], ids=["double", "single"])
@@ -310,7 +310,7 @@ def test_iterated_angles_that_a_gear_counts_are_not():
     t = np.linspace(0.0, 40.0, 801)
     for rung in (Rung("vm"), Rung("c"), Rung("lanes")):
         table, _ = run(graph, t, values(graph), rung)
-        rows = dict(zip(graph.columns, table.out, strict=True))
+        rows = dict(zip(graph.names, table.out, strict=True))
         turned = np.unwrap(rows["motion:C"])
         assert turned[-1] - turned[0] > 18 * 2 * math.pi
         np.testing.assert_allclose(rows["motion:W"], -0.3 * turned, atol=1e-11)
@@ -331,9 +331,9 @@ def test_from_few_turns_to_many():
         counted = np.array(pairs.instant(*pairs.drive(t, p), [], p))
         once = np.array(instant_at(graph, t, p))
         size = {}
-        for name, row in zip(graph.columns, one.out, strict=True):
+        for name, row in zip(graph.names, one.out, strict=True):
             size[kind(name)] = max(size.get(kind(name), 0.0), np.max(np.abs(row)))
-        for name, x, y in zip(graph.columns, counted, once, strict=True):
+        for name, x, y in zip(graph.names, counted, once, strict=True):
             assert abs(x - y)[0] <= 1e-13 * (size[kind(name)] or 1.0), name
 
 

@@ -7,7 +7,7 @@ import sweeps
 from lagrange_casadi import evaluate
 from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.instants.section_law import FORCES
+from lagrange_casadi.quantities import FORCES
 from lagrange_casadi.study.peaks import forces, refine
 from lagrange_casadi.sweep import columns, sweep
 from lagrange_casadi.sweep.plan import Task

@@ -317,7 +317,7 @@ def test_many_turns_keep_their_phase(precision):
     """A spring that only swings, between links that go round a million times: no digit is lost on how many."""
     near, far = (sprung("B", law=polynomial(start, 9.0), **DRAG_LINK) for start in (0.2, 0.2 + 2e6 * math.pi))
     graphs = [derive(scene, ["load:coil_B"]) for scene in (near, far)]
-    assert all("_turned:B" in graph.columns for graph in graphs)
+    assert all("_turned:B" in graph.names for graph in graphs)
     one, other = (evaluate(scene, wanted=["load:coil_B"], precision=precision).series["load:coil_B:mz"] for scene in (near, far))
     np.testing.assert_allclose(other, one, rtol=0, atol=1e-5 if precision == "single" else 1e-8)
 
@@ -346,7 +346,7 @@ def test_what_does_not_tell_turns_apart_is_left_within_one():
         m.prismatic("guide", m.ground, s, axis=(1, 0))
         m.torque("seen_by", b, see(m.coordinate(joint)))
         graph = derive(Scene(m, {"O": polynomial(0, 6.0)}, posture={"b": 0.0}))
-        assert ("_turned:A" in graph.columns) is counts
+        assert ("_turned:A" in graph.names) is counts
 
 
 @pytest.mark.parametrize(

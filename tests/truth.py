@@ -12,8 +12,8 @@ import numpy as np
 from lagrange_casadi import derive
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.instants.section_law import FORCES
 from lagrange_casadi.judge.reference import DIGITS, reference
+from lagrange_casadi.quantities import FORCES
 
 MP = mpmath.mp
 RATIOS = (0.0, 0.31, 0.64, 1.0)
@@ -51,7 +51,7 @@ def truth(scene, t, parameters=None):
         for taken in others:
             at = None if z is None else z[:, i : i + 1]
             found += reference(graph, t[i : i + 1], p, z=at, following=lambda arithmetic, taken=taken: _taking(arithmetic, taken))
-        sides.append([dict(zip(graph.columns, one, strict=True)) for one in found])
+        sides.append([dict(zip(graph.names, one, strict=True)) for one in found])
     return Truth(scene.mechanism, values, sides)
 
 

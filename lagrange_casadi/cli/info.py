@@ -49,8 +49,7 @@ def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
         click.echo(f"{what}: {start:g} to {stop:g}, {count} points")
     click.echo(f"outputs: {', '.join(outputs(mechanism))}")
     click.echo(f"wanted: {', '.join(want or scene.wanted)}")
-    closed = [name.partition(":")[2] for name in graph.columns if name.startswith("_closure:")]
-    loops = [f"{name} ({'iterated' if graph.iterates(name) else 'closed form'})" for name in closed]
+    loops = [f"{name} ({'iterated' if graph.iterates(name) else 'closed form'})" for name in graph.checks("closure")]
     click.echo(f"loops closed by: {', '.join(loops) or 'none'}")
     counts = ", ".join(f"{name} {count}" for name, count in graph.instructions.items())
     click.echo(f"instructions an instant: {sum(graph.instructions.values())} ({counts})")

@@ -107,9 +107,10 @@ def _report(solution: Solution, refined: Sequence[Peak] | None) -> None:
     peaks = {peak.name: peak for peak in refined or ()}
     what = "peaks" if refined is None else "peaks, refined between the instants"
     click.echo(f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {backend}; {what}:")
-    for name in solution.names():
-        if name.startswith(("effort:", "reaction:", "section:")):
-            if not solution.determined(name):
+    for output in solution.quantities():
+        if output.group in ("effort", "reaction", "section"):
+            name = str(output)
+            if not solution.determined(output):
                 click.echo(f"  {name:<28}{'open':>13} {'':<4} equilibrium does not determine it: the mechanism is over-constrained")
                 continue
             click.echo(peak_line(solution, peaks.get(name) or solution.peak(name)))

@@ -40,8 +40,6 @@ from .parts import (
     Torque,
 )
 
-_RESERVED_ENDINGS = ("_rate", "_acceleration")
-_RESERVED_NAMES = ("law",)
 _GROUND = "ground"
 
 
@@ -335,8 +333,6 @@ class Mechanism:
     ) -> Joint:
         self._add("joint", name, self.joints)
         what = f"joint '{name}'"
-        if name.endswith(_RESERVED_ENDINGS):
-            raise DeclarationError(f"{what}: names ending in {' or '.join(_RESERVED_ENDINGS)} are taken")
         start, end = self._point(what, parent), self._point(what, child)
         if start.body is end.body:
             raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
@@ -388,11 +384,12 @@ class Mechanism:
         check_name(kind, name)
         if name in table:
             raise DeclarationError(f"{kind} '{name}' is declared twice in mechanism '{self.name}'")
-        # Files know joints, loads, constraints and rows by their names alone, beside those of links.
-        acting = (self.joints, self.loads, self.constraints, self.rows)
-        shared = any(table is other for other in acting) and any(name in other for other in (self.bodies, *acting))
-        if shared or name in _RESERVED_NAMES:
-            raise DeclarationError(f"{kind} '{name}': the name is taken")
+        # Files know all that acts by names alone, beside those of links.
+        acting: tuple[Mapping[str, object], ...] = (self.joints, self.loads, self.constraints, self.rows)
+        if any(table is other for other in acting):
+            kinds = zip(("joint", "load", "constraint", "row", "body"), (*acting, self.bodies), strict=True)
+            for what in (what for what, other in kinds if name in other):
+                raise DeclarationError(f"{kind} '{name}': the name is taken by a {what}; expected another")
 
     def _check_open(self, what: str) -> None:
         if self.frozen:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from ..quantities import Output
 from .density import Array
 from .description import Description
 
@@ -13,7 +14,7 @@ _EDGE = 1e-9
 """Of a link's length: what leaves it by so little does so by rounding."""
 
 
-def notes(t: Array, series: Mapping[str, Array], description: Description) -> Iterator[str]:
+def notes(t: Array, outputs: Mapping[Output, Array], description: Description) -> Iterator[str]:
     """Each joint whose point slides beyond the end of a link that has sections, with the first instant and how far it goes.
 
     As far as the motion of the joint, or the sections of the link, are among the outputs.
@@ -22,9 +23,9 @@ def notes(t: Array, series: Mapping[str, Array], description: Description) -> It
         body = description["bodies"].get(joint["parent"]["body"], {})
         if joint["kind"] not in ("prismatic", "slot") or "density" not in body:
             continue
-        ratio = series.get(f"section:{joint['parent']['body']}:{name}:station")
-        if ratio is None and f"motion:{name}" in series:
-            ratio = (joint["parent"]["x"] + joint["axis"][0] * series[f"motion:{name}"]) / body["length"]
+        ratio, motion = outputs.get(Output("station", joint["parent"]["body"], "station", name)), Output("motion", name)
+        if ratio is None and motion in outputs:
+            ratio = (joint["parent"]["x"] + joint["axis"][0] * outputs[motion]) / body["length"]
         if ratio is None:
             continue
         away = np.flatnonzero((ratio < -_EDGE) | (ratio > 1.0 + _EDGE))

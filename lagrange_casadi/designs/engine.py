@@ -30,6 +30,7 @@ from ..instants.determinacy import determinate, undetermined
 from ..instants.rung import Rung
 from ..instants.section_law import made_of
 from ..instants.solution import Provenance
+from ..quantities import Output
 from ..summits.sharpness import bent, with_watched
 from ..system.room import cores, require
 from .plain import outcome
@@ -63,7 +64,7 @@ class DesignEngine:
     """A scene compiled for many designs.
 
     ``parameters`` are the columns of what :meth:`evaluate` takes; ``quantities``, with ``units``, and ``efforts`` those of what it
-    gives; ``columns`` those of histories. ``undetermined`` are the outputs that equilibrium leaves open for the parameters'
+    gives; ``columns`` those of histories. ``left_open`` are the outputs that equilibrium leaves open for the parameters'
     defaults, which are left out; what it leaves open for some design is NaN there.
     """
 
@@ -74,7 +75,7 @@ class DesignEngine:
     graph: SceneGraph
     stages: Stages
     library: codegen.DesignsLibrary | None
-    undetermined: tuple[str, ...]
+    left_open: tuple[Output, ...]
     provenance: Provenance
 
     @classmethod
@@ -117,6 +118,11 @@ class DesignEngine:
     @property
     def quantities(self) -> tuple[str, ...]:
         """The names of the quantities that have peaks."""
+        return tuple(str(quantity) for quantity in self.shown)
+
+    @property
+    def shown(self) -> tuple[Output, ...]:
+        """The quantities that have peaks."""
         return tuple(self.kept.quantities[k] for k in self._shown)
 
     @property
@@ -127,21 +133,29 @@ class DesignEngine:
     @property
     def efforts(self) -> tuple[str, ...]:
         """The names of the efforts that have means."""
-        return self.kept.efforts
+        return tuple(map(str, self.kept.efforts))
+
+    @property
+    def undetermined(self) -> tuple[str, ...]:
+        """The names of the outputs that are left open for the parameters' defaults."""
+        return tuple(map(str, self.left_open))
 
     @property
     def doubtful(self) -> tuple[str, ...]:
-        """The quantities, and the outputs in histories, that equilibrium may leave open for some designs."""
+        """The names of the quantities, and the outputs in histories, that equilibrium may leave open for some designs."""
         numbers = sorted({quantity for _, quantity in self.kept.plan.doubts})
-        return tuple(dict.fromkeys([*(self.kept.quantities[k] for k in numbers), *self.graph.doubtful]))
+        return tuple(dict.fromkeys(map(str, [*(self.kept.quantities[k] for k in numbers), *self.graph.doubtful])))
 
     @property
     def columns(self) -> tuple[str, ...]:
         """The names of the outputs that histories have."""
-        left_out = {name for name in self.undetermined if not name.startswith("section:")}
-        whole = {f"section:{link}" for link in self.kept.links}
-        names = (name for name in self.graph.columns if not name.startswith("_") and name not in left_out)
-        return tuple(name for name in names if not name.startswith("section:") or name[: name.index(":", 8)] in whole)
+        return tuple(map(str, self.outputs))
+
+    @cached_property
+    def outputs(self) -> tuple[Output, ...]:
+        """The outputs that histories have."""
+        found = self.graph.outputs
+        return tuple(o for o in found if (o.part in self.kept.links if o.along else o not in self.left_open))
 
     @property
     def cost(self) -> float:
@@ -180,22 +194,21 @@ class DesignEngine:
             return found
         with np.errstate(invalid="ignore"):
             for row, out in zip(p, columns, strict=True):
-                out[[self.graph.columns.index(name) for name in undetermined(self.graph, out, row, self.rung)]] = np.nan
+                out[[self.graph.outputs[output] for output in undetermined(self.graph, out, row, self.rung)]] = np.nan
             series = outputs_of(self.graph, np.moveaxis(columns, 1, 0))
-        return replace(found, series=np.stack([series[name] for name in self.columns], axis=1))
+        return replace(found, series=np.stack([series[output] for output in self.outputs], axis=1))
 
     @cached_property
     def _shown(self) -> list[int]:
         """The quantities that are given: of a link that has some forces determined, all are made, and these are shown."""
-        names = enumerate(self.kept.quantities)
-        parts = ((k, name.split(":")) for k, name in names)
-        return [k for k, (kind, *part) in parts if kind != "section" or not made_of(self.undetermined, part[0], part[1])]
+        found = enumerate(self.kept.quantities)
+        return [k for k, q in found if q.group != "section" or not made_of(self.left_open, q.part, q.member)]
 
     def failures(self, p: Array) -> dict[str, float]:
         """What fails of one design that has a result, (parameters,), looked at with all its outputs: see :mod:`.witness`."""
         series = self.evaluate(p[None], threads=1, histories=True).series
         assert series is not None
-        return failures(self.scene, p, self.t, self.rung, self.columns, series[0])
+        return failures(self.scene, p, self.t, self.rung, self.outputs, series[0])
 
     def _interpret(self, p: Array, found: Outcome) -> None:
         kept = (found.value, found.t, found.xi, found.mean, found.rms)

@@ -15,8 +15,8 @@ from ..instants.backends import Table, run
 from ..instants.determinacy import undetermined
 from ..instants.refusal import Status, refusal
 from ..instants.rung import Rung
-from ..instants.section_law import FORCES
 from ..instants.signals import Quantity, SectionForce, Signals
+from ..quantities import FORCES
 from .plan import Kept
 
 
@@ -42,11 +42,11 @@ def outcome(graph: SceneGraph, kept: Kept, t: Array, p: Array, newton: int | Non
     why = refusal(graph, table, t, p, rung)
     if why is not None:
         return why.status, None
-    left_open = {graph.doubtful[name] for name in undetermined(graph, table.out, p, rung)}
+    left_open = {graph.doubtful[output] for output in undetermined(graph, table.out, p, rung)}
     doubted = {quantity for check, quantity in plan.doubts if plan.checks[check][0] in left_open}
     told = [k for k in range(len(plan.units)) if k not in doubted]
     signals = _signals(graph, kept, t, p, newton, table, told)
-    efforts = table.out[[graph.columns.index(name) for name in kept.efforts]]
+    efforts = table.out[[graph.outputs[effort] for effort in kept.efforts]]
     with np.errstate(all="ignore"):
         found = signals.peaks([plan.units[k] for k in told])
         means = np.stack(_means(efforts))

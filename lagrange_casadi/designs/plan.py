@@ -16,17 +16,18 @@ from ..declare.density import Array, Density
 from ..declare.limits import margins
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link, RigidMass
+from ..equations.checks import Check
 from ..equations.gaps import extent
 from ..equations.kinematics import NEAR
-from ..equations.mobility import LAW, PLACE_FIRST, stations_of
+from ..equations.mobility import stations_of
 from ..equations.scene_graph import SceneGraph
 from ..equations.turns import REACH
 from ..errors import DeclarationError
 from ..instants.determinacy import open_limits
 from ..instants.refusal import MISFIT, Status, dead_centre, gap_limit
 from ..instants.rung import Rung
-from ..instants.section_law import FORCES, made_of
-from ..quantities import FORCE, unit_in
+from ..instants.section_law import made_of
+from ..quantities import FORCE, FORCES, LAW, PLACE_FIRST, Output
 from ..summits.sharpness import Sharpness
 
 _BETWEEN = 9
@@ -49,47 +50,45 @@ def stages_of(graph: SceneGraph, rung: Rung, t: Array) -> Stages:
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """The names of what is kept, and the plan by which: peaks of ``quantities``, in ``units``, and means of ``efforts``.
+    """What is kept, and the plan by which: peaks of ``quantities``, in ``units``, and means of ``efforts``.
 
-    Quantities are the wanted outputs by their full names, angles that loops set left out; ``reaction:JOINT`` is the size of a
-    joint's reaction; the section forces of ``links`` come last. What equilibrium leaves open for the parameters' defaults is
-    left out.
+    Quantities are the wanted outputs, without angles that loops set, and sizes of joints' reactions; the section forces of
+    ``links`` come last. What equilibrium leaves open for the parameters' defaults is left out.
     """
 
-    quantities: tuple[str, ...]
+    quantities: tuple[Output, ...]
     units: tuple[str, ...]
-    efforts: tuple[str, ...]
+    efforts: tuple[Output, ...]
     links: tuple[str, ...]
     plan: Plan
     sharpness: Sharpness
 
     @classmethod
-    def of(cls, graph: SceneGraph, rung: Rung, left_open: Collection[str] = ()) -> Kept:
+    def of(cls, graph: SceneGraph, rung: Rung, left_open: Collection[Output] = ()) -> Kept:
         """What is kept of a scene's designs on a rung, less what is ``left_open``."""
-        mechanism, at = graph.scene.mechanism, {name: k for k, name in enumerate(graph.columns)}
-        chosen: dict[str, tuple[int, ...]] = {}
-        for name, k in at.items():
-            if name.startswith(("_", "section:")) or name in graph.wrapped or name in left_open:
+        mechanism, at = graph.scene.mechanism, graph.outputs
+        chosen: dict[Output, tuple[int, ...]] = {}
+        for output, k in at.items():
+            if output.along or output in graph.wrapped or output in left_open:
                 continue
-            kind, part, *rest = name.split(":")
-            other = f"reaction:{part}:fy"
-            if kind == "reaction" and rest == ["fx"] and other in at and other not in left_open:
-                chosen[f"reaction:{part}"] = (k, at[other])
-            chosen[name] = (k,)
-        links = [link for link in mechanism.links.values() if f"section:{link.name}:law:n0" in at]
+            other = Output("reaction", output.part, "fy")
+            if output == Output("reaction", output.part, "fx") and other in at and other not in left_open:
+                chosen[Output("reaction", output.part)] = (k, at[other])
+            chosen[output] = (k,)
+        links = [link for link in mechanism.links.values() if Output("law", link.name, "n0") in at]
         links = [link for link in links if not all(made_of(left_open, link.name, force) for force in FORCES)]
-        names = [*chosen, *(f"section:{link.name}:{force}" for link in links for force in FORCES)]
+        names = [*chosen, *(Output("section", link.name, force) for link in links for force in FORCES)]
         if not names:
             raise DeclarationError("designs: nothing is wanted that has a peak")
         units = tuple(_unit(mechanism, name) for name in names)
         numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
-        efforts = tuple(name for name in names if name.startswith("effort:"))
+        efforts = tuple(name for name in names if name.group == "effort")
         along = tuple(_along(link, at) for link in links)
         matter, positive, margins = _matter(mechanism, links, along, rung.precision)
         columns = {column for columns in chosen.values() for column in columns}
         columns |= {column for link in along for column in (*link.law, *(k for station in link.stations for k in station))}
         sharpness = Sharpness.of(graph, sorted(columns))
-        checks = _checks(graph, rung, at)
+        checks = _checks(graph, rung)
         doubted = {k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")}
         made = {name: _made_of(graph, name) for name in names}
         doubts = [(doubted[graph.doubtful[n]], k) for k, name in enumerate(names) for n in made[name] if n in graph.doubtful]
@@ -111,50 +110,52 @@ class Kept:
         return cls(tuple(names), units, efforts, tuple(link.name for link in links), plan, sharpness)
 
 
-def _unit(mechanism: Mechanism, name: str) -> str:
-    if name.startswith("reaction:") and name.count(":") == 1:
+def _unit(mechanism: Mechanism, output: Output) -> str:
+    if output == Output("reaction", output.part):
         return FORCE
-    return unit_in(mechanism.joints, name)
+    return output.unit(mechanism.joints)
 
 
-def _along(link: Link, at: dict[str, int]) -> Along:
+def _along(link: Link, at: dict[Output, int]) -> Along:
     assert isinstance(link.mass, Density)
-    start = f"section:{link.name}"
+    stations = stations_of(at, link.name)
     return Along(
-        tuple(at[f"{start}:law:{member}"] for member in LAW),
-        tuple(tuple(at[f"{start}:{station}:{member}"] for member in PLACE_FIRST) for station in stations_of(at, link.name)),
+        tuple(at[Output("law", link.name, member)] for member in LAW),
+        tuple(tuple(at[Output("station", link.name, member, station)] for member in PLACE_FIRST) for station in stations),
         link.mass.breaks,
         max(len(cell) for cell in link.mass.cells),
     )
 
 
-def _made_of(graph: SceneGraph, quantity: str) -> list[str]:
-    """The columns that a quantity is made of."""
-    kind, part, *rest = quantity.split(":")
-    if kind == "section":
-        return made_of(graph.columns, part, rest[0])
-    return [f"{quantity}:{member}" for member in ("fx", "fy")] if kind == "reaction" and not rest else [quantity]
+def _made_of(graph: SceneGraph, quantity: Output) -> list[Output]:
+    """The outputs that a quantity is made of."""
+    if quantity.group == "section":
+        return made_of(graph.outputs, quantity.part, quantity.member)
+    if quantity == Output("reaction", quantity.part):
+        return [Output("reaction", quantity.part, member) for member in ("fx", "fy")]
+    return [quantity]
 
 
-def _checks(graph: SceneGraph, rung: Rung, at: dict[str, int]) -> list[tuple[int, str, float]]:
+def _checks(graph: SceneGraph, rung: Rung) -> list[tuple[int, str, float]]:
     found: list[tuple[int, str, float]] = []
     precision, opened = rung.precision, open_limits(graph, rung)
-    for name, k in at.items():
-        kind, _, joint = name.partition(":")
-        if kind == "_closure":
-            jumps = graph.newton is not None and f"'{joint}'" in graph.newton.joints
-            found.append((k, "BRANCH" if jumps else "CLOSURE", dead_centre(graph, precision, name)))
-        elif kind == "_gap":
-            found.append((k, "GAP", gap_limit(precision, rung.newton)))
-        elif kind == "_open":
-            limit, moment = opened[joint]
+    for k, check in enumerate(graph.columns):
+        if not isinstance(check, Check):
+            continue
+        if isinstance(check.part, Output):
+            limit, moment = opened[check.part]
             found.append((k, "OPEN_MOMENT" if moment else "OPEN", limit))
-        elif kind == "_turned":
+        elif check.kind == "closure":
+            jumps = graph.newton is not None and f"'{check.part}'" in graph.newton.joints
+            found.append((k, "BRANCH" if jumps else "CLOSURE", dead_centre(graph, precision, check.part)))
+        elif check.kind == "gap":
+            found.append((k, "GAP", gap_limit(precision, rung.newton)))
+        elif check.kind == "turned":
             found.append((k, "TURNED", REACH))
-        elif kind == "_misfit":
+        elif check.kind == "misfit":
             found.append((k, "MISFIT", MISFIT[precision]))
-        elif kind == "_row":
-            found += [(k, "ROW", MISFIT[precision]), (at[f"_rowsize:{joint}"], "ROWSIZE", 0.0)]
+        elif check.kind == "row":
+            found += [(k, "ROW", MISFIT[precision]), (graph.checks("rowsize")[check.part], "ROWSIZE", 0.0)]
     return found
 
 

@@ -21,16 +21,17 @@ from ..instants.phases import phases
 from ..instants.rung import Rung
 from ..instants.solution import Solution
 from ..judge.certificate import LOOSE, tolerance
+from ..quantities import Output
 
 INSTANTS = 5
 _AGREES = 1e-6
 """Of the largest value of a unit, what two ways to evaluate the same graph may differ by; in single precision more."""
 
 
-def failures(scene: Scene, p: Array, t: Array, rung: Rung, columns: Sequence[str], out: Array) -> dict[str, float]:
+def failures(scene: Scene, p: Array, t: Array, rung: Rung, outputs: Sequence[Output], out: Array) -> dict[str, float]:
     """What fails of a design, and by how much: residuals of its certificate, and under ``agreement`` how far ``out`` is off.
 
-    ``out`` (columns, t) are the outputs by name that were made of it, over its instants ``t``.
+    ``out`` (outputs, t) are the outputs that were made of it, over its instants ``t``.
     """
     graph = derive(scene, ["all"], iterate=rung.newton is not None)
     some = np.unique(np.linspace(0, t.size - 1, min(t.size, INSTANTS)).astype(int))
@@ -39,27 +40,27 @@ def failures(scene: Scene, p: Array, t: Array, rung: Rung, columns: Sequence[str
     rows = table.out[:, some] if graph.newton is not None else table.out
     values = dict(zip(scene.mechanism.parameters, p.tolist(), strict=True))
     within = phases(graph, rows, t[some], p)
-    series, description = outputs_of(graph, rows), describe(scene.mechanism, values, scene.motion)
-    whole = Solution(scene.mechanism.name, t[some], np.zeros(0), series, description, provenance)
+    found_there, description = outputs_of(graph, rows), describe(scene.mechanism, values, scene.motion)
+    whole = Solution(scene.mechanism.name, t[some], np.zeros(0), found_there, description, provenance)
     limit = tolerance(whole) if rung.newton is None else LOOSE
     found = {name: float(np.max(gaps)) for name, gaps in residuals_of(whole, graph, rows, p, within).items()}
     failed = {name: gap for name, gap in found.items() if not gap <= limit}
     allowed = max(_AGREES, limit) if rung.precision == "double" else LOOSE
-    agreement = _agreement(whole, dict(zip(columns, out[:, some], strict=True)))
+    agreement = _agreement(whole, dict(zip(outputs, out[:, some], strict=True)))
     return failed if agreement <= allowed else failed | {"agreement": agreement}
 
 
-def _agreement(whole: Solution, found: Mapping[str, Array]) -> float:
+def _agreement(whole: Solution, found: Mapping[Output, Array]) -> float:
     """How far outputs are from those of a solution, over the largest of their unit."""
     largest: dict[str, float] = {}
-    for name, values in whole.series.items():
+    for name, values in whole.outputs.items():
         unit = whole.unit(name)
         largest[unit] = max(largest.get(unit, 0.0), float(np.max(np.abs(values))))
     worst = 0.0
     for name, values in found.items():
         if np.isnan(values).any():  # what equilibrium leaves open
             continue
-        gaps, unit = values - whole.series[name], whole.unit(name)
+        gaps, unit = values - whole.outputs[name], whole.unit(name)
         if unit == "rad":
             gaps = gaps - math.tau * np.rint(gaps / math.tau)
         worst = max(worst, float(np.max(np.abs(gaps))) / (max(largest[unit], 1.0 if unit == "rad" else 0.0) or 1.0))

@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..errors import DeclarationError, StoreError, UnknownNameError, one_line
-from ..instants.section_law import FORCES
 from ..instants.solution import Solution
-from ..quantities import quantity_of
+from ..quantities import FORCES, Output, quantity_of
 from ..store.untrusted import parsed
 
 if TYPE_CHECKING:
@@ -50,12 +49,12 @@ class TimePlot:
         """The figure."""
         figure, axes = _figure()
         for name in self.quantities:
-            label = name.split(":", 1)[1].replace(":", " ") if len(self.quantities) > 1 else None
-            if quantity_of(name).axes == ("t",):
-                axes.plot(solution.t, self.factor * solution.series[name], label=label)
+            output = Output.of(name)
+            label = name.partition(":")[2].replace(":", " ") if len(self.quantities) > 1 else None
+            if output.group != "section":
+                axes.plot(solution.t, self.factor * solution.outputs[output], label=label)
                 continue
-            _, link, force = name.split(":")
-            values = solution.section(link).law.on_grid(force, np.array(self.xi))
+            values = solution.section(output.part).law.on_grid(output.member, np.array(self.xi))
             for xi, curve in zip(self.xi, values.T, strict=True):
                 axes.plot(solution.t, self.factor * curve, label=rf"$\xi/l$ = {xi:g}")
         _finish(figure, axes, solution, self.quantities[0], self.title, self.note, "t [s]")
@@ -82,8 +81,8 @@ class SpanPlot:
         """The figure."""
         figure, axes = _figure()
         i = int(np.argmin(np.abs(solution.t - self.t)))
-        _, link, force = self.quantity.split(":")
-        values = solution.section(link).law.during(slice(i, i + 1)).on_grid(force, solution.xi)
+        output = Output.of(self.quantity)
+        values = solution.section(output.part).law.during(slice(i, i + 1)).on_grid(output.member, solution.xi)
         axes.plot(solution.xi, self.factor * values[0])
         title = f"{self.title}, t = {solution.t[i]:.4g} s" if self.title else f"t = {solution.t[i]:.4g} s"
         _finish(figure, axes, solution, self.quantity, title, self.note, r"$\xi/l$")
@@ -100,7 +99,7 @@ class SectionMaps:
 
     def needs(self) -> tuple[str, ...]:
         """Full names of the quantities it draws."""
-        return tuple(f"section:{self.link}:{force}" for force in FORCES)
+        return tuple(str(Output("section", self.link, force)) for force in FORCES)
 
     def draw(self, solution: Solution) -> Figure:
         """The figure."""
@@ -155,15 +154,14 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     """The usual drawings of whatever a solution holds."""
     specs: list[Spec] = []
     groups: dict[tuple[str, str], list[str]] = {}
-    for name in solution.series:
-        group, part, *member = name.split(":")
-        drawn = group in ("motion", "effort", "reaction", "multiplier", "load") and not name.endswith(("_rate", "_acceleration"))
-        if drawn and solution.determined(name) and np.any(solution.series[name]):
-            groups.setdefault((group + ("_moment" if member == ["mz"] else ""), part), []).append(name)
+    for output, values in solution.outputs.items():
+        drawn = output.group in ("effort", "reaction", "multiplier", "load") or output == Output("motion", output.part)
+        if drawn and solution.determined(output) and np.any(values):
+            groups.setdefault((output.group + ("_moment" if output.member == "mz" else ""), output.part), []).append(str(output))
     for (group, part), names in groups.items():
         specs.append(TimePlot(f"{group}_{part}", tuple(names), f"{solution.case}: {group.replace('_', ' ')} of {part}"))
     for link in solution.links_with_sections:
-        if solution.determined(f"section:{link}:bending"):
+        if solution.determined(Output("section", link, "bending")):
             specs.append(SectionMaps(f"section_{link}", link))
     return (*specs, MechanismDrawing())
 
@@ -214,14 +212,14 @@ def _check_parts(solution: Solution, spec: Spec) -> None:
     """Raise :class:`UnknownNameError` for a quantity of a part that the mechanism does not have."""
     parts = [part for table in ("bodies", "joints", "loads", "constraints", "rows") for part in solution.description[table]]
     for name in spec.needs():
-        part = name.partition(":")[2].partition(":")[0].removesuffix("_rate").removesuffix("_acceleration")
+        part = Output.of(name).part
         if part not in parts:
             raise UnknownNameError(f"part in figure '{spec.name}'", part, parts)
 
 
 def _has(solution: Solution, spec: Spec) -> bool:
     if isinstance(spec, MechanismDrawing):
-        return all(f"pose:{body}:x" in solution.series for body in solution.description["bodies"])
+        return all(Output("pose", body, "x") in solution.outputs for body in solution.description["bodies"])
     names = set(solution.names())
     return all(name in names for name in spec.needs())
 

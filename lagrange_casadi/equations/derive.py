@@ -14,9 +14,11 @@ from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted, told_parameters
 from ..errors import AssemblyError, MobilityError
+from ..quantities import ANGLE, Output
 from ..system import cache
 from . import kinematics
 from .assembly import assemble
+from .checks import Check, Column
 from .fingerprint import fingerprint
 from .kinematics import Start
 from .mobility import internal_forces, needed_reactions
@@ -93,27 +95,28 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     times = (float(scene.t[0]), float(scene.t[1]))
     solved, swings = count_turns(body, solved, motion, times, start, _seeing(body, want))
 
-    columns = {f"_closure:{name}": closure for name, closure in solved.closures.items()}
-    columns |= {f"_gap:{name}": gap for name, gap in solved.gaps.items()}
-    columns |= {f"_misfit:{name}": misfit for name, misfit in solved.misfits.items()}
+    columns: dict[Column, Any] = {Check("closure", name): closure for name, closure in solved.closures.items()}
+    columns |= {Check("gap", name): gap for name, gap in solved.gaps.items()}
+    columns |= {Check("misfit", name): misfit for name, misfit in solved.misfits.items()}
     for graph in body.rows:
-        columns |= {f"_row:{graph.row.name}": graph.residual, f"_rowsize:{graph.row.name}": graph.size}
-    columns |= {f"_turned:{name}": swing for name, swing in swings.items()}
-    wrapped: dict[str, dict[str, int]] = {}
+        columns |= {Check("row", graph.row.name): graph.residual, Check("rowsize", graph.row.name): graph.size}
+    columns |= {Check("turned", name): swing for name, swing in swings.items()}
+    wrapped: dict[Output, dict[Column, int]] = {}
     if want.motion:
         motions = _motion_columns(body, solved, driven)
         angles = [c for c in body.coordinates if c.kind == "angle"]
-        loose = {f"pose:{c.body}:angle": c.value for c in angles if c.joint in solved.loose}
-        counted = {f"_turns:{c.joint}": c.value for c in angles if c.joint not in solved.loose}
-        wrapped = {name: _turns(value, loose | counted) for name, value in motions.items() if _is_angle(mechanism, name)}
-        wrapped = {name: turns for name, turns in wrapped.items() if not loose.keys().isdisjoint(turns)}
-        whole = {name: ca.floor(value * (1 / math.tau)) for name, value in counted.items()}
-        within = column(value - math.tau * whole[name] for name, value in counted.items())
-        motions |= {name: ca.substitute(ca.SX(motions[name]), column(counted.values()), within) for name in wrapped}
-        columns |= {name: value for name, value in whole.items() if any(name in turns for turns in wrapped.values())} | motions
+        loose: dict[Column, Any] = {Output("pose", c.body, "angle"): c.value for c in angles if c.joint in solved.loose}
+        counted: dict[Column, Any] = {Check("turns", c.joint): c.value for c in angles if c.joint not in solved.loose}
+        wrapped = {output: _turns(value, loose | counted) for output, value in motions.items() if _is_angle(mechanism, output)}
+        wrapped = {output: turns for output, turns in wrapped.items() if not loose.keys().isdisjoint(turns)}
+        whole = {check: ca.floor(value * (1 / math.tau)) for check, value in counted.items()}
+        within = column(value - math.tau * whole[check] for check, value in counted.items())
+        motions |= {output: ca.substitute(ca.SX(motions[output]), column(counted.values()), within) for output in wrapped}
+        columns |= {check: value for check, value in whole.items() if any(check in turns for turns in wrapped.values())}
+        columns |= dict(motions.items())
     for part in reversed(body.applied):
         if part.source in want.loads:
-            columns |= {f"load:{part.source}:{member}": getattr(part, member) for member in ("fx", "fy", "mz")}
+            columns |= {Output("load", part.source, member): getattr(part, member) for member in ("fx", "fy", "mz")}
     placed = solved.evaluate(ca.vertcat(ca.SX(0, 1), *columns.values()))
     columns = dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True))
     inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, p]
@@ -133,8 +136,8 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), wrapped)
 
 
-def _settled(columns: dict[str, Any], free: Any) -> dict[str, Any]:
-    """Forces with nothing for what equilibrium leaves open, and by ``_open:NAME`` how much a force changes with that.
+def _settled(columns: dict[Column, Any], free: Any) -> dict[Column, Any]:
+    """Forces with nothing for what equilibrium leaves open, and by a check that it is ``open`` how much a force changes with that.
 
     What does not change with it by structure is determined. Any other force is determined where that is zero, for parameters and
     at instants that are looked at then.
@@ -144,8 +147,8 @@ def _settled(columns: dict[str, Any], free: Any) -> dict[str, Any]:
     forces = column(columns.values())
     slopes = ca.jacobian(forces, free)
     slopes, forces = (ca.substitute(part, free, ca.SX.zeros(free.numel())) for part in (slopes, forces))
-    doubted = ((name, slopes[k, :]) for k, name in enumerate(columns) if slopes[k, :].nnz() and not name.startswith("_"))
-    sizes = {f"_open:{name}": ca.sum2(ca.fabs(slope)) for name, slope in doubted}
+    doubted = ((output, slopes[k, :]) for k, output in enumerate(columns) if slopes[k, :].nnz() and isinstance(output, Output))
+    sizes: dict[Column, Any] = {Check("open", output): ca.sum2(ca.fabs(slope)) for output, slope in doubted}
     return dict(zip(columns, ca.vertsplit(forces), strict=True)) | sizes
 
 
@@ -159,8 +162,8 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
     return found
 
 
-def _motion_columns(body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]) -> dict[str, Any]:
-    columns: dict[str, Any] = {}
+def _motion_columns(body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]) -> dict[Output, Any]:
+    columns: dict[Output, Any] = {}
     for name, joint in body.mechanism.joints.items():
         if name in driven:
             i = driven.index(name)
@@ -169,26 +172,24 @@ def _motion_columns(body: Multibody, solved: kinematics.Kinematics, driven: Sequ
             motion = body.joint_motion(joint)
         else:
             continue
-        columns |= dict(zip((f"motion:{name}", f"motion:{name}_rate", f"motion:{name}_acceleration"), motion, strict=True))
+        members = (Output("motion", name, member) for member in ("", "rate", "acceleration"))
+        columns |= dict(zip(members, motion, strict=True))
     for part in body.mechanism.moving:
         frame = body.frames[part.name]
         x, y = frame.place_of(0.0, 0.0)
-        columns |= {f"pose:{part.name}:x": x, f"pose:{part.name}:y": y}
+        columns |= {Output("pose", part.name, "x"): x, Output("pose", part.name, "y"): y}
         if part.oriented:
-            columns[f"pose:{part.name}:angle"] = frame.rotation.angle
+            columns[Output("pose", part.name, "angle")] = frame.rotation.angle
     return columns
 
 
-def _is_angle(mechanism: Mechanism, column: str) -> bool:
-    group, part, *_ = column.split(":")
-    if group == "pose":
-        return column.endswith(":angle")
-    return part in mechanism.joints and mechanism.joints[part].coordinate == "angle"
+def _is_angle(mechanism: Mechanism, output: Output) -> bool:
+    return output.member in ("", "angle") and output.unit(mechanism.joints) == ANGLE
 
 
-def _turns(angle: Any, parts: dict[str, Any]) -> dict[str, int]:
+def _turns(angle: Any, parts: dict[Column, Any]) -> dict[Column, int]:
     """How often each coordinate's angle goes into another angle: once, or less once."""
     if not parts:
         return {}
     slopes = ca.evalf(ca.densify(ca.jacobian(ca.SX(angle), ca.vertcat(*parts.values())))).full().ravel()
-    return {name: int(slope) for name, slope in zip(parts, slopes, strict=True) if slope}
+    return {part: int(slope) for part, slope in zip(parts, slopes, strict=True) if slope}

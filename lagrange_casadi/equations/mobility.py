@@ -28,24 +28,21 @@ from ..declare.limits import at_end
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Joint, Link, Point
 from ..geometry.planar import Frame, Velocities, reaction, slide
+from ..quantities import LAW, STATION, Output
+from .checks import Check, Column
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
 from .multibody import Multibody, column
 
-LAW = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
-STATION = ("n", "f", "m", "station")
-PLACE_FIRST = ("station", "n", "f", "m")
-"""The same in the order in which emitted C takes them."""
-
 
 @dataclass(frozen=True, eq=False)
 class InternalForces:
-    """Every force that was asked for, by full name, over time, the driven motion, the iterated unknowns and the parameters.
+    """Every force that was asked for, over time, the driven motion, the iterated unknowns and the parameters.
 
     ``free`` are the symbols of what equilibrium leaves open in an over-constrained mechanism.
     """
 
-    columns: dict[str, Any]
+    columns: dict[Column, Any]
     free: Any
 
 
@@ -82,17 +79,16 @@ def internal_forces(
     borne = {
         name: _reaction(multibody, joints[name], by_joint) for name in needed_reactions(multibody.mechanism, reactions, sections)
     }
-    columns = {f"effort:{joint}": force for joint, force in drives.items()} if effort else {}
+    columns: dict[Column, Any] = {Output("effort", joint): force for joint, force in drives.items()} if effort else {}
     for name in reactions:
-        columns |= {f"reaction:{name}:{member}": force for member, force in borne[name].items()}
+        columns |= {Output("reaction", name, member): force for member, force in borne[name].items()}
     held = {c.name: c.multipliers for c in multibody.closures if c.joint is None}
     held |= {graph.row.name: graph.multiplier for graph in multibody.rows}
-    columns |= {f"multiplier:{name}": held[name] for name in multipliers}
+    columns |= {Output("multiplier", name): held[name] for name in multipliers}
     if reactions:
-        columns |= {f"_multiplier:{name}": multiplier for name, multiplier in held.items() if name not in multipliers}
+        columns |= {Check("multiplier", name): multiplier for name, multiplier in held.items() if name not in multipliers}
     for name in sections:
-        for coefficient, force in _section_law(multibody, name, borne, drives).items():
-            columns[f"section:{name}:{coefficient}"] = force
+        columns |= _section_law(multibody, name, borne, drives)
     # All at once, for a substitution visits the whole graph; and mobilities rest.
     rates = multibody.mobility_rates
     resting = ca.substitute(column(columns.values()), rates, ca.SX.zeros(rates.numel()))
@@ -100,12 +96,12 @@ def internal_forces(
     return InternalForces(dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True)), free)
 
 
-def _section_law(multibody: Multibody, name: str, borne: Any, drives: Any) -> dict[str, Any]:
+def _section_law(multibody: Multibody, name: str, borne: Any, drives: Any) -> dict[Column, Any]:
     """The coefficients of a link's law: of its material from the section mobility, of the tip and stations from what acts there."""
     link, direction = multibody.mechanism.links[name], multibody.frames[name].rotation
     slopes = _material(multibody, name)
     tip = [ca.SX(0), ca.SX(0), ca.SX(0)]
-    stations: dict[str, Any] = {}
+    stations: dict[Column, Any] = {}
     for source, x, y, (fx, fy, mz) in _loads_on(multibody, link, borne, drives):
         n, f = direction.resolve(fx, fy)
         acting = (n, f, mz - y * n)
@@ -113,7 +109,7 @@ def _section_law(multibody: Multibody, name: str, borne: Any, drives: Any) -> di
             tip = [total + part for total, part in zip(tip, acting, strict=True)]
         else:
             found = zip(STATION, (*acting, x / link.length), strict=True)
-            stations |= {f"{source}:{member}": value for member, value in found}
+            stations |= {Output("station", name, member, source): value for member, value in found}
     n0, f0, m0 = tip
     f1, f2 = -slopes[1, 0], -slopes[1, 1]
     if _between_pins(multibody, link, drives):
@@ -122,7 +118,7 @@ def _section_law(multibody: Multibody, name: str, borne: Any, drives: Any) -> di
         _, first, inertia = link.mass.ends(link.length)
         f0 = -(f1 * first + f2 * (first * link.length + inertia / link.length))
     law = (n0, -slopes[0, 0], -slopes[0, 1], f0, f1, f2, m0)
-    return dict(zip((f"law:{k}" for k in LAW), law, strict=True)) | stations
+    return {Output("law", name, member): value for member, value in zip(LAW, law, strict=True)} | stations
 
 
 def _between_pins(multibody: Multibody, link: Link, drives: Any) -> bool:
@@ -198,11 +194,16 @@ def _loads_on(multibody: Multibody, link: Link, borne: Any, drives: Any) -> Iter
                 x = at_end(point)
             yield joint.name, x, y, (sign * fx, sign * fy, sign * mz)
     seen: dict[str, int] = {}
+    m = multibody.mechanism
+    acting = {*m.joints, *m.loads, *m.constraints, *m.rows}
     for part in (*multibody.applied, *multibody.held):
         if part.point.body is link and not _at_base(part.point):
             x = None if part.point.end == "tip" else at_end(part.point)
-            seen[part.source] = seen.get(part.source, 0) + 1
-            name = part.source if seen[part.source] == 1 else f"{part.source}_{seen[part.source]}"
+            name = part.source
+            while seen.setdefault(part.source, 0) and name in acting:
+                seen[part.source] += 1
+                name = f"{part.source}_{seen[part.source]}"
+            seen[part.source] = max(seen[part.source], 1)
             yield name, x, part.point.y, (part.fx, part.fy, part.mz)
 
 
@@ -248,8 +249,6 @@ def _reaction(multibody: Multibody, joint: Joint, actions: dict[str, Any]) -> di
     return reaction(joint, parent, child, branch.sign * actions[joint.name], closing=False)
 
 
-def stations_of(columns: Iterable[str], link: str) -> tuple[str, ...]:
-    """The stations that columns of a link's section law name, in their order."""
-    start = f"section:{link}:"
-    names = (name.removeprefix(start).partition(":")[0] for name in columns if name.startswith(start))
-    return tuple(dict.fromkeys(name for name in names if name != "law"))
+def stations_of(outputs: Iterable[Output], link: str) -> tuple[str, ...]:
+    """The stations of a link that outputs name, in their order."""
+    return tuple(dict.fromkeys(output.station for output in outputs if output.station and output.part == link))

@@ -13,23 +13,21 @@ import casadi as ca
 from ..declare.density import Array
 from ..declare.motion import Laws
 from ..declare.scene import Scene, Wanted
+from ..quantities import LAW, STATION, Output
+from .checks import Check, Column, Kind, column_of
 from .gaps import extent
 from .kinematics import NewtonLoop
-from .mobility import LAW, STATION, stations_of
+from .mobility import stations_of
 
 
 @dataclass(frozen=True, eq=False)
 class SceneGraph:
     """What a scene computes, as CasADi functions that hold nothing else.
 
-    ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` a
-    column name; ``newton`` where loops must be iterated. Columns that begin with ``_`` are no outputs. They tell whether there is
-    a result: ``_closure:JOINT`` (see :mod:`.loops`), ``_gap:JOINT`` and ``_misfit:JOINT`` (see :mod:`.gaps`), ``_row:NAME`` and
-    ``_rowsize:NAME``, and ``_turned:NAME``, how far an angle swings that is seen with its turns (see :mod:`.turns`); whether it is
-    the only one: ``_open:FORCE`` (see :mod:`.determinacy`); or they are what the certificate needs: ``_multiplier:NAME``, where
-    it was not wanted. ``wrapped`` names the angles that loops set, and what they are sums and differences of: by
-    ``pose:BODY:angle`` directions known up to whole turns, and by ``_turns:JOINT`` the whole turns of angles that count them,
-    which are in these columns without them.
+    ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` for
+    each of ``columns``, which are outputs and checks; ``newton`` where loops must be iterated. ``wrapped`` are the angles that
+    loops set, and what they are sums and differences of: directions of bodies that are known up to whole turns, and by ``turns``
+    of a joint the whole turns of angles that count them, which are in these columns without them.
     """
 
     scene: Scene
@@ -38,8 +36,22 @@ class SceneGraph:
     motion: Any
     instant: Any
     newton: NewtonLoop | None
-    columns: tuple[str, ...]
-    wrapped: Mapping[str, Mapping[str, int]]
+    columns: tuple[Column, ...]
+    wrapped: Mapping[Output, Mapping[Column, int]]
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The full names of the outputs, and names for the checks, which begin with ``_``: one a row of ``out``."""
+        return tuple(map(str, self.columns))
+
+    @cached_property
+    def outputs(self) -> dict[Output, int]:
+        """The outputs, and their rows of ``out``."""
+        return {column: k for k, column in enumerate(self.columns) if isinstance(column, Output)}
+
+    def checks(self, kind: Kind) -> dict[str, int]:
+        """The parts that have a check of a kind, and its row of ``out``."""
+        return {str(c.part): k for k, c in enumerate(self.columns) if isinstance(c, Check) and c.kind == kind}
 
     @cached_property
     def laws(self) -> Laws:
@@ -57,16 +69,17 @@ class SceneGraph:
     def links(self) -> tuple[str, ...]:
         """The links of which a whole section law was wanted, and is there."""
         needed = {
-            link: [f"law:{member}" for member in LAW]
-            + [f"{station}:{member}" for station in stations_of(self.columns, link) for member in STATION]
+            link: [Output("law", link, member) for member in LAW]
+            + [Output("station", link, member, station) for station in stations_of(self.outputs, link) for member in STATION]
             for link in self.wanted.sections
         }
-        return tuple(link for link, names in needed.items() if all(f"section:{link}:{name}" in self.columns for name in names))
+        return tuple(link for link, outputs in needed.items() if all(output in self.outputs for output in outputs))
 
     @cached_property
-    def doubtful(self) -> dict[str, int]:
+    def doubtful(self) -> dict[Output, int]:
         """The outputs that equilibrium may leave open, and the columns that tell where it does."""
-        return {name.removeprefix("_open:"): k for k, name in enumerate(self.columns) if name.startswith("_open:")}
+        checks = ((column, k) for k, column in enumerate(self.columns) if isinstance(column, Check))
+        return {check.part: k for check, k in checks if isinstance(check.part, Output)}
 
     def iterates(self, closure: str) -> bool:
         """Whether the loops that stand under the name of a closure are iterated."""
@@ -90,7 +103,8 @@ class SceneGraph:
                 "names": loop.names,
                 "joints": loop.joints,
             }
-        kept = {name: getattr(self, name) for name in _KEPT} | {"wrapped": self.wrapped}
+        wrapped = {str(angle): {str(part): sign for part, sign in parts.items()} for angle, parts in self.wrapped.items()}
+        kept = {"driven": self.driven, "columns": self.names, "wrapped": wrapped}
         return json.dumps(kept | {"motion": self.motion.serialize(), "instant": self.instant.serialize(), "newton": newton})
 
     @classmethod
@@ -103,8 +117,6 @@ class SceneGraph:
             loop = kept["newton"]
             step = ca.Function.deserialize(loop["step"])
             newton = NewtonLoop(step, tuple(loop["guess"]), tuple(loop["turning"]), tuple(loop["names"]), loop["joints"])
-        rest = {name: tuple(kept[name]) for name in _KEPT}
-        return cls(scene=scene, wanted=wanted, motion=motion, instant=instant, newton=newton, wrapped=kept["wrapped"], **rest)
-
-
-_KEPT = ("driven", "columns")
+        columns = tuple(map(column_of, kept["columns"]))
+        wrapped = {Output.of(k): {column_of(part): sign for part, sign in v.items()} for k, v in kept["wrapped"].items()}
+        return cls(scene, wanted, tuple(kept["driven"]), motion, instant, newton, columns, wrapped)

@@ -14,7 +14,7 @@ from ..arithmetic.compensated import Precision
 from ..equations.mobility import stations_of
 from ..equations.scene_graph import SceneGraph
 from ..instants.solution import Solution
-from ..quantities import quantity_of, unit_in
+from ..quantities import Output
 from .naming import constants, members, prefix
 
 REST = "rest:"
@@ -134,7 +134,7 @@ def _short(source: str, kind: str = "") -> str:
 
 
 def contract(
-    graph: SceneGraph, name: str, precision: Precision, solution: Solution, undetermined: tuple[str, ...], *, fixed: bool
+    graph: SceneGraph, name: str, precision: Precision, solution: Solution, left_open: tuple[Output, ...], *, fixed: bool
 ) -> Contract:
     """The contract of a graph whose evaluation over its cycle is ``solution``; ``fixed`` leaves no parameter open."""
     mechanism, values = graph.scene.mechanism, solution.description["parameters"]
@@ -143,25 +143,25 @@ def contract(
     names = members({setting.source: setting.source for setting in settings})
     inputs = _inputs(graph, precision, timed)
     shown = members({key: _short(key, "input") for key in inputs})
-    columns = [key for key in graph.columns if not key.startswith("_") and key not in inputs]
-    called = members({key: _short(key) for key in columns})
+    given = [output for output in graph.outputs if str(output) not in inputs]
+    called = members({str(output): _short(str(output)) for output in given})
     largest: dict[str, float] = {}
-    for key in columns:
-        unit = unit_in(mechanism.joints, key)
-        largest[unit] = max(largest.get(unit, 0.0), float(np.abs(solution.series[key]).max()))
+    for output in given:
+        unit = output.unit(mechanism.joints)
+        largest[unit] = max(largest.get(unit, 0.0), float(np.abs(solution.outputs[output]).max()))
     numbered = constants(f"{prefix(name)}_link", graph.links)
-    links = [LinkContract(link, constant, stations_of(columns, link)) for link, constant in numbered.items()]
+    links = [LinkContract(link, constant, stations_of(given, link)) for link, constant in numbered.items()]
     return Contract(
         prefix(name),
         name,
         precision,
         tuple(replace(s, name=names[s.source]) for s in settings),
         tuple(replace(m, name=shown[key]) for key, m in inputs.items()),
-        tuple(_output(graph, key, called[key], solution, largest) for key in columns),
+        tuple(_output(graph, output, called[str(output)], solution, largest) for output in given),
         tuple(links),
         graph.driven,
         timed,
-        undetermined,
+        tuple(map(str, left_open)),
     )
 
 
@@ -209,40 +209,32 @@ def _inputs(graph: SceneGraph, precision: Precision, timed: bool) -> dict[str, M
         if rests:
             add(f"{REST}time", "s", rest.format("the time"))
     for joint in graph.driven:
-        for key in (f"motion:{joint}", f"motion:{joint}_rate", f"motion:{joint}_acceleration"):
-            quantity, unit = quantity_of(key), unit_in(graph.scene.mechanism.joints, key)
-            sign = _sign(graph, key)
-            add(key, unit, f"{_where(key, joint)}: {_brief(quantity.long_name)}", sign)
-            if rests and not quantity.member:
+        for member in ("", "rate", "acceleration"):
+            output = Output("motion", joint, member)
+            key, unit = str(output), output.unit(graph.scene.mechanism.joints)
+            add(key, unit, f"{_where(output)}: {_brief(output.quantity.long_name)}", _sign(graph, output))
+            if rests and not member:
                 add(f"{REST}{key}", unit, rest.format("it"))
     return found
 
 
-def _joint(graph: SceneGraph, key: str) -> str:
-    """The joint that a full name is of, or its part that is none."""
-    part = key.split(":")[1]
-    return part if part in graph.scene.mechanism.joints else part.removesuffix("_rate").removesuffix("_acceleration")
+def _sign(graph: SceneGraph, output: Output) -> str:
+    if output == Output("motion", output.part):
+        return "counter-clockwise" if graph.scene.mechanism.joints[output.part].coordinate == "angle" else "along the axis"
+    return output.quantity.sign
 
 
-def _sign(graph: SceneGraph, key: str) -> str:
-    quantity, joints, joint = quantity_of(key), graph.scene.mechanism.joints, _joint(graph, key)
-    if quantity.group == "motion" and not quantity.member:
-        return "counter-clockwise" if joints[joint].coordinate == "angle" else "along the axis"
-    return quantity.sign
+def _output(graph: SceneGraph, output: Output, member: str, solution: Solution, largest: Mapping[str, float]) -> Member:
+    unit, wrapped = output.unit(graph.scene.mechanism.joints), output in graph.wrapped
+    within = "in (-pi, pi]" if wrapped else _range(solution, output, largest[unit])
+    meaning = f"{_where(output)}: {_brief(output.quantity.long_name)}"
+    return Member(member, str(output), unit, meaning, _sign(graph, output), within, wrapped)
 
 
-def _output(graph: SceneGraph, key: str, member: str, solution: Solution, largest: Mapping[str, float]) -> Member:
-    quantity, unit, wrapped = quantity_of(key), unit_in(graph.scene.mechanism.joints, key), key in graph.wrapped
-    within = "in (-pi, pi]" if wrapped else _range(solution, key, largest[unit])
-    meaning = f"{_where(key, _joint(graph, key))}: {_brief(quantity.long_name)}"
-    return Member(member, key, unit, meaning, _sign(graph, key), within, wrapped)
-
-
-def _where(key: str, joint: str) -> str:
-    group, part, *rest = key.split(":")
-    kinds = {"motion": "joint", "pose": "body", "effort": "joint", "reaction": "joint", "load": "load", "section": "link"}
-    found = f"{kinds.get(group, group)} {joint if group == 'motion' else part}"
-    return f"{found}, station {rest[0]}" if group == "section" and rest[0] != "law" else found
+def _where(output: Output) -> str:
+    kinds = {"motion": "joint", "pose": "body", "effort": "joint", "reaction": "joint", "law": "link", "station": "link"}
+    found = f"{kinds.get(output.group, output.group)} {output.part}"
+    return f"{found}, station {output.station}" if output.station else found
 
 
 def _brief(meaning: str) -> str:
@@ -252,10 +244,10 @@ def _brief(meaning: str) -> str:
     return meaning
 
 
-def _range(solution: Solution, key: str, largest: float) -> str:
+def _range(solution: Solution, output: Output, largest: float) -> str:
     """What a quantity's values are over the cycle of the scene, in a few digits; ``largest`` is the largest of its unit."""
-    values = solution.series[key]
-    faint = max(FAINT * largest, 2.0 * solution.errors.get(key, 0.0))
+    values = solution.outputs[output]
+    faint = max(FAINT * largest, 2.0 * solution.errors.get(str(output), 0.0))
     low, high = (0.0 if abs(x) <= faint else float(x) for x in (values.min(), values.max()))
     ends = [f"{x:.{_DIGITS}g}" for x in (low, high)]
     return f"{ends[0] if ends[0] == ends[1] else f'from {ends[0]} to {ends[1]}'} over the scene's motion"

@@ -70,7 +70,7 @@ def wrapper(description: Description) -> str:
         outputs=len(c.outputs),
         timed=int(c.timed),
         start=",\n".join(f"  {wide(value)} /* {name} */" for name, value in values),
-        turning=",\n".join(f"  {int(m.source in source.program.graph.wrapped)} /* {m.path} */" for m in c.outputs),
+        turning=",\n".join(f"  {int(m.wrapped)} /* {m.path} */" for m in c.outputs),
         start_time=wide(source.program.graph.scene.t[0]),
         limits=_limits(description),
         given=f"  {c.prefix}_parameters parameters;\n" if c.settings else "",

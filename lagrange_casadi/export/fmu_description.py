@@ -17,7 +17,7 @@ import numpy as np
 
 from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
-from ..quantities import CONVENTIONS
+from ..quantities import CONVENTIONS, Output
 from ..version import __version__
 from .contract import Contract, Member, Setting
 from .source import Source
@@ -55,7 +55,7 @@ class Description:
         """What inputs start with: the scene's motion at its first instant."""
         graph = self.source.program.graph
         rows = [np.atleast_1d(row.full().ravel()) for row in graph.motion(graph.scene.t[0], self.p)]
-        names = [f"motion:{joint}{member}" for member in ("", "_rate", "_acceleration") for joint in graph.driven]
+        names = [str(Output("motion", joint, member)) for member in ("", "rate", "acceleration") for joint in graph.driven]
         return dict(zip(names, np.concatenate(rows).tolist(), strict=True))
 
     @cached_property
@@ -152,7 +152,7 @@ def reached(graph: SceneGraph) -> dict[str, frozenset[str]]:
     """What each column of a graph depends on by its structure: ``time``, ``motion:...`` and ``parameter:NAME``."""
     named = [
         ["time"],
-        *([f"motion:{joint}{member}" for joint in graph.driven] for member in ("", "_rate", "_acceleration")),
+        *([str(Output("motion", joint, member)) for joint in graph.driven] for member in ("", "rate", "acceleration")),
         [f"parameter:{name}" for name in graph.scene.mechanism.parameters],
     ]
     _, coordinate, rate, acceleration, z, p = range(6)
@@ -167,7 +167,7 @@ def reached(graph: SceneGraph) -> dict[str, frozenset[str]]:
             found[row].add(names[column])
     for row, _ in _entries(graph.instant, z):
         found[row] |= loops
-    return {name: frozenset(names) for name, names in zip(graph.columns, found, strict=True)}
+    return {name: frozenset(names) for name, names in zip(graph.names, found, strict=True)}
 
 
 def _entries(function: Any, place: int) -> list[tuple[int, int]]:

@@ -11,8 +11,8 @@ import numpy as np
 from ..arithmetic.compensated import ROUNDING, Precision
 from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
-from ..instants.section_law import FORCES
 from ..instants.solution import Solution
+from ..quantities import FORCES, Output
 from .contract import FAINT, REST, Contract, Member
 
 INSTANTS = 9
@@ -67,7 +67,7 @@ def golden(graph: SceneGraph, contract: Contract, solution: Solution, exact: Sol
         for k, force in enumerate(FORCES):
             true, found = (law.at(force, np.tile(RATIOS, (exact.t.size, 1))) for law in laws)
             forces[:, i, :, k] = true[chosen]
-            forces_off[i, k] = scale * exact.errors[f"section:{link.name}:{force}"] + least * np.abs(true).max()
+            forces_off[i, k] = scale * exact.errors[str(Output("section", link.name, force))] + least * np.abs(true).max()
             forces_off[i, k] += 2.0 * np.abs(found - true).max()
     inputs_off = _MOTION * ROUNDING[precision] * np.abs(inputs).max(axis=0)
     steps = stride if graph.newton is not None else 1
@@ -93,10 +93,12 @@ def _saved(member: Member, solution: Solution, exact: Solution) -> float:
 def _input(graph: SceneGraph, source: str, t: Array, p: Array, precision: Precision) -> Array:
     """The values of an input over instants; of a rest, what rounding its value to single leaves."""
     name = source.removeprefix(REST)
-    order = 1 if name.endswith("_rate") else 2 if name.endswith("_acceleration") else 0
-    joint = name.removeprefix("motion:").removesuffix("_rate").removesuffix("_acceleration")
-    motion = np.atleast_2d(graph.motion(ca.DM(t).T, ca.DM(p))[order].full())
-    values = t if name == "time" else motion[graph.driven.index(joint)]
+    if name == "time":
+        values = t
+    else:
+        output = Output.of(name)
+        order = ("", "rate", "acceleration").index(output.member)
+        values = np.atleast_2d(graph.motion(ca.DM(t).T, ca.DM(p))[order].full())[graph.driven.index(output.part)]
     if source.startswith(REST):
         return np.asarray(values - values.astype(np.float32))
     return np.asarray(values.astype(np.float32).astype(float) if precision == "single" else values)

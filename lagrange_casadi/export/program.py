@@ -17,6 +17,7 @@ from ..codegen.stages import controlled
 from ..declare.density import Array, Density
 from ..declare.limits import margins
 from ..declare.parts import Link, RigidMass
+from ..equations.checks import Check, Column
 from ..equations.gaps import extent
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
@@ -43,7 +44,7 @@ class Program:
     graph: SceneGraph
     precision: Precision
     functions: Mapping[str, ca.Function]
-    columns: tuple[str, ...]
+    columns: tuple[Column, ...]
     sizes: dict[str, int]
     order: tuple[int, ...]
     samples: tuple[Samples, ...]
@@ -70,12 +71,13 @@ def program(
     """
     evaluated = graph if read is None else read[0]
     stages = controlled(evaluated, precision)
-    kept = [k for k, name in enumerate(evaluated.columns) if not name.startswith(("_turns:", "_multiplier:"))]
-    columns = tuple(evaluated.columns[k] for k in kept) if read is None else read[1].columns
+    hidden = {*evaluated.checks("turns").values(), *evaluated.checks("multiplier").values()}
+    kept = [k for k in range(len(evaluated.columns)) if k not in hidden]
+    columns = tuple(evaluated.columns[k] for k in kept) if read is None else graph.columns
     constants, instant = hoisted(stages.instant, kept)
     mechanism = graph.scene.mechanism
     symbols, fixed = mechanism.symbols, read is not None
-    gapped = read is None and any(name.startswith(("_gap:", "_open:")) for name in columns)
+    gapped = read is None and any(isinstance(column, Check) and column.kind in ("gap", "open") for column in columns)
     functions = {
         "law": stages.law,
         "count": stages.count,

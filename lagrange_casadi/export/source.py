@@ -11,11 +11,12 @@ import casadi as ca
 
 from ..codegen.emit import newton_rule
 from ..declare.density import Density
-from ..equations.mobility import LAW, PLACE_FIRST
+from ..equations.checks import Check
 from ..equations.turns import REACH
 from ..instants.determinacy import open_limits
 from ..instants.refusal import MISFIT, dead_centre, gap_limit
 from ..instants.rung import Rung
+from ..quantities import LAW, PLACE_FIRST, Output
 from ..version import __version__
 from .contract import REST, Contract
 from .data import sampled, table_call, table_text
@@ -117,8 +118,9 @@ class Source:
         return max(low for low, _ in spans), min(high for _, high in spans)
 
     def _value(self, source: str) -> str:
-        value = f"y[{self.program.columns.index(source)}]"
-        return f"direction({value})" if source in self.program.graph.wrapped else value
+        output = Output.of(source)
+        value = f"y[{self.program.columns.index(output)}]"
+        return f"direction({value})" if output in self.program.graph.wrapped else value
 
     @property
     def _number(self) -> Format:
@@ -269,7 +271,7 @@ class Source:
         if self.iterated:
             yield f"{c.prefix}_status closed;"
         yield f"if (model->seal != SEAL) return {P}_NOT_PREPARED;"
-        names = ["time", *(f"motion:{drive}" for drive in c.drives)]
+        names = ["time", *(str(Output("motion", drive)) for drive in c.drives)]
         names += [f"{REST}{name}" for name in names] if c.rests else []
         for k, name in enumerate(names):
             known = "motion:" in name or c.timed
@@ -315,29 +317,31 @@ class Source:
     def _verdict(self) -> Iterable[str]:
         P, precision, number = self._upper, self.contract.precision, self._number
         graph, misfit, closed = self.program.graph, number(MISFIT[precision]), self.iterated
-        for k, name in enumerate(self.program.columns):
-            kind, _, part = name.partition(":")
-            if closed and kind in ("_gap", "_misfit"):
+        for k, check in enumerate(self.program.columns):
+            if not isinstance(check, Check):
+                continue
+            kind, part = check.kind, str(check.part)
+            if closed and kind in ("gap", "misfit"):
                 yield f"if (closed != {P}_OK) return closed;"
                 closed = False
-            if kind == "_closure":
-                dead = number(dead_centre(graph, precision, name))
+            if kind == "closure":
+                dead = number(dead_centre(graph, precision, part))
                 lost = "JUMPED" if graph.iterates(part) else "NOT_ASSEMBLED"
                 yield f"if (y[{k}] < -{dead}) return {P}_{lost};"
                 yield f"if (!(y[{k}] > {dead})) return {P}_DEAD_CENTRE;"
-            elif kind == "_gap" and self.program.sizes["gapped"]:
+            elif kind == "gap" and self.program.sizes["gapped"]:
                 limit = f"{number(gap_limit(precision, self.program.newton))}*model->matter[0]"
                 yield f"if ({self._function('fabs')}(y[{k}]) > {limit}) return {P}_NOT_CLOSED;"
-            elif kind == "_open":
-                least, moment = open_limits(graph, Rung("auto", precision, self.program.newton))[part]
+            elif isinstance(check.part, Output):
+                least, moment = open_limits(graph, Rung("auto", precision, self.program.newton))[check.part]
                 limit = f"{number(least)}*model->matter[0]" if moment else number(least)
                 yield f"if (!(y[{k}] <= {limit})) return {P}_UNDETERMINED;"
-            elif kind == "_turned":
+            elif kind == "turned":
                 yield f"if (!({self._function('fabs')}(y[{k}]) <= {number(REACH)})) return {P}_TURNED;"
-            elif kind == "_misfit":
+            elif kind == "misfit":
                 yield f"if (y[{k}] > {misfit}) return {P}_INCONSISTENT;"
-            elif kind == "_row":
-                size = self.program.columns.index(name.replace("_row:", "_rowsize:"))
+            elif kind == "row":
+                size = self.program.columns.index(Check("rowsize", part))
                 yield f"if (!({self._function('fabs')}(y[{k}]) <= {misfit}*y[{size}])) return {P}_INCONSISTENT;"
         if closed:
             yield f"if (closed != {P}_OK) return closed;"
@@ -351,7 +355,7 @@ class Source:
         breaks: list[float] = []
         sizes: list[int] = []
         place = self.program.sizes["gapped"]
-        names = {m.source: m.name for m in c.outputs}
+        names = {Output.of(m.source): m.name for m in c.outputs}
         for link in c.links:
             density = links[link.name].mass
             assert isinstance(density, Density)
@@ -361,9 +365,9 @@ class Source:
             sizes += lengths
             rows = [f"  case {link.constant}:", f"    matter_of = model->matter + {place};"]
             rows.append(f"    stations = {len(link.stations)};")
-            rows += [f"    law[{i}] = outputs->{names[f'section:{link.name}:law:{term}']};" for i, term in enumerate(LAW)]
-            acting = [f"section:{link.name}:{station}:{term}" for station in link.stations for term in PLACE_FIRST]
-            rows += [f"    acting[{i}] = outputs->{names[name]};" for i, name in enumerate(acting)]
+            rows += [f"    law[{i}] = outputs->{names[Output('law', link.name, term)]};" for i, term in enumerate(LAW)]
+            acting = [Output("station", link.name, term, station) for station in link.stations for term in PLACE_FIRST]
+            rows += [f"    acting[{i}] = outputs->{names[output]};" for i, output in enumerate(acting)]
             laws.append("\n".join([*rows, "    break;"]))
             place += 1 + sum(lengths)
         return template(

@@ -16,10 +16,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
+from ..equations.checks import Check, Column
 from ..equations.kinematics import describe_coordinate, passes_dead_centre, where
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
-from ..quantities import ANGLE, unit_in
+from ..quantities import ANGLE
 
 TURNS = 4
 """Of the longest period."""
@@ -119,7 +120,7 @@ class Drive:
         out = graph.instant(t, d, rate, acceleration, z, parameters)
         timed = [graph.columns[k] for k in ca.jacobian_sparsity(out, t).row()]
         if graph.newton is not None and ca.depends_on(graph.newton.step(z, t, d, parameters)[0], t):
-            timed += [f"_closure:{name}" for name in graph.newton.names]
+            timed += [Check("closure", name) for name in graph.newton.names]
         if timed:
             raise DeclarationError(
                 f"table: expected columns that the angle of joint '{joint}' decides, but time itself enters {_listed(timed)}"
@@ -135,8 +136,8 @@ class Drive:
     @property
     def loose(self) -> list[int]:
         """The rows of the angles that are known up to whole turns only."""
-        parts = {part for signs in self.graph.wrapped.values() for part in signs if not part.startswith("_turns:")}
-        return [k for k, name in enumerate(self.graph.columns) if name in parts]
+        parts = {part for signs in self.graph.wrapped.values() for part in signs}
+        return [k for output, k in self.graph.outputs.items() if output in parts]
 
     def terms_at(self, angles: Array, places: Array) -> Array:
         """The terms at angles, as they come, (factors, columns, n).
@@ -173,10 +174,10 @@ class Drive:
         Whole turns that columns count are then in the angles, and the columns are zero.
         """
         own = {self.graph.columns[k]: turn for k, turn in zip(self.loose, turns, strict=True)}
-        whole = [k for k, name in enumerate(self.graph.columns) if name.startswith("_turns:")]
+        whole = list(self.graph.checks("turns").values())
         own |= {self.graph.columns[k]: math.tau * columns[k] for k in whole}
-        for k, name in enumerate(self.graph.columns):
-            for part, sign in self.graph.wrapped.get(name, {}).items():
+        for angle, k in self.graph.outputs.items():
+            for part, sign in self.graph.wrapped.get(angle, {}).items():
                 columns[k] += sign * own[part]
         columns[whole] = 0.0
 
@@ -209,24 +210,23 @@ class Drive:
                 bad = angles[int(np.argmax(~(closure > 0.0)))]
                 raise DeclarationError(f"{name} cannot be closed{self._not_round(bad)}")
         limit = _GAP * self.graph.extent(self.p)
-        for name, gaps in zip(self.graph.columns, values[0], strict=True):
-            if name.startswith("_gap:") and not (np.abs(gaps) <= limit).all():
-                bad = angles[int(np.argmax(~(np.abs(gaps) <= limit)))]
-                what = f"what was found for the loop closed by '{name.partition(':')[2]}' does not close it"
+        for closing, k in self.graph.checks("gap").items():
+            near = np.abs(values[0, k]) <= limit
+            if not near.all():
+                bad = angles[int(np.argmax(~near))]
+                what = f"what was found for the loop closed by '{closing}' does not close it"
                 raise DeclarationError(f"table: {what}{self._not_round(bad)}")
         found = np.argwhere(~np.isfinite(values).all(axis=0))
         if found.size:
             k, i = found[0]
             at = where([(self.joint, "angle", angles[i])])
-            raise DeclarationError(f"table: '{self.graph.columns[k]}' is not finite at rest{at}")
+            raise DeclarationError(f"table: '{self.graph.names[k]}' is not finite at rest{at}")
 
     def _closures(self, columns: Array) -> Iterator[tuple[str, Array]]:
         """The closures among the columns, with the beginning of a message."""
         joints = self.graph.scene.mechanism.joints
-        for name, values in zip(self.graph.columns, columns, strict=True):
-            kind, _, closing = name.partition(":")
-            if kind == "_closure":
-                yield f"table: the loop closed by {'joint' if closing in joints else 'constraint'} '{closing}'", values
+        for closing, k in self.graph.checks("closure").items():
+            yield f"table: the loop closed by {'joint' if closing in joints else 'constraint'} '{closing}'", columns[k]
 
     def _not_round(self, angle: float) -> str:
         return f"{where([(self.joint, 'angle', angle)])}; expected a drive that can turn all the way round"
@@ -269,7 +269,7 @@ def cycle_of(graph: SceneGraph, p: Array, rates: tuple[float, float]) -> Cycle:
             drift = np.where((whole != 0.0) & (np.abs(gain - whole) < _SAME), whole, gain) / turns
             return Cycle(drive, course, turns, drift, _ROUNDING * sizes + 2.0 * noise)
     names = [name for name, does in zip(graph.columns, moved, strict=True) if does]
-    wound = any(name.startswith("_turned:") for name in graph.columns)
+    wound = bool(graph.checks("turned"))
     raise DeclarationError(
         f"table: expected columns that repeat after at most {TURNS} turns of joint '{drive.joint}', but {_listed(names)} go on"
         f"{'; a load that sees an angle with its turns may wind up' if wound else ''}"
@@ -299,27 +299,24 @@ def _refuse_other_powers(drive: Drive, course: Course, sizes: Array, rates: tupl
 
 def _sizes(graph: SceneGraph, peaks: Array) -> Array:
     """The largest terms of the same unit, (factors, columns), of a misfit one; the rate's square and the acceleration have one."""
-    kinds = [_kind(graph, name) for name in graph.columns]
+    kinds = [_kind(graph, column) for column in graph.columns]
     alike = np.stack((peaks[0], peaks[1], *[np.maximum(peaks[2], peaks[3])] * 2))
     largest = {kind: alike[:, [k == kind for k in kinds]].max(axis=-1) for kind in set(kinds)}
     sizes: Array = np.array([largest[kind] for kind in kinds]).reshape(len(kinds), 4).T
-    sizes[0, [name.startswith(("_gap:", "_misfit:")) for name in graph.columns]] = 1.0
+    sizes[0, [*graph.checks("gap").values(), *graph.checks("misfit").values()]] = 1.0
     return sizes
 
 
-def _kind(graph: SceneGraph, column: str) -> str:
-    """What columns are compared by: their unit, or, where that says nothing, their name."""
-    group = column.partition(":")[0]
-    if group == "_turns":
-        return ANGLE
-    if group.startswith("_"):
-        return column
-    unit = unit_in(graph.scene.mechanism.joints, column)
+def _kind(graph: SceneGraph, column: Column) -> str | Column:
+    """What columns are compared by: their unit, or, where that says nothing, themselves."""
+    if isinstance(column, Check):
+        return ANGLE if column.kind == "turns" else column
+    unit = column.unit(graph.scene.mechanism.joints)
     return column if unit == "1" else unit
 
 
-def _listed(columns: Collection[str]) -> str:
+def _listed(columns: Collection[Column]) -> str:
     """Some columns for a reader, outputs before what is none."""
-    ordered = sorted(columns, key=lambda name: name.startswith("_"))
+    ordered = sorted(columns, key=lambda column: isinstance(column, Check))
     more = f" and {len(ordered) - _NAMED} more" if len(ordered) > _NAMED else ""
     return ", ".join(f"'{name}'" for name in ordered[:_NAMED]) + more

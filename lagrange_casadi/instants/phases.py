@@ -14,14 +14,15 @@ import numpy as np
 from ..arithmetic.interpret import followable, interpret, numpy_arithmetic
 from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
+from ..quantities import Output
 
 _TURN = np.longdouble("6.283185307179586476925286766559005768")
 
 
-def phases(graph: SceneGraph, out: Array, t: Array, p: Array) -> dict[str, Array]:
-    """By full name: the angles of drives from their laws of motion, and of loops from the columns ``out`` (columns, t)."""
+def phases(graph: SceneGraph, out: Array, t: Array, p: Array) -> dict[Output, Array]:
+    """The angles of drives from their laws of motion, and of loops from the columns ``out`` (columns, t)."""
     laws, joints = graph.laws, graph.scene.mechanism.joints
-    rows = {name: out[k] for k, name in enumerate(graph.columns) if name in graph.wrapped}
+    rows = {angle: out[graph.outputs[angle]] for angle in graph.wrapped}
     driven = [np.longdouble(row) for row in np.atleast_2d(graph.motion(t[None], p)[0].full())]
     if followable(laws.smooth):
         known = numpy_arithmetic()
@@ -30,7 +31,7 @@ def phases(graph: SceneGraph, out: Array, t: Array, p: Array) -> dict[str, Array
         smooth = interpret(laws.smooth, [[np.longdouble(t)], [np.longdouble(x) for x in p]], exact)[0]
         driven = [smooth[k] if k < len(smooth) else driven[i] for i, k in enumerate(laws.order)]
     for name, angle in zip(graph.driven, driven, strict=True):
-        if joints[name].coordinate == "angle" and f"motion:{name}" in graph.columns:
+        if joints[name].coordinate == "angle" and Output("motion", name) in graph.outputs:
             whole = np.broadcast_to(np.asarray(angle - _TURN * np.rint(angle / _TURN), float), t.shape)
-            rows[f"motion:{name}"] = np.asarray(whole)
-    return {name: np.array(row, float) for name, row in rows.items()}
+            rows[Output("motion", name)] = np.asarray(whole)
+    return {angle: np.array(row, float) for angle, row in rows.items()}

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..codegen.emit import NOT_FINITE, OK
 from ..declare.density import Array
+from ..equations.checks import Check
 from ..equations.scene_graph import SceneGraph
 from ..system.room import cores
 from .backends import Table, empty_table, run
@@ -91,8 +92,8 @@ def drive_of(graph: SceneGraph) -> SceneGraph:
     out = ca.densify(ca.vertcat(d, rate, acceleration, *within))
     names = [graph.instant.name_in(i) for i in range(graph.instant.n_in())]
     instant = ca.Function("instant", [t, d, rate, acceleration, ca.SX(0, 1), p], [out], names, ["out"], {"cse": True})
-    columns = ("angle", "rate", "acceleration", *(f"within:{turns}" for turns in range(1, TURNS + 1)))
-    return replace(graph, instant=instant, newton=None, columns=columns, wrapped={})
+    columns = ("angle", "rate", "acceleration", *(f"within_{turns}" for turns in range(1, TURNS + 1)))
+    return replace(graph, instant=instant, newton=None, columns=tuple(Check("drive", name) for name in columns), wrapped={})
 
 
 def _above(values: Array) -> float:

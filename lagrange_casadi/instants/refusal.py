@@ -14,6 +14,7 @@ from ..arithmetic.compensated import DTYPES, ROUNDING, Precision
 from ..codegen.designs import INSIDE, ROUNDS
 from ..codegen.emit import NEWTON_LOST, NOT_CONVERGED, NOT_FINITE, OK, SLOW
 from ..declare.density import Array
+from ..equations.checks import Check
 from ..equations.kinematics import passes_dead_centre, where
 from ..equations.scene_graph import SceneGraph
 from ..equations.turns import LEAP, REACH
@@ -95,18 +96,17 @@ def refusal(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> 
     bad, misfit = table.status != OK, MISFIT[precision]
     widest = gap_limit(precision, rung.newton) * graph.extent(p)
     passed: dict[str, npt.NDArray[np.bool_]] = {}
-    for k, name in enumerate(graph.columns):
-        if name.startswith("_closure:"):
-            bad |= ~(table.out[k] > dead_centre(graph, precision, name))
-            passed[name] = passes_dead_centre(table.out[k], ends=graph.newton is None)
-        elif name.startswith("_gap:"):
-            bad |= ~(np.abs(table.out[k].astype(float)) <= widest)
-        elif name.startswith("_turned:"):
-            bad |= _turned(table.out[k])
-        elif name.startswith("_misfit:"):
-            bad |= ~(table.out[k] <= misfit)
-        elif name.startswith("_row:"):
-            bad |= ~(np.abs(table.out[k]) <= misfit * _largest_row(graph, table, name))
+    for name, k in graph.checks("closure").items():
+        bad |= ~(table.out[k] > dead_centre(graph, precision, name))
+        passed[name] = passes_dead_centre(table.out[k], ends=graph.newton is None)
+    for k in graph.checks("gap").values():
+        bad |= ~(np.abs(table.out[k].astype(float)) <= widest)
+    for k in graph.checks("turned").values():
+        bad |= _turned(table.out[k])
+    for k in graph.checks("misfit").values():
+        bad |= ~(table.out[k] <= misfit)
+    for name, k in graph.checks("row").items():
+        bad |= ~(np.abs(table.out[k]) <= misfit * _largest_row(graph, table, name))
     for name, found in passed.items():
         if graph.newton is None and found.any():
             after = np.flatnonzero(found)
@@ -131,12 +131,12 @@ def _turned(swing: Array) -> npt.NDArray[np.bool_]:
 def dead_centre(graph: SceneGraph, precision: Precision, closure: str) -> float:
     """Below what a closure says nothing: of a closed form it is the square of a sine, of an iterated loop as the sine itself."""
     square = _DEAD * ROUNDING[precision]
-    return math.sqrt(square) if graph.iterates(closure.partition(":")[2]) else square
+    return math.sqrt(square) if graph.iterates(closure) else square
 
 
 def _largest_row(graph: SceneGraph, table: Table, row: str) -> float:
     """The largest size of a row over the instants: where all stands still, what rounding leaves of rates violates nothing."""
-    sizes = table.out[graph.columns.index(row.replace("_row:", "_rowsize:"))]
+    sizes = table.out[graph.checks("rowsize")[row]]
     return float(np.fmax.reduce(sizes, initial=0.0))
 
 
@@ -151,7 +151,7 @@ def _dead_between(graph: SceneGraph, name: str, start: Array, stop: Array, p: Ar
     for _ in range(ROUNDS):
         inside = np.linspace(start, stop, INSIDE)
         table, _ = run(graph, inside.ravel(), p, Rung(rung.backend, rung.precision, flags=rung.flags))
-        closure = table.out[graph.columns.index(name)].reshape(inside.shape)
+        closure = table.out[graph.checks("closure")[name]].reshape(inside.shape)
         place = np.argmin(closure, axis=0)[None]
         lowest = np.fmin(lowest, np.take_along_axis(closure, place, 0)[0])
         start, stop = (np.take_along_axis(inside, np.clip(place + k, 0, INSIDE - 1), 0)[0] for k in (-1, 1))
@@ -179,30 +179,32 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]
     precision = table.stages.precision
     values = dict(zip(graph.columns, table.out[:, i], strict=True))
     misfit = MISFIT[precision]
-    for name, value in values.items():
-        kind, _, joint = name.partition(":")
-        limit = dead_centre(graph, precision, name)
+    for column, value in values.items():
+        if not isinstance(column, Check):
+            continue
+        kind, joint = column.kind, str(column.part)
+        limit = dead_centre(graph, precision, joint)
         closed = f"{'joint' if joint in graph.scene.mechanism.joints else 'constraint'} '{joint}'"
-        if kind == "_closure" and value < -limit:
+        if kind == "closure" and value < -limit:
             if graph.newton is not None and f"'{joint}'" in graph.newton.joints:
                 return Status.JUMPED, f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
             return Status.OUT_OF_REACH, f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
-        if kind == "_closure" and not value > limit:
+        if kind == "closure" and not value > limit:
             why = f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces are not determined there"
             return Status.DEAD_CENTRE, why
-        if name in passed:
+        if kind == "closure" and joint in passed:
             near = "; if it only comes near one, take more instants" if graph.newton is not None else ""
             passing = f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}"
             return Status.PASSES_DEAD_CENTRE, f"{passing}, and how it goes on is open{near}"
-        if kind in ("_gap", "_misfit") and table.status[i] == SLOW:
+        if kind in ("gap", "misfit") and table.status[i] == SLOW:
             break
-        if kind == "_gap" and abs(value) > widest:
+        if kind == "gap" and abs(value) > widest:
             gap = f"a gap of {abs(value):.3g} m"
             return Status.NOT_CLOSED, f"what was found for the loop closed by {closed} does not close it {at}: {gap}"
-        if kind == "_misfit" and value > misfit:
+        if kind == "misfit" and value > misfit:
             gap = f"a gap of {value:.3g} of the links' length"
             return Status.MISFIT, f"the loops closed by {closed} are over-constrained and do not fit {at}: {gap}"
-        if kind == "_turned" and _turned(table.out[graph.columns.index(name), i : i + 2])[0]:
+        if kind == "turned" and _turned(table.out[graph.columns.index(column), i : i + 2])[0]:
             what = f"the angle of '{joint}', which a load sees with its turns,"
             if abs(value) <= REACH:
                 return Status.TURNED, f"{what} goes most of a turn from the instant {at} to the next: take more instants"
@@ -211,11 +213,11 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]
                 Status.TURNED,
                 f"{what} {swing}: it might be a turn further; take defaults and a motion that show how far it goes",
             )
-        if kind == "_row" and not abs(value) <= misfit * _largest_row(graph, table, name):
+        if kind == "row" and not abs(value) <= misfit * _largest_row(graph, table, joint):
             return Status.ROW_VIOLATED, f"the motion violates the non-holonomic row '{joint}' by {value:.6g} {at}"
     if table.status[i] == SLOW:
         assert graph.newton is not None
         cause = "they are near a dead centre, or the instant before is too far off"
         return Status.SLOW, f"the loops closed by {graph.newton.joints} converge slowly {at}: {cause}"
-    name = next(name for name, value in values.items() if not math.isfinite(value))
+    name = next(column for column, value in values.items() if not math.isfinite(value))
     return Status.NOT_FINITE, f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"

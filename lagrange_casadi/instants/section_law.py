@@ -14,10 +14,10 @@ from typing import Any, Literal
 import numpy as np
 
 from ..declare.density import Array, NumericDensity
+from ..quantities import FORCES, PLACE_FIRST, Output
 from ..system.room import cores, require
 from . import grids
 
-FORCES = ("axial", "shear", "bending")
 MEMBERS = {
     "axial": (("n0", "n1", "n2"), ("n",)),
     "shear": (("f0", "f1", "f2"), ("f",)),
@@ -113,14 +113,13 @@ class SectionLaw:
             values = values + self._beyond(force, load, u, _seen(u, station, side))
         return values
 
-    def of(self, link: str, columns: Mapping[str, Array]) -> SectionLaw:
-        """The law of the same link with other numbers in it, (..., t), of columns by full name."""
-
-        def of_part(part: str, members: Iterable[str]) -> list[Array]:
-            return [columns[f"section:{link}:{part}:{member}"] for member in members]
-
-        coefficients = dict(zip(self.coefficients, of_part("law", self.coefficients), strict=True))
-        loads = tuple(StationLoad(load.name, *of_part(load.name, ("station", "n", "f", "m"))) for load in self.loads)
+    def of(self, link: str, outputs: Mapping[Output, Array]) -> SectionLaw:
+        """The law of the same link with other numbers in it, (..., t)."""
+        coefficients = {name: outputs[Output("law", link, name)] for name in self.coefficients}
+        loads = tuple(
+            StationLoad(load.name, *(outputs[Output("station", link, member, load.name)] for member in PLACE_FIRST))
+            for load in self.loads
+        )
         return replace(self, coefficients=coefficients, loads=loads)
 
     def changed(self, changes: SectionLaw, xi: Array) -> dict[str, tuple[Array, Array]]:
@@ -274,11 +273,11 @@ class SectionLaw:
         return [np.where(rises, zeros[0], zeros[1]), np.where(rises, zeros[1], zeros[0])]
 
 
-def made_of(columns: Iterable[str], link: str, force: str) -> list[str]:
-    """The columns of a link, among others by full name, that a force is made of; without the places of stations."""
+def made_of(outputs: Iterable[Output], link: str, force: str) -> list[Output]:
+    """The outputs, among others, that a force of a link is made of; without the places of stations."""
     coefficients, members = MEMBERS[force]
-    found = (name.split(":") for name in columns if name.startswith(f"section:{link}:"))
-    return [":".join(name) for name in found if name[-1] in (coefficients if name[2] == "law" else members)]
+    own = (output for output in outputs if output.along and output.part == link)
+    return [output for output in own if output.member in (members if output.station else coefficients)]
 
 
 def _seen(u: Array, station: Array, side: Side) -> Any:

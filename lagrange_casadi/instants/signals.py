@@ -13,8 +13,8 @@ import numpy.typing as npt
 from ..codegen.emit import NOT_CONVERGED
 from ..codegen.stages import Stages
 from ..declare.density import Array, NumericDensity
-from ..equations.mobility import LAW
 from ..equations.scene_graph import SceneGraph
+from ..quantities import LAW
 from ..summits.between import Flags
 from ..summits.panels import Samples
 from ..summits.search import Curves, Peaks, peaks

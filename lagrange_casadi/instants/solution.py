@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -14,9 +15,9 @@ from ..declare.description import Description, density_of
 from ..declare.limits import no_sections
 from ..declare.notes import notes
 from ..errors import DeclarationError, LagrangeCasadiError, UnknownNameError
-from ..quantities import QUANTITIES, quantity_of
+from ..quantities import FORCES, QUANTITIES, Output
 from ..system.room import require
-from .section_law import FORCES, Basis, SectionLaw, StationLoad, made_of
+from .section_law import Basis, SectionLaw, StationLoad, made_of
 
 if TYPE_CHECKING:
     import xarray
@@ -110,42 +111,53 @@ class Section:
         return self.law.basis(self.xi)
 
 
-def in_order(series: Mapping[str, Array], description: Description) -> dict[str, Array]:
-    """Series in the order in which a solution keeps them: by kind, then by part as declared, then as in the table."""
+def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[Output, Array]:
+    """Outputs in the order in which a solution keeps them: by kind, then by part as declared, then as in the table.
+
+    Raises ``ValueError`` for one of a part that is not declared.
+    """
     groups = list(dict.fromkeys(q.group for q in QUANTITIES))
+    sections = groups.index("section")
     parts = [part for table in ("bodies", "joints", "constraints", "rows", "loads") for part in description[table]]
 
-    def rank(name: str) -> tuple[int, int, str, int]:
-        group, part, *rest = name.split(":")
-        part = part.removesuffix("_rate").removesuffix("_acceleration") if group == "motion" else part
-        station = rest[0] if group == "section" and rest[0] != "law" else ""
-        return groups.index(group), parts.index(part), station, QUANTITIES.index(quantity_of(name))
+    def rank(output: Output) -> tuple[int, int, str, int]:
+        group = sections if output.along else groups.index(output.group)
+        return group, parts.index(output.part), output.station, QUANTITIES.index(output.quantity)
 
-    return {name: series[name] for name in sorted(series, key=rank)}
+    return {output: outputs[output] for output in sorted(outputs, key=rank)}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution:
     """The outputs of a scene over its instants.
 
-    ``series`` holds every array over time by full name (``effort:O``, ``reaction:guide:fy``, ``section:link:law:n0``, ...), each of
-    shape (t,); :mod:`.quantities` says what each means. ``xi`` are the ratios of the section grids. ``undetermined`` names what
-    equilibrium does not determine, because the mechanism is over-constrained: its values are NaN. ``certificate`` holds the
-    residuals of :mod:`.certificate`, and how singular the loops are; a residual above ``tolerance`` means that the solution is
-    wrong, not that it is rounded. ``errors`` estimates by :mod:`.accuracy` how far each quantity may be off, over all
-    instants, in its unit.
+    ``outputs`` holds every array over time, each of shape (t,); :mod:`.quantities` says what each means. ``xi`` are the ratios of
+    the section grids. ``left_open`` are outputs that equilibrium does not determine, because the mechanism is over-constrained:
+    their values are NaN. :attr:`series` and :attr:`undetermined` are the same by full names. ``certificate`` holds the residuals of
+    :mod:`.certificate`, and how singular the loops are; a residual above ``tolerance`` means that the solution is wrong, not that
+    it is rounded. ``errors`` estimates by :mod:`.accuracy` how far each quantity may be off, over all instants, in its unit.
     """
 
     case: str
     t: Array
     xi: Array
-    series: Mapping[str, Array]
+    outputs: Mapping[Output, Array]
     description: Description
     provenance: Provenance
-    undetermined: tuple[str, ...] = ()
+    left_open: tuple[Output, ...] = ()
     certificate: Mapping[str, Array] = field(default_factory=dict)
     errors: Mapping[str, float] = field(default_factory=dict)
     tolerance: float = 0.0
+
+    @cached_property
+    def series(self) -> Mapping[str, Array]:
+        """Every array over time, (t,), by full name: ``effort:O``, ``reaction:guide:fy``, ``section:link:law:n0``."""
+        return {str(output): values for output, values in self.outputs.items()}
+
+    @property
+    def undetermined(self) -> tuple[str, ...]:
+        """The full names of what equilibrium does not determine."""
+        return tuple(map(str, self.left_open))
 
     @property
     def failed(self) -> dict[str, float]:
@@ -165,21 +177,22 @@ class Solution:
 
     def effort(self, joint: str) -> Array:
         """Effort of the drive at a joint (t,) [N m or N], positive along the joint's coordinate."""
-        return self._find("effort", "drive", joint, "")
+        return self._find("drive", Output("effort", joint))
 
     def reaction(self, joint: str) -> Reaction:
         """Reaction of a joint."""
-        fx, fy = (self._find("reaction", "joint with a reaction", joint, f":{member}") for member in ("fx", "fy"))
-        return Reaction(fx, fy, self.series.get(f"reaction:{joint}:mz"))
+        fx, fy = (self._find("joint with a reaction", Output("reaction", joint, member)) for member in ("fx", "fy"))
+        return Reaction(fx, fy, self.outputs.get(Output("reaction", joint, "mz")))
 
     def motion(self, joint: str) -> JointMotion:
         """Motion of a joint's coordinate."""
-        return JointMotion(*(self._find("motion", "joint with a motion", joint, end) for end in ("", "_rate", "_acceleration")))
+        members = ("", "rate", "acceleration")
+        return JointMotion(*(self._find("joint with a motion", Output("motion", joint, member)) for member in members))
 
     def pose(self, body: str) -> Pose:
         """Place and direction of a link or point mass."""
-        x, y = (self._find("pose", "body with a pose", body, f":{member}") for member in ("x", "y"))
-        return Pose(x, y, self.series.get(f"pose:{body}:angle"))
+        x, y = (self._find("body with a pose", Output("pose", body, member)) for member in ("x", "y"))
+        return Pose(x, y, self.outputs.get(Output("pose", body, "angle")))
 
     def section(self, link: str) -> Section:
         """Forces inside a link."""
@@ -201,58 +214,62 @@ class Solution:
     @property
     def notes(self) -> tuple[str, ...]:
         """What is worth a word though all is right: points that slide beyond the end of a link."""
-        return tuple(notes(self.t, self.series, self.description))
+        return tuple(notes(self.t, self.outputs, self.description))
 
     def during(self, instants: slice) -> Solution:
         """The same at some of the instants."""
-        series = {name: values[instants] for name, values in self.series.items()}
+        outputs = {output: values[instants] for output, values in self.outputs.items()}
         certificate = {name: values[instants] for name, values in self.certificate.items()}
-        return replace(self, t=self.t[instants], series=series, certificate=certificate)
+        return replace(self, t=self.t[instants], outputs=outputs, certificate=certificate)
 
-    def determined(self, name: str) -> bool:
+    def determined(self, name: str | Output) -> bool:
         """Whether equilibrium determines a quantity, at all instants."""
-        group, part, *rest = name.split(":")
-        if group == "section" and len(rest) == 1:
-            return not made_of(self.undetermined, part, rest[0])
-        return name not in self.undetermined
+        output = self._output(name)
+        if output.group == "section":
+            return not made_of(self.left_open, output.part, output.member)
+        return output not in self.left_open
+
+    def quantities(self) -> Iterator[Output]:
+        """All quantities, the coefficients of the laws left out and the section forces in their place."""
+        yield from (output for output in self.outputs if not output.along)
+        yield from (Output("section", link, force) for link in self._sections for force in FORCES)
 
     def names(self) -> Iterator[str]:
-        """The full names of all quantities, the coefficients of the laws left out and the section forces in their place."""
-        yield from (name for name in self.series if not name.startswith("section:"))
-        yield from (f"section:{link}:{force}" for link in self._sections for force in FORCES)
+        """The full names of all quantities."""
+        return map(str, self.quantities())
 
-    def unit(self, name: str) -> str:
+    def unit(self, name: str | Output) -> str:
         """The unit of a quantity by its full name."""
-        if name not in self.series and not name.startswith("certificate:"):
-            self._of_section(name)
-        joint = name.split(":")[1].removesuffix("_rate").removesuffix("_acceleration")
-        kind = self.description["joints"].get(joint, {}).get("coordinate") or "angle"
-        return quantity_of(name).unit_for(kind)
+        output = self._output(name)
+        if output not in self.outputs and output.group != "certificate":
+            self._of_section(output)
+        kind = self.description["joints"].get(output.part, {}).get("coordinate") or "angle"
+        return output.quantity.unit_for(kind if output.group in ("motion", "effort") else "angle")
 
-    def array(self, name: str) -> Array:
+    def array(self, name: str | Output) -> Array:
         """A quantity by its full name: (t,), or (t, xi) for ``section:LINK:FORCE``."""
-        if name in self.series:
-            return self.series[name]
-        link, force = self._of_section(name)
-        grid: Array = getattr(self._sections[link], force)
+        output = self._output(name)
+        if output in self.outputs:
+            return self.outputs[output]
+        grid: Array = getattr(self._of_section(output), output.member)
         return grid
 
-    def extremes(self, name: str) -> tuple[Array, Array | None]:
+    def extremes(self, name: str | Output) -> tuple[Array, Array | None]:
         """A quantity at every instant, (t,); of a section force the value largest in size along the link, and its ratio xi/l."""
-        if name in self.series:
-            return self.series[name], None
-        link, force = self._of_section(name)
-        places, values = self._sections[link].law.extreme(force)
+        output = self._output(name)
+        if output in self.outputs:
+            return self.outputs[output], None
+        places, values = self._of_section(output).law.extreme(output.member)
         return values, places
 
-    def peak(self, name: str) -> Peak:
+    def peak(self, name: str | Output) -> Peak:
         """The value of a quantity that is largest in size, over the instants; along a link exactly, whatever the grid of xi.
 
         Between the instants it may be larger: :func:`.refine` gives the largest over all times.
         """
         values, places = self.extremes(name)
         i = int(np.argmax(np.abs(values)))
-        return Peak(name, float(values[i]), self.unit(name), float(self.t[i]), None if places is None else float(places[i]))
+        return Peak(str(name), float(values[i]), self.unit(name), float(self.t[i]), None if places is None else float(places[i]))
 
     def to_xarray(self) -> xarray.Dataset:
         """All quantities as an ``xarray.Dataset`` over t and xi, with units. Raises where xarray is not installed."""
@@ -261,8 +278,7 @@ class Solution:
         except ImportError:
             raise LagrangeCasadiError("to_xarray needs xarray; install it with: pip install xarray") from None
         data = {
-            name: (quantity_of(name).axes, self.array(name), {"units": self.unit(name)} | quantity_of(name).attributes)
-            for name in self.names()
+            str(q): (q.quantity.axes, self.array(q), {"units": self.unit(q)} | q.quantity.attributes) for q in self.quantities()
         }
         coordinates = {"t": ("t", self.t, {"units": "s"}), "xi": ("xi", self.xi, {"units": "1", "long_name": "ratio xi/l"})}
         return xarray.Dataset(data, coordinates, {"case": self.case})
@@ -271,13 +287,11 @@ class Solution:
     def _sections(self) -> dict[str, Section]:
         laws: dict[str, dict[str, Array]] = {}
         stations: dict[str, dict[str, dict[str, Array]]] = {}
-        for name, values in self.series.items():
-            if name.startswith("section:"):
-                _, link, part, member = name.split(":")
-                if part == "law":
-                    laws.setdefault(link, {})[member] = values
-                else:
-                    stations.setdefault(link, {}).setdefault(part, {})[member] = values
+        for output, values in self.outputs.items():
+            if output.group == "law":
+                laws.setdefault(output.part, {})[output.member] = values
+            elif output.group == "station":
+                stations.setdefault(output.part, {}).setdefault(output.station, {})[output.member] = values
         return {link: self._section(link, law, stations.get(link, {})) for link, law in laws.items()}
 
     def _section(self, link: str, law: Mapping[str, Array], stations: Mapping[str, Mapping[str, Array]]) -> Section:
@@ -285,24 +299,24 @@ class Solution:
         loads = tuple(StationLoad(name, **members) for name, members in stations.items())
         return Section(SectionLaw(body["length"], density_of(body), law, loads), self.xi)
 
-    def _of_section(self, name: str) -> tuple[str, str]:
-        """The link and the force of a section force's full name."""
-        group, _, rest = name.partition(":")
-        link, _, force = rest.partition(":")
-        if group != "section" or force not in FORCES:
-            raise UnknownNameError("quantity", name, self.names())
-        self.section(link)
-        return link, force
+    def _output(self, name: str | Output) -> Output:
+        with suppress(KeyError):
+            output = Output.of(name)
+            if output.quantity:
+                return output
+        raise UnknownNameError("quantity", str(name), self.names())
+
+    def _of_section(self, output: Output) -> Section:
+        """The section that a section force is of."""
+        if output.group != "section":
+            raise UnknownNameError("quantity", str(output), self.names())
+        return self.section(output.part)
 
     def multiplier(self, name: str) -> Array:
         """Multiplier of a constraint or a non-holonomic row (t,)."""
-        return self._find("multiplier", "constraint or row with a multiplier", name, "")
+        return self._find("constraint or row with a multiplier", Output("multiplier", name))
 
-    def _find(self, group: str, kind: str, part: str, member: str) -> Array:
-        name = f"{group}:{part}{member}"
-        if name not in self.series:
-            parts = dict.fromkeys(
-                n.split(":")[1] for n in self.series if n.startswith(f"{group}:") and not n.endswith(("_rate", "_acceleration"))
-            )
-            raise UnknownNameError(kind, part, parts)
-        return self.series[name]
+    def _find(self, kind: str, output: Output) -> Array:
+        if output not in self.outputs:
+            raise UnknownNameError(kind, output.part, dict.fromkeys(o.part for o in self.outputs if o.group == output.group))
+        return self.outputs[output]

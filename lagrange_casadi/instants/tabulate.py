@@ -71,7 +71,7 @@ def tabulate(graph: SceneGraph, p: Array, table: int | float, rates: tuple[float
 
 def _table(cycle: Cycle, values: Array, between: Array, kept: npt.NDArray[np.bool_], rates: tuple[float, float]) -> CycleTable:
     """The table through values at the nodes, and its errors by those between them, (factors, columns, nodes)."""
-    columns = cycle.drive.graph.columns
+    graph = cycle.drive.graph
     rate, acceleration = rates
     places = arranged(kept).terms
     coefficients = splines(np.array([values[place] for place in places]).reshape(len(places), values.shape[-1]))
@@ -80,13 +80,13 @@ def _table(cycle: Cycle, values: Array, between: Array, kept: npt.NDArray[np.boo
         gaps[place] -= np.convolve(spline, _HALFWAY, "valid")
     peaks = np.max([_reach(part, rate, acceleration).max(axis=-1) for part in (values, between)], axis=0)
     peaks += np.abs(cycle.drift) * cycle.period
-    peaks[[name.startswith(("_gap:", "_misfit:")) for name in columns]] = 1.0
+    peaks[[*graph.checks("gap").values(), *graph.checks("misfit").values()]] = 1.0
     # The rate's square and the acceleration have one unit: where there is but one, the other still rounds.
     turning = max(rate**2, acceleration)
     rounding = np.array([1.0, math.sqrt(turning), turning, turning]) @ cycle.rounding
     beyond = np.maximum(_reach(gaps, rate, acceleration).max(axis=-1) - rounding, _EPSILON * peaks)
     errors = np.divide(beyond, peaks, out=np.zeros_like(beyond), where=peaks > 0.0)
-    return CycleTable(cycle.turns, columns, kept, coefficients, cycle.drift, rates, peaks, errors)
+    return CycleTable(cycle.turns, graph.names, kept, coefficients, cycle.drift, rates, peaks, errors)
 
 
 def _reach(terms: Array, rate: float, acceleration: float) -> Array:

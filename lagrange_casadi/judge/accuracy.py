@@ -19,22 +19,22 @@ from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import Table
 from ..instants.cycle_table import CycleTable
-from ..instants.section_law import FORCES
 from ..instants.solution import Solution
+from ..quantities import FORCES, Output
 from .certificate import blur
 from .disturbed import Instants, effects, openness
 
 INSTANTS = 48
 _MANY, _FIRST, _WORST = 2000, 10, 30
 _CLOSED = 10.0
-_FORCES = ("effort:", "reaction:", "multiplier:", "section:")
+_FORCES = ("effort", "reaction", "multiplier", "section", "law", "station")
 _UNEXPLAINED = 100.0
 _SUMS = 64.0
 _ALONG = np.linspace(0.0, 1.0, 5)
 
 
-def estimate(graph: SceneGraph, table: Table, solution: Solution, p: Array) -> dict[str, float]:
-    """How far each quantity of a solution may be off, by full name, in its unit: the largest error over the instants.
+def estimate(graph: SceneGraph, table: Table, solution: Solution, p: Array) -> dict[Output, float]:
+    """How far each quantity of a solution may be off, in its unit: the largest error over the instants.
 
     ``table`` are the columns that the solution was made of. Section forces are looked at from base to tip, either side of a station
     by itself, and so is either side of a jump. Empty where the graphs call functions that cannot be followed.
@@ -44,67 +44,64 @@ def estimate(graph: SceneGraph, table: Table, solution: Solution, p: Array) -> d
     instants = Instants(table.stages, solution.t, p, np.asarray(table.iterated, float))
     if not instants.followable:
         return {}
-    found, angles = [], np.array([name in graph.wrapped for name in graph.columns])
+    found, angles = [], np.array([column in graph.wrapped for column in graph.columns])
     for some in instants.blocks(np.union1d(_chosen(graph, table), _open(instants))):
         found.append(_worst(graph, solution, *effects(instants.at(some), np.asarray(table.out[:, some], float), angles)))
-    largest = {name: max(errors[name] for errors in found) for name in found[0]}
+    largest = {output: max(errors[output] for errors in found) for output in found[0]}
     # What was exact at all these instants may be rounded once at others; and what underflows is in no trial.
     once, least = ROUNDING[table.stages.precision], float(np.finfo(DTYPES[table.stages.precision]).tiny)
-    return {name: max(least, error or once * abs(solution.peak(name).value)) for name, error in largest.items()}
+    return {output: max(least, error or once * abs(solution.peak(output).value)) for output, error in largest.items()}
 
 
-def _worst(graph: SceneGraph, solution: Solution, changes: Array, columns: Array) -> dict[str, float]:
+def _worst(graph: SceneGraph, solution: Solution, changes: Array, columns: Array) -> dict[Output, float]:
     """The largest changes, (columns, trials, n), of columns (columns, n) by the quantities of a solution.
 
     A trial that came to nothing, as a root of less than zero does, says nothing.
     """
-    change, at = (dict(zip(graph.columns, rows, strict=True)) for rows in (changes, columns))
-    names = [name for name in graph.columns if not name.startswith("_")]
-    errors = {name: _largest(change[name]) for name in names}
+    change, at = ({output: rows[k] for output, k in graph.outputs.items()} for rows in (changes, columns))
+    errors = {output: _largest(values) for output, values in change.items()}
     for link in solution.links_with_sections:
         law = solution.section(link).law
         for force, (gaps, sizes) in law.of(link, at).changed(law.of(link, change), _ALONG).items():
             # A force is itself a sum that is rounded, in doubles always.
-            errors[f"section:{link}:{force}"] = max(_largest(gaps), ROUNDING["double"] * _largest(sizes))
-    return {name: error for name, error in errors.items() if solution.determined(name)}
+            errors[Output("section", link, force)] = max(_largest(gaps), ROUNDING["double"] * _largest(sizes))
+    return {output: error for output, error in errors.items() if solution.determined(output)}
 
 
 def _largest(values: Array) -> float:
     return float(np.fmax.reduce(np.abs(values), axis=None, initial=0.0))
 
 
-def explained(solution: Solution, residuals: Mapping[str, Array], errors: Mapping[str, float]) -> dict[str, float]:
+def explained(solution: Solution, residuals: Mapping[str, Array], errors: Mapping[Output, float]) -> dict[Output, float]:
     """The estimates, made larger where the certificate's residuals are far above what they explain.
 
     Such a residual is then taken for the relative error of every force: not rounding is at work, but something is wrong.
     """
     worst = max((float(np.max(values)) for values in residuals.values()), default=0.0)
-    largest = {name: float(np.max(np.abs(values), initial=0.0)) for name, values in solution.series.items()}
-    relative = [errors[n] / largest[n] for n in errors if n.startswith(_FORCES) and largest.get(n, 0.0) > errors[n]]
+    largest = {output: float(np.max(np.abs(values), initial=0.0)) for output, values in solution.outputs.items()}
+    relative = [error / largest[o] for o, error in errors.items() if o.group in _FORCES and largest.get(o, 0.0) > error]
     if not errors or worst <= _UNEXPLAINED * max([*relative, blur(solution)]):
         return dict(errors)
-    forces = [name for name in solution.names() if name.startswith(_FORCES) and solution.determined(name)]
-    return dict(errors) | {name: max(errors[name], worst * abs(solution.peak(name).value)) for name in forces}
+    forces = [output for output in solution.quantities() if output.group in _FORCES and solution.determined(output)]
+    return dict(errors) | {output: max(errors[output], worst * abs(solution.peak(output).value)) for output in forces}
 
 
-def _of_cycle(graph: SceneGraph, cycle: CycleTable, solution: Solution) -> dict[str, float]:
+def _of_cycle(graph: SceneGraph, cycle: CycleTable, solution: Solution) -> dict[Output, float]:
     """What the splines of a table were found to miss, and the rounding of their sums; of a section force, all parts' together."""
     # A table of singles was itself looked at for what it rounds, over its period; angles go on counting.
     rounding = _SUMS * ROUNDING["double"] if cycle.dtype.itemsize == 8 else 2 * ROUNDING["single"]
-    names = [name for name in graph.columns if not name.startswith("_")]
-    missed = dict(zip(cycle.columns, cycle.errors * cycle.peaks, strict=True))
-    peaks = dict(zip(cycle.columns, cycle.peaks, strict=True))
+    missed = cycle.errors * cycle.peaks
     largest: dict[str, float] = {}
-    for name in names:
-        reached = max(float(peaks[name]), float(np.max(np.abs(solution.series[name]), initial=0.0)))
-        largest[solution.unit(name)] = max(largest.get(solution.unit(name), 0.0), reached)
-    errors = {name: float(missed[name]) + rounding * largest[solution.unit(name)] for name in names}
-    nothing = {name: np.zeros(1) for name in solution.undetermined}
-    bounds = replace(solution, series=nothing | {name: np.array([error]) for name, error in errors.items()})
+    for output, k in graph.outputs.items():
+        reached = max(float(cycle.peaks[k]), float(np.max(np.abs(solution.outputs[output]), initial=0.0)))
+        largest[solution.unit(output)] = max(largest.get(solution.unit(output), 0.0), reached)
+    errors = {output: float(missed[k]) + rounding * largest[solution.unit(output)] for output, k in graph.outputs.items()}
+    nothing = {output: np.zeros(1) for output in solution.left_open}
+    bounds = replace(solution, outputs=nothing | {output: np.array([error]) for output, error in errors.items()})
     for link in bounds.links_with_sections:
         law = bounds.section(link).law
-        determined = (force for force in FORCES if solution.determined(f"section:{link}:{force}"))
-        errors |= {f"section:{link}:{force}": law.bound(force, _ALONG) for force in determined}
+        forces = (Output("section", link, force) for force in FORCES)
+        errors |= {output: law.bound(output.member, _ALONG) for output in forces if solution.determined(output)}
     return errors
 
 
@@ -112,8 +109,8 @@ def _chosen(graph: SceneGraph, table: Table) -> Array:
     """Instants to look at: evenly spread ones, those at which a loop is nearest to a dead centre, and where outputs peak."""
     n = table.status.size
     spread = np.linspace(0, n - 1, min(n, INSTANTS)).astype(int)
-    rows = [row if name.startswith("_closure:") else -np.abs(row) for name, row in zip(graph.columns, table.out, strict=True)]
-    peaks = [int(np.argmin(row)) for row in rows]
+    closures = graph.checks("closure").values()
+    peaks = [int(np.argmin(row if k in closures else -np.abs(row))) for k, row in enumerate(table.out)]
     return np.unique([*spread, *peaks])
 
 

@@ -18,6 +18,7 @@ from ..arithmetic.compensated import DTYPES, ROUNDING, Precision
 from ..declare.density import Array
 from ..declare.description import Description, density_of
 from ..instants.solution import Solution
+from ..quantities import FORCES, Output
 from .placing import Complex, Moving, axis_of, measured, oriented, place
 from .written import Written
 
@@ -56,8 +57,8 @@ class _Tally:
 def certify(
     solution: Solution,
     equations: Sequence[Written] | None = None,
-    hidden: Mapping[str, Array] | None = None,
-    phases: Mapping[str, Array] | None = None,
+    hidden: Mapping[Output, Array] | None = None,
+    phases: Mapping[Output, Array] | None = None,
 ) -> dict[str, Array]:
     """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``, ``ends``, each where it can be had.
 
@@ -66,8 +67,8 @@ def certify(
     not wanted, and what is open, which takes some value all the same. ``phases`` are angles that are known up to whole turns more
     closely than they are reported.
     """
-    whole = replace(solution, series={**solution.series, **(hidden or {})}, undetermined=())
-    turned = replace(whole, series={**whole.series, **(phases or {})})
+    whole = replace(solution, outputs={**solution.outputs, **(hidden or {})}, left_open=())
+    turned = replace(whole, outputs={**whole.outputs, **(phases or {})})
     found: dict[str, list[Array]] = {}
     scales: dict[str, float] = {}
     for start in range(0, whole.t.size, _BLOCK):
@@ -82,17 +83,18 @@ def _residuals(solution: Solution, turned: Solution, equations: Sequence[Written
     """Each residual, and the largest of what it is to be compared with; ``turned`` has angles without their turns."""
     description = solution.description
     joints = description["joints"]
-    if any(joint["coordinate"] and f"motion:{name}" not in solution.series for name, joint in joints.items()):
+    if any(joint["coordinate"] and Output("motion", name) not in solution.outputs for name, joint in joints.items()):
         return {}
     bodies = place(turned, equations or ())
     if len(bodies) < len(description["bodies"]) + 1:
         return {}
     found = {"closure": (_closure(solution, bodies, equations or ()), _size(solution))}
-    wanted = [f"reaction:{name}:fx" for name in joints] + [f"load:{name}:fx" for name in description["loads"]]
-    wanted += [f"effort:{name}" for name, joint in joints.items() if joint["driven"] and name not in description["rows"].values()]
-    wanted += [f"multiplier:{name}" for name in (*description["constraints"], *description["rows"])]
+    wanted = [Output("reaction", name, "fx") for name in joints] + [Output("load", name, "fx") for name in description["loads"]]
+    drives = (name for name, joint in joints.items() if joint["driven"] and name not in description["rows"].values())
+    wanted += [Output("effort", name) for name in drives]
+    wanted += [Output("multiplier", name) for name in (*description["constraints"], *description["rows"])]
     told = equations is not None or not (description["constraints"] or description["rows"])
-    known = (name in solution.series and np.isfinite(solution.series[name]).all() for name in wanted)
+    known = (output in solution.outputs and np.isfinite(solution.outputs[output]).all() for output in wanted)
     if told and all(known):
         matter = {name: _matter(body) for name, body in description["bodies"].items()}
         acting = [*_acting(solution, bodies), *(push for e in equations or () for push in _held(solution, bodies, e))]
@@ -114,9 +116,9 @@ def tolerance(solution: Solution) -> float:
 def blur(solution: Solution) -> float:
     """What the reported angles leave open of a phase: one rounding of the largest of them [rad]."""
     joints = solution.description["joints"]
-    angles = [f"motion:{name}" for name, joint in joints.items() if joint["coordinate"] == "angle"]
-    angles += [f"pose:{name}:angle" for name in solution.description["bodies"]]
-    reported = (solution.series[name] for name in angles if name in solution.series)
+    angles = [Output("motion", name) for name, joint in joints.items() if joint["coordinate"] == "angle"]
+    angles += [Output("pose", name, "angle") for name in solution.description["bodies"]]
+    reported = (solution.outputs[angle] for angle in angles if angle in solution.outputs)
     return _rounding(solution) * max((float(np.max(np.abs(values))) for values in reported), default=0.0)
 
 
@@ -210,7 +212,7 @@ def _acting(solution: Solution, bodies: dict[str, Moving]) -> Iterator[_Action]:
         reaction = solution.reaction(name)
         force, couple = reaction.fx + 1j * reaction.fy, 0.0 if reaction.mz is None else reaction.mz
         pushes: list[tuple[Any, Any, bool]] = [(force, couple, False)]
-        if f"effort:{name}" in solution.series:
+        if Output("effort", name) in solution.outputs:
             effort = solution.effort(name)
             axis = axis_of(joint, bodies[joint["parent"]["body"]])
             pushes.append((0j, effort, True) if joint["coordinate"] == "angle" else (effort * axis, 0.0, True))
@@ -218,7 +220,7 @@ def _acting(solution: Solution, bodies: dict[str, Moving]) -> Iterator[_Action]:
             yield joint["child"]["body"], at, push, twist, works
             yield joint["parent"]["body"], at, -push, -twist, works
     for name, load in solution.description["loads"].items():
-        fx, fy, mz = (solution.series[f"load:{name}:{k}"] for k in ("fx", "fy", "mz"))
+        fx, fy, mz = (solution.outputs[Output("load", name, k)] for k in ("fx", "fy", "mz"))
         for point, sign in zip(load["points"], (1.0, -1.0), strict=False):
             at = bodies[point["body"]].point(point["x"], point["y"])[0]
             yield point["body"], at, sign * (fx + 1j * fy), sign * mz, True
@@ -324,7 +326,7 @@ def _ends(
         law = solution.section(link).law
         # What slides over the base just now counts as at the base, here and there.
         law = replace(law, loads=tuple(replace(x, station=np.where(np.abs(x.station) < _EDGE, 0.0, x.station)) for x in law.loads))
-        axial, shear, bending = (law.at(force, base)[:, 0] for force in ("axial", "shear", "bending"))
+        axial, shear, bending = (law.at(force, base)[:, 0] for force in FORCES)
         own = [part for part in acting if part[0] == link]
         force, moment = _before(bodies[link], own, _EDGE * law.length)
         flow = _weight(solution, bodies[link], matter[link][0], law.length)

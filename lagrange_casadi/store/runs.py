@@ -23,10 +23,9 @@ import numpy as np
 from ..declare.density import Array
 from ..declare.description import SHAPE as DESCRIPTION
 from ..errors import DeclarationError, PathError, StoreError, one_line
-from ..instants.section_law import FORCES
 from ..instants.solution import Provenance, Solution, in_order
 from ..judge.certificate import LOOSE, blur, certify
-from ..quantities import CF, CONVENTIONS, QUANTITIES, quantity_of
+from ..quantities import CF, CONVENTIONS, FORCES, LAW, Output
 from ..system.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
 from ..system.seal import Seen, kind_of, seal, verify
 from .scales import LARGE, Scales
@@ -41,7 +40,6 @@ _BLOCK_BYTES = 1 << 23
 _AXES = {"t": ("s", "time"), "xi": ("1", "place along a link, ratio xi/l")}
 _PROVENANCE = ("backend", "precision", "compiler", "flags", "rung")
 _GRID_TOLERANCE = 1e-12
-_LAW = {quantity.member for quantity in QUANTITIES if quantity.group == "law"}
 _KIND = "the file of a run"
 _KNOWN = {SCHEMA: "that of a run, which `load` reads", f"{SCHEMA}-sweep": "that of a sweep, which `Sweep.open` reads"}
 
@@ -122,10 +120,12 @@ def check(path: str | os.PathLike[str]) -> list[str]:
     """
     with reading(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
         solution = _read(file)
-        names = dict.fromkeys([*solution.names(), *solution.series, *(f"certificate:{name}" for name in solution.certificate)])
-        found = [f"{_place(name)}: missing" for name in parsed(file.attrs["outputs"], [str]) if name not in names]
+        certificate = (Output("certificate", "", name) for name in solution.certificate)
+        outputs = dict.fromkeys([*solution.quantities(), *solution.outputs, *certificate])
+        told = map(Output.of, parsed(file.attrs["outputs"], [str]))
+        found = [f"{_place(output)}: missing" for output in told if output not in outputs]
         if not found:
-            found += [finding for name in names for finding in _check_dataset(file, solution, name)]
+            found += [finding for output in outputs for finding in _check_dataset(file, solution, output)]
             found += _check_certificate(solution)
     return found
 
@@ -154,10 +154,9 @@ def _check_certificate(solution: Solution) -> Iterator[str]:
             yield f"{name}: {value:.3g}, computed anew, {worse}"
 
 
-def _check_dataset(file: h5py.File, solution: Solution, name: str) -> Iterator[str]:
-    place = _place(name)
+def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Iterator[str]:
+    place, quantity, name = _place(output), output.quantity, output
     dataset = file[place]
-    quantity = quantity_of(name)
     _check_numbers(dataset, [{"t": solution.t.size, "xi": solution.xi.size}[axis] for axis in quantity.axes])
     gap, finite = _read_through(dataset, solution, name)
     if solution.determined(name):
@@ -175,24 +174,23 @@ def _check_dataset(file: h5py.File, solution: Solution, name: str) -> Iterator[s
             yield f"{place}: axis {axis} has no scale /{scale}"
 
 
-def _read_through(dataset: h5py.Dataset, solution: Solution, name: str) -> tuple[float, bool]:
+def _read_through(dataset: h5py.Dataset, solution: Solution, output: Output) -> tuple[float, bool]:
     """How far a grid is from its law, and whether all values are finite, block by block."""
     gap, finite = 0.0, True
     height = max(1, _BLOCK_BYTES // (8 * math.prod(dataset.shape[1:])))
-    link, force = name.split(":")[1:] if dataset.ndim == 2 else ("", "")
-    law = solution.section(link).law if link else None
+    law = solution.section(output.part).law if output.group == "section" else None
     basis = law.basis(solution.xi) if law else None
     for start in range(0, dataset.shape[0], height):
         block = slice(start, start + height)
         stored = dataset[block]
         finite = finite and bool(np.isfinite(stored).all())
         if law and basis:
-            gap = float(np.fmax(gap, np.max(np.abs(stored - law.during(block).on_grid(force, basis)))))
+            gap = float(np.fmax(gap, np.max(np.abs(stored - law.during(block).on_grid(output.member, basis)))))
     return gap, finite
 
 
-def _place(name: str) -> str:
-    return name.replace(":", "/")
+def _place(output: Output) -> str:
+    return str(output).replace(":", "/")
 
 
 def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[[], None]) -> None:
@@ -201,14 +199,14 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
         scale.attrs["units"], scale.attrs["long_name"] = _AXES[axis]
         scale.make_scale(axis)
     scales = Scales(file)
-    for name, values in solution.series.items():
+    for output, values in solution.outputs.items():
         breathe()
-        _add(file, scales, solution, name, values)
+        _add(file, scales, solution, output, values)
     for name, values in solution.certificate.items():
-        _add(file, scales, solution, f"certificate:{name}", values)
+        _add(file, scales, solution, Output("certificate", "", name), values)
     for link in solution.links_with_sections:
         for force in FORCES:
-            _add_grid(file, scales, solution, link, force, breathe)
+            _add_grid(file, scales, solution, Output("section", link, force), breathe)
     scales.finish()
     provenance = solution.provenance
     file.attrs["schema"] = SCHEMA
@@ -227,14 +225,14 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     file.attrs["figures"] = figures
 
 
-def _add(file: h5py.File, scales: Scales, solution: Solution, name: str, values: Array) -> None:
-    _create(file, scales, solution, name, values.shape)[...] = values
+def _add(file: h5py.File, scales: Scales, solution: Solution, output: Output, values: Array) -> None:
+    _create(file, scales, solution, output, values.shape)[...] = values
 
 
-def _add_grid(file: h5py.File, scales: Scales, solution: Solution, link: str, force: str, breathe: Callable[[], None]) -> None:
+def _add_grid(file: h5py.File, scales: Scales, solution: Solution, output: Output, breathe: Callable[[], None]) -> None:
     """A grid block by block: it need not fit into memory."""
-    law, xi = solution.section(link).law, solution.xi
-    dataset = _create(file, scales, solution, f"section:{link}:{force}", (solution.t.size, xi.size))
+    law, xi = solution.section(output.part).law, solution.xi
+    dataset = _create(file, scales, solution, output, (solution.t.size, xi.size))
     height, width = dataset.chunks
     height *= max(1, _BLOCK_BYTES // (8 * height * width))
     for left in range(0, xi.size, width):
@@ -242,15 +240,15 @@ def _add_grid(file: h5py.File, scales: Scales, solution: Solution, link: str, fo
         for start in range(0, solution.t.size, height):
             breathe()
             block = law.during(slice(start, start + height))
-            dataset[start : start + height, left : left + width] = block.on_grid(force, basis)
+            dataset[start : start + height, left : left + width] = block.on_grid(output.member, basis)
 
 
-def _create(file: h5py.File, scales: Scales, solution: Solution, name: str, shape: tuple[int, ...]) -> h5py.Dataset:
-    quantity = quantity_of(name)
+def _create(file: h5py.File, scales: Scales, solution: Solution, output: Output, shape: tuple[int, ...]) -> h5py.Dataset:
+    quantity, name = output.quantity, str(output)
     width = tuple(min(size, _CHUNK_BYTES // 8) for size in shape[1:])
     chunks = (min(shape[0], max(1, _CHUNK_BYTES // (8 * math.prod(width)))), *width)
-    dataset = file.create_dataset(_place(name), shape, np.float64, chunks=chunks, fletcher32=True, fillvalue=np.nan)
-    dataset.attrs["units"] = solution.unit(name)
+    dataset = file.create_dataset(_place(output), shape, np.float64, chunks=chunks, fletcher32=True, fillvalue=np.nan)
+    dataset.attrs["units"] = solution.unit(output)
     for key, text in quantity.attributes.items():
         dataset.attrs[key] = text
     if name in solution.errors:
@@ -265,28 +263,28 @@ def _read(file: h5py.File) -> Solution:
     t, xi = (_numbers(file[axis]) for axis in _AXES)
     if t.ndim != 1 or xi.ndim != 1 or not t.size or not xi.size:
         raise ValueError(f"t and xi have the shapes {t.shape} and {xi.shape}")
-    series: dict[str, Array] = {}
+    outputs: dict[Output, Array] = {}
     errors: dict[str, float] = {}
 
     def visit(place: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset) and place not in _AXES:
-            name = place.replace("/", ":")
+            output = Output.of(place.replace("/", ":"))
             if "error_estimate" in item.attrs:
-                errors[name] = float(item.attrs["error_estimate"])
-            if quantity_of(name).axes == ("t",) and not name.startswith("certificate:"):
-                series[name] = _numbers(item, t.shape)
+                errors[str(output)] = float(item.attrs["error_estimate"])
+            if output.quantity.axes == ("t",) and output.group != "certificate":
+                outputs[output] = _numbers(item, t.shape)
 
     file.visititems(visit)
     words = {key: shown(file.attrs[key]) for key in _PROVENANCE}
     provenance = Provenance(**words, versions=parsed(file.attrs["versions"], {str: str}, "versions"))
-    undetermined = tuple(parsed(file.attrs["undetermined"], [str], "undetermined"))
+    left_open = tuple(map(Output.of, parsed(file.attrs["undetermined"], [str], "undetermined")))
     certificate = {name: _numbers(file["certificate"][name], t.shape) for name in file.get("certificate", ())}
     case = shown(file.attrs["case"])
-    ordered, limit = in_order(series, description), float(file.attrs["certificate_tolerance"])
-    solution = Solution(case, t, xi, ordered, description, provenance, undetermined, certificate, errors, limit)
+    ordered, limit = in_order(outputs, description), float(file.attrs["certificate_tolerance"])
+    solution = Solution(case, t, xi, ordered, description, provenance, left_open, certificate, errors, limit)
     for link in solution.links_with_sections:
         law = solution.section(link).law
-        if set(law.coefficients) != _LAW or len(law.density.breaks) != len(law.density.cells) + 1:
+        if set(law.coefficients) != set(LAW) or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is not whole")
     return solution
 

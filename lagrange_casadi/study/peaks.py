@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
@@ -19,15 +19,15 @@ from ..declare.density import Array
 from ..declare.motion import jerk_function
 from ..declare.scene import Scene, checked
 from ..equations.derive import assembled, derive
-from ..equations.mobility import LAW, PLACE_FIRST
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
 from ..evaluate import evaluate
 from ..instants.backends import follow
-from ..instants.section_law import SectionLaw, Side, StationLoad
+from ..instants.section_law import SectionLaw, Side
 from ..instants.signals import Quantity, SectionForce, Signals
 from ..instants.solution import Peak, Solution
+from ..quantities import LAW, PLACE_FIRST, Output
 from ..summits.search import Peaks
 from ..summits.sharpness import Sharpness
 
@@ -55,7 +55,8 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
 
     Raises :class:`DeclarationError` where the solution is not of this scene, :class:`UnknownNameError` for a name that is none.
     """
-    return _Cycle.of(scene, solution).peaks(list(solution.names() if names is None else names))
+    chosen = list(solution.quantities()) if names is None else [Output.of(solution.peak(name).name) for name in names]
+    return _Cycle.of(scene, solution).peaks(chosen)
 
 
 @dataclass(frozen=True)
@@ -106,8 +107,8 @@ def shortfall(
 
 def forces(solution: Solution) -> list[str]:
     """The full names of a solution's efforts, reactions and section forces that equilibrium determines."""
-    wanted = (name for name in solution.names() if name.startswith(("effort:", "reaction:", "section:")))
-    return [name for name in wanted if solution.determined(name)]
+    wanted = (output for output in solution.quantities() if output.group in ("effort", "reaction", "section"))
+    return [str(output) for output in wanted if solution.determined(output)]
 
 
 @functools.lru_cache(maxsize=32)
@@ -143,18 +144,18 @@ class _Cycle:
     solution: Solution
     p: Array
     z: Array
-    rows: Mapping[str, int]
+    rows: Mapping[Output, int]
 
     @classmethod
     def of(cls, scene: Scene, solution: Solution) -> _Cycle:
         mechanism = scene.mechanism
         told = mechanism.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
-        wanted = list(dict.fromkeys(_output(name) for name in solution.series))
+        wanted = list(dict.fromkeys(map(_wanted, solution.outputs)))
         graph = derive(assembled(scene, told, wanted), wanted)
         p = np.array(list(told.values()))
         stages = compensated(graph, "double") if counts(graph, solution.t, p) else plain(graph)
         z, _ = follow(graph, solution.t, p, stages=stages)
-        cycle = cls(graph, stages, solution, p, z, {name: k for k, name in enumerate(graph.columns)})
+        cycle = cls(graph, stages, solution, p, z, graph.outputs)
         if not cycle.agrees():
             raise DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{mechanism.name}'")
         return cycle
@@ -162,21 +163,22 @@ class _Cycle:
     def agrees(self) -> bool:
         """Whether the graph gives what the solution has: at one of three instants, for at a jump rounding decides."""
         solution = self.solution
-        names = [name for name in solution.series if name not in solution.undetermined]
-        if not all(name in self.rows for name in names):
+        outputs = [output for output in solution.outputs if output not in solution.left_open]
+        if not all(output in self.rows for output in outputs):
             return False
-        names = [name for name in names if name not in self.graph.wrapped]
+        outputs = [output for output in outputs if output not in self.graph.wrapped]
         some = np.array([0, solution.t.size // 2, solution.t.size - 1])
         out = self.stages.instant(*self.stages.drive(solution.t[None, some], self.p), self.z[:, some], self.p).full()
-        sizes = dict.fromkeys(map(solution.unit, names), 0.0)
-        for name in names:
-            sizes[solution.unit(name)] = max(sizes[solution.unit(name)], float(np.max(np.abs(solution.series[name]))))
+        units = [solution.unit(output) for output in outputs]
+        sizes = dict.fromkeys(units, 0.0)
+        for output, unit in zip(outputs, units, strict=True):
+            sizes[unit] = max(sizes[unit], float(np.max(np.abs(solution.outputs[output]))))
         rounding = _NOTHING * max(sizes.values(), default=0.0)
-        gaps = [np.abs(out[self.rows[name]] - solution.series[name][some]) for name in names]
-        limits = [_SAME * sizes[solution.unit(name)] + rounding for name in names]
+        gaps = [np.abs(out[self.rows[output]] - solution.outputs[output][some]) for output in outputs]
+        limits = [_SAME * sizes[unit] + rounding for unit in units]
         return bool(np.all([gap <= limit for gap, limit in zip(gaps, limits, strict=True)], axis=0).any())
 
-    def peaks(self, names: Sequence[str]) -> list[Peak]:
+    def peaks(self, names: Sequence[Output]) -> list[Peak]:
         """The peaks of quantities over all times."""
         solution = self.solution
         found = {name: solution.peak(name) for name in names}
@@ -192,41 +194,40 @@ class _Cycle:
             along = None if sampled.xi is None else float(xi[k])
             if not searched.told[k]:
                 least = max(abs(sampled.value), float(abs(value[k])))
-                found[name] = Peak(name, math.nan, sampled.unit, float(t[k]), along, least)
+                found[name] = Peak(str(name), math.nan, sampled.unit, float(t[k]), along, least)
             elif abs(value[k]) > abs(sampled.value):
-                found[name] = Peak(name, float(value[k]), sampled.unit, float(t[k]), along)
+                found[name] = Peak(str(name), float(value[k]), sampled.unit, float(t[k]), along)
         return [found[name] for name in names]
 
-    def signals(self, names: Sequence[str]) -> Signals:
+    def signals(self, names: Sequence[Output]) -> Signals:
         """Quantities as curves over time."""
         quantities = [self.quantity(name) for name in names]
         columns = {k for quantity in quantities for k in _columns(quantity)}
         sharpness = Sharpness.of(self.graph, sorted(columns))
-        turned = {k: self.solution.series[name] for k, name in enumerate(names) if name in self.graph.wrapped}
+        turned = {k: self.solution.outputs[name] for k, name in enumerate(names) if name in self.graph.wrapped}
         return Signals(self.graph, self.stages, sharpness, quantities, self.solution.t, self.p, self.z, turned=turned)
 
-    def quantity(self, name: str) -> Quantity:
+    def quantity(self, output: Output) -> Quantity:
         """Where a quantity is among the columns."""
-        if not name.startswith("section:"):
-            return (self.rows[name],)
-        _, link, force = name.split(":")
-        law, start = self.solution.section(link).law, f"section:{link}"
-        stations = tuple(tuple(self.rows[f"{start}:{load.name}:{member}"] for member in PLACE_FIRST) for load in law.loads)
-        coefficients = tuple(self.rows[f"{start}:law:{member}"] for member in LAW)
-        return SectionForce(force, coefficients, stations, law.length, law.density)
+        if output.group != "section":
+            return (self.rows[output],)
+        link, law = output.part, self.solution.section(output.part).law
+        stations = (tuple(self.rows[Output("station", link, member, load.name)] for member in PLACE_FIRST) for load in law.loads)
+        coefficients = tuple(self.rows[Output("law", link, member)] for member in LAW)
+        return SectionForce(output.member, coefficients, tuple(stations), law.length, law.density)
 
-    def scales(self, names: Sequence[str]) -> tuple[list[int], list[float]]:
+    def scales(self, names: Sequence[Output]) -> tuple[list[int], list[float]]:
         """The units of quantities, by number, and the largest size of anything that has each."""
         solution = self.solution
         units = {unit: k for k, unit in enumerate(dict.fromkeys(map(solution.unit, names)))}
         scales = [0.0] * len(units)
-        for name in solution.names():
-            if name in solution.series and solution.determined(name) and solution.unit(name) in units:
-                k = units[solution.unit(name)]
-                scales[k] = max(scales[k], float(np.abs(solution.series[name]).max()))
+        for output in solution.quantities():
+            if output in solution.outputs and solution.determined(output) and solution.unit(output) in units:
+                k = units[solution.unit(output)]
+                scales[k] = max(scales[k], float(np.abs(solution.outputs[output]).max()))
         return [units[solution.unit(name)] for name in names], scales
 
-    def timed(self, signals: Signals, names: Sequence[str], peaks: Peaks) -> tuple[Array, Array, Array]:
+    def timed(self, signals: Signals, names: Sequence[Output], peaks: Peaks) -> tuple[Array, Array, Array]:
         """Values, times and ratios of peaks, the smooth ones at the times where their derivative is zero, by the secant method."""
         value, t, xi, instants = peaks.value.copy(), peaks.t.copy(), peaks.xi.copy(), self.solution.t
         reach = _NEAR * (instants[-1] - instants[0]) / (instants.size - 1)
@@ -250,7 +251,7 @@ class _Cycle:
         value[some] = np.where(better & (np.abs(sizes) > np.abs(value[some])), sizes, value[some])
         return value, t, xi
 
-    def slopes(self, signals: Signals, names: Sequence[str], t: Array) -> tuple[Array, Array, Array]:
+    def slopes(self, signals: Signals, names: Sequence[Output], t: Array) -> tuple[Array, Array, Array]:
         """Of each quantity, at a time of its own: value, ratio, and the time derivative of its size.
 
         Where along a link a force is largest moves, but for the rate of its size only at a station does that count.
@@ -261,9 +262,9 @@ class _Cycle:
         found = np.full((3, len(names)), np.nan)
         for k, name in enumerate(names):
             columns, changes = out[:, [k]], out_rate[:, [k]]
-            if name.startswith("section:"):
-                _, link, force = name.split(":")
-                law, law_rate = self.law(link, columns), self.law(link, changes)
+            if name.group == "section":
+                force = name.member
+                law, law_rate = self.law(name.part, columns), self.law(name.part, changes)
                 place, value = law.extreme(force)
                 sides: tuple[Side, Side] = ("tip", "base")
                 sizes = [abs(law.at(force, place[:, None], side)[0, 0]) for side in sides]
@@ -272,19 +273,14 @@ class _Cycle:
             else:
                 value = columns[self.rows[name], 0]
                 if name in self.graph.wrapped:
-                    value += math.tau * np.round((self.solution.series[name][near[k]] - value) / math.tau)
+                    value += math.tau * np.round((self.solution.outputs[name][near[k]] - value) / math.tau)
                 found[:, k] = value, np.nan, np.sign(value) * changes[self.rows[name], 0]
         return found[0], found[1], found[2]
 
     def law(self, link: str, columns: Array) -> SectionLaw:
         """A link's law with columns of the graph, or of their rates, for its coefficients, loads and stations."""
-        law, start = self.solution.section(link).law, f"section:{link}"
-        coefficients = {name: columns[self.rows[f"{start}:law:{name}"]] for name in law.coefficients}
-        loads = (
-            StationLoad(load.name, *(columns[self.rows[f"{start}:{load.name}:{member}"]] for member in PLACE_FIRST))
-            for load in law.loads
-        )
-        return replace(law, coefficients=coefficients, loads=tuple(loads))
+        own = {output: columns[k] for output, k in self.rows.items() if output.along and output.part == link}
+        return self.solution.section(link).law.of(link, own)
 
 
 def _columns(quantity: Quantity) -> set[int]:
@@ -294,7 +290,7 @@ def _columns(quantity: Quantity) -> set[int]:
     return set(quantity)
 
 
-def _output(name: str) -> str:
-    """The output that a quantity is part of."""
-    kind, part, *_ = name.split(":")
-    return {"effort": "effort", "motion": "motion", "pose": "motion"}.get(kind, f"{kind}:{part}")
+def _wanted(output: Output) -> str:
+    """What is to be wanted for an output."""
+    kinds = {"effort": "effort", "motion": "motion", "pose": "motion"}
+    return kinds.get(output.group, f"{'section' if output.along else output.group}:{output.part}")

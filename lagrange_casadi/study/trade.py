@@ -25,7 +25,6 @@ from ..instants.backends import Table, run
 from ..instants.reading import columns
 from ..instants.rung import Rung
 from ..judge.reference import reference
-from ..quantities import quantity_of
 from .peaks import Shortfall, shortfall
 
 INSTANTS = 10_000
@@ -169,27 +168,27 @@ class _Truth:
         table, _ = run(graph, t, p, Rung("c" if find_compiler() else "vm"), 1)
         self.compared = compared
         rows = reference(graph, list(t[compared]), list(p), z=table.iterated[:, compared])
-        self.columns = {name: [row[k] for row in rows] for k, name in enumerate(graph.columns) if not name.startswith("_")}
+        self.columns = {output: [row[k] for row in rows] for output, k in graph.outputs.items()}
         self.angles = graph.wrapped
         peaks = {name: max(abs(float(x)) for x in column) for name, column in self.columns.items()}
         largest: dict[str, float] = {}
         for name, peak in peaks.items():
-            unit = quantity_of(name).unit
+            unit = name.quantity.unit
             largest[unit] = max(largest.get(unit, 0.0), peak)
-        of_unit = {name: largest[quantity_of(name).unit] for name in peaks}
+        of_unit = {name: largest[name.quantity.unit] for name in peaks}
         self.scales = {name: (peak if peak > _NIL * of_unit[name] else of_unit[name]) or 1.0 for name, peak in peaks.items()}
 
     def errors(self, graph: SceneGraph, table: Table) -> tuple[float, float, str]:
         """The largest and the median error relative to the peaks, and which quantity errs most."""
         worst = {}
-        for k, name in enumerate(graph.columns):
+        for name, k in graph.outputs.items():
             if name in self.columns:
                 gaps = [float(x - float(y)) for x, y in zip(self.columns[name], table.out[k, self.compared], strict=True)]
                 if name in self.angles:
                     gaps = [math.remainder(gap, math.tau) for gap in gaps]
                 worst[name] = max(abs(gap) for gap in gaps) / self.scales[name]
         name = max(worst, key=lambda name: worst[name])
-        return worst[name], float(np.median(list(worst.values()))), name
+        return worst[name], float(np.median(list(worst.values()))), str(name)
 
 
 def _same(rung: Rung, graphs: Mapping[bool, SceneGraph]) -> bool:

@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, steps
 from ..declare.density import Array
+from ..equations.checks import Check
 from ..equations.scene_graph import SceneGraph
 
 
@@ -81,12 +82,14 @@ class Sharpness:
 
 
 def with_watched(graph: SceneGraph, sharpness: Sharpness) -> SceneGraph:
-    """The graph with what is watched as further columns, ``_watched:NUMBER``, the last ones."""
+    """The graph with what is watched as further columns, the last ones."""
     inputs = graph.instant.sx_in()
     names = [graph.instant.name_in(i) for i in range(len(inputs))]
     out = ca.vertcat(graph.instant(*inputs), sharpness.watched(*inputs))
     instant = ca.Function("instant", inputs, [out], names, ["out"], {"cse": True})
-    return replace(graph, instant=instant, columns=(*graph.columns, *(f"_watched:{k}" for k in range(len(sharpness.watches)))))
+    return replace(
+        graph, instant=instant, columns=(*graph.columns, *(Check("watched", str(k)) for k in range(len(sharpness.watches))))
+    )
 
 
 def bent(graph: SceneGraph, sharpness: Sharpness, t: Array, p: Array) -> npt.NDArray[np.bool_]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import one_line
 from ..instants.refusal import Status
+from ..quantities import Output
 from ..store.untrusted import check_chunks, told_as
 from .axes import counted, grouped, size_of
 from .blocks import slabs
@@ -84,5 +85,6 @@ def _check_column(file: h5py.File, sweep: Sweep, kept: Kept) -> Iterator[str]:
 
 def _open(sweep: Sweep, name: str) -> bool:
     """Whether equilibrium leaves a column open."""
-    part = ":".join(name.split(":")[1:3])
-    return any(other.startswith(part) for other in sweep.undetermined)
+    output = Output.of(name.partition(":")[2])
+    left_open = map(Output.of, sweep.undetermined)
+    return any(other.part == output.part and (other.along or other.group == output.group) for other in left_open)

@@ -21,8 +21,8 @@ from ..declare.mechanism import Mechanism
 from ..designs.engine import Outcome
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.refusal import Status
-from ..instants.section_law import FORCES, SectionLaw, StationLoad
-from ..quantities import FORCE, quantity_of, unit_in
+from ..instants.section_law import SectionLaw, StationLoad
+from ..quantities import FORCE, FORCES, Output
 from .chunks import encoded
 from .engine import STATUSES, Engine
 
@@ -97,7 +97,8 @@ class Harvest:
         for name in engine.quantities:
             found += self._peak(name)
         for name in engine.efforts:
-            unit, words = unit_in(self.mechanism.joints, name), quantity_of(name).attributes
+            output = Output.of(name)
+            unit, words = output.unit(self.mechanism.joints), output.quantity.attributes
             mean, rms = f"mean over time: {words['long_name']}", f"root of the mean square over time: {words['long_name']}"
             found.append(Column(f"mean:{name}", unit, words | {"long_name": mean} | self._open(name)))
             found.append(Column(f"rms:{name}", unit, {"long_name": rms} | self._open(name)))
@@ -108,8 +109,9 @@ class Harvest:
             if self.xi.size
         ]
         for name in self._series:
-            words = quantity_of(name).attributes | self._open(name)
-            found.append(Column(f"history:{name}", unit_in(self.mechanism.joints, name), words, ("t",), (self.t.size,)))
+            output = Output.of(name)
+            words = output.quantity.attributes | self._open(name)
+            found.append(Column(f"history:{name}", output.unit(self.mechanism.joints), words, ("t",), (self.t.size,)))
         if self.keep == "histories" and self.xi.size:
             found += [self._along(f"history:section:{link}:{force}", "", ("t", "xi")) for link in self._links for force in FORCES]
         return tuple(found)
@@ -148,7 +150,7 @@ class Harvest:
         found: list[Any] = [outcome.status.astype(np.int8, copy=False)]
         for k, name in enumerate(self.engine.quantities):
             found += [outcome.value[:, k], outcome.t[:, k]]
-            if name.startswith("section:"):
+            if Output.of(name).group == "section":
                 found.append(outcome.xi[:, k])
         for k in range(len(self.engine.efforts)):
             found += [outcome.mean[:, k], outcome.rms[:, k]]
@@ -174,14 +176,15 @@ class Harvest:
 
     @cached_property
     def _links(self) -> tuple[str, ...]:
-        named = (name.split(":")[1] for name in self.engine.quantities if name.startswith("section:"))
-        return tuple(dict.fromkeys(named))
+        quantities = map(Output.of, self.engine.quantities)
+        return tuple(dict.fromkeys(output.part for output in quantities if output.group == "section"))
 
     @cached_property
     def _series(self) -> tuple[str, ...]:
         """The engine's columns that are kept whole."""
-        wanted = {"peaks": ("!",), "laws": ("section:",), "histories": ("",)}[self.keep]
-        return tuple(name for name in self.engine.columns if name.startswith(wanted))
+        if self.keep == "peaks":
+            return ()
+        return tuple(name for name in self.engine.columns if self.keep == "histories" or Output.of(name).along)
 
     def _status(self) -> Column:
         words = {
@@ -193,18 +196,17 @@ class Harvest:
 
     def _peak(self, name: str) -> list[Column]:
         """The columns of one quantity of the engine's."""
-        kind, _, *member = name.split(":")
-        open_ = self._open(name)
-        if kind == "reaction" and not member:
+        output, open_ = Output.of(name), self._open(name)
+        if output == Output("reaction", output.part):
             name, unit, words = f"{name}:resultant", FORCE, {"long_name": "resultant of the joint's reaction"}
         else:
-            unit, words = unit_in(self.mechanism.joints, name), quantity_of(name).attributes
+            unit, words = output.unit(self.mechanism.joints), output.quantity.attributes
         what = words["long_name"]
         found = [
             Column(f"peak:{name}", unit, words | {"long_name": f"largest in size over time: {what}"} | open_),
             Column(f"peak_t:{name}", "s", {"long_name": f"instant of the peak: {what}"} | open_),
         ]
-        if kind == "section":
+        if output.group == "section":
             found.append(Column(f"peak_xi:{name}", "1", {"long_name": f"ratio xi/l of the peak: {what}"} | open_))
         return found
 
@@ -213,7 +215,7 @@ class Harvest:
         return {"missing": MISSING} if name in self.engine.doubtful else {}
 
     def _along(self, name: str, prefix: str, axes: tuple[str, ...]) -> Column:
-        quantity = quantity_of(name.partition(":")[2])
+        quantity = Output.of(name.partition(":")[2]).quantity
         words = quantity.attributes | {"long_name": f"{prefix}{quantity.long_name}"} | self._open(name.partition(":")[2])
         lengths = tuple({"t": self.t.size, "xi": self.xi.size}[axis] for axis in axes)
         return Column(name, quantity.unit, words, axes, lengths)
@@ -227,15 +229,16 @@ class Harvest:
         largest, whole = [], []
         for link in self._links:
             matter = _Matter.of(self.mechanism, link)
-            rows = {name.split(":", 2)[2]: k for k, name in enumerate(self.engine.columns) if name.startswith(f"section:{link}:")}
+            every = enumerate(map(Output.of, self.engine.columns))
+            rows = {output: k for k, output in every if output.along and output.part == link}
             with np.errstate(all="ignore"):  # of designs that have no result
-                laws = matter.law({name: series[:, k] for name, k in rows.items()}, p)
+                laws = matter.law({output: series[:, k] for output, k in rows.items()}, p)
                 basis = laws.basis(self.xi)
                 largest += [laws.largest(force, basis) for force in FORCES]
             if self.keep == "histories":
                 grids = np.full((len(FORCES), len(p), self.t.size, self.xi.size), np.nan)
                 for i in np.flatnonzero(outcome.status == 0):
-                    law = matter.law({name: series[i, k] for name, k in rows.items()}, p[i])
+                    law = matter.law({output: series[i, k] for output, k in rows.items()}, p[i])
                     basis = law.basis(self.xi)
                     for force, grid in zip(FORCES, grids, strict=True):
                         law.on_grid(force, basis, grid[i], threads=1)
@@ -257,8 +260,8 @@ class _Matter:
         cells = [c for cell in link.mass.cells for c in cell]
         return cls(link.mass, ca.Function("matter", [mechanism.symbols], [ca.vertcat(ca.SX(0, 1), link.length, *cells)]))
 
-    def law(self, members: Mapping[str, Array], p: Array) -> SectionLaw:
-        """The law from its coefficients and loads, by ``law:n0``, ``STATION:n`` and so on, (t,), of a design (parameters,).
+    def law(self, members: Mapping[Output, Array], p: Array) -> SectionLaw:
+        """The law from its coefficients and loads, (t,), of a design (parameters,).
 
         Or the laws of n designs: members are (n, t), length and density (n, 1).
         """
@@ -266,8 +269,8 @@ class _Matter:
         rest = iter(cells)
         density = self.density.at(lambda _: next(rest), length)
         stations: dict[str, dict[str, Array]] = {}
-        for name, values in members.items():
-            part, member = name.split(":")
-            stations.setdefault(part, {})[member] = values
-        coefficients = stations.pop("law")
+        for output, values in members.items():
+            if output.station:
+                stations.setdefault(output.station, {})[output.member] = values
+        coefficients = {output.member: values for output, values in members.items() if not output.station}
         return SectionLaw(length, density, coefficients, tuple(StationLoad(part, **m) for part, m in stations.items()))

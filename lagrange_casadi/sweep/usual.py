@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import DeclarationError, NoDesignError, UnknownNameError
+from ..quantities import Output
 from .axes import DESIGN
 from .plots import Along, Front, Peaks, Scatter, Spec
 from .reading import Sweep
@@ -41,7 +42,7 @@ def default_plots(
             free = [name for name in _varied(sweep) if name not in names and name not in at]
             family = free[0] if free and len(names) == 1 else ""
             specs += [Peaks(f"peak_{group}{page}", some, names, family, at) for page, some in _numbered(_pages(columns, _PANELS))]
-    links = dict.fromkeys(name.split(":")[2] for name in sweep.columns if name.startswith("peak_at:"))
+    links = dict.fromkeys(output.part for output in _of_kind(sweep, "peak_at").values())
     specs += [Along(f"along_{link}", link, (names or tuple(sweep.dimensions))[0], at) for link in links if not listed]
     for first, second in dict.fromkeys(against) or _usual_pair(sweep, at):
         for name in (first, second):
@@ -85,27 +86,32 @@ def _over(sweep: Sweep, over: tuple[str, ...], at: Mapping[str, float]) -> tuple
 def _groups(sweep: Sweep) -> dict[str, list[str]]:
     """The columns that are drawn together, by what the file's name says."""
     groups: dict[str, list[str]] = {}
-    for name in sweep.columns:
-        kind, *parts = name.split(":")
-        if kind == "peak" and (group := _group(*parts)):
+    for name, output in _of_kind(sweep, "peak").items():
+        if group := _group(output):
             groups.setdefault(group, []).append(name)
     return groups
 
 
-def _group(group: str, part: str, member: str = "") -> str:
-    if group == "section":
-        return f"section_{part}"
-    if group == "reaction":
-        return {"resultant": "reactions", "mz": "reaction_moments"}.get(member, "")
-    return _TOGETHER.get(group, "")
+def _of_kind(sweep: Sweep, kind: str) -> dict[str, Output]:
+    """The columns of a kind, and what they are of."""
+    named = ((name, *name.split(":", 1)) for name in sweep.columns if ":" in name)
+    return {name: Output.of(of) for name, own, of in named if own == kind}
+
+
+def _group(output: Output) -> str:
+    if output.group == "section":
+        return f"section_{output.part}"
+    if output.group == "reaction":
+        return {"resultant": "reactions", "mz": "reaction_moments"}.get(output.member, "")
+    return _TOGETHER.get(output.group, "")
 
 
 def _usual_pair(sweep: Sweep, at: Mapping[str, float]) -> list[tuple[str, str]]:
     """An effort, or else an axial force, and the bending moment of the last link, in the order of the mechanism."""
-    peaks = [name for name in sweep.columns if name.startswith("peak:")]
-    first = next((name for name in peaks if name.split(":")[1] == "effort" or name.endswith(":axial")), "")
-    bending = [f"peak:section:{body}:bending" for body in sweep.description["bodies"]]
-    second = next((name for name in reversed(bending) if name in peaks), "")
+    peaks = {output: name for name, output in _of_kind(sweep, "peak").items()}
+    first = next((name for output, name in peaks.items() if output.group == "effort" or output.member == "axial"), "")
+    bending = [Output("section", body, "bending") for body in sweep.description["bodies"]]
+    second = next((peaks[output] for output in reversed(bending) if output in peaks), "")
     return [(first, second)] if first and second and sweep.select(**at).size > 1 else []
 
 

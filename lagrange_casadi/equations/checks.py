@@ -1,0 +1,43 @@
+"""Columns that are no outputs: they tell whether there is a result, or are what the certificate needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from ..quantities import Output
+
+Kind: TypeAlias = Literal["closure", "gap", "misfit", "row", "rowsize", "turned", "turns", "multiplier", "open", "drive", "watched"]
+
+
+@dataclass(frozen=True)
+class Check:
+    """A column that is no output.
+
+    Whether there is a result, ``closure`` (see :mod:`.loops`), ``gap`` and ``misfit`` (see :mod:`.gaps`) of the joint or constraint
+    that closes a loop tell, ``row`` and ``rowsize`` of a non-holonomic row, and ``turned`` of a joint, how far an angle swings that
+    is seen with its turns (see :mod:`.turns`). Whether it is the only one tells ``open`` of an output (see :mod:`.determinacy`).
+    ``turns`` are the whole turns of a joint's angle that its column is without, ``multiplier`` is one that was not wanted,
+    ``drive`` is what a table needs of its drive, and ``watched`` what is watched for jumps and kinks between instants.
+    """
+
+    kind: Kind
+    part: str | Output
+
+    def __str__(self) -> str:
+        """A name that no output has."""
+        return f"_{self.kind}:{self.part}"
+
+    @classmethod
+    def of(cls, name: str) -> Check:
+        """The check that a name says."""
+        kind, _, part = name.removeprefix("_").partition(":")
+        return cls(kind, Output.of(part) if kind == "open" else part)  # type: ignore[arg-type]
+
+
+Column: TypeAlias = Output | Check
+
+
+def column_of(name: str) -> Column:
+    """The output or check that a name says."""
+    return Check.of(name) if name.startswith("_") else Output.of(name)
