@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
-from builders import settle
+from balance import settle
 from mpmath import mp
 from precise import precise
 

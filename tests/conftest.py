@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import sys
 from pathlib import Path
 
 import pytest
+import sweeps
 from hypothesis import settings
 
 from lagrange_casadi import evaluate, load_case
@@ -19,6 +21,10 @@ if os.environ.get("CI"):
 
 ROOT = Path(__file__).parent.parent
 CASES = ROOT / "cases"
+NAMES = sorted(path.parent.name for path in CASES.glob("*/case.py"))
+
+# Vector Newton-Euler on free bodies in 60-digit arithmetic, the paper's mechanism and motion; its "about" says what each entry is.
+SIXTY_DIGITS = json.loads((ROOT / "tests" / "data" / "slider_crank_60_digits.json").read_text())
 
 # For the benchmarks, which are not installed; last, so that the package is the installed one.
 sys.path.append(str(ROOT))
@@ -81,3 +87,15 @@ def here(tmp_path, monkeypatch):
     """An empty folder that is the working directory."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
+
+
+@pytest.fixture
+def engine(monkeypatch):
+    """An engine of plain formulas in place of a compiled one."""
+    return sweeps.use(monkeypatch)
+
+
+@pytest.fixture
+def whole(engine, tmp_path):
+    """The bytes of an uninterrupted sweep."""
+    return sweeps.run(tmp_path / "whole.h5")

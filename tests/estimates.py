@@ -11,13 +11,13 @@ from pathlib import Path
 
 import kinds
 import numpy as np
-from test_stages import kind
 from truth import true_errors, truth
 
 from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING
 from lagrange_casadi.declare.scene import points
 from lagrange_casadi.errors import AssemblyError
+from lagrange_casadi.quantities import quantity_of
 
 FACTOR = 10.0
 MOST = 0.8
@@ -32,6 +32,20 @@ RUNGS = {
 }
 OPTIONS = {"lanes": "--backend lanes", "c": "--backend c", "single": "--backend c --precision single"}
 CASES = Path(__file__).parent.parent / "cases"
+
+COUNT = 101
+"""Instants of a grid: half of them estimates do not look at."""
+
+
+def exactly(scene, parameters=None):
+    """What a scene has at the instants of its grid."""
+    return truth(scene, points(scene.t), parameters)
+
+
+def kind(name):
+    """What is measured by one peak: motions alone, else all of a group that have a unit in common."""
+    group, *_ = name.split(":")
+    return name if group.startswith(("motion", "_")) else (group, quantity_of(name).unit)
 
 
 def ratios(solution, exact):

@@ -5,7 +5,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from builders import crank_and_rod
+from mechanisms import crank_and_rod
 
 from lagrange_casadi import Mechanism, Scene
 from lagrange_casadi.declare.motion import harmonic

@@ -5,8 +5,8 @@ from __future__ import annotations
 import functools
 
 from arithmetic import Digits
+from balance import columns_at, oracle_of, postures
 from beside import of_case
-from builders import columns_at, oracle_of, postures
 
 from lagrange_casadi import derive, evaluate
 

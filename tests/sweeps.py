@@ -6,14 +6,21 @@ import contextlib
 import subprocess
 import threading
 import time
+from pathlib import Path
 
-import builders
+import mechanisms
 import numpy as np
 
 from lagrange_casadi.designs.engine import Outcome
 from lagrange_casadi.instants.solution import Provenance
-from lagrange_casadi.sweep import plan
+from lagrange_casadi.sweep import plan, sweep
 from lagrange_casadi.version import __version__
+
+CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
+ASKED = ["sweep", str(CASE), "--t", "0:0.08:21", "--want", "effort", "--want", "section:rod"]
+BENDING = "peak:section:rod:bending"
+GRID = {"l": (0.15, 0.4, 60), "r": (0.05, 0.1, 7)}
+SIZE = 420
 
 
 class Formula:
@@ -59,7 +66,7 @@ def use(monkeypatch, **keywords):
 
 def scene(**keywords):
     """The paper's mechanism, whose parameters are r, l, m1, m2 and m3."""
-    return builders.slider_crank(**{"t": (0, 0.08, 7), **keywords})
+    return mechanisms.slider_crank(**{"t": (0, 0.08, 7), **keywords})
 
 
 def identity(case="x"):
@@ -98,3 +105,23 @@ def wait_for(condition, seconds=60.0):
     while not condition():
         assert time.monotonic() < until, "it never came"
         time.sleep(0.002)
+
+
+def run(path, grid=None, **keywords):
+    """The bytes of a sweep's file."""
+    return sweep(scene(), GRID if grid is None else grid, out=path, **keywords).path.read_bytes()
+
+
+class StopError(Exception):
+    """What stops a sweep from its progress."""
+
+
+def stop_after(count):
+    """A progress that stops a sweep after so many reports of designs."""
+    seen = iter(range(count))
+
+    def progress(what, _done, _total):
+        if what == "designs" and next(seen, None) is None:
+            raise StopError
+
+    return progress

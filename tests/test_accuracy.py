@@ -10,31 +10,19 @@ import casadi as ca
 import kinds
 import numpy as np
 import pytest
-from builders import slider_crank
-from estimates import FACTOR, RUNGS, assert_near, ratios
-from test_cases import CASES, NAMES
-from test_mobility import chain, six_bar, truss_platform
-from test_stages import sampled
+from conftest import CASES, NAMES
+from estimates import COUNT, FACTOR, RUNGS, assert_near, exactly, ratios
+from mechanisms import chain, sampled, six_bar, slider_crank, truss_platform
 from truth import true_errors, truth
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, save, table
-from lagrange_casadi.arithmetic.compensated import ROUNDING
+from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, save
 from lagrange_casadi.declare.motion import harmonic, polynomial
 from lagrange_casadi.declare.parts import Link
-from lagrange_casadi.declare.scene import points
 from lagrange_casadi.errors import AssemblyError, CertificateWarning
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.judge.accuracy import explained
 from lagrange_casadi.judge.certificate import LOOSE, TOLERANCE, certify, tolerance
 from lagrange_casadi.quantities import Output
-
-COUNT = 101
-"""Instants of a grid: half of them estimates do not look at."""
-
-
-def exactly(scene, parameters=None):
-    """What a scene has at the instants of its grid."""
-    return truth(scene, points(scene.t), parameters)
 
 
 @functools.cache
@@ -152,107 +140,6 @@ def test_after_many_turns(later, words, certified):
     with nullcontext() if certified else pytest.warns(CertificateWarning, match="closure"):
         solution = evaluate(scene, **words)
     assert_near(ratios(solution, exactly(scene)))
-
-
-def cantilever(place, length=0.6, load=1e5):
-    """A large load on a driven link, at a place that is an expression of its length."""
-    m = Mechanism("cantilever")
-    l = m.parameter("l", length, "m")
-    link = m.link("link", length=l, mass=1.0)
-    m.revolute("O", m.ground, link)
-    m.force("load", link.at(place(l)), y=-load)
-    return Scene(m, {"O": polynomial(0.3, 1.0)}, t=(0.0, 1.0, COUNT))
-
-
-STATIONS = {
-    "half": (lambda l: 0.3 * l / 0.6, 0.5),
-    "a quarter": (lambda l: l * 0.1 + l * 0.2 - 0.05 * l, 0.25),
-    "base": (lambda l: l - 0.6, 0.0),
-    "tip": (lambda l: 3 * (l / 3), 1.0),
-    "tip, by a root": (lambda l: ca.sqrt(l) ** 2, 1.0),
-    "anywhere": (lambda l: 0.437 * l, 0.437),
-}
-
-
-@pytest.mark.parametrize("station", STATIONS)
-@pytest.mark.parametrize("rung", ["lanes", "single"])
-def test_a_station_on_a_ratio_that_is_looked_at(station, rung):
-    """A force jumps there; where rounding puts the station is no error of it."""
-    place, ratio = STATIONS[station]
-    scene = cantilever(place)
-    solution = evaluate(scene, **RUNGS[rung])
-    assert_near(ratios(solution, exactly(scene)))
-    (load,) = solution.section("link").law.loads
-    assert load.station == pytest.approx(ratio, abs=1e-6)
-    unit = ROUNDING[solution.provenance.precision]
-    for force in ("axial", "shear"):
-        assert abs(solution.peak(f"section:link:{force}").value) > 9e4
-        assert unit * 1e4 < solution.errors[f"section:link:{force}"] < unit * 1e6
-
-
-def friction(load):
-    """A crank under a torque that depends on time, angle and rate, the last zero at instants, and a slider pushed likewise."""
-    m = Mechanism("friction")
-    crank, rod, slider = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.3, mass=1.0), m.point_mass("slider", 1.0)
-    main = m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, slider)
-    guide = m.prismatic("guide", m.ground, slider, axis=(1, 0))
-    m.torque("torque", crank, load(m.time, m.coordinate(main), m.rate(main)))
-    m.force("force", slider, x=load(m.time, m.coordinate(guide), m.rate(guide)))
-    return Scene(m, {"O": harmonic(0.0, math.pi, 1.0, 0.1)}, posture={"rod": 0.0}, t=(0.0, 1.0, COUNT))
-
-
-JUMPS = {
-    "sign of a rate": lambda t, q, w: -1e6 * ca.sign(w),
-    "one way": lambda t, q, w: -1e6 * (w > 0),
-    "from a place on": lambda t, q, w: ca.if_else(q > 0.31, 1e6, -3e5),
-    "from a time on": lambda t, q, w: 1e6 * (t >= 0.3),
-    "a stair": lambda t, q, w: 1e5 * ca.floor(t / 0.07),
-    "a saw": lambda t, q, w: 1e6 * ca.fmod(t, 0.07),
-    "a table with a step": lambda t, q, w: table(t, [0.0, 0.3, 0.3 + 1e-9, 1.0], [1.0, 1.0, 1e6, 1e6]),
-    "several": lambda t, q, w: -1e6 * ca.sign(w) + 3e5 * (q > 0.31) - 1e5 * (t >= 0.3),
-}
-
-
-@pytest.mark.parametrize("jump", JUMPS)
-@pytest.mark.parametrize("rung", ["lanes", "c", "single"])
-def test_a_load_that_jumps(jump, rung):
-    """Either side of a jump by itself, the one that the result took."""
-    if (jump, rung) == ("a table with a step", "single"):
-        pytest.skip("a step narrower than singles are apart is steep, but no jump")
-    scene = friction(JUMPS[jump])
-    solution = evaluate(scene, **RUNGS[rung])
-    assert_near(ratios(solution, exactly(scene)))
-    unit = ROUNDING[solution.provenance.precision]
-    assert solution.errors["load:force:fx"] < 1e3 * unit * 1e6
-
-
-def test_a_load_that_jumps_where_rounding_decides():
-    """At dead centres, where rates are zero but for rounding, packs may take another side than one instant at a time."""
-    m = Mechanism("reversing")
-    crank, rod, slider = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.3, mass=1.0), m.point_mass("slider", 1.0)
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, slider)
-    guide = m.prismatic("guide", m.ground, slider, axis=(1, 0))
-    m.force("friction", slider, x=-1e6 * ca.sign(m.rate(guide)))
-    scene = Scene(m, {"O": polynomial(0.0, 2 * math.pi)}, posture={"rod": 0.0}, t=(0.0, 4.0, COUNT))
-    exact = exactly(scene)
-    for rung in ("lanes", "c", "single"):
-        assert_near(ratios(evaluate(scene, **RUNGS[rung]), exact))
-
-
-@pytest.mark.parametrize("gap", [0.0, 1e-12, 1e-9, 1e-5])
-@pytest.mark.parametrize("length", [0.0, 1e-3])
-def test_a_stiff_spring_between_points_that_nearly_coincide(gap, length):
-    m = Mechanism("stiff")
-    link = m.link("link", length=1.0, mass=1.0)
-    m.revolute("O", m.ground, link)
-    at = m.ground.at(math.cos(0.3) - gap, math.sin(0.3) + gap)
-    m.spring("spring", at, link.tip, stiffness=1e10, length=length)
-    scene = Scene(m, {"O": harmonic(0.3, 1e-6, 1.0, 0.1)}, t=(0.0, 1.0, COUNT))
-    assert_near(ratios(evaluate(scene, **RUNGS["lanes"]), exactly(scene)))
 
 
 @pytest.mark.parametrize("kind", kinds.KINDS, ids=[kind.__name__ for kind in kinds.KINDS])

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 import sweeps
-from builders import slider_crank
+from mechanisms import slider_crank
 
 from lagrange_casadi import evaluate, sweep
 from lagrange_casadi.cli import main

@@ -1,20 +1,17 @@
 """Every case: against vector Newton-Euler at several instants, its certificate, its page, its figures."""
 
 import math
-from pathlib import Path
 
 import casadi as ca
 import numpy as np
 import pytest
 from arithmetic import DOUBLE
+from balance import compare
 from beside import of_case
-from builders import compare
+from conftest import CASES, NAMES
 
 from lagrange_casadi import LagrangeSystem, evaluate, load_case
 from lagrange_casadi.draw import figures
-
-CASES = Path(__file__).parent.parent / "cases"
-NAMES = sorted(path.parent.name for path in CASES.glob("*/case.py"))
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -7,10 +7,8 @@ import casadi as ca
 import h5py
 import numpy as np
 import pytest
-from builders import slider_crank
 from conftest import CASES
-from test_loops import ladder
-from test_redundancy import parallelogram
+from mechanisms import far, ladder, parallelogram, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, save
 from lagrange_casadi.cli import main
@@ -224,16 +222,6 @@ def test_what_fails_its_certificate_is_not_exported(monkeypatch, tmp_path):
 
 def test_a_gap_far_from_the_origin_is_judged_by_the_places_that_it_is_between():
     """A four-bar a kilometre away: places have lost three digits, and nothing is wrong."""
-
-    def four_bar(x):
-        m = Mechanism("far")
-        a, b, c = (m.link(name, length=length, mass=1.0) for name, length in zip("abc", (0.1, 0.35, 0.25), strict=True))
-        m.revolute("O", m.ground.at(x, 0), a)
-        m.revolute("A", a.tip, b)
-        m.revolute("B", b.tip, c.tip)
-        m.revolute("C", m.ground.at(x + 0.3, 0.05), c)
-        return Scene(m, {"O": polynomial(0, 10.0)}, t=(0, 0.6, 61), posture={"c": 1.5})
-
-    near, far = evaluate(four_bar(0.0)), evaluate(four_bar(1e6))
-    np.testing.assert_allclose(far.effort("O"), near.effort("O"), atol=1e-6 * np.max(np.abs(near.effort("O"))))
-    assert math.isclose(far.certificate["closure"].max(), 0.0, abs_tol=1e-9)
+    near, away = evaluate(far(0.0)), evaluate(far(1e6))
+    np.testing.assert_allclose(away.effort("O"), near.effort("O"), atol=1e-6 * np.max(np.abs(near.effort("O"))))
+    assert math.isclose(away.certificate["closure"].max(), 0.0, abs_tol=1e-9)

@@ -7,6 +7,7 @@ import kinds
 import numpy as np
 import pytest
 from extremes import slider_crank
+from mechanisms import far
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.declare.motion import harmonic, polynomial
@@ -57,18 +58,6 @@ def flywheel(gravity):
     return Scene(m, {"O": polynomial(0.1, 1e4)}, t=(0.0, 0.1, 61))
 
 
-def far(distance=1e7):
-    """A loaded four-bar far from the origin, whose places have lost nearly all that is behind the point."""
-    m = Mechanism("far")
-    a, b, c = (m.link(name, length=length, mass=1.0) for name, length in zip("abc", (0.1, 0.35, 0.25), strict=True))
-    m.revolute("O", m.ground.at(distance, 0), a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c.tip)
-    m.revolute("C", m.ground.at(distance + 0.3, 0.05), c)
-    m.force("load", c.at(0.1), x=1e5)
-    return Scene(m, {"O": polynomial(0, 10.0)}, t=(0, 0.6, 61), posture={"c": 1.5})
-
-
 RIGHT = {
     "five light stages under 1 MN": (scissors, {}),
     "a link of 1e-9 kg under 1 MN": (lambda: pendulum(), {}),
@@ -100,7 +89,7 @@ def test_what_is_right_passes(name, precision):
 
 def test_far_from_the_origin_right_results_pass():
     """Where reported places leave less than the tolerance."""
-    assert evaluate(far(), backend="vm").certified
+    assert evaluate(far(1e7, load=1e5), backend="vm").certified
 
 
 @pytest.mark.parametrize("kind", kinds.KINDS, ids=[kind.__name__ for kind in kinds.KINDS])

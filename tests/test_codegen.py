@@ -3,7 +3,6 @@
 import os
 import re
 import shutil
-import stat
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -11,22 +10,15 @@ from concurrent.futures import ThreadPoolExecutor
 import casadi as ca
 import numpy as np
 import pytest
-from builders import four_bar, slider_crank
-from test_mobility import truss_platform
+from compiled import PEDANTIC, SCENES, columns, fake_compiler
+from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
-from lagrange_casadi.arithmetic.compensated import DTYPES, PRECISIONS
+from lagrange_casadi.arithmetic.compensated import PRECISIONS
 from lagrange_casadi.codegen import compiler
-from lagrange_casadi.codegen.stages import compensated, plain
 from lagrange_casadi.errors import CompilerError
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.rung import Rung
-
-
-def spline_arm():
-    m = Mechanism("arm")
-    m.revolute("J", m.ground, m.link("a", length=1, mass=1))
-    return Scene(m, {"J": motion.samples([0, 1, 2, 3], [0, 1, 4, 2])}, t=(0, 3, 4))
 
 
 def without_ends():
@@ -43,16 +35,6 @@ def without_ends():
     return slider_crank(wanted=["effort"], mechanism=m)
 
 
-SCENES = {
-    "slider_crank": slider_crank,
-    "effort_alone": lambda: slider_crank(wanted=["effort"]),
-    "four_bar": four_bar,
-    "iterated": truss_platform,
-    "spline": spline_arm,
-}
-PEDANTIC = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter"]
-
-
 @pytest.mark.parametrize("name", SCENES)
 def test_emitted_c_is_pedantically_clean(name, tmp_path):
     source = tmp_path / "scene.c"
@@ -62,23 +44,6 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
         [*found.command, *PEDANTIC, "-c", source, "-o", tmp_path / "scene.o"], capture_output=True, text=True, check=False
     )
     assert result.returncode == 0, result.stderr
-
-
-def columns(graph, t, language, threads=1, extra=(), precision="double"):
-    """Every column by the compiled code, into arrays that held NaN."""
-    p, dtype = np.array(list(graph.scene.mechanism.values().values())), DTYPES[precision]
-    stages = plain(graph) if precision == "double" else compensated(graph, precision)
-    library = codegen.load(codegen.emit(graph, stages), codegen.find_compiler(language), extra)
-    guess = np.array(graph.newton.guess if graph.newton else (), dtype)
-    z, status = np.full((guess.size, t.size), np.nan, dtype), np.full(t.size, -1, dtype=np.int32)
-    out = np.full((len(graph.columns), t.size), np.nan, dtype)
-    if precision == "single":
-        t, p = (np.array([dtype.type(x), x - dtype.type(x)], dtype) for x in (t, p))
-    library.follow(t, p, guess, z, status)
-    library.evaluate(t, p, z, out, status, threads)
-    assert np.all(status == 0)
-    assert np.isfinite(out).all()
-    return out
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -124,7 +89,7 @@ def test_a_load_may_call_a_function_that_is_not_inlined(backend):
 
 def test_emission_is_the_same_in_every_process(tmp_path):
     """Two interpreters with different hash seeds emit the same bytes; no path, no clock."""
-    program = "import sys; sys.path[:0] = {!r}; from builders import slider_crank; from lagrange_casadi import codegen, derive; "
+    program = "import sys; sys.path[:0] = {!r}; from balance import slider_crank; from lagrange_casadi import codegen, derive; "
     program = program.format([str(tmp_path), os.path.dirname(__file__)]) + "print(codegen.emit(derive(slider_crank())))"
     texts = []
     for seed in ("1", "2"):
@@ -183,14 +148,6 @@ def test_a_damaged_library_is_built_again_and_said(fresh_cache):
     with pytest.warns(UserWarning, match=r"the cached library .*\.so was damaged and is built again"):
         evaluate(slider_crank(), backend="c")
     assert path.read_bytes() == whole
-
-
-def fake_compiler(folder, monkeypatch, script, variable="CC"):
-    program = folder / "fake-cc"
-    program.write_text(f"#!/bin/sh\n{script}\n")
-    program.chmod(program.stat().st_mode | stat.S_IXUSR)
-    monkeypatch.setenv(variable, str(program))
-    return program
 
 
 def test_a_failing_compiler_is_quoted_and_its_message_kept(tmp_path, fresh_cache, monkeypatch):

@@ -6,7 +6,8 @@ import casadi as ca
 import numpy as np
 import oracle
 import pytest
-from builders import INSTANT, MOTION, assert_balanced
+from balance import assert_balanced
+from mechanisms import INSTANT, MOTION
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import expression, polynomial

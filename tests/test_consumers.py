@@ -8,11 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import slider_crank
-from test_codegen import spline_arm
-from test_mobility import truss_platform
-from test_notes import bracket
-from test_turns import DRAG_LINK, sprung
+from mechanisms import DRAG_LINK, bracket, slider_crank, spline_arm, sprung, truss_platform
 
 from lagrange_casadi import codegen, evaluate, export, load_case
 from lagrange_casadi.quantities import FORCES

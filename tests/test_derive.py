@@ -9,8 +9,8 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 import pytest
-from builders import four_bar, slider_crank
-from test_codegen import SCENES
+from compiled import SCENES
+from mechanisms import four_bar, slider_crank
 
 import lagrange_casadi
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate
@@ -43,7 +43,7 @@ def test_a_graph_comes_back_from_its_text_as_it_was(name):
 def test_a_second_process_derives_nothing(fresh_cache, tmp_path):
     first = evaluate(slider_crank(), backend="c")
     program = (
-        f"import sys; sys.path[:0] = {[os.path.dirname(__file__)]!r}; from builders import slider_crank; "
+        f"import sys; sys.path[:0] = {[os.path.dirname(__file__)]!r}; from balance import slider_crank; "
         "sys.modules['lagrange_casadi.equations.derive'].assemble = None; "
         "from lagrange_casadi import evaluate; print(evaluate(slider_crank(), backend='c').effort('O').tobytes().hex())"
     )

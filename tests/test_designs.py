@@ -5,13 +5,11 @@ import subprocess
 
 import numpy as np
 import pytest
-from builders import crank_and_rod, four_bar, slider_crank
+from compiled import PEDANTIC, SCENES
 from conftest import CASES
 from design_rows import DENSITIES, around, assert_refined, loaded, peaks_of, scales, values
+from mechanisms import crank_and_rod, four_bar, parallelogram, pendulum, slider_crank
 from parametric import declared
-from test_codegen import PEDANTIC, SCENES
-from test_peaks import pendulum
-from test_redundancy import parallelogram
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
 from lagrange_casadi.codegen import library

@@ -5,9 +5,8 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from builders import crank_and_rod
 from design_rows import DENSITIES, assert_refined, loaded, peaks_of, values
-from test_peaks import lobes, pendulum
+from mechanisms import crank_and_rod, lobes, pendulum
 
 from lagrange_casadi import derive, evaluate, motion
 from lagrange_casadi.declare.motion import polynomial

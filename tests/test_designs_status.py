@@ -4,12 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from builders import slider_crank
 from conftest import CASES
 from design_rows import around, values
+from mechanisms import double_crank, flat_parallelogram, slider_crank, truss_platform
 from parametric import declared
-from test_kinematics import double_crank, flat_parallelogram
-from test_mobility import truss_platform
 
 from lagrange_casadi import Mechanism, Scene, load_case
 from lagrange_casadi.declare.motion import polynomial

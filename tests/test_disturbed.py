@@ -5,7 +5,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from test_mobility import truss_platform
+from mechanisms import truss_platform
 
 from lagrange_casadi import Mechanism, Scene, derive
 from lagrange_casadi.codegen.stages import compensated, plain

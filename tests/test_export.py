@@ -7,9 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import slider_crank
-from test_codegen import spline_arm
-from test_mobility import truss_platform
+from compiled import EVALUATED, HARNESS, cc, compilers, present, told
+from mechanisms import slider_crank, spline_arm, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, export, load_case, motion
 
@@ -31,28 +30,6 @@ def keywords():
     arm = m.link("int", length=l, mass=m.parameter("register", 2.0, "kg"))
     m.revolute("class", m.ground, arm)
     return Scene(m, {"class": motion.polynomial(0, 2)}, t=(0, 1, 11))
-
-
-def cc(command, folder, *sources, output="program"):
-    files = [folder / source for source in sources]
-    linked = [] if "-c" in command else ["-lm"]
-    return subprocess.run([*command, *files, "-o", folder / output, *linked], capture_output=True, text=True, check=False)
-
-
-def compilers():
-    """Those that there are, with the warnings that must not come."""
-    strict = ["-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion"]
-    found = [("gcc", ["gcc", "-std=c99", *strict]), ("clang", ["clang", "-std=c99", *strict])]
-    as_cpp = ["-pedantic", "-Wall", "-Wextra", "-Werror"]
-    found += [("g++", ["g++", "-x", "c++", "-std=c++11", *as_cpp]), ("clang++", ["clang++", "-x", "c++", "-std=c++17", *as_cpp])]
-    return found
-
-
-def present(command):
-    try:
-        return subprocess.run([command, "--version"], capture_output=True, check=False).returncode == 0
-    except OSError:
-        return False
 
 
 # Only one drive that turns has a cycle to be read from a table.
@@ -146,35 +123,7 @@ def test_nothing_recurs_allocates_or_is_of_another_precision(tmp_path):
     assert not re.search(r"(?<![\w.])\d+\.\d*(e[+-]?\d+)?(?![\w.])", re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL))
 
 
-HARNESS = """
-#include "@.h"
-#include <math.h>
-#include <stdio.h>
-int main(void) {
-  @_model model;
-  @_inputs inputs;
-  @_outputs outputs;
-  @_parameters parameters = @_defaults;
-  @_status status;
-  outputs.effort_O = 1;
-  %s
-  printf("%%d %%g %%s", (int) status, (double) outputs.effort_O, @_message(status));
-  return 0;
-}
-"""
-
-
-def told(folder, made, statements):
-    """What a program says that does this with an exported slider-crank."""
-    (folder / "harness.c").write_text((HARNESS % statements).replace("@", made.prefix))
-    result = cc(["cc", "-std=c99"], folder, "harness.c", f"{made.prefix}.c")
-    assert result.returncode == 0, result.stderr
-    status, effort, sentence = subprocess.run([folder / "program"], capture_output=True, text=True, check=True).stdout.split(" ", 2)
-    return int(status), float(effort), sentence
-
-
 PREPARED = "status = @_prepare(&model, &parameters); @_motion(&model, 0.01, &inputs); "
-EVALUATED = "status = @_evaluate(&model, &inputs, &outputs);"
 
 
 @pytest.mark.parametrize(
@@ -241,7 +190,7 @@ def test_iterated_loops_report_failure_and_stay_where_they_were(tmp_path):
 
 
 def test_twice_the_same_bytes(tmp_path):
-    program = "import sys; sys.path.insert(0, sys.argv[1]); from builders import slider_crank; from lagrange_casadi import export; "
+    program = "import sys; sys.path.insert(0, sys.argv[1]); from balance import slider_crank; from lagrange_casadi import export; "
     program += "export(slider_crank(), sys.argv[2], precision='single')"
     for name, seed in (("one", "1"), ("two", "2")):
         environment = {"PYTHONHASHSEED": seed, "PATH": "", "XDG_CACHE_HOME": str(tmp_path / f"cache_{name}")}

@@ -6,9 +6,8 @@ import subprocess
 
 import numpy as np
 import pytest
-from builders import slider_crank
-from test_export import cc
-from test_mobility import truss_platform
+from compiled import cc
+from mechanisms import slider_crank, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, export, motion
 from lagrange_casadi.errors import DeclarationError, PathError, SizeError, UnknownNameError

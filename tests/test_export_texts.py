@@ -8,10 +8,10 @@ from xml.etree import ElementTree
 
 import matplotlib.pyplot as plt
 import pytest
-from builders import slider_crank
+from compiled import cc, compilers, present
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_export import cc, compilers, present
+from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, motion, sweep
 from lagrange_casadi.cli import main

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from builders import slider_crank as free
 from conftest import CASES
 from importer import Instance, refusing, robot, signals, simulated, windy
+from mechanisms import slider_crank as free
 
 from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.codegen import find_compiler

@@ -9,10 +9,10 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from builders import slider_crank
+from compiled import fake_compiler
 from conftest import CASES
 from importer import Instance, robot, windy
-from test_codegen import fake_compiler
+from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.cli import main

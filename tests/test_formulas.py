@@ -11,10 +11,10 @@ import casadi as ca
 import mpmath
 import numpy as np
 import pytest
+from conftest import CASES, NAMES
+from mechanisms import truss_platform
 from parametric import declared, meant
 from precise import precise
-from test_cases import CASES, NAMES
-from test_mobility import truss_platform
 from truth import section
 
 from lagrange_casadi import Mechanism, Scene, derive, load_case

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import casadi as ca
 import pytest
-from builders import slider_crank
+from mechanisms import slider_crank
 
 from lagrange_casadi import __version__, export
 

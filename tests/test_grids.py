@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import slider_crank
+from mechanisms import slider_crank
 
 from lagrange_casadi import evaluate, load, save
 from lagrange_casadi.declare.density import NumericDensity

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from builders import slider_crank
+from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial

@@ -5,8 +5,18 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from builders import INSTANT, four_bar, instant_at, slider_crank
-from test_mobility import CASES, block, cross_slide, truss_platform
+from balance import instant_at
+from mechanisms import (
+    INSTANT,
+    PATTERNS,
+    block,
+    cross_slide,
+    double_crank,
+    flat_parallelogram,
+    four_bar,
+    slider_crank,
+    truss_platform,
+)
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial
@@ -14,13 +24,13 @@ from lagrange_casadi.equations.linear import LinearSystem
 from lagrange_casadi.errors import AssemblyError, DeclarationError, MobilityError
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", PATTERNS)
 def test_every_dyad_has_a_closed_form(name):
     """RRR, RRP, RPR, PRP and a guided point: none of these cases iterates."""
-    assert derive(CASES[name]()).newton is None
+    assert derive(PATTERNS[name]()).newton is None
 
 
-@pytest.mark.parametrize("scene", [four_bar(), block(), cross_slide(), CASES["inverted_block_carries"]()], ids=str)
+@pytest.mark.parametrize("scene", [four_bar(), block(), cross_slide(), PATTERNS["inverted_block_carries"]()], ids=str)
 def test_rates_are_the_derivatives_of_positions(scene):
     """Against differences in time that use positions alone."""
     h = 1e-4
@@ -151,16 +161,6 @@ def test_a_loop_that_does_not_converge_is_named(backend):
         evaluate(truss_platform(), backend=backend, parameters={"shaft": 5.0})
 
 
-def flat_parallelogram():
-    m = Mechanism("parallelogram")
-    a, b, c = m.link("a", length=0.2, mass=1.0), m.link("b", length=0.5, mass=1.0), m.link("c", length=0.2, mass=1.0)
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c.tip)
-    m.revolute("C", m.ground.at(0.5, 0), c)
-    return Scene(m, {"O": polynomial(0.7, 4.0)}, posture={"b": 0.0, "c": 0.7}, t=(0, 1, 101))
-
-
 def test_a_change_point_between_instants_is_named():
     """A parallelogram lies flat at 180 deg, where it may go on as one or turn over: neither is guessed."""
     evaluate(flat_parallelogram(), t=(0, 0.6, 61))
@@ -172,19 +172,6 @@ def test_a_change_point_between_instants_is_named():
 
 def test_a_near_dead_centre_is_none():
     evaluate(slider_crank(), parameters={"l": 0.1005}, t=(0, 0.08, 801))
-
-
-def double_crank(step):
-    """A drag link whose second crank a gear counts, so that it is iterated; instants ``step`` radians of the drive apart."""
-    m = Mechanism("double_crank")
-    a, b, c = (m.link(n, length=l, mass=1.0) for n, l in (("a", 0.3), ("b", 0.25), ("c", 0.35)))
-    wheel = m.link("wheel", length=0.1, mass=0.1)
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c.tip)
-    joints = m.revolute("C", m.ground.at(0.1, 0.0), c), m.revolute("G", m.ground.at(0.5, 0), wheel)
-    m.gear("mesh", *joints, ratio=-2.0)
-    return Scene(m, {"O": polynomial(0.2, 1.0)}, posture={"c": 0.6, "b": 1.5}, t=(0, 12 * step, 13))
 
 
 @pytest.mark.parametrize("backend", ["c", "vm"])

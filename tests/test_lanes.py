@@ -2,21 +2,17 @@
 
 import platform
 import subprocess
-from importlib import resources
 
 import numpy as np
 import pytest
-from builders import slider_crank
-from test_codegen import SCENES, columns
+from compiled import HEADER, SCENES, columns
+from mechanisms import slider_crank
 
 from lagrange_casadi import codegen, derive, evaluate
 from lagrange_casadi.arithmetic.compensated import PRECISIONS, ROUNDING
 from lagrange_casadi.codegen import library
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.rung import Rung
-
-HEADER = resources.files("lagrange_casadi.codegen").joinpath("lanes.h")
-
 
 both = pytest.mark.parametrize("precision", PRECISIONS)
 

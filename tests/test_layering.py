@@ -87,6 +87,14 @@ def test_matplotlib_waits_until_a_figure_is_drawn():
     subprocess.run([sys.executable, "-c", program], check=True)
 
 
+def test_tests_take_nothing_from_other_tests():
+    """What several need has a place of its own, as mechanisms have."""
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text())):
+            taken = [node.module or ""] if isinstance(node, ast.ImportFrom) else [name.name for name in getattr(node, "names", ())]
+            assert not [name for name in taken if name.startswith("test_")], f"{path.name}:{node.lineno}"
+
+
 def test_no_file_is_two_things():
-    for _, path in modules():
+    for path in (*(path for _, path in modules()), *Path(__file__).parent.glob("*.py")):
         assert len(path.read_text().splitlines()) <= 400, path

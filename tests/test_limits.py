@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from compiled import EVALUATED, told
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_export import EVALUATED, told
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export
 from lagrange_casadi.declare.motion import polynomial

@@ -5,7 +5,8 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from builders import INSTANT, assert_balanced, crank_and_rod, instant_at
+from balance import assert_balanced, instant_at
+from mechanisms import INSTANT, crank_and_rod
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, table
 from lagrange_casadi.declare.motion import polynomial

@@ -5,7 +5,8 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from builders import assert_balanced
+from balance import assert_balanced
+from mechanisms import ladder
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial
@@ -14,21 +15,6 @@ from lagrange_casadi.errors import AssemblyError
 
 def iterated(scene):
     return derive(scene).newton is not None
-
-
-def ladder(length=1.0, mass=2.0):
-    """Its foot on the floor, its tip on the wall, its middle in the slot of a driven crank without mass."""
-    m = Mechanism("ladder")
-    crank, bar = m.link("crank", length=0.8, mass=0.0), m.link("bar", length=length, mass=mass)
-    foot, tip, middle = (m.point_mass(name, 0.0) for name in ("foot", "tip", "middle"))
-    m.revolute("O", m.ground, crank)
-    m.prismatic("floor", m.ground, foot, axis=(1, 0))
-    m.revolute("F", bar, foot)
-    m.revolute("T", bar.tip, tip)
-    m.prismatic("wall", m.ground, tip, axis=(0, 1))
-    m.revolute("M", bar.at(length / 2), middle)
-    m.slot("slot", crank, middle)
-    return Scene(m, {"O": polynomial(0.5, 0.2)}, t=(0, 3, 31), posture={"bar": math.pi - 0.5, "floor": 0.8})
 
 
 def test_a_ladder_against_a_wall():

@@ -4,7 +4,7 @@ import math
 
 import casadi as ca
 import pytest
-from builders import slider_crank
+from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene
 from lagrange_casadi.declare.motion import polynomial

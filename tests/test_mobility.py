@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from builders import INSTANT, MOTION, compare, four_bar, instant_at, slider_crank
+from balance import compare, instant_at
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mechanisms import INSTANT, MOTION, PATTERNS, chain, four_bar, slider_crank, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial
@@ -16,131 +17,9 @@ from lagrange_casadi.errors import AssemblyError
 TOLERANCE = 1e-12
 
 
-def chain(*parts):
-    """Links end to end from the ground; each part is (kind, reverse)."""
-    m = Mechanism("chain")
-    near, motion = m.ground, {}
-    for i, (kind, reverse) in enumerate(parts):
-        link = m.link(f"l{i}", length=0.1 + 0.07 * i, mass=0.3 + 0.2 * i)
-        ends = (link, near) if reverse else (near, link)
-        if kind == "revolute":
-            m.revolute(f"J{i}", *ends)
-        else:
-            m.prismatic(f"J{i}", *ends, axis=(1.0, 0.3), angle=0.5)
-        motion[f"J{i}"] = polynomial(0.1 + 0.2 * i, -2.0 + i, 1.0 + 0.5 * i)
-        near = link.tip
-    m.revolute("P", near, m.point_mass("payload", 0.7))
-    return Scene(m, motion, t=(INSTANT, 1, 2))
-
-
-def block(guide_of="ground"):
-    """An offset slider-crank whose slider is a link, guided at an angle."""
-    m = Mechanism("block")
-    a, b, s = (m.link(n, length=l, mass=w) for n, l, w in (("a", 0.1, 0.3), ("b", 0.35, 0.5), ("s", 0.05, 0.6)))
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, s)
-    m.prismatic("P", m.ground.at(0, 0.03), s, axis=(1, 0.2), angle=0.4)
-    return Scene(m, {"O": MOTION}, posture={"b": 0.0}, t=(INSTANT, 1, 2))
-
-
-def driven_slider():
-    """The slider drives the crank."""
-    m = Mechanism("driven_slider")
-    a, b = m.link("a", length=0.1, mass=0.3), m.link("b", length=0.35, mass=0.5)
-    s = m.point_mass("s", 0.6)
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, s)
-    m.prismatic("P", m.ground.at(0, 0.03), s, axis=(1, 0.2))
-    return Scene(m, {"P": polynomial(0.3, 0.2, 0.1)}, posture={"a": 1.0}, t=(INSTANT, 1, 2))
-
-
-def inverted(block_carries):
-    """A block on the crank's pin slides along a rocker (RPR); either of the two carries the axis."""
-    m = Mechanism("inverted")
-    a, b, s = (m.link(n, length=l, mass=w) for n, l, w in (("a", 0.1, 0.3), ("rocker", 0.5, 0.5), ("s", 0.05, 0.2)))
-    m.revolute("O", m.ground, a)
-    m.revolute("Q", m.ground.at(0, -0.3), b)
-    m.revolute("A", a.tip, s)
-    if block_carries:
-        m.prismatic("P", s, b, axis=(1, 0), angle=0.3)
-    else:
-        m.prismatic("P", b, s, axis=(1, 0))
-    return Scene(m, {"O": MOTION}, posture={"rocker": 1.6}, t=(INSTANT, 1, 2))
-
-
-def cross_slide():
-    """A pin on a crank moves two slides at right angles (PRP): no branch, two equations for two slides."""
-    m = Mechanism("cross_slide")
-    a, x, y = (m.link(n, length=l, mass=w) for n, l, w in (("a", 0.1, 0.3), ("x", 0.2, 0.5), ("y", 0.05, 0.2)))
-    m.revolute("O", m.ground, a)
-    m.prismatic("X", m.ground, x, axis=(1, 0))
-    m.prismatic("Y", x, y, axis=(0, 1), angle=0.2)
-    m.revolute("A", a.tip, y)
-    return Scene(m, {"O": MOTION}, t=(INSTANT, 1, 2))
-
-
-def six_bar():
-    """A four-bar whose rocker's pin drives a slider: two loops, one after the other."""
-    m = Mechanism("six_bar")
-    a, b, c, d = (m.link(n, length=l, mass=w) for n, l, w in zip("abcd", (0.1, 0.35, 0.25, 0.4), (0.3, 0.5, 0.4, 0.2), strict=True))
-    s = m.point_mass("s", 0.6)
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("C", m.ground.at(0.3, 0.05), c)
-    m.revolute("B", b.tip, c.tip)
-    m.revolute("D", c.tip, d)
-    m.revolute("E", d.tip, s)
-    m.prismatic("guide", m.ground.at(0.3, 0.1), s, axis=(1, 0))
-    return Scene(m, {"O": MOTION}, posture={"c": 1.5, "d": 0.0}, t=(INSTANT, 1, 2))
-
-
-def truss_platform(loads=lambda m: None):
-    """A triangle of three bars on three legs, one leg's foot driven: no dyad anywhere, six unknown directions at once."""
-    m = Mechanism("truss_platform")
-    feet = [(0.0, 0.0), (0.6, 0.0), (0.6, 0.7)]
-    corners = [(0.2, 0.2), (0.4, 0.2), (0.3, 0.4)]
-    bars, posture = [], {}
-    for i in range(3):
-        (x0, y0), (x1, y1) = corners[i], corners[(i + 1) % 3]
-        bars.append(m.link(f"bar{i}", length=math.hypot(x1 - x0, y1 - y0), mass=0.2 + 0.1 * i))
-        posture[f"bar{i}"] = math.atan2(y1 - y0, x1 - x0) + 0.1
-    shaft = m.link("shaft", length=m.parameter("shaft", 0.05, "m"), mass=0.1)
-    m.revolute("O", m.ground.at(-0.05, 0.0), shaft)
-    for i in range(3):
-        (x0, y0), (x1, y1) = feet[i], corners[i]
-        leg = m.link(f"leg{i}", length=math.hypot(x1 - x0, y1 - y0), mass=0.3)
-        posture[f"leg{i}"] = math.atan2(y1 - y0, x1 - x0) - 0.1
-        m.revolute(f"foot{i}", shaft.tip if i == 0 else m.ground.at(x0, y0), leg)
-        m.revolute(f"corner{i}", leg.tip, bars[i])
-        m.revolute(f"mate{i}", bars[i - 1].tip, bars[i])
-    loads(m)
-    return Scene(m, {"O": polynomial(0.0, 0.4, 0.5)}, posture=posture, t=(0.0, 1.0, 21))
-
-
-CASES = {
-    "slider_crank": lambda: slider_crank(t=(INSTANT, 1, 2)),
-    "four_bar": four_bar,
-    "four_bar_ends_swapped": lambda: four_bar(turned=(True, False)),
-    "four_bar_rocker_swapped": lambda: four_bar(turned=(False, True)),
-    "four_bar_all_swapped": lambda: four_bar(turned=(True, True)),
-    "block": block,
-    "driven_slider": driven_slider,
-    "inverted_rocker_carries": lambda: inverted(block_carries=False),
-    "inverted_block_carries": lambda: inverted(block_carries=True),
-    "cross_slide": cross_slide,
-    "six_bar": six_bar,
-    "chain_rrr": lambda: chain(("revolute", False), ("revolute", False), ("revolute", False)),
-    "chain_reversed": lambda: chain(("revolute", True), ("revolute", True), ("revolute", False)),
-    "chain_prismatic": lambda: chain(("revolute", False), ("prismatic", False), ("revolute", False)),
-    "chain_prismatic_reversed": lambda: chain(("revolute", False), ("prismatic", True), ("revolute", True)),
-}
-
-
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", PATTERNS)
 def test_every_force_against_newton_euler(name):
-    worst, gap = compare(CASES[name]())
+    worst, gap = compare(PATTERNS[name]())
     assert gap < TOLERANCE, worst
 
 

@@ -4,21 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from builders import assert_balanced
+from balance import assert_balanced
+from mechanisms import bracket
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load, save
 from lagrange_casadi.declare.motion import harmonic, polynomial
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.instants.rung import Rung
-
-
-def bracket(reach=0.9):
-    """A mass slides along a swinging arm, beyond its tip and before its base."""
-    m = Mechanism("bracket")
-    arm, p = m.link("arm", length=m.parameter("l", 0.5, "m", low=0.0), mass=1.0), m.point_mass("p", 2.0)
-    m.revolute("J", m.ground.at(0, 0), arm.at(0.1))
-    m.prismatic("S", arm, p, axis=(1, 0))
-    return Scene(m, {"J": polynomial(0.2, 3.0, 4.0), "S": harmonic(0.25, reach, 1.0)}, t=(0.0, 1.0, 101))
 
 
 def slotted(x=0.05):

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from builders import section_forces, slider_crank
+from balance import section_forces
+from mechanisms import slider_crank
 
 from lagrange_casadi import derive
 

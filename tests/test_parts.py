@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from builders import INSTANT, MOTION, assert_balanced, crank_and_rod
+from balance import assert_balanced
+from mechanisms import INSTANT, MOTION, crank_and_rod
 
 from lagrange_casadi import Mechanism, Scene, density, derive, evaluate, table
 from lagrange_casadi.declare.motion import polynomial

@@ -5,26 +5,15 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from builders import four_bar, settle
+from balance import settle
 from conftest import CASES
-from test_redundancy import parallelogram
+from mechanisms import LENGTH, MASS, G, four_bar, lobes, parallelogram, pendulum
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate, load, load_case, motion, save
+from lagrange_casadi import Scene, derive, evaluate, load, load_case, motion, save
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
 from lagrange_casadi.study.peaks import forces, rates, refine, shortfall
 
-MASS, LENGTH, G = 1.2, 0.5, 9.81
 NAMES = sorted(path.name for path in CASES.iterdir() if (path / "case.py").exists())
-
-
-def pendulum(law, gravity=G, load=None, **keywords):
-    m = Mechanism("pendulum")
-    m.set_gravity(0, -gravity)
-    arm = m.link("arm", length=LENGTH, mass=MASS)
-    pin = m.revolute("pin", m.ground, arm)
-    if load:
-        m.force("push", arm.tip, x=load(m.coordinate(pin)))
-    return Scene(m, {"pin": law}, **keywords)
 
 
 def vm(scene, **keywords):
@@ -93,11 +82,6 @@ def test_peaks_of_a_turning_pendulum_are_exact():
     assert axial.t == pytest.approx((1.5 * math.pi - 0.1) / speed, abs=1e-12 * step)
     assert axial.value > solution.peak("section:arm:axial").value * (1 + 1e-6)
     assert peaks["motion:pin"] == solution.peak("motion:pin")
-
-
-def lobes(t):
-    """Two lobes of almost one height."""
-    return ca.exp(-(((t - 1.0) / 0.2) ** 2)) + (1 + 1e-5) * ca.exp(-(((t - 2.05) / 0.2) ** 2))
 
 
 def test_the_higher_of_two_peaks_is_found_where_the_instants_tell_otherwise():

@@ -8,11 +8,9 @@ import numpy as np
 import oracle
 import pytest
 from arithmetic import DOUBLE, Digits
-from builders import slider_crank
+from conftest import CASES, NAMES, SIXTY_DIGITS
+from mechanisms import parallelogram, slider_crank
 from precise import precise
-from test_cases import CASES, NAMES
-from test_redundancy import parallelogram
-from test_reference import SIXTY_DIGITS
 
 from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.quantities import FORCES

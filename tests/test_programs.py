@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 import sweeps
-from builders import slider_crank
-from test_codegen import fake_compiler
+from compiled import fake_compiler
+from mechanisms import slider_crank
 
 from lagrange_casadi import codegen, evaluate
 from lagrange_casadi.cli import main

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import slider_crank
+from mechanisms import slider_crank
 
 from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.errors import DeclarationError

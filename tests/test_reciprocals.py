@@ -2,7 +2,7 @@
 
 import casadi as ca
 import numpy as np
-from builders import slider_crank
+from mechanisms import slider_crank
 
 from lagrange_casadi import derive
 from lagrange_casadi.equations.reciprocals import differentiable, share_reciprocals

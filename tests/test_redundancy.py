@@ -4,30 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from mechanisms import parallelogram
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError, MobilityError
 from lagrange_casadi.instants.rung import Rung
-
-
-def parallelogram(third=1.0, pendulum=False):
-    """Three equal cranks on one coupler: one of them is too many. The third is off the line of the others, so none is dead."""
-    m = Mechanism("three_cranks")
-    a, b, c = (m.link(n, length=0.2, mass=0.3) for n in "abc")
-    bar = m.link("bar", length=1.0, mass=1.0)
-    m.revolute("O", m.ground, a)
-    m.revolute("P", m.ground.at(0.4, 0), b)
-    m.revolute("Q", m.ground.at(third, 0.3), c)
-    m.revolute("A", a.tip, bar)
-    m.revolute("B", b.tip, bar.at(0.4))
-    m.revolute("C", c.tip, bar.at(1.0, 0.3))
-    motion = {"O": polynomial(0.7, 2.0)}
-    if pendulum:
-        m.revolute("hang", bar.at(0.7), m.link("bob", length=0.3, mass=0.4))
-        motion["hang"] = polynomial(-1.5, 1.0)
-    return Scene(m, motion, posture={"a": 0.7, "b": 0.7, "c": 0.7, "bar": 0.0}, t=(0, 3.0, 31))
 
 
 def test_reactions_that_are_not_unique_are_named():

@@ -1,18 +1,14 @@
 """Numbers from outside: none of them made by this project."""
 
-import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import instant_at, section_forces
+from balance import instant_at, section_forces
+from conftest import SIXTY_DIGITS
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial
-
-# Vector Newton-Euler on free bodies in 60-digit arithmetic, the paper's mechanism and motion; its "about" says what each entry is.
-SIXTY_DIGITS = json.loads((Path(__file__).parent / "data" / "slider_crank_60_digits.json").read_text())
 
 
 @pytest.fixture(scope="module")

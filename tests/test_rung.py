@@ -4,8 +4,8 @@ import shlex
 import sys
 
 import pytest
-from builders import slider_crank
-from test_cli import CASE
+from mechanisms import slider_crank
+from sweeps import CASE
 
 from lagrange_casadi import evaluate
 from lagrange_casadi.cli import main

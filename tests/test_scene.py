@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from builders import four_bar, slider_crank
+from mechanisms import four_bar, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial

@@ -8,9 +8,8 @@ import subprocess
 import casadi as ca
 import numpy as np
 import pytest
-from test_codegen import PEDANTIC, SCENES
-from test_interpret import EACH, X, Y
-from test_lanes import HEADER
+from compiled import HEADER, PEDANTIC, SCENES
+from operations import EACH, X, Y
 
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate
 from lagrange_casadi.codegen.compiler import FLAGS

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from builders import slider_crank
-from test_codegen import columns
+from compiled import columns
+from mechanisms import slider_crank
 
 from lagrange_casadi import codegen, derive
 from lagrange_casadi.codegen import split

@@ -6,8 +6,10 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from builders import four_bar, instant_at, settle, slider_crank
-from test_cases import CASES, NAMES
+from balance import instant_at, settle
+from conftest import CASES, NAMES
+from estimates import kind
+from mechanisms import counting, four_bar, harmonics, sampled, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
 from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, counts, plain
@@ -17,17 +19,10 @@ from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.judge.certificate import certify
 from lagrange_casadi.judge.reference import reference
-from lagrange_casadi.quantities import quantity_of
 
 # Compiled in half the time; test_codegen shows that not a bit depends on it.
 DOUBLE = [Rung("vm"), Rung("c", flags="-O1"), Rung("lanes", flags="-O1")]
 SINGLE = [Rung("c", "single", flags="-O1"), Rung("lanes", "single", flags="-O1")]
-
-
-def kind(name):
-    """What is measured by one peak: motions alone, else all of a group that have a unit in common."""
-    group, *_ = name.split(":")
-    return name if group.startswith(("motion", "_")) else (group, quantity_of(name).unit)
 
 
 def gap(graph, t, rung, truth=None):
@@ -100,26 +95,12 @@ def test_singles_at_the_start(name):
         assert gap(graph, t, rung, truth) < 3e-6
 
 
-def counting(motion, load, **parameters):
-    """A driven crank with a load on its rod; ``load(m, angle)`` is a force on the slider along its guide."""
-    m = Mechanism("counting")
-    symbols = {name: m.parameter(name, value) for name, value in parameters.items()}
-    crank, rod = m.link("crank", length=0.1, mass=0.3), m.link("rod", length=0.35, mass=0.5)
-    slider = m.point_mass("slider", 0.6)
-    joint = m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, slider)
-    m.prismatic("guide", m.ground, slider, axis=(1, 0))
-    m.force("load", slider, x=load(m, m.coordinate(joint), **symbols))
-    return Scene(m, {"O": motion}, posture={"rod": 0.0}, t=(0.0, 0.1, 11))
-
-
 RAMP = polynomial(0.3, 40.0)
 LOADS = {
     "fmod": lambda m, angle: ca.sin(0.7 * ca.fmod(angle - 0.2, 4 * math.pi)),
     "remainder": lambda m, angle: ca.remainder(angle, 2 * math.pi) ** 2,
     "turns": lambda m, angle: 3.0 * (angle - 2 * math.pi * ca.floor(angle / (2 * math.pi))),
-    "harmonics": lambda m, angle: 5.0 * ca.sin(3 * angle) + ca.cos(angle / 2 - 0.1) ** 2,
+    "harmonics": harmonics,
     "time": lambda m, angle: 50.0 * ca.sin(100 * m.time) * (1 + ca.cos(100 * m.time - angle)),
     "size": lambda m, angle: ca.sin(ca.fabs(0.3 - 2 * angle)),
     "tangent": lambda m, angle: ca.tan(angle / 4) / (1 + ca.tan(angle / 4) ** 2),
@@ -213,12 +194,6 @@ def test_springs_on_joints_without_a_drive():
     truth = exact(graph, t)
     for rung in SINGLE:
         assert gap(graph, t, rung, truth) < 1e-5
-
-
-def sampled(scale):
-    """A crank driven through samples of a steady rate beside a swing."""
-    t = np.linspace(0.0, 100.0, 401)
-    return counting(samples(t, scale * (5.0 * t + 0.2 * np.sin(t))), LOADS["harmonics"])
 
 
 def test_motion_by_samples():

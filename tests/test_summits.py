@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_peaks import pendulum
+from mechanisms import pendulum
 
 from lagrange_casadi import evaluate, motion
 from lagrange_casadi.designs.engine import DesignEngine

@@ -9,16 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sweeps
+from sweeps import ASKED, CASE
 
 from lagrange_casadi.cli import main, progress
 from lagrange_casadi.errors import StoreError
 from lagrange_casadi.sweep import Sweep, cluster
 from lagrange_casadi.sweep import columns as kept
 from lagrange_casadi.sweep.parts import Folder
-
-CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
-ASKED = ["sweep", str(CASE), "--t", "0:0.08:21", "--want", "effort", "--want", "section:rod"]
-BENDING = "peak:section:rod:bending"
 
 
 def test_sweep_writes_one_file_and_says_what_is_in_it(here, capfd):

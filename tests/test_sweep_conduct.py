@@ -2,55 +2,21 @@
 
 import os
 import random
-import resource
 import shutil
 import signal
 import subprocess
 import sys
-import textwrap
 import threading
 
 import h5py
 import pytest
 import sweeps
+from sweeps import GRID, SIZE, StopError, run, stop_after
 
-from lagrange_casadi.errors import BusyError, DeclarationError, PathError, SizeError, StoppedError, StoreError
+from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoppedError, StoreError
 from lagrange_casadi.sweep import sweep
 from lagrange_casadi.sweep.parts import Folder
 from lagrange_casadi.system.room import cores
-
-GRID = {"l": (0.15, 0.4, 60), "r": (0.05, 0.1, 7)}
-SIZE = 420
-
-
-@pytest.fixture
-def engine(monkeypatch):
-    return sweeps.use(monkeypatch)
-
-
-def run(path, grid=None, **keywords):
-    return sweep(sweeps.scene(), GRID if grid is None else grid, out=path, **keywords).path.read_bytes()
-
-
-@pytest.fixture
-def whole(engine, tmp_path):
-    """The bytes of an uninterrupted sweep."""
-    return run(tmp_path / "whole.h5")
-
-
-class _StopError(Exception):
-    pass
-
-
-def stop_after(count):
-    """A progress that stops a sweep after so many reports of designs."""
-    seen = iter(range(count))
-
-    def progress(what, _done, _total):
-        if what == "designs" and next(seen, None) is None:
-            raise _StopError
-
-    return progress
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5, None])
@@ -69,7 +35,7 @@ def test_the_same_bytes_whatever_the_stops(whole, tmp_path):
     while not path.exists():
         try:
             run(path, resume=True, progress=stop_after(chance.randint(1, 6)))
-        except _StopError:
+        except StopError:
             stops += 1
     assert stops > 3
     assert path.read_bytes() == whole
@@ -91,7 +57,7 @@ def test_the_order_of_blocks_does_not_matter(whole, tmp_path, monkeypatch):
 
 
 def test_what_is_committed_is_not_done_again(whole, engine, tmp_path):
-    with pytest.raises(_StopError):
+    with pytest.raises(StopError):
         run(tmp_path / "x.h5", progress=stop_after(3))
     kept = sum(part.stop - part.start for part in Folder(tmp_path / "x.h5").parts())
     engine.calls.clear()
@@ -102,7 +68,7 @@ def test_what_is_committed_is_not_done_again(whole, engine, tmp_path):
 
 def test_a_part_lost_or_damaged_is_done_again(whole, tmp_path):
     path, folder = tmp_path / "x.h5", tmp_path / "x.h5.parts"
-    with pytest.raises(_StopError):
+    with pytest.raises(StopError):
         run(path, progress=stop_after(4))
     first, second, *_ = sorted(folder.glob("*.part"))
     first.unlink()
@@ -142,7 +108,7 @@ def test_what_is_there_is_not_overwritten(whole, tmp_path):
     with pytest.raises(PathError, match=r"whole\.h5 exists: force=True replaces it, resume=True goes on"):
         run(path)
     assert path.read_bytes() == whole
-    with pytest.raises(_StopError):
+    with pytest.raises(StopError):
         run(path, force=True, progress=stop_after(2))
     assert path.read_bytes() == whole
     with pytest.raises(PathError, match=r"whole\.h5\.parts holds an unfinished sweep: go on with resume=True, or start anew"):
@@ -151,7 +117,7 @@ def test_what_is_there_is_not_overwritten(whole, tmp_path):
     assert run(path, force=True) == whole
     with pytest.raises(DeclarationError, match="resume and force exclude each other"):
         run(path, force=True, resume=True)
-    with pytest.raises(_StopError):
+    with pytest.raises(StopError):
         run(tmp_path / "notes.h5", progress=stop_after(2))
     (tmp_path / "notes.h5").write_text("mine")
     with pytest.raises(PathError, match=r"notes\.h5 is there now, which was not when the sweep began"):
@@ -195,7 +161,7 @@ def test_another_sweep_is_refused_with_the_difference(whole, tmp_path, change, s
     path = tmp_path / "whole.h5"
     if not finished:
         path = tmp_path / "x.h5"
-        with pytest.raises(_StopError):
+        with pytest.raises(StopError):
             run(path, progress=stop_after(2))
     with pytest.raises(StoreError) as caught:
         run(path, resume=True, **change)
@@ -234,7 +200,7 @@ def test_what_no_sweep_put_into_the_folder_is_not_touched(engine, tmp_path, keyw
 @pytest.mark.parametrize("keywords", [{}, {"resume": True}])
 def test_parts_of_nobody_knows_what_are_not_touched(whole, tmp_path, keywords):
     path, folder = tmp_path / "x.h5", tmp_path / "x.h5.parts"
-    with pytest.raises(_StopError):
+    with pytest.raises(StopError):
         run(path, progress=stop_after(4))
     (folder / "plan.json").unlink()
     (folder / "000000000900-000000000901.part").write_text("damaged")
@@ -259,7 +225,7 @@ def test_an_interrupt_after_the_end_stops_nothing(whole, tmp_path, monkeypatch):
 
 def test_what_waited_for_an_earlier_block_is_joined_in_the_end(whole, tmp_path):
     path, told = tmp_path / "x.h5", []
-    with pytest.raises(_StopError):
+    with pytest.raises(StopError):
         run(path, progress=stop_after(25))
     min(path.with_name("x.h5.parts").glob("*.part")).unlink()
     assert run(path, resume=True, progress=lambda *words: told.append(words)) == whole
@@ -302,146 +268,6 @@ def test_ctrl_c_finishes_the_blocks_under_way_and_says_how_to_go_on(whole, engin
     engine.calls.clear()
     assert run(path, resume=True) == whole
     assert sum(size for size, _ in engine.calls) == SIZE - kept
-
-
-def test_after_a_failure_nothing_more_is_begun(engine, tmp_path, monkeypatch):
-    def fail(*_):
-        raise StoreError("no")
-
-    engine.pause = 1e-3
-    monkeypatch.setattr(Folder, "commit", fail)
-    with pytest.raises(StoreError, match="no; nothing was done yet"):
-        run(tmp_path / "x.h5", workers=2)
-    assert len(engine.calls) <= 4
-    assert os.listdir(tmp_path) == []
-
-
-def test_out_of_memory_is_one_line_and_keeps_what_was_done(whole, engine, tmp_path, monkeypatch):
-    fine, calls = engine.evaluate, []
-
-    def fail(p, **keywords):
-        calls.append(p)
-        if len(calls) == 3:
-            raise MemoryError
-        return fine(p, **keywords)
-
-    monkeypatch.setattr(engine, "evaluate", fail)
-    with pytest.raises(SizeError, match=r"out of memory: fewer workers take less; 28 of 420 designs are kept in .*resume=True"):
-        run(tmp_path / "x.h5", workers=1)
-    assert run(tmp_path / "x.h5", resume=True) == whole
-
-
-def test_a_part_that_cannot_be_read_is_named(whole, tmp_path, monkeypatch):
-    path = tmp_path / "x.h5"
-    with pytest.raises(_StopError):
-        run(path, progress=stop_after(4))
-    lost = min(path.with_name("x.h5.parts").glob("*.part"))
-    parts = Folder.parts
-
-    def listed(self):
-        found = parts(self)
-        lost.unlink(missing_ok=True)
-        return found
-
-    with monkeypatch.context() as patch:
-        patch.setattr(Folder, "parts", listed)
-        with pytest.raises(StoreError, match=rf"cannot read {lost}: .*No such file or directory.*; \d+ of 420 designs are kept"):
-            run(path, resume=True)
-    assert run(path, resume=True) == whole
-
-
-def test_an_engine_that_fails_leaves_what_was_committed(whole, engine, tmp_path, monkeypatch):
-    fine, calls = engine.evaluate, []
-
-    def fail(p, **keywords):
-        calls.append(p)
-        if len(calls) == 3:
-            raise DeclarationError("no")
-        return fine(p, **keywords)
-
-    monkeypatch.setattr(engine, "evaluate", fail)
-    with pytest.raises(DeclarationError, match="no"):
-        run(tmp_path / "x.h5")
-    assert run(tmp_path / "x.h5", resume=True) == whole
-
-
-def test_a_disk_without_room_is_told_after_the_first_block(whole, engine, tmp_path, monkeypatch):
-    monkeypatch.setattr(shutil, "disk_usage", lambda _: shutil._ntuple_diskusage(10**6, 0, 10**4))
-    engine.calls.clear()
-    with pytest.raises(
-        StoreError, match=r"what is still to be written takes about \S+ GB, and the disk has 1e-05 GB left; 14 of 420"
-    ):
-        run(tmp_path / "x.h5", workers=1)
-    assert len(engine.calls) < 4
-    monkeypatch.undo()
-    sweeps.use(monkeypatch)
-    assert run(tmp_path / "x.h5", resume=True) == whole
-
-
-PROGRAM = """
-    import sys, resource, signal
-    sys.path.insert(0, {tests!r})
-    import sweeps
-    from lagrange_casadi.errors import LagrangeCasadiError
-    from lagrange_casadi.sweep import plan, sweep
-    plan.compiled = lambda *_: sweeps.Formula(pause={pause})
-    resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}))
-    print("ready", flush=True)
-    try:
-        sweep(sweeps.scene(), {grid!r}, out={out!r}, resume=True)
-    except LagrangeCasadiError as error:
-        print(error)
-        sys.exit(error.exit_status)
-"""
-
-
-def program(out, *, pause=0.0, limit=resource.RLIM_INFINITY, grid=GRID):
-    text = PROGRAM.format(tests=os.path.dirname(__file__), out=str(out), pause=pause, limit=limit, grid=grid)
-    return sweeps.process(sys.executable, "-c", textwrap.dedent(text))
-
-
-@pytest.mark.parametrize("limit", [500, 2_900, 30_000, 60_000])
-def test_a_full_disk_is_one_line_and_loses_nothing(whole, tmp_path, limit):
-    """Real writes that fail, of the plan, of a part, and at places of the file; the system's limit stands for a full disk."""
-    path = tmp_path / "x.h5"
-    with program(path, limit=limit) as full:
-        out, err = full.communicate(timeout=60)
-        assert full.returncode == 1
-    assert err == ""
-    assert out.startswith(f"ready\ncannot write {path}: File too large")
-    assert not path.exists()
-    kept = sum(1 for _ in tmp_path.glob("x.h5.parts/*.part"))
-    assert (kept > 0) == (limit > 2_900)
-    assert run(path, resume=True) == whole
-    assert sorted(os.listdir(tmp_path)) == ["whole.h5", "x.h5"]
-
-
-def test_killed_at_twenty_random_moments(whole, tmp_path):
-    """kill -9, while blocks are evaluated, committed, joined and put in place; and resumed each time."""
-    path, chance, phases = tmp_path / "x.h5", random.Random(20), set()
-    kills = 0
-    while kills < 20:
-        with program(path, pause=2e-4) as running:
-            assert running.stdout.readline() == "ready\n"
-            if kills % 2:
-                sweeps.wait_for(lambda: any(tmp_path.glob("x.h5.parts/*.part")) or running.poll() is not None)
-            try:
-                # The first time at once, before there is anything.
-                running.wait(timeout=chance.uniform(0.0, 0.25) if kills else 0.0)
-            except subprocess.TimeoutExpired:
-                running.send_signal(signal.SIGKILL)
-                running.wait()
-                kills += 1
-        folder = tmp_path / "x.h5.parts"
-        parts = sum(1 for _ in folder.glob("*.part"))
-        phases.add("beginning" if not parts else "blocks" if parts < 30 else "ending")
-        if path.exists():
-            assert path.read_bytes() == whole
-            phases.add("done")
-            path.unlink()
-            shutil.rmtree(folder, ignore_errors=True)
-    assert run(path, resume=True) == whole
-    assert phases >= {"beginning", "blocks"}
 
 
 def test_a_file_survives_being_replaced(whole, tmp_path):

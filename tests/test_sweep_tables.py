@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 import pytest
 from forging import flip
-from test_sweep_cli import ASKED, BENDING, CASE
+from sweeps import ASKED, BENDING, CASE
 
 from lagrange_casadi.cli import main
 from lagrange_casadi.sweep import Sweep

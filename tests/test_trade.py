@@ -8,7 +8,7 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 import pytest
-from builders import slider_crank
+from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, motion
 from lagrange_casadi.cli import main

@@ -1,7 +1,7 @@
 """Spanning trees: which joints carry coordinates, which close loops."""
 
 import pytest
-from builders import four_bar, slider_crank
+from mechanisms import four_bar, slider_crank
 
 from lagrange_casadi import Mechanism, Scene
 from lagrange_casadi.declare.motion import polynomial

@@ -8,11 +8,11 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from builders import columns_at, oracle_of, postures, slider_crank
+from balance import columns_at, oracle_of, postures
+from compiled import EVALUATED, told
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_export import EVALUATED, told
-from test_mobility import truss_platform
+from mechanisms import DAMPING, DRAG_LINK, FREE, STIFFNESS, coil, slider_crank, sprung, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, export, table
 from lagrange_casadi.declare.motion import harmonic, polynomial
@@ -23,12 +23,7 @@ from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.study.peaks import refine
 
-STIFFNESS, FREE, DAMPING = 1.5, 0.2, 0.05
 SMALL = 0.05
-
-
-def coil(m, joint):
-    m.torsion_spring(f"coil_{joint}", m.joints[joint], stiffness=STIFFNESS, angle=FREE, damping=DAMPING)
 
 
 class Coil:
@@ -81,24 +76,6 @@ def assert_followed(scene, joints, count=5, **keywords):
         worst = max(worst, *map(abs, gaps))
     assert worst < 1e-10 * size
     return solution
-
-
-def sprung(joints, lengths=(0.1, 0.35, 0.25), frame=(0.3, 0.05), rocker=1.5, law=None, span=2.0, count=101, parametric=False):
-    """A four-bar with springs on some of its undriven joints."""
-    m = Mechanism("sprung")
-    sides = [m.parameter(n, l, "m") for n, l in zip("pqr", lengths, strict=True)] if parametric else lengths
-    a, b, c = (m.link(n, length=l, mass=w) for n, l, w in zip("abc", sides, (0.3, 0.5, 0.4), strict=True))
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, c.tip)
-    m.revolute("C", m.ground.at(*frame), c)
-    for joint in joints:
-        coil(m, joint)
-    law = law or polynomial(0.2, 2 * math.pi)
-    return Scene(m, {"O": law}, posture={"c": rocker}, t=(0.0, span, count))
-
-
-DRAG_LINK = {"lengths": (0.3, 0.35, 0.32), "frame": (0.1, 0.0)}
 
 
 @pytest.mark.parametrize("joint", ["A", "B", "C"])

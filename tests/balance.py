@@ -1,4 +1,4 @@
-"""Mechanisms for tests, and what links the package's declarations to the oracle's."""
+"""A scene beside the oracle: what links the package's declarations to it, and every force of both compared."""
 
 from __future__ import annotations
 
@@ -9,53 +9,12 @@ import casadi as ca
 import numpy as np
 import oracle
 from arithmetic import DOUBLE
+from mechanisms import INSTANT
 
-from lagrange_casadi import Mechanism, Scene, derive, evaluate
-from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi import derive, evaluate
 from lagrange_casadi.declare.parts import Link, RigidMass
 
-MOTION = polynomial(0.2, 3.0, 4.0)
-INSTANT = 0.3
 TOLERANCE = 1e-12
-
-
-def slider_crank(wanted=("all",), mechanism=None, **keywords):
-    """The paper's mechanism, with parameters; or another one with its motion."""
-    keywords = {"posture": {"rod": 0.0}, "t": (0, 0.08, 81), "xi": (0, 1, 11)} | keywords
-    return Scene(mechanism or _slider_crank(), {"O": polynomial(0, 25 * math.pi, math.pi / 200)}, wanted, **keywords)
-
-
-def _slider_crank():
-    m = Mechanism("slider_crank")
-    r, l = m.parameter("r", 0.1, "m"), m.parameter("l", 0.2, "m")
-    crank = m.link("crank", length=r, mass=m.parameter("m1", 0.1, "kg"))
-    rod = m.link("rod", length=l, mass=m.parameter("m2", 0.1, "kg"))
-    slider = m.point_mass("slider", m.parameter("m3", 0.1, "kg"))
-    m.revolute("O", m.ground, crank)
-    m.revolute("A", crank.tip, rod)
-    m.revolute("B", rod.tip, slider)
-    m.prismatic("guide", m.ground, slider, axis=(1, 0))
-    return m
-
-
-def four_bar(lengths=(0.1, 0.35, 0.25), masses=(0.3, 0.5, 0.4), frame=(0.3, 0.05), rocker=1.5, turned=(False, False), **keywords):
-    """A crank-rocker; ``turned`` swaps parent and child, and the ends of coupler and rocker."""
-    m = Mechanism("four_bar")
-    a, b, c = (m.link(n, length=l, mass=w) for n, l, w in zip("abc", lengths, masses, strict=True))
-    ground = m.ground.at(*frame)
-    m.revolute("O", m.ground, a)
-    near, far = (b.tip, b.base) if turned[0] else (b.base, b.tip)
-    if turned[0]:
-        m.revolute("A", near, a.tip)
-    else:
-        m.revolute("A", a.tip, near)
-    if turned[1]:
-        m.revolute("C", c.tip, ground)
-        m.revolute("B", c.base, far)
-    else:
-        m.revolute("B", far, c.tip)
-        m.revolute("C", ground, c)
-    return Scene(m, {"O": MOTION}, posture={"c": rocker - math.pi if turned[1] else rocker}, t=(INSTANT, 1.0, 2), **keywords)
 
 
 def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
@@ -177,17 +136,3 @@ def oracle_of(m, values, arithmetic=DOUBLE, **beside):
 def assert_balanced(scene, **keywords):
     worst, gap = compare(scene, **keywords)
     assert gap < TOLERANCE, worst
-
-
-def crank_and_rod(rod, crank=None, loads=lambda m, parts: None, **link):
-    """A crank drives a rod whose tip slides on the x axis; the rod is declared by its keywords."""
-    m = Mechanism("test")
-    a = m.link("a", length=0.1, **(crank or {"mass": 0.3}))
-    b = m.link("b", length=0.35, **rod)
-    s = m.point_mass("s", 0.6)
-    m.revolute("O", m.ground, a)
-    m.revolute("A", a.tip, b)
-    m.revolute("B", b.tip, s)
-    m.prismatic("P", m.ground.at(0, 0.02), s, axis=(1, 0))
-    loads(m, {"a": a, "b": b, "s": s})
-    return Scene(m, {"O": MOTION}, posture={"b": 0.0}, t=(INSTANT, 1, 2))

@@ -1,0 +1,101 @@
+"""Code that was emitted or exported: compiled, and run."""
+
+from __future__ import annotations
+
+import stat
+import subprocess
+from importlib import resources
+
+import numpy as np
+from mechanisms import four_bar, slider_crank, spline_arm, truss_platform
+
+from lagrange_casadi import codegen
+from lagrange_casadi.arithmetic.compensated import DTYPES
+from lagrange_casadi.codegen.stages import compensated, plain
+
+HEADER = resources.files("lagrange_casadi.codegen").joinpath("lanes.h")
+SCENES = {
+    "slider_crank": slider_crank,
+    "effort_alone": lambda: slider_crank(wanted=["effort"]),
+    "four_bar": four_bar,
+    "iterated": truss_platform,
+    "spline": spline_arm,
+}
+
+PEDANTIC = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter"]
+
+
+def columns(graph, t, language, threads=1, extra=(), precision="double"):
+    """Every column by the compiled code, into arrays that held NaN."""
+    p, dtype = np.array(list(graph.scene.mechanism.values().values())), DTYPES[precision]
+    stages = plain(graph) if precision == "double" else compensated(graph, precision)
+    library = codegen.load(codegen.emit(graph, stages), codegen.find_compiler(language), extra)
+    guess = np.array(graph.newton.guess if graph.newton else (), dtype)
+    z, status = np.full((guess.size, t.size), np.nan, dtype), np.full(t.size, -1, dtype=np.int32)
+    out = np.full((len(graph.columns), t.size), np.nan, dtype)
+    if precision == "single":
+        t, p = (np.array([dtype.type(x), x - dtype.type(x)], dtype) for x in (t, p))
+    library.follow(t, p, guess, z, status)
+    library.evaluate(t, p, z, out, status, threads)
+    assert np.all(status == 0)
+    assert np.isfinite(out).all()
+    return out
+
+
+def fake_compiler(folder, monkeypatch, script, variable="CC"):
+    program = folder / "fake-cc"
+    program.write_text(f"#!/bin/sh\n{script}\n")
+    program.chmod(program.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setenv(variable, str(program))
+    return program
+
+
+HARNESS = """
+#include "@.h"
+#include <math.h>
+#include <stdio.h>
+int main(void) {
+  @_model model;
+  @_inputs inputs;
+  @_outputs outputs;
+  @_parameters parameters = @_defaults;
+  @_status status;
+  outputs.effort_O = 1;
+  %s
+  printf("%%d %%g %%s", (int) status, (double) outputs.effort_O, @_message(status));
+  return 0;
+}
+"""
+
+EVALUATED = "status = @_evaluate(&model, &inputs, &outputs);"
+
+
+def cc(command, folder, *sources, output="program"):
+    files = [folder / source for source in sources]
+    linked = [] if "-c" in command else ["-lm"]
+    return subprocess.run([*command, *files, "-o", folder / output, *linked], capture_output=True, text=True, check=False)
+
+
+def compilers():
+    """Those that there are, with the warnings that must not come."""
+    strict = ["-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion"]
+    found = [("gcc", ["gcc", "-std=c99", *strict]), ("clang", ["clang", "-std=c99", *strict])]
+    as_cpp = ["-pedantic", "-Wall", "-Wextra", "-Werror"]
+    found += [("g++", ["g++", "-x", "c++", "-std=c++11", *as_cpp]), ("clang++", ["clang++", "-x", "c++", "-std=c++17", *as_cpp])]
+    return found
+
+
+def present(command):
+    try:
+        return subprocess.run([command, "--version"], capture_output=True, check=False).returncode == 0
+    except OSError:
+        return False
+
+
+def told(folder, made, statements):
+    """What a program says that does this with an exported slider-crank."""
+    (folder / "harness.c").write_text((HARNESS % statements).replace("@", made.prefix))
+    result = cc(["cc", "-std=c99"], folder, "harness.c", f"{made.prefix}.c")
+    assert result.returncode == 0, result.stderr
+    status, effort, sentence = subprocess.run([folder / "program"], capture_output=True, text=True, check=True).stdout.split(" ", 2)
+    return int(status), float(effort), sentence

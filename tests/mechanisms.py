@@ -1,0 +1,341 @@
+"""The mechanisms that several tests share."""
+
+from __future__ import annotations
+
+import math
+
+import casadi as ca
+import numpy as np
+
+from lagrange_casadi import Mechanism, Scene
+from lagrange_casadi.declare.motion import harmonic, polynomial, samples
+
+MOTION = polynomial(0.2, 3.0, 4.0)
+
+INSTANT = 0.3
+
+
+def slider_crank(wanted=("all",), mechanism=None, **keywords):
+    """The paper's mechanism, with parameters; or another one with its motion."""
+    keywords = {"posture": {"rod": 0.0}, "t": (0, 0.08, 81), "xi": (0, 1, 11)} | keywords
+    return Scene(mechanism or _slider_crank(), {"O": polynomial(0, 25 * math.pi, math.pi / 200)}, wanted, **keywords)
+
+
+def _slider_crank():
+    m = Mechanism("slider_crank")
+    r, l = m.parameter("r", 0.1, "m"), m.parameter("l", 0.2, "m")
+    crank = m.link("crank", length=r, mass=m.parameter("m1", 0.1, "kg"))
+    rod = m.link("rod", length=l, mass=m.parameter("m2", 0.1, "kg"))
+    slider = m.point_mass("slider", m.parameter("m3", 0.1, "kg"))
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, slider)
+    m.prismatic("guide", m.ground, slider, axis=(1, 0))
+    return m
+
+
+def four_bar(lengths=(0.1, 0.35, 0.25), masses=(0.3, 0.5, 0.4), frame=(0.3, 0.05), rocker=1.5, turned=(False, False), **keywords):
+    """A crank-rocker; ``turned`` swaps parent and child, and the ends of coupler and rocker."""
+    m = Mechanism("four_bar")
+    a, b, c = (m.link(n, length=l, mass=w) for n, l, w in zip("abc", lengths, masses, strict=True))
+    ground = m.ground.at(*frame)
+    m.revolute("O", m.ground, a)
+    near, far = (b.tip, b.base) if turned[0] else (b.base, b.tip)
+    if turned[0]:
+        m.revolute("A", near, a.tip)
+    else:
+        m.revolute("A", a.tip, near)
+    if turned[1]:
+        m.revolute("C", c.tip, ground)
+        m.revolute("B", c.base, far)
+    else:
+        m.revolute("B", far, c.tip)
+        m.revolute("C", ground, c)
+    return Scene(m, {"O": MOTION}, posture={"c": rocker - math.pi if turned[1] else rocker}, t=(INSTANT, 1.0, 2), **keywords)
+
+
+def crank_and_rod(rod, crank=None, loads=lambda m, parts: None, **link):
+    """A crank drives a rod whose tip slides on the x axis; the rod is declared by its keywords."""
+    m = Mechanism("test")
+    a = m.link("a", length=0.1, **(crank or {"mass": 0.3}))
+    b = m.link("b", length=0.35, **rod)
+    s = m.point_mass("s", 0.6)
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, s)
+    m.prismatic("P", m.ground.at(0, 0.02), s, axis=(1, 0))
+    loads(m, {"a": a, "b": b, "s": s})
+    return Scene(m, {"O": MOTION}, posture={"b": 0.0}, t=(INSTANT, 1, 2))
+
+
+def chain(*parts):
+    """Links end to end from the ground; each part is (kind, reverse)."""
+    m = Mechanism("chain")
+    near, motion = m.ground, {}
+    for i, (kind, reverse) in enumerate(parts):
+        link = m.link(f"l{i}", length=0.1 + 0.07 * i, mass=0.3 + 0.2 * i)
+        ends = (link, near) if reverse else (near, link)
+        if kind == "revolute":
+            m.revolute(f"J{i}", *ends)
+        else:
+            m.prismatic(f"J{i}", *ends, axis=(1.0, 0.3), angle=0.5)
+        motion[f"J{i}"] = polynomial(0.1 + 0.2 * i, -2.0 + i, 1.0 + 0.5 * i)
+        near = link.tip
+    m.revolute("P", near, m.point_mass("payload", 0.7))
+    return Scene(m, motion, t=(INSTANT, 1, 2))
+
+
+def block(guide_of="ground"):
+    """An offset slider-crank whose slider is a link, guided at an angle."""
+    m = Mechanism("block")
+    a, b, s = (m.link(n, length=l, mass=w) for n, l, w in (("a", 0.1, 0.3), ("b", 0.35, 0.5), ("s", 0.05, 0.6)))
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, s)
+    m.prismatic("P", m.ground.at(0, 0.03), s, axis=(1, 0.2), angle=0.4)
+    return Scene(m, {"O": MOTION}, posture={"b": 0.0}, t=(INSTANT, 1, 2))
+
+
+def driven_slider():
+    """The slider drives the crank."""
+    m = Mechanism("driven_slider")
+    a, b = m.link("a", length=0.1, mass=0.3), m.link("b", length=0.35, mass=0.5)
+    s = m.point_mass("s", 0.6)
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, s)
+    m.prismatic("P", m.ground.at(0, 0.03), s, axis=(1, 0.2))
+    return Scene(m, {"P": polynomial(0.3, 0.2, 0.1)}, posture={"a": 1.0}, t=(INSTANT, 1, 2))
+
+
+def inverted(block_carries):
+    """A block on the crank's pin slides along a rocker (RPR); either of the two carries the axis."""
+    m = Mechanism("inverted")
+    a, b, s = (m.link(n, length=l, mass=w) for n, l, w in (("a", 0.1, 0.3), ("rocker", 0.5, 0.5), ("s", 0.05, 0.2)))
+    m.revolute("O", m.ground, a)
+    m.revolute("Q", m.ground.at(0, -0.3), b)
+    m.revolute("A", a.tip, s)
+    if block_carries:
+        m.prismatic("P", s, b, axis=(1, 0), angle=0.3)
+    else:
+        m.prismatic("P", b, s, axis=(1, 0))
+    return Scene(m, {"O": MOTION}, posture={"rocker": 1.6}, t=(INSTANT, 1, 2))
+
+
+def cross_slide():
+    """A pin on a crank moves two slides at right angles (PRP): no branch, two equations for two slides."""
+    m = Mechanism("cross_slide")
+    a, x, y = (m.link(n, length=l, mass=w) for n, l, w in (("a", 0.1, 0.3), ("x", 0.2, 0.5), ("y", 0.05, 0.2)))
+    m.revolute("O", m.ground, a)
+    m.prismatic("X", m.ground, x, axis=(1, 0))
+    m.prismatic("Y", x, y, axis=(0, 1), angle=0.2)
+    m.revolute("A", a.tip, y)
+    return Scene(m, {"O": MOTION}, t=(INSTANT, 1, 2))
+
+
+def six_bar():
+    """A four-bar whose rocker's pin drives a slider: two loops, one after the other."""
+    m = Mechanism("six_bar")
+    a, b, c, d = (m.link(n, length=l, mass=w) for n, l, w in zip("abcd", (0.1, 0.35, 0.25, 0.4), (0.3, 0.5, 0.4, 0.2), strict=True))
+    s = m.point_mass("s", 0.6)
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("C", m.ground.at(0.3, 0.05), c)
+    m.revolute("B", b.tip, c.tip)
+    m.revolute("D", c.tip, d)
+    m.revolute("E", d.tip, s)
+    m.prismatic("guide", m.ground.at(0.3, 0.1), s, axis=(1, 0))
+    return Scene(m, {"O": MOTION}, posture={"c": 1.5, "d": 0.0}, t=(INSTANT, 1, 2))
+
+
+def truss_platform(loads=lambda m: None):
+    """A triangle of three bars on three legs, one leg's foot driven: no dyad anywhere, six unknown directions at once."""
+    m = Mechanism("truss_platform")
+    feet = [(0.0, 0.0), (0.6, 0.0), (0.6, 0.7)]
+    corners = [(0.2, 0.2), (0.4, 0.2), (0.3, 0.4)]
+    bars, posture = [], {}
+    for i in range(3):
+        (x0, y0), (x1, y1) = corners[i], corners[(i + 1) % 3]
+        bars.append(m.link(f"bar{i}", length=math.hypot(x1 - x0, y1 - y0), mass=0.2 + 0.1 * i))
+        posture[f"bar{i}"] = math.atan2(y1 - y0, x1 - x0) + 0.1
+    shaft = m.link("shaft", length=m.parameter("shaft", 0.05, "m"), mass=0.1)
+    m.revolute("O", m.ground.at(-0.05, 0.0), shaft)
+    for i in range(3):
+        (x0, y0), (x1, y1) = feet[i], corners[i]
+        leg = m.link(f"leg{i}", length=math.hypot(x1 - x0, y1 - y0), mass=0.3)
+        posture[f"leg{i}"] = math.atan2(y1 - y0, x1 - x0) - 0.1
+        m.revolute(f"foot{i}", shaft.tip if i == 0 else m.ground.at(x0, y0), leg)
+        m.revolute(f"corner{i}", leg.tip, bars[i])
+        m.revolute(f"mate{i}", bars[i - 1].tip, bars[i])
+    loads(m)
+    return Scene(m, {"O": polynomial(0.0, 0.4, 0.5)}, posture=posture, t=(0.0, 1.0, 21))
+
+
+def ladder(length=1.0, mass=2.0):
+    """Its foot on the floor, its tip on the wall, its middle in the slot of a driven crank without mass."""
+    m = Mechanism("ladder")
+    crank, bar = m.link("crank", length=0.8, mass=0.0), m.link("bar", length=length, mass=mass)
+    foot, tip, middle = (m.point_mass(name, 0.0) for name in ("foot", "tip", "middle"))
+    m.revolute("O", m.ground, crank)
+    m.prismatic("floor", m.ground, foot, axis=(1, 0))
+    m.revolute("F", bar, foot)
+    m.revolute("T", bar.tip, tip)
+    m.prismatic("wall", m.ground, tip, axis=(0, 1))
+    m.revolute("M", bar.at(length / 2), middle)
+    m.slot("slot", crank, middle)
+    return Scene(m, {"O": polynomial(0.5, 0.2)}, t=(0, 3, 31), posture={"bar": math.pi - 0.5, "floor": 0.8})
+
+
+def parallelogram(third=1.0, pendulum=False):
+    """Three equal cranks on one coupler: one of them is too many. The third is off the line of the others, so none is dead."""
+    m = Mechanism("three_cranks")
+    a, b, c = (m.link(n, length=0.2, mass=0.3) for n in "abc")
+    bar = m.link("bar", length=1.0, mass=1.0)
+    m.revolute("O", m.ground, a)
+    m.revolute("P", m.ground.at(0.4, 0), b)
+    m.revolute("Q", m.ground.at(third, 0.3), c)
+    m.revolute("A", a.tip, bar)
+    m.revolute("B", b.tip, bar.at(0.4))
+    m.revolute("C", c.tip, bar.at(1.0, 0.3))
+    motion = {"O": polynomial(0.7, 2.0)}
+    if pendulum:
+        m.revolute("hang", bar.at(0.7), m.link("bob", length=0.3, mass=0.4))
+        motion["hang"] = polynomial(-1.5, 1.0)
+    return Scene(m, motion, posture={"a": 0.7, "b": 0.7, "c": 0.7, "bar": 0.0}, t=(0, 3.0, 31))
+
+
+def flat_parallelogram():
+    m = Mechanism("parallelogram")
+    a, b, c = m.link("a", length=0.2, mass=1.0), m.link("b", length=0.5, mass=1.0), m.link("c", length=0.2, mass=1.0)
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, c.tip)
+    m.revolute("C", m.ground.at(0.5, 0), c)
+    return Scene(m, {"O": polynomial(0.7, 4.0)}, posture={"b": 0.0, "c": 0.7}, t=(0, 1, 101))
+
+
+def double_crank(step):
+    """A drag link whose second crank a gear counts, so that it is iterated; instants ``step`` radians of the drive apart."""
+    m = Mechanism("double_crank")
+    a, b, c = (m.link(n, length=l, mass=1.0) for n, l in (("a", 0.3), ("b", 0.25), ("c", 0.35)))
+    wheel = m.link("wheel", length=0.1, mass=0.1)
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, c.tip)
+    joints = m.revolute("C", m.ground.at(0.1, 0.0), c), m.revolute("G", m.ground.at(0.5, 0), wheel)
+    m.gear("mesh", *joints, ratio=-2.0)
+    return Scene(m, {"O": polynomial(0.2, 1.0)}, posture={"c": 0.6, "b": 1.5}, t=(0, 12 * step, 13))
+
+
+def spline_arm():
+    m = Mechanism("arm")
+    m.revolute("J", m.ground, m.link("a", length=1, mass=1))
+    return Scene(m, {"J": samples([0, 1, 2, 3], [0, 1, 4, 2])}, t=(0, 3, 4))
+
+
+def bracket(reach=0.9):
+    """A mass slides along a swinging arm, beyond its tip and before its base."""
+    m = Mechanism("bracket")
+    arm, p = m.link("arm", length=m.parameter("l", 0.5, "m", low=0.0), mass=1.0), m.point_mass("p", 2.0)
+    m.revolute("J", m.ground.at(0, 0), arm.at(0.1))
+    m.prismatic("S", arm, p, axis=(1, 0))
+    return Scene(m, {"J": polynomial(0.2, 3.0, 4.0), "S": harmonic(0.25, reach, 1.0)}, t=(0.0, 1.0, 101))
+
+
+DRAG_LINK = {"lengths": (0.3, 0.35, 0.32), "frame": (0.1, 0.0)}
+
+STIFFNESS, FREE, DAMPING = 1.5, 0.2, 0.05
+
+
+def coil(m, joint):
+    m.torsion_spring(f"coil_{joint}", m.joints[joint], stiffness=STIFFNESS, angle=FREE, damping=DAMPING)
+
+
+def sprung(joints, lengths=(0.1, 0.35, 0.25), frame=(0.3, 0.05), rocker=1.5, law=None, span=2.0, count=101, parametric=False):
+    """A four-bar with springs on some of its undriven joints."""
+    m = Mechanism("sprung")
+    sides = [m.parameter(n, l, "m") for n, l in zip("pqr", lengths, strict=True)] if parametric else lengths
+    a, b, c = (m.link(n, length=l, mass=w) for n, l, w in zip("abc", sides, (0.3, 0.5, 0.4), strict=True))
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, c.tip)
+    m.revolute("C", m.ground.at(*frame), c)
+    for joint in joints:
+        coil(m, joint)
+    law = law or polynomial(0.2, 2 * math.pi)
+    return Scene(m, {"O": law}, posture={"c": rocker}, t=(0.0, span, count))
+
+
+MASS, LENGTH, G = 1.2, 0.5, 9.81
+
+
+def pendulum(law, gravity=G, load=None, **keywords):
+    m = Mechanism("pendulum")
+    m.set_gravity(0, -gravity)
+    arm = m.link("arm", length=LENGTH, mass=MASS)
+    pin = m.revolute("pin", m.ground, arm)
+    if load:
+        m.force("push", arm.tip, x=load(m.coordinate(pin)))
+    return Scene(m, {"pin": law}, **keywords)
+
+
+def lobes(t):
+    """Two lobes of almost one height."""
+    return ca.exp(-(((t - 1.0) / 0.2) ** 2)) + (1 + 1e-5) * ca.exp(-(((t - 2.05) / 0.2) ** 2))
+
+
+def counting(motion, load, **parameters):
+    """A driven crank with a load on its rod; ``load(m, angle)`` is a force on the slider along its guide."""
+    m = Mechanism("counting")
+    symbols = {name: m.parameter(name, value) for name, value in parameters.items()}
+    crank, rod = m.link("crank", length=0.1, mass=0.3), m.link("rod", length=0.35, mass=0.5)
+    slider = m.point_mass("slider", 0.6)
+    joint = m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, slider)
+    m.prismatic("guide", m.ground, slider, axis=(1, 0))
+    m.force("load", slider, x=load(m, m.coordinate(joint), **symbols))
+    return Scene(m, {"O": motion}, posture={"rod": 0.0}, t=(0.0, 0.1, 11))
+
+
+def harmonics(m, angle):
+    """A load on :func:`counting`'s slider."""
+    return 5.0 * ca.sin(3 * angle) + ca.cos(angle / 2 - 0.1) ** 2
+
+
+def sampled(scale):
+    """A crank driven through samples of a steady rate beside a swing."""
+    t = np.linspace(0.0, 100.0, 401)
+    return counting(samples(t, scale * (5.0 * t + 0.2 * np.sin(t))), harmonics)
+
+
+def far(distance, load=0.0):
+    """A four-bar so far from the origin that places lose what is behind the point; under a load, or none."""
+    m = Mechanism("far")
+    a, b, c = (m.link(name, length=length, mass=1.0) for name, length in zip("abc", (0.1, 0.35, 0.25), strict=True))
+    m.revolute("O", m.ground.at(distance, 0), a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, c.tip)
+    m.revolute("C", m.ground.at(distance + 0.3, 0.05), c)
+    if load:
+        m.force("load", c.at(0.1), x=load)
+    return Scene(m, {"O": polynomial(0, 10.0)}, t=(0, 0.6, 61), posture={"c": 1.5})
+
+
+PATTERNS = {
+    "slider_crank": lambda: slider_crank(t=(INSTANT, 1, 2)),
+    "four_bar": four_bar,
+    "four_bar_ends_swapped": lambda: four_bar(turned=(True, False)),
+    "four_bar_rocker_swapped": lambda: four_bar(turned=(False, True)),
+    "four_bar_all_swapped": lambda: four_bar(turned=(True, True)),
+    "block": block,
+    "driven_slider": driven_slider,
+    "inverted_rocker_carries": lambda: inverted(block_carries=False),
+    "inverted_block_carries": lambda: inverted(block_carries=True),
+    "cross_slide": cross_slide,
+    "six_bar": six_bar,
+    "chain_rrr": lambda: chain(("revolute", False), ("revolute", False), ("revolute", False)),
+    "chain_reversed": lambda: chain(("revolute", True), ("revolute", True), ("revolute", False)),
+    "chain_prismatic": lambda: chain(("revolute", False), ("prismatic", False), ("revolute", False)),
+    "chain_prismatic_reversed": lambda: chain(("revolute", False), ("prismatic", True), ("revolute", True)),
+}
