@@ -15,7 +15,7 @@ from conftest import CASES, NAMES
 from mechanisms import truss_platform
 from parametric import declared, meant
 from precise import precise
-from truth import section
+from truth import matter_of, section
 
 from lagrange_casadi import Mechanism, Scene, derive, load_case
 from lagrange_casadi.arithmetic.interpret import interpret
@@ -57,8 +57,8 @@ def assert_equal(expected, found, mechanism):
     for name, value in expected.items():
         if name.startswith("section"):
             _, link, force = name.split(":")
-            k, values = FORCES.index(force), mechanism.values()
-            gaps = [section(found, mechanism, values, link, ratio)[k] - value(MP.mpf(ratio)) for ratio in RATIOS]
+            k, matter = FORCES.index(force), matter_of(mechanism, mechanism.values(), link)
+            gaps = [section(found, matter, link, ratio)[k] - value(MP.mpf(ratio)) for ratio in RATIOS]
         elif name in found:
             gaps = [found[name] - MP.mpf(value)]
         else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 from dataclasses import dataclass, replace
 
@@ -65,32 +66,28 @@ def true_errors(solution, exact):
     angles = {name for name in names if _is_angle(solution, name)}
     size = {name: float(np.max(np.abs(solution.series[name]))) or 1.0 for name in names}
     gaps, looked = {}, {link: _looked_at(solution.section(link).law) for link in solution.links_with_sections}
+    matter = {link: matter_of(exact.mechanism, exact.values, link) for link in looked}
     for i, sides in enumerate(exact.sides):
         found = [{name: _gap(row[name], solution.series[name][i], name in angles) for name in names} for row in sides]
         best = min(range(len(sides)), key=lambda k: max((found[k][name] / size[name] for name in names), default=0.0))
         for name, gap in found[best].items():
             gaps.setdefault(name, []).append(gap)
         for link, found in looked.items():
-            for force, gap in _section_gaps(exact, found, i, sides[best], link):
+            for force, gap in _section_gaps(matter[link], found, i, sides[best], link):
                 if solution.determined(f"section:{link}:{force}"):
                     gaps.setdefault(f"section:{link}:{force}", []).append(gap)
     return {name: max(found) for name, found in gaps.items()}
 
 
-def section(columns, mechanism, values, link, ratio, seen=None):
+def section(columns, matter, link, ratio, seen=None):
     """Axial, shear and bending of a link at a ratio, from its law and stations, by the moments as they are defined.
 
-    ``seen`` says of each station whether the section sees it, by default where it lies between the section and the tip.
+    ``matter`` is the link's :func:`matter_of`. ``seen`` says of each station whether the section sees it, by default where it lies
+    between the section and the tip.
     """
-    body, u = mechanism.links[link], MP.mpf(ratio)
-    l = MP.mpf(mechanism.number(body.length, values))
-    mu = [MP.mpf(0)] * 3
-    for (a, b), cell in zip(itertools.pairwise(map(MP.mpf, body.mass.breaks)), body.mass.cells, strict=True):
-        for (j, coefficient), k in itertools.product(enumerate(cell), range(3)):
-            density = MP.mpf(mechanism.number(coefficient, values)) * (l if body.mass.per_length else 1)
-            mu[k] += density * l**k * max(b ** (j + k + 1) - max(a, u) ** (j + k + 1), 0) / (j + k + 1)
+    (l, beyond), u = matter, MP.mpf(ratio)
+    mu, xi = beyond(u), u * l
     n0, n1, n2, f0, f1, f2, m0 = (columns[f"section:{link}:law:{k}"] for k in ("n0", "n1", "n2", "f0", "f1", "f2", "m0"))
-    xi = u * l
     axial, shear = n0 + n1 * mu[0] + n2 * mu[1], f0 + f1 * mu[0] + f2 * mu[1]
     bending = m0 + f0 * (l - xi) + f1 * (mu[1] - xi * mu[0]) + f2 * (mu[2] - xi * mu[1])
     for name in columns:
@@ -102,6 +99,24 @@ def section(columns, mechanism, values, link, ratio, seen=None):
     return axial, shear, bending
 
 
+def matter_of(mechanism, values, link):
+    """A link's length, and as a function of a ratio the moments of what lies beyond it, about the base."""
+    body = mechanism.links[link]
+    l = MP.mpf(mechanism.number(body.length, values))
+    size = l if body.mass.per_length else 1
+    cells = [[MP.mpf(mechanism.number(coefficient, values)) * size for coefficient in cell] for cell in body.mass.cells]
+
+    @functools.cache
+    def beyond(u):
+        mu = [MP.mpf(0)] * 3
+        for (a, b), cell in zip(itertools.pairwise(map(MP.mpf, body.mass.breaks)), cells, strict=True):
+            for (j, density), k in itertools.product(enumerate(cell), range(3)):
+                mu[k] += density * l**k * max(b ** (j + k + 1) - max(a, u) ** (j + k + 1), 0) / (j + k + 1)
+        return mu
+
+    return l, beyond
+
+
 def _looked_at(law):
     """A law's stations by name, the ratios to look at, (t, n), and the forces there by side, each (t, n)."""
     stations = {load.name: load.station for load in law.loads}
@@ -111,12 +126,12 @@ def _looked_at(law):
     return stations, ratios, forces
 
 
-def _section_gaps(exact, looked, i, columns, link):
+def _section_gaps(matter, looked, i, columns, link):
     stations, ratios, forces = looked
     for (k, u), (side, mine) in itertools.product(enumerate(ratios[i]), forces.items()):
         there = ((name, float(station[i])) for name, station in stations.items())
         seen = {name: u < station or (side == "base" and u == station) or u == 1 <= station for name, station in there}
-        true = section(columns, exact.mechanism, exact.values, link, u, seen)
+        true = section(columns, matter, link, u, seen)
         for force, value, own in zip(FORCES, true, mine, strict=True):
             yield force, float(abs(value - MP.mpf(float(own[i, k]))))
 
