@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from compiled import QUICK
 
 from lagrange_casadi import density, derive, evaluate
 from lagrange_casadi.study.peaks import refine
@@ -21,6 +22,12 @@ def values(scene, row):
     return dict(zip(scene.mechanism.parameters, row.tolist(), strict=True))
 
 
+def alone(scene, row, grid, **keywords):
+    """A design's own evaluation."""
+    words = {"backend": "c", "flags": QUICK, "certificate": False}
+    return evaluate(scene, parameters=values(scene, row), t=grid, **words, **keywords)
+
+
 def peaks_of(designs, outcome, row):
     """Value, time and ratio of each quantity of a design."""
     return {name: (outcome.value[row, k], outcome.t[row, k], outcome.xi[row, k]) for k, name in enumerate(designs.quantities)}
@@ -35,7 +42,7 @@ def scales(designs, outcome, row):
 def assert_refined(scene, designs, outcome, row, p, tolerance=1e-11, noise=1e-12):
     """A design's peaks are the refined ones of its own evaluation; one that is larger is what the graph gives there."""
     grid = (designs.t[0], designs.t[-1], designs.t.size)
-    solution = evaluate(scene, parameters=values(scene, p), t=grid, backend="c", certificate=False)
+    solution = alone(scene, p, grid)
     found, scale = peaks_of(designs, outcome, row), scales(designs, outcome, row)
     names = [name for name in designs.quantities if name in set(solution.names())]
     assert len(names) > len(designs.quantities) / 2
@@ -49,7 +56,7 @@ def assert_refined(scene, designs, outcome, row, p, tolerance=1e-11, noise=1e-12
         assert abs(value) >= abs(peak.value) - allowed, peak.name
         if abs(value) > abs(peak.value) + allowed:
             assert derive(scene).newton is None
-            there = evaluate(scene, parameters=values(scene, p), t=(t, t, 1), backend="c", certificate=False)
+            there = alone(scene, p, (t, t, 1))
             assert there.peak(peak.name).value == pytest.approx(value, rel=1e-10), peak.name
         assert np.isnan(xi) == (peak.xi is None)
     for joint in {name.split(":")[1] for name in names if name.startswith("reaction:")}:

@@ -1,5 +1,6 @@
 """No call takes more stack than the header says, whatever compiles it."""
 
+import functools
 import re
 import shutil
 from concurrent.futures import ThreadPoolExecutor
@@ -33,10 +34,17 @@ def stated(header):
     return int(re.search(r"^#define \w+_STACK (\d+)$", header.read_text(), re.MULTILINE)[1])
 
 
+@functools.cache
 def exported(name, rung, folder):
     loaded = load_case(Path(__file__).parents[1] / "cases" / name)
     agreed = export(loaded.scene, folder, name=loaded.name, **RUNGS[rung])
     return folder / f"{agreed.prefix}.c"
+
+
+@pytest.fixture(scope="module")
+def sources(tmp_path_factory):
+    """Where sources are exported to, once for all compilers."""
+    return tmp_path_factory.mktemp("sources")
 
 
 # A bound is nearest where functions are inlined in one another, and iterated loops are one more.
@@ -45,14 +53,14 @@ PAIRS += [("newton", name) for name in COMPILERS if name.endswith("-O2")]
 
 
 @pytest.mark.parametrize(("rung", "compiler"), PAIRS)
-def test_the_stack_that_the_header_states_is_never_exceeded(rung, compiler, tmp_path):
+def test_the_stack_that_the_header_states_is_never_exceeded(rung, compiler, sources, tmp_path):
     command = (*COMPILERS[compiler], *FLAGS)
     if shutil.which(command[0]) is None:
         pytest.skip(f"there is no {command[0]}")
     names = {"table": ("slider_crank", "six_bar")}.get(rung, CASES)
-    sources = [exported(name, rung, tmp_path / name) for name in names]
+    made = [exported(name, rung, sources / f"{rung}-{name}") for name in names]
     with ThreadPoolExecutor() as pool:
-        for source, used in zip(sources, pool.map(lambda source: deepest(command, source, tmp_path), sources), strict=True):
+        for source, used in zip(made, pool.map(lambda source: deepest(command, source, tmp_path), made), strict=True):
             assert 64 < used <= stated(source.with_suffix(".h")), source.name
 
 

@@ -7,6 +7,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from balance import instant_at, settle
+from compiled import QUICK
 from conftest import CASES, NAMES
 from estimates import kind
 from mechanisms import counting, four_bar, harmonics, sampled, slider_crank
@@ -20,9 +21,8 @@ from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.judge.certificate import certify
 from lagrange_casadi.judge.reference import reference
 
-# Compiled in half the time; test_codegen shows that not a bit depends on it.
-DOUBLE = [Rung("vm"), Rung("c", flags="-O1"), Rung("lanes", flags="-O1")]
-SINGLE = [Rung("c", "single", flags="-O1"), Rung("lanes", "single", flags="-O1")]
+DOUBLE = [Rung("vm"), Rung("c", flags=QUICK), Rung("lanes", flags=QUICK)]
+SINGLE = [Rung("c", "single", flags=QUICK), Rung("lanes", "single", flags=QUICK)]
 
 
 def gap(graph, t, rung, truth=None):
