@@ -14,8 +14,6 @@ from lagrange_casadi.arithmetic.compensated import DTYPES
 from lagrange_casadi.codegen.stages import compensated, plain
 
 HEADER = resources.files("lagrange_casadi.codegen").joinpath("lanes.h")
-# In half the time; test_codegen shows that not a bit depends on it.
-QUICK = "-O1"
 SCENES = {
     "slider_crank": slider_crank,
     "effort_alone": lambda: slider_crank(wanted=["effort"]),

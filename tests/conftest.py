@@ -13,6 +13,7 @@ import sweeps
 from hypothesis import settings
 
 from lagrange_casadi import evaluate, load_case
+from lagrange_casadi.codegen import compiler
 
 # Where a failure must be the change's own, the same examples every time; elsewhere new ones.
 settings.register_profile("ci", derandomize=True, print_blob=True)
@@ -36,6 +37,28 @@ def _cache(tmp_path_factory):
     base = tmp_path_factory.getbasetemp()
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str((base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cache"))
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _quick_to_build():
+    """Build here without optimization, in a third of the time: test_codegen shows that not a bit depends on it.
+
+    Programs that tests start, and modules that use ``released``, build as users do.
+    """
+    released = dict(compiler.FLAGS)
+    with pytest.MonkeyPatch.context() as patch:
+        for language, flags in released.items():
+            patch.setitem(compiler.FLAGS, language, tuple("-O0" if flag == "-O3" else flag for flag in flags))
+        yield released
+
+
+@pytest.fixture(scope="module")
+def released(_quick_to_build):
+    """Build with the flags that users have."""
+    with pytest.MonkeyPatch.context() as patch:
+        for language, flags in _quick_to_build.items():
+            patch.setitem(compiler.FLAGS, language, flags)
         yield
 
 

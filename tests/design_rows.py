@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from compiled import QUICK
 
 from lagrange_casadi import density, derive, evaluate
 from lagrange_casadi.study.peaks import refine
@@ -24,7 +23,7 @@ def values(scene, row):
 
 def alone(scene, row, grid, **keywords):
     """A design's own evaluation."""
-    words = {"backend": "c", "flags": QUICK, "certificate": False}
+    words = {"backend": "c", "certificate": False}
     return evaluate(scene, parameters=values(scene, row), t=grid, **words, **keywords)
 
 

@@ -13,6 +13,8 @@ from conftest import CASES, NAMES
 from lagrange_casadi import LagrangeSystem, evaluate, load_case
 from lagrange_casadi.draw import figures
 
+pytestmark = pytest.mark.usefixtures("released")
+
 
 @pytest.mark.parametrize("name", NAMES)
 def test_against_newton_euler(name):

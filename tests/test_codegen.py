@@ -20,6 +20,8 @@ from lagrange_casadi.errors import CompilerError
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.rung import Rung
 
+pytestmark = pytest.mark.usefixtures("released")
+
 
 def without_ends():
     """The paper's mechanism with every pin a hair's breadth, exactly zero, off the links' ends: no link has a section law."""
@@ -63,8 +65,8 @@ def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
 def test_the_level_of_optimization_changes_no_bit(name, language, precision):
     scene = SCENES[name]()
     graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 37)
-    one, other = (columns(graph, t, language, extra=extra, precision=precision) for extra in (("-O1",), ()))
-    assert one.tobytes() == other.tobytes()
+    found = {columns(graph, t, language, extra=extra, precision=precision).tobytes() for extra in ((), ("-O1",), ("-O0",))}
+    assert len(found) == 1
 
 
 @pytest.mark.parametrize("backend", ["c", "lanes"])

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from compiled import QUICK
 from mechanisms import DRAG_LINK, bracket, slider_crank, spline_arm, sprung, truss_platform
 
 from lagrange_casadi import codegen, evaluate, export, load_case
@@ -60,7 +59,7 @@ def rows(output):
     return np.array([[float.fromhex(word) for word in line.split()] for line in output.splitlines()])
 
 
-def by_c99(folder, told, lines, flags=(QUICK, "-ffp-contract=off")):
+def by_c99(folder, told, lines, flags=("-O1", "-ffp-contract=off")):
     compiler = codegen.find_compiler()
     program = folder / "consumer"
     defined = [f'-DMECHANISM="{told["prefix"]}.h"', '-DNAMES="names.h"', f"-I{folder}"]
@@ -111,7 +110,7 @@ def values(scene, precision):
 
 def solve(scene, precision, **rung):
     """The API's numbers."""
-    return evaluate(scene, parameters=values(scene, precision), precision=precision, backend="c", flags=QUICK, **rung)
+    return evaluate(scene, parameters=values(scene, precision), precision=precision, backend="c", **rung)
 
 
 @pytest.mark.parametrize("precision", ["double", "single"])

@@ -5,7 +5,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from compiled import PEDANTIC, QUICK, SCENES
+from compiled import PEDANTIC, SCENES
 from conftest import CASES
 from design_rows import DENSITIES, alone, around, assert_refined, loaded, peaks_of, scales, values
 from mechanisms import crank_and_rod, four_bar, parallelogram, pendulum, slider_crank
@@ -29,7 +29,7 @@ FIELDS = ("status", "value", "t", "xi", "mean", "rms")
 def test_designs_are_their_own_evaluations(name):
     """Every number of a case a parameter."""
     scene = declared(CASES / name)
-    designs = DesignEngine.of(scene, t=(*scene.t[:2], INSTANTS), rung=Rung("c", flags=QUICK))
+    designs = DesignEngine.of(scene, t=(*scene.t[:2], INSTANTS), rung=Rung("c"))
     p = around(scene, 3)
     outcome = designs.evaluate(p)
     assert outcome.status.tolist() == [Status.OK] * 3
@@ -51,10 +51,10 @@ def test_all_rungs_agree(name):
     scene = declared(CASES / name)
     p, grid = around(scene, 9), (*scene.t[:2], INSTANTS)
     p[1, 0] = math.nan
-    exact = DesignEngine.of(scene, t=grid, rung=Rung("c", flags=QUICK))
+    exact = DesignEngine.of(scene, t=grid, rung=Rung("c"))
     expected = exact.evaluate(p)
-    rungs = [(Rung("lanes", flags=QUICK), 1e-12), (Rung("vm"), 1e-12), (Rung("lanes", newton=4, flags=QUICK), 1e-12)]
-    rungs += [(Rung(backend, "single", flags=QUICK), 2e-5) for backend in ("lanes", "c")]
+    rungs = [(Rung("lanes"), 1e-12), (Rung("vm"), 1e-12), (Rung("lanes", newton=4), 1e-12)]
+    rungs += [(Rung(backend, "single"), 2e-5) for backend in ("lanes", "c")]
     for rung, tolerance in rungs:
         some = 2 if rung.backend == "vm" else 9
         designs = DesignEngine.of(scene, t=grid, rung=rung)

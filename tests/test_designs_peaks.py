@@ -5,7 +5,6 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from compiled import QUICK
 from design_rows import DENSITIES, alone, assert_refined, loaded, peaks_of
 from mechanisms import crank_and_rod, lobes, pendulum
 
@@ -25,7 +24,7 @@ def test_any_density_and_any_station(matter):
     scene = crank_and_rod(DENSITIES[matter](), loads=loaded)
     grid, wanted = (0.3, 2.3, 61), ["section:b", "reaction:A"]
     p = np.array([[0.2], [0.1], [0.35], [0.0], [0.31], [0.36]])
-    designs, packs = (DesignEngine.of(scene, wanted, t=grid, rung=Rung(backend, flags=QUICK)) for backend in ("c", "lanes"))
+    designs, packs = (DesignEngine.of(scene, wanted, t=grid, rung=Rung(backend)) for backend in ("c", "lanes"))
     outcome, other = designs.evaluate(p), packs.evaluate(p)
     assert outcome.status.tolist() == other.status.tolist() == [Status.OK] * 5 + [Status.IMPOSSIBLE]
     np.testing.assert_allclose(other.value, outcome.value, rtol=1e-11, atol=1e-11)

@@ -18,7 +18,6 @@ ORDINARY = {"double": 1e-13, "single": 1e-5}
 ANGLE = math.pi / 2 - 0.02 * RATE
 """From which the crank is upright at t = 0.02 s."""
 
-extremes = pytest.mark.parametrize("extreme", EXTREMES, ids=[extreme.name for extreme in EXTREMES])
 ITERATED = [e for e in EXTREMES if e.ordinary and " kg" not in e.name and "platform" not in e.name]
 precisions = pytest.mark.parametrize("precision", PRECISIONS)
 
@@ -33,28 +32,22 @@ def assert_exact(extreme, **options):
     assert not understated(solution, extreme.graph, extreme.meant)
 
 
-@extremes
-def test_double(extreme):
+@pytest.mark.parametrize("extreme", EXTREMES, ids=[extreme.name for extreme in EXTREMES])
+def test_extremes(extreme):
+    """In both precisions, by steps of Newton's method where no dead centre is near, and without a compiler where one is.
+
+    Elsewhere the compiled code has the virtual machine's numbers, as test_codegen shows.
+    """
     assert_exact(extreme)
-
-
-@extremes
-def test_double_without_a_compiler(extreme):
-    assert_exact(extreme, backend="vm")
-
-
-@extremes
-def test_single(extreme):
+    if not extreme.ordinary:
+        assert_exact(extreme, backend="vm")
+    if extreme in ITERATED:
+        assert_exact(extreme, newton=8)
     if extreme.single:
         with pytest.raises(AssemblyError, match=extreme.single):
             extreme.solution(precision="single")
     else:
         assert_exact(extreme, precision="single")
-
-
-@pytest.mark.parametrize("extreme", ITERATED, ids=[extreme.name for extreme in ITERATED])
-def test_steps_of_newton(extreme):
-    assert_exact(extreme, newton=8)
 
 
 def test_the_documentation_lists_every_extreme():

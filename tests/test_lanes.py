@@ -14,6 +14,8 @@ from lagrange_casadi.codegen import library
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.rung import Rung
 
+pytestmark = pytest.mark.usefixtures("released")
+
 both = pytest.mark.parametrize("precision", PRECISIONS)
 
 

@@ -18,6 +18,8 @@ from lagrange_casadi.codegen.stages import compensated, plain
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import SizeError
 
+pytestmark = pytest.mark.usefixtures("released")
+
 
 def every_function():
     """An arm under a torque that takes every function there is."""

@@ -7,7 +7,6 @@ import casadi as ca
 import numpy as np
 import pytest
 from balance import instant_at, settle
-from compiled import QUICK
 from conftest import CASES, NAMES
 from estimates import kind
 from mechanisms import counting, four_bar, harmonics, sampled, slider_crank
@@ -21,8 +20,8 @@ from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.judge.certificate import certify
 from lagrange_casadi.judge.reference import reference
 
-DOUBLE = [Rung("vm"), Rung("c", flags=QUICK), Rung("lanes", flags=QUICK)]
-SINGLE = [Rung("c", "single", flags=QUICK), Rung("lanes", "single", flags=QUICK)]
+DOUBLE = [Rung("vm"), Rung("c"), Rung("lanes")]
+SINGLE = [Rung("c", "single"), Rung("lanes", "single")]
 
 
 def gap(graph, t, rung, truth=None):

@@ -5,7 +5,6 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from compiled import QUICK
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mechanisms import pendulum
@@ -22,8 +21,8 @@ from lagrange_casadi.summits.sharpness import Kind, Watch
 STEP = 0.04
 GRID = (0.0, 2.0, 51)
 NAME = "load:push:fx"
-RUNGS = [(Rung("lanes", flags=QUICK), 1e-11), (Rung("vm"), 1e-11)]
-OTHERS = [(Rung("c", flags=QUICK), 1e-11), *((Rung(backend, "single", flags=QUICK), 4e-6) for backend in ("lanes", "c"))]
+RUNGS = [(Rung("lanes"), 1e-11), (Rung("vm"), 1e-11)]
+OTHERS = [(Rung("c"), 1e-11), *((Rung(backend, "single"), 4e-6) for backend in ("lanes", "c"))]
 
 
 def signal(law, grid=GRID):
