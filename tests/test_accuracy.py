@@ -129,8 +129,8 @@ def test_other_mechanisms(scene):
         (1e6, RUNGS["lanes"], True),
         (1e3, RUNGS["single"], True),
         (1e6, RUNGS["single"], True),
-        (1e3, {"backend": "c", "flags": "-ffast-math"}, True),
-        (1e3, {"backend": "c", "precision": "single", "flags": "-ffast-math"}, False),
+        (1e3, {"backend": "c", "flags": "-O3 -ffast-math"}, True),
+        (1e3, {"backend": "c", "precision": "single", "flags": "-O3 -ffast-math"}, False),
     ],
 )
 def test_after_many_turns(later, words, certified):

@@ -9,6 +9,8 @@ from lagrange_casadi.summits.between import highest, passed, unresolved
 from lagrange_casadi.summits.fits import SEVEN, bounds, stretch, summit, where, window
 from lagrange_casadi.summits.sharpness import Kind, Watch
 
+pytestmark = pytest.mark.quick
+
 numbers = st.floats(-3, 3, allow_nan=False)
 
 

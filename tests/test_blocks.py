@@ -11,6 +11,8 @@ from lagrange_casadi.equations.blocks import plan
 from lagrange_casadi.equations.tree import span
 from lagrange_casadi.errors import MobilityError
 
+pytestmark = pytest.mark.quick
+
 
 def truss(triangles):
     """Triangles of two bars each, side by side, pinned."""

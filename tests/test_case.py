@@ -5,6 +5,8 @@ import pytest
 from lagrange_casadi import load_case
 from lagrange_casadi.errors import CaseError, DeclarationError
 
+pytestmark = pytest.mark.quick
+
 GOOD = """
 from lagrange_casadi import Mechanism, Scene, motion
 

@@ -74,6 +74,7 @@ def on_a_parabola():
     return Scene(m, {"A": polynomial(1.0, -0.4)}, t=(0, 0.8, 21), posture={"b": -1.0})
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("made", [ladder, trammel, directed, geared, on_a_parabola, slider_crank, parallelogram])
 def test_it_is_whole_for_every_scene(made):
     """Whatever holds the bodies: point masses, users' equations, gears; and where equilibrium leaves reactions open."""
@@ -98,6 +99,7 @@ def test_multipliers_that_were_not_wanted_are_known_to_it():
     assert set(residuals(solution)) == WHOLE
 
 
+@pytest.mark.quick
 def test_a_wrong_multiplier_is_seen():
     """Off by a thousandth, the balance is too: the equation's own slopes are what it acts by."""
     scene = geared()
@@ -113,6 +115,7 @@ def broken():
     return evaluate(slider_crank(), backend="c", flags="-Dsin=cos")
 
 
+@pytest.mark.quick
 def test_a_result_that_fails_is_marked():
     with pytest.warns(CertificateWarning, match=r"the certificate fails: closure .* the solution is not certified"):
         solution = broken()

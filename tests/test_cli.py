@@ -58,6 +58,7 @@ def test_a_peak_that_is_not_told_is_no_number(slider_crank):
     assert "nan" not in line
 
 
+@pytest.mark.quick
 def test_run_takes_options(here):
     arguments = ["--set", "l=0.25", "--set", "m3=0.2", "--t", "0:0.04:5", "--xi", "0:1:3", "--want", "section:rod"]
     assert main(["run", str(CASE), *arguments, "--backend", "vm", "--out", "x.h5", "--no-figures"]) == 0
@@ -167,6 +168,7 @@ def scene():
 }
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("arguments", "status", "says"),
     [
@@ -340,6 +342,7 @@ def test_no_command_shows_the_help(capsys):
     assert "Commands:\n" in capsys.readouterr().err
 
 
+@pytest.mark.quick
 def test_help_and_version(capsys):
     assert main(["--version"]) == 0
     assert main(["--help"]) == 0

@@ -4,10 +4,13 @@ import filecmp
 import os
 import sys
 
+import pytest
 from conftest import CASES
 
 from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.cli import main
+
+pytestmark = pytest.mark.quick
 
 NAMES = sorted(path.parent.name for path in CASES.glob("*/case.py"))
 

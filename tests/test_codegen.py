@@ -37,6 +37,7 @@ def without_ends():
     return slider_crank(wanted=["effort"], mechanism=m)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("name", SCENES)
 def test_emitted_c_is_pedantically_clean(name, tmp_path):
     source = tmp_path / "scene.c"
@@ -48,6 +49,7 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
     assert result.returncode == 0, result.stderr
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("name", SCENES)
 def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
     scene = SCENES[name]()
@@ -91,7 +93,7 @@ def test_a_load_may_call_a_function_that_is_not_inlined(backend):
 
 def test_emission_is_the_same_in_every_process(tmp_path):
     """Two interpreters with different hash seeds emit the same bytes; no path, no clock."""
-    program = "import sys; sys.path[:0] = {!r}; from balance import slider_crank; from lagrange_casadi import codegen, derive; "
+    program = "import sys; sys.path[:0] = {!r}; from mechanisms import slider_crank; from lagrange_casadi import codegen, derive; "
     program = program.format([str(tmp_path), os.path.dirname(__file__)]) + "print(codegen.emit(derive(slider_crank())))"
     texts = []
     for seed in ("1", "2"):

@@ -14,6 +14,8 @@ from lagrange_casadi.declare.motion import expression, polynomial
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.mark.parametrize("turns", [0.0, 40.0])
 def test_gears_count_turns(turns):

@@ -7,6 +7,8 @@ import pytest
 
 from lagrange_casadi.declare.density import polynomial, tabulated, uniform
 
+pytestmark = pytest.mark.quick
+
 U = (0.0, 0.25, 0.4999, 0.9985, 0.9995, 1.0 - 2.0**-40, 1.0)
 
 DENSITIES = {

@@ -19,6 +19,8 @@ from lagrange_casadi.declare.scene import Wanted
 from lagrange_casadi.equations.fingerprint import fingerprint, sources
 from lagrange_casadi.equations.scene_graph import SceneGraph
 
+pytestmark = pytest.mark.quick
+
 
 def name_of(scene):
     return fingerprint(scene, Wanted.of(scene.mechanism, scene.wanted))
@@ -43,7 +45,7 @@ def test_a_graph_comes_back_from_its_text_as_it_was(name):
 def test_a_second_process_derives_nothing(fresh_cache, tmp_path):
     first = evaluate(slider_crank(), backend="c")
     program = (
-        f"import sys; sys.path[:0] = {[os.path.dirname(__file__)]!r}; from balance import slider_crank; "
+        f"import sys; sys.path[:0] = {[os.path.dirname(__file__)]!r}; from mechanisms import slider_crank; "
         "sys.modules['lagrange_casadi.equations.derive'].assemble = None; "
         "from lagrange_casadi import evaluate; print(evaluate(slider_crank(), backend='c').effort('O').tobytes().hex())"
     )

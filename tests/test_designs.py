@@ -99,6 +99,7 @@ def bare(designs, p):
     return results
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("backend", ["lanes", "c"])
 def test_every_value_is_written_or_is_nan(backend):
     scene = slider_crank()

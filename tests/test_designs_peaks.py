@@ -40,6 +40,7 @@ def test_any_density_and_any_station(matter):
             assert min(abs(value - side) for side in sides) <= 1e-11 * abs(value)
 
 
+@pytest.mark.quick
 @both
 def test_peaks_of_a_turning_pendulum_are_exact(backend):
     """The effort is m g l/2 cos theta; its mean over a whole turn is zero and its rms the peak over the root of two."""

@@ -81,6 +81,7 @@ def test_four_bars_of_every_kind(backend):
     assert len(set(found)) > 1
 
 
+@pytest.mark.quick
 @both
 def test_a_change_point_is_passed_between_instants(backend):
     scene = flat_parallelogram()

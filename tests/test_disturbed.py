@@ -15,6 +15,8 @@ from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.judge.disturbed import TRIALS, Instants, effects, openness
 
+pytestmark = pytest.mark.quick
+
 STAGES = {
     "double": plain,
     "pairs": lambda graph: compensated(graph, "double"),

@@ -13,6 +13,8 @@ from lagrange_casadi.codegen import find_compiler
 from lagrange_casadi.quantities import QUANTITIES
 from lagrange_casadi.store.runs import SCHEMA_VERSION
 
+pytestmark = pytest.mark.quick
+
 ROOT = Path(__file__).parent.parent
 PAGES = ["README.md", "docs/method.md", "docs/declaring.md", "docs/sweeps.md"]
 LINKING = [*PAGES, "docs/accuracy.md", "docs/export.md", "docs/schema.md", "CONTRIBUTING.md", "cases/slider_crank/README.md"]

@@ -4,6 +4,8 @@ import pytest
 
 from lagrange_casadi.errors import UnknownNameError
 
+pytestmark = pytest.mark.quick
+
 MANY = [f"reaction:joint_{k}" for k in range(100)]
 
 

@@ -190,7 +190,9 @@ def test_iterated_loops_report_failure_and_stay_where_they_were(tmp_path):
 
 
 def test_twice_the_same_bytes(tmp_path):
-    program = "import sys; sys.path.insert(0, sys.argv[1]); from balance import slider_crank; from lagrange_casadi import export; "
+    program = (
+        "import sys; sys.path.insert(0, sys.argv[1]); from mechanisms import slider_crank; from lagrange_casadi import export; "
+    )
     program += "export(slider_crank(), sys.argv[2], precision='single')"
     for name, seed in (("one", "1"), ("two", "2")):
         environment = {"PYTHONHASHSEED": seed, "PATH": "", "XDG_CACHE_HOME": str(tmp_path / f"cache_{name}")}

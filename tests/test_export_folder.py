@@ -12,6 +12,8 @@ from mechanisms import slider_crank, truss_platform
 from lagrange_casadi import Mechanism, Scene, export, motion
 from lagrange_casadi.errors import DeclarationError, PathError, SizeError, UnknownNameError
 
+pytestmark = pytest.mark.quick
+
 
 def test_the_manifest_knows_all_files(tmp_path):
     made = export(slider_crank(), tmp_path)

@@ -11,6 +11,7 @@ import pytest
 from compiled import cc, compilers, present
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matplotlib.cbook import is_math_text
 from mechanisms import slider_crank
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, motion, sweep
@@ -266,7 +267,10 @@ def test_a_unit_shows_in_a_figure_as_it_is(tmp_path):
         figure, axes = plt.subplots()
         axes.set_xlabel(label(found, "l"))
         figure.canvas.draw()
+        shown = axes.xaxis.label.get_text()
         plt.close(figure)
+        assert not is_math_text(shown)
+        assert unit in shown.replace(r"\$", "$")
 
 
 def test_units_in_an_fmu(tmp_path):

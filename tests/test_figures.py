@@ -8,6 +8,8 @@ from lagrange_casadi.draw import figures
 from lagrange_casadi.draw.figures import MechanismDrawing, SectionMaps, SpanPlot, TimePlot
 from lagrange_casadi.errors import DeclarationError, StoreError, UnknownNameError
 
+pytestmark = pytest.mark.quick
+
 
 def curves(figure):
     return [line.get_xydata() for line in figure.axes[0].get_lines() if len(line.get_xydata()) > 2]

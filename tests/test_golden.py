@@ -10,6 +10,8 @@ from mechanisms import slider_crank
 
 from lagrange_casadi import __version__, export
 
+pytestmark = pytest.mark.quick
+
 GOLDEN = Path(__file__).parent / "golden"
 FILES = ("press.h", "press.c", "CMakeLists.txt", "example.c", "README.md")
 _CASADI = re.compile(r"(/\* ---- Written by CasADi ).*?(/\* ---- Written by lagrange_casadi)", re.DOTALL)

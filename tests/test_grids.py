@@ -13,6 +13,8 @@ from lagrange_casadi.instants import grids
 from lagrange_casadi.instants.section_law import SectionLaw, StationLoad
 from lagrange_casadi.quantities import FORCES
 
+pytestmark = pytest.mark.quick
+
 random = np.random.default_rng(4)
 
 

@@ -8,6 +8,8 @@ from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.judge.certificate import certify
 
+pytestmark = pytest.mark.quick
+
 G = 9.81
 
 

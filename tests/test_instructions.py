@@ -5,6 +5,8 @@ from conftest import CASES
 
 from lagrange_casadi import derive, load_case
 
+pytestmark = pytest.mark.quick
+
 INSTANT = {
     "slider_crank": 183,
     "engine": 393,

@@ -8,6 +8,8 @@ from lagrange_casadi import LagrangeSystem
 from lagrange_casadi.equations.integrability import Course, no_rates
 from lagrange_casadi.errors import DeclarationError
 
+pytestmark = pytest.mark.quick
+
 INERTIA = np.array([0.7, 1.1, 1.6])
 
 

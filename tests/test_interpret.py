@@ -17,6 +17,8 @@ from lagrange_casadi.arithmetic.interpret import ROUNDINGS, Step, followable, in
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import DeclarationError
 
+pytestmark = pytest.mark.quick
+
 # NumPy's own sines differ from those of the C library, which the virtual machine takes.
 OF_C = {getattr(ca, f"OP_{name.upper()}"): getattr(math, name) for name in ("sin", "cos", "atan2")}
 MACHINE = replace(numpy_arithmetic(), operations=numpy_arithmetic().operations | OF_C)

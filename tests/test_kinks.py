@@ -13,6 +13,8 @@ from lagrange_casadi.declare.kinks import kink
 from lagrange_casadi.declare.motion import expression, polynomial
 from lagrange_casadi.errors import DeclarationError
 
+pytestmark = pytest.mark.quick
+
 X, Y, T = (ca.SX.sym(name) for name in "xyt")
 TURN = np.linspace(0.0, math.tau, 37)
 
@@ -169,7 +171,8 @@ def test_tables_stay_in_loads_and_rows():
     q = m.coordinate(turn)
     m.torque("T", a, table(q, [0.0, 1.0, 2.0], [0.0, 1.0, 4.0]))
     m.nonholonomic("row", m.rate(second) - table(q, [0.0, 1.0, 2.0], [1.0, 1.0, 1.0]) * m.rate(turn), replaces=second)
-    derive(Scene(m, {"J": polynomial(0, 1), "K": polynomial(0, 1)}))
+    graph = derive(Scene(m, {"J": polynomial(0, 1), "K": polynomial(0, 1)}))
+    assert {"load:T:mz", "_row:row"} <= set(graph.columns)
 
 
 def test_a_table_has_the_slope_of_the_side_beyond_at_its_points():

@@ -7,6 +7,8 @@ import pytest
 from lagrange_casadi import LagrangeSystem
 from lagrange_casadi.errors import DeclarationError
 
+pytestmark = pytest.mark.quick
+
 NUMBERS = np.array([0.7, -0.4, 1.3, 0.9, -1.1, 0.6])
 
 

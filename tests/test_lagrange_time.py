@@ -14,6 +14,8 @@ from hypothesis import strategies as st
 from lagrange_casadi import LagrangeSystem
 from lagrange_casadi.errors import DeclarationError
 
+pytestmark = pytest.mark.quick
+
 G = 9.81
 WAYS = ("energy", "velocities", "both")
 

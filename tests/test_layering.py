@@ -6,7 +6,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import lagrange_casadi
+
+pytestmark = pytest.mark.quick
 
 PACKAGE = Path(lagrange_casadi.__file__).parent
 ORDER = (
@@ -91,7 +95,8 @@ def test_tests_take_nothing_from_other_tests():
     """What several need has a place of its own, as mechanisms have."""
     for path in sorted(Path(__file__).parent.glob("*.py")):
         for node in ast.walk(ast.parse(path.read_text())):
-            taken = [node.module or ""] if isinstance(node, ast.ImportFrom) else [name.name for name in getattr(node, "names", ())]
+            taken = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+            taken += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
             assert not [name for name in taken if name.startswith("test_")], f"{path.name}:{node.lineno}"
 
 

@@ -12,6 +12,8 @@ from lagrange_casadi import Mechanism, Scene, derive, evaluate, table
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import ParameterError
 
+pytestmark = pytest.mark.quick
+
 
 def loads_on(m, parts):
     a, b, s = parts["a"], parts["b"], parts["s"]

@@ -12,6 +12,8 @@ from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError
 
+pytestmark = pytest.mark.quick
+
 
 def iterated(scene):
     return derive(scene).newton is not None

@@ -10,6 +10,8 @@ from lagrange_casadi import Mechanism, Scene
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import DeclarationError, ParameterError, UnknownNameError
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.fixture
 def m():

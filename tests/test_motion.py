@@ -10,6 +10,8 @@ from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.declare import motion
 from lagrange_casadi.errors import DeclarationError
 
+pytestmark = pytest.mark.quick
+
 
 def at(law, t):
     f = motion.motion_function({"J": law}, ca.SX(0, 1))

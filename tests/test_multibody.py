@@ -3,12 +3,15 @@
 import math
 
 import casadi as ca
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from lagrange_casadi import Mechanism
 from lagrange_casadi.equations.multibody import Turned, joint_coordinate
 from lagrange_casadi.geometry.planar import Frame, Rotation
+
+pytestmark = pytest.mark.quick
 
 angles = st.floats(-30.0, 30.0)
 

@@ -6,6 +6,8 @@ import pytest
 
 from lagrange_casadi.system.numerals import real, whole
 
+pytestmark = pytest.mark.quick
+
 
 def test_numbers_are_read():
     assert [real(text) for text in ("0.1", " 3e-1 ", "-inf", "+2")] == [0.1, 0.3, -math.inf, 2.0]

@@ -6,6 +6,8 @@ import numpy as np
 import oracle
 import pytest
 
+pytestmark = pytest.mark.quick
+
 STILL = {"bar": (0.0, 0.0, 0.0)}
 
 

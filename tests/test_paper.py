@@ -13,6 +13,8 @@ from mechanisms import slider_crank
 
 from lagrange_casadi import derive
 
+pytestmark = pytest.mark.quick
+
 G = 9.81
 
 

@@ -11,6 +11,8 @@ from lagrange_casadi import Mechanism, Scene, density, derive, evaluate, table
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import DeclarationError, ParameterError
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.mark.parametrize(
     "rod",

@@ -46,6 +46,7 @@ def test_rates_are_those_of_differences(name):
         assert np.mean(np.abs(rate[moving]) > 100 * allowed[moving]) > 0.4
 
 
+@pytest.mark.quick
 def test_rates_are_those_of_a_closed_form():
     """A pendulum: I theta'' + m g l/2 cos theta, and what holds its centre on its circle."""
     scene = pendulum(motion.expression(lambda t: 0.4 * ca.sin(3 * t) + t))
@@ -66,6 +67,7 @@ def test_rates_are_those_of_a_closed_form():
         assert {name: found[name] for name in exact} == pytest.approx(exact, rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.quick
 def test_peaks_of_a_turning_pendulum_are_exact():
     """At constant speed the effort is m g l/2 cos theta: its peak at half a turn lies between the instants."""
     speed = 3.0
@@ -84,6 +86,7 @@ def test_peaks_of_a_turning_pendulum_are_exact():
     assert peaks["motion:pin"] == solution.peak("motion:pin")
 
 
+@pytest.mark.quick
 def test_the_higher_of_two_peaks_is_found_where_the_instants_tell_otherwise():
     scene = pendulum(motion.expression(lobes), t=(0, 3.0, 31))
     solution = evaluate(scene, wanted=["motion"])
@@ -181,6 +184,7 @@ def test_what_is_not_determined_stays_so():
     assert shortfall(scene, [31])[0].refined_worst < 1e-12
 
 
+@pytest.mark.quick
 def test_one_instant_has_its_own_peak():
     scene = pendulum(motion.polynomial(0.1, 3.0))
     solution = evaluate(scene, t=(0.2, 0.2, 1))

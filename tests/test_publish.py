@@ -9,6 +9,8 @@ import pytest
 from lagrange_casadi.errors import PathError
 from lagrange_casadi.system.publish import check_writable, filling, replacing, uninterrupted
 
+pytestmark = pytest.mark.quick
+
 
 def test_a_folder_keeps_what_else_is_in_it(tmp_path):
     folder = tmp_path / "figures"

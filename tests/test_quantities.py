@@ -6,6 +6,8 @@ from hypothesis import strategies as st
 
 from lagrange_casadi.quantities import QUANTITIES, Output, quantity_of
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.mark.parametrize(
     ("name", "key", "unit"),

@@ -10,6 +10,8 @@ from conftest import SIXTY_DIGITS
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.fixture(scope="module")
 def instants(slider_crank):

@@ -8,6 +8,8 @@ import pytest
 from lagrange_casadi.errors import SizeError
 from lagrange_casadi.system import room
 
+pytestmark = pytest.mark.quick
+
 MEMINFO = "MemTotal:       64000000 kB\nMemFree:          100000 kB\nMemAvailable:   32000000 kB\nSwapFree:        1000000 kB\n"
 STAT = "anon 900\ninactive_file 4000000\ntotal_inactive_file 6000000\n"
 
@@ -79,7 +81,7 @@ def test_what_does_not_fit_is_refused_with_its_size(monkeypatch, shape, says):
 
 
 def test_nobody_is_asked_for_what_is_little(monkeypatch):
-    monkeypatch.setattr(room, "memory", None)
+    monkeypatch.setattr(room, "memory", lambda: pytest.fail("somebody was asked"))
     room.require("it", (1000, 1000))
 
 

@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 from lagrange_casadi.judge.roundings import left
 
+pytestmark = pytest.mark.quick
+
 numbers = st.floats(-1e6, 1e6).filter(lambda x: abs(x) > 1e-6) | st.sampled_from([1.0, -0.5, 3.0, 0.1, 1.0 + 2.0**-52])
 kinds = st.sampled_from([np.float64, np.float32])
 

@@ -12,6 +12,8 @@ from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.instants.rung import Rung
 
+pytestmark = pytest.mark.quick
+
 WRONG = [
     ({"backend": "gpu"}, UnknownNameError, "unknown backend 'gpu'; valid: auto, lanes, c, vm"),
     ({"precision": "half"}, UnknownNameError, "unknown precision 'half'; valid: double, single"),

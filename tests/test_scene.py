@@ -9,6 +9,8 @@ from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.declare.scene import outputs
 from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
 
+pytestmark = pytest.mark.quick
+
 
 def test_outputs():
     assert outputs(slider_crank().mechanism) == [

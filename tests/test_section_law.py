@@ -9,6 +9,8 @@ from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.instants.section_law import SectionLaw, StationLoad
 from lagrange_casadi.quantities import FORCES
 
+pytestmark = pytest.mark.quick
+
 NAMES = ("n0", "n1", "n2", "f0", "f1", "f2", "m0")
 numbers = st.floats(-100, 100)
 

@@ -9,6 +9,8 @@ from lagrange_casadi import Mechanism, evaluate
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.quantities import quantity_of
 
+pytestmark = pytest.mark.quick
+
 
 def test_names_lead_to_arrays(solution):
     for name in solution.names():

@@ -8,6 +8,8 @@ from mechanisms import slider_crank
 from lagrange_casadi import codegen, derive
 from lagrange_casadi.codegen import split
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.mark.parametrize("language", ["c", "c++"])
 def test_parts_give_the_same_bits(language, monkeypatch):

@@ -20,6 +20,8 @@ from lagrange_casadi.errors import BusyError, DeclarationError, PathError, Store
 from lagrange_casadi.quantities import CONVENTIONS
 from lagrange_casadi.store import runs as store
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.fixture
 def file(solution, tmp_path):

@@ -13,6 +13,8 @@ from lagrange_casadi.errors import DeclarationError, ParameterError, UnknownName
 from lagrange_casadi.sweep import Grid, Listed, Range, Values
 from lagrange_casadi.sweep.axes import check_designs, counted, size_of
 
+pytestmark = pytest.mark.quick
+
 numbers = st.floats(-1e6, 1e6)
 
 

@@ -12,6 +12,8 @@ from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.sweep import Condition, best, chosen, reading, sweep
 from lagrange_casadi.sweep.best import _front, missed, tally
 
+pytestmark = pytest.mark.quick
+
 BENDING, EFFORT = "peak:section:rod:bending", "peak:effort:O"
 
 

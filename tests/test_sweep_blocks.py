@@ -3,10 +3,13 @@
 import math
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lagrange_casadi.sweep.blocks import Queue, chunk_of, slabs
+
+pytestmark = pytest.mark.quick
 
 
 @settings(deadline=None)

@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 
 from lagrange_casadi.sweep.chunks import FILTERS, deflated, encoded, fletcher32
 
+pytestmark = pytest.mark.quick
+
 RANDOM = np.random.default_rng(8)
 KINDS = {
     "smooth": np.sin(np.linspace(0, 3, 70_000)),

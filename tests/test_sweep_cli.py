@@ -18,6 +18,7 @@ from lagrange_casadi.sweep import columns as kept
 from lagrange_casadi.sweep.parts import Folder
 
 
+@pytest.mark.quick
 def test_sweep_writes_one_file_and_says_what_is_in_it(here, capfd):
     assert main([*ASKED, "--grid", "l=0.06:0.36:4", "--grid", "r=0.05,0.1"]) == 0
     out, err = capfd.readouterr()

@@ -12,6 +12,8 @@ from lagrange_casadi.study.peaks import forces, refine
 from lagrange_casadi.sweep import columns, sweep
 from lagrange_casadi.sweep.plan import Task
 
+pytestmark = pytest.mark.quick
+
 SPAN = (0, 0.08, 129)
 LENGTHS, CRANKS = (0.13, 0.25), (0.06, 0.1)
 

@@ -30,6 +30,7 @@ def test_the_same_bytes_whatever_the_workers(whole, engine, tmp_path, workers):
     assert min(most, 2) <= threads <= most
 
 
+@pytest.mark.quick
 def test_the_same_bytes_whatever_the_stops(whole, tmp_path):
     path, chance, stops = tmp_path / "x.h5", random.Random(5), 0
     while not path.exists():
@@ -82,6 +83,7 @@ def test_a_part_lost_or_damaged_is_done_again(whole, tmp_path):
     assert run(path, resume=True) == whole
 
 
+@pytest.mark.quick
 def test_a_finished_sweep_is_not_done_again(whole, engine, tmp_path):
     engine.calls.clear()
     assert run(tmp_path / "whole.h5", resume=True) == whole

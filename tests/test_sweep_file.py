@@ -12,6 +12,8 @@ from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.quantities import CONVENTIONS
 from lagrange_casadi.sweep import Listed, sweep
 
+pytestmark = pytest.mark.quick
+
 GRID = {"l": (0.15, 0.4, 6), "r": [0.05, 0.1, 0.07]}
 
 

@@ -10,6 +10,8 @@ from lagrange_casadi.errors import DeclarationError, PathError, UnknownNameError
 from lagrange_casadi.sweep import read_designs
 from lagrange_casadi.sweep.axes import check_designs
 
+pytestmark = pytest.mark.quick
+
 
 def test_a_list_is_read(tmp_path):
     path = tmp_path / "d.csv"

@@ -12,6 +12,8 @@ from lagrange_casadi.errors import BusyError, StoreError
 from lagrange_casadi.sweep.columns import Column
 from lagrange_casadi.sweep.parts import Folder
 
+pytestmark = pytest.mark.quick
+
 COLUMNS = (Column("status", "1", {}, dtype="|i1"), Column("peak:a", "N", {}), Column("history:b", "N", {}, ("t",), (3,)))
 
 

@@ -8,6 +8,8 @@ import sweeps
 from lagrange_casadi.sweep import Grid
 from lagrange_casadi.sweep.plan import Plan, difference
 
+pytestmark = pytest.mark.quick
+
 
 def test_another_posture_is_told_with_what_else_a_scene_is(monkeypatch):
     """A scene's fingerprint holds them all, and does not tell one from another."""

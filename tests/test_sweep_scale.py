@@ -8,6 +8,8 @@ from matplotlib.figure import Figure
 from lagrange_casadi.sweep.panels import fitted
 from lagrange_casadi.sweep.scale import Scale, edges, logarithmic, number, tick
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.mark.parametrize(
     ("values", "expected"),

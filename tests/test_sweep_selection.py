@@ -6,6 +6,8 @@ import pytest
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.sweep.selection import absent, matches, near
 
+pytestmark = pytest.mark.quick
+
 THERE = np.array([0.3, 0.1, 0.30000000000000004, 0.1, 0.2])
 
 

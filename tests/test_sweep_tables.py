@@ -13,6 +13,8 @@ from sweeps import ASKED, BENDING, CASE
 from lagrange_casadi.cli import main
 from lagrange_casadi.sweep import Sweep
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.fixture
 def file(here, capfd):

@@ -2,10 +2,13 @@
 
 import casadi as ca
 import numpy as np
+import pytest
 
 from lagrange_casadi import Mechanism, Scene, motion, sweep
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.sweep.checking import check_sweep
+
+pytestmark = pytest.mark.quick
 
 
 def test_a_design_without_its_peak_is_marked(tmp_path):

@@ -8,6 +8,8 @@ from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.equations.tree import span
 from lagrange_casadi.errors import DeclarationError
 
+pytestmark = pytest.mark.quick
+
 
 def names(tree):
     return [branch.joint.name for branch in tree.branches], [joint.name for joint in tree.closures]

@@ -7,6 +7,8 @@ import pytest
 from lagrange_casadi.export.units import BASE, base_unit
 from lagrange_casadi.quantities import QUANTITIES
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.mark.parametrize(
     ("text", "factor", "powers"),
