@@ -172,7 +172,7 @@ def test_tables_stay_in_loads_and_rows():
     m.torque("T", a, table(q, [0.0, 1.0, 2.0], [0.0, 1.0, 4.0]))
     m.nonholonomic("row", m.rate(second) - table(q, [0.0, 1.0, 2.0], [1.0, 1.0, 1.0]) * m.rate(turn), replaces=second)
     graph = derive(Scene(m, {"J": polynomial(0, 1), "K": polynomial(0, 1)}))
-    assert {"load:T:mz", "_row:row"} <= set(graph.columns)
+    assert {"load:T:mz", "_row:row"} <= set(graph.names)
 
 
 def test_a_table_has_the_slope_of_the_side_beyond_at_its_points():
