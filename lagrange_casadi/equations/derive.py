@@ -25,6 +25,7 @@ from .mobility import internal_forces, needed_reactions
 from .multibody import Multibody, column
 from .reciprocals import share_reciprocals
 from .scene_graph import SceneGraph
+from .stations import gathered
 from .tree import span
 from .turns import count_turns
 
@@ -129,7 +130,8 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
             multipliers=want.multipliers,
             sections=want.sections,
         )
-        columns |= _settled(forces.columns, forces.free)
+        acting = gathered(forces.columns, forces.free, mechanism.links.values(), body.coordinates)
+        columns |= _settled(acting, forces.free)
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
