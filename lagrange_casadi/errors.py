@@ -26,7 +26,10 @@ def lacking(error: OSError) -> bool:
 
 
 class LagrangeCasadiError(Exception):
-    """Base of all errors of this package."""
+    """Base of all errors of this package: one line that names the part, says what was expected, and lists what is valid.
+
+    ``exit_status`` is that of the command line: 2 for a mistake in what was asked, 1 for a computation that failed.
+    """
 
     exit_status = 2
 

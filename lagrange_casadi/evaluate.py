@@ -73,7 +73,10 @@ def evaluate(
         Whether to check the solution by :mod:`.certificate`, as far as the wanted outputs allow, and to estimate its errors by
         :mod:`.accuracy`.
 
-    A solution whose certificate fails says so: it is not :attr:`~.Solution.certified`, and :class:`CertificateWarning` is given.
+    Returns the :class:`.Solution`: arrays over the instants (t,), section forces (t, xi), in SI units; :mod:`.quantities` lists
+    units and signs. A solution whose certificate fails says so: it is not :attr:`~.Solution.certified`, and
+    :class:`CertificateWarning` is given. The method is that of Nguyen, Petre, Stroe, *Application of Lagrange equations for
+    calculus of internal forces in a mechanism*; ``docs/method.md`` follows it step by step.
 
     Raises :class:`AssemblyError` where a loop does not close at some instant, :class:`SizeError` where the outputs over time do not
     fit into memory, :class:`CompilerError`, and for mistakes in the arguments :class:`UnknownNameError`, :class:`ParameterError` or
@@ -189,7 +192,9 @@ def _closed(graph: SceneGraph, out: Array, p: Array) -> dict[str, Array]:
 
 
 def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:
-    """How much the loops magnify what goes into them: the worst of 1/sin(transmission angle), or for iterated loops 2/volume.
+    """How much an error in a loop's lengths or drives grows in its solution: the worst 1/sin(transmission angle) of all loops.
+
+    For an iterated loop it is 2/volume, the volume of its Jacobian's columns at length one.
 
     2/volume bounds the condition number of a matrix whose columns have length one (Guggenheimer, Edelman, Johnson 1995).
     """

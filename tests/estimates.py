@@ -96,7 +96,7 @@ def main():
     parser.add_argument("--rung", choices=RUNGS, action="append", help="only these; default: all")
     parser.add_argument("--kind", action="append", help="only these; default: all")
     told = parser.parse_args()
-    print(f"| {'kind, rung' if told.scenes else 'rung'} | quantities | least | 5 % | median | 95 % | within a factor of ten |")
+    print(f"| {'kind, method' if told.scenes else 'method'} | quantities | least | 5 % | median | 95 % | within a factor of ten |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for rung in told.rung or RUNGS:
         option, every = f"`{OPTIONS.get(rung, f'--{rung}')}`", []

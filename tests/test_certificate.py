@@ -148,14 +148,14 @@ def test_a_sweep_ends_with_a_status_where_a_certificate_fails(here, capsys):
     sweep = ["sweep", str(CASES / "slider_crank"), "--grid", "l=0.2:0.4:9", "--want", "effort", "--out", "s.h5", "--quiet"]
     assert main([*sweep, "--backend", "c"]) == 0
     assert main([*sweep, "--backend", "c", "--flags=-Dsin=cos", "--force"]) == 1
-    assert "looked at closely, one a block, fails its certificate" in capsys.readouterr().err
+    assert "checked in full, one of each block, fails its certificate" in capsys.readouterr().err
     with h5py.File("s.h5") as file:
         status, effort = file["status"][()], file["peak/effort/O"][()]
     assert np.sum(status == Status.UNCERTIFIED) == 1
     assert np.array_equal(np.isnan(effort), status != 0)
     capsys.readouterr()
     assert main(["check", "s.h5"]) == 1
-    said = "s.h5: 1 design, of those that were looked at closely, without a certificate: others may be wrong as well\n"
+    said = "s.h5: 1 design, of those that were checked in full, without a certificate: others may be wrong as well\n"
     assert capsys.readouterr().err == said
 
 

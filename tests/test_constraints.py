@@ -176,13 +176,13 @@ def test_a_row_at_a_station_loads_the_link_there():
 
 
 def test_motion_that_violates_a_row_is_refused():
-    with pytest.raises(AssemblyError, match=r"violates the non-holonomic row 'blade' by -0\.0\d+ at t = 0\.2 s, where X = 0\.19"):
+    with pytest.raises(AssemblyError, match=r"non-holonomic constraint 'blade' by -0\.0\d+ at t = 0\.2 s, where X = 0\.19"):
         evaluate(sleigh(lead=0.1))
 
 
 def test_a_row_must_replace_a_drive():
     base = sleigh()
-    with pytest.raises(DeclarationError, match="row 'blade' replaces the drive of joint 'Y', which has no motion"):
+    with pytest.raises(DeclarationError, match="constraint 'blade' replaces the drive of joint 'Y', which has no motion"):
         Scene(base.mechanism, {"X": polynomial(0), "turn": polynomial(0)})
 
 

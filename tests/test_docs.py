@@ -17,7 +17,8 @@ pytestmark = pytest.mark.quick
 
 ROOT = Path(__file__).parent.parent
 PAGES = ["README.md", "docs/method.md", "docs/declaring.md", "docs/sweeps.md"]
-LINKING = [*PAGES, "docs/accuracy.md", "docs/export.md", "docs/schema.md", "CONTRIBUTING.md", "cases/slider_crank/README.md"]
+PROSE = ["README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md"))]
+LINKING = [*PROSE, "cases/slider_crank/README.md"]
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -107,3 +108,36 @@ def test_the_schema_lists_every_quantity(request):
 
 def test_the_changelog_names_the_version():
     assert f"## {lagrange_casadi.__version__}" in (ROOT / "CHANGELOG.md").read_text()
+
+
+@pytest.mark.parametrize("page", PROSE)
+def test_pages_keep_to_their_width(page):
+    """Prose and code to 120 columns; a row of a table cannot break, and keeps to 160."""
+    for number, line in enumerate((ROOT / page).read_text().splitlines(), 1):
+        assert len(line) <= (160 if line.startswith("|") else 120), f"{page}:{number}: {len(line)} columns"
+
+
+def anchor(heading):
+    """What a heading is called in a link, as GitHub has it."""
+    return re.sub(r"[^a-z0-9 _-]", "", heading.lower()).replace(" ", "-")
+
+
+def headings(page):
+    """The headings of a page; what begins with # in its code is none."""
+    prose = re.sub(r"^```.*?^```$", "", (ROOT / page).read_text(), flags=re.DOTALL | re.MULTILINE)
+    return re.findall(r"^#+ (.*)", prose, re.MULTILINE)
+
+
+@pytest.mark.parametrize("page", PROSE)
+def test_links_into_pages_meet_a_heading(page):
+    for target, name in re.findall(r"\]\(([^)#:]*)#([^)]+)\)", (ROOT / page).read_text()):
+        other = ((ROOT / page).parent / target).resolve().relative_to(ROOT) if target else page
+        assert name in map(anchor, headings(other)), f"{page}: {target}#{name}"
+
+
+def test_the_glossary_is_in_order_and_found():
+    words = headings("docs/glossary.md")[1:]
+    assert words == sorted(words, key=str.lower)
+    assert len({anchor(word) for word in words}) == len(words) > 50
+    for page in ("README.md", "docs/architecture.md", "CONTRIBUTING.md"):
+        assert "glossary.md)" in (ROOT / page).read_text()

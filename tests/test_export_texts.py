@@ -227,7 +227,7 @@ def test_what_is_no_line_of_text_is_refused(tmp_path, wicked):
             what()
     with pytest.raises(DeclarationError, match="must be a line of printable characters, got 7"):
         arm(7)
-    with pytest.raises(DeclarationError, match=r"flags: expected words for a compiler, .*: they hold a null character"):
+    with pytest.raises(DeclarationError, match=r"flags: expected options of a compiler, .*: they hold a null character"):
         evaluate(arm(), flags="-DX=\0")
     assert not list(tmp_path.iterdir())
 

@@ -91,6 +91,6 @@ def test_what_is_no_spec_is_named(solution, tmp_path):
     with pytest.raises(UnknownNameError, match=r"unknown part in figure 'x' 'Q'; valid: crank"):
         list(figures.draw(solution, [TimePlot("x", ("effort:Q",))], tmp_path))
     for specs in ([TimePlot("../x", ("effort:O",))], [TimePlot("x", ("effort:O",))] * 2):
-        with pytest.raises(DeclarationError, match="names must be letters"):
+        with pytest.raises(DeclarationError, match="expected letters, digits, underscores and hyphens"):
             list(figures.draw(solution, specs, tmp_path))
     assert not list(tmp_path.iterdir())

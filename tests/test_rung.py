@@ -37,9 +37,9 @@ WRONG = [
     (
         {"flags": "-DNAME='open"},
         DeclarationError,
-        'flags: expected words for a compiler, got "-DNAME=\'open": No closing quotation',
+        'flags: expected options of a compiler, got "-DNAME=\'open": No closing quotation',
     ),
-    ({"flags": 3}, DeclarationError, "flags: expected words for a compiler, got 3"),
+    ({"flags": 3}, DeclarationError, "flags: expected options of a compiler, got 3"),
     ({"newton": 1, "table": 64}, DeclarationError, "newton and table exclude each other"),
     ({"backend": "vm", "precision": "single"}, DeclarationError, "backend 'vm' computes in doubles only"),
     ({"backend": "vm", "flags": "-O1"}, DeclarationError, "backend 'vm' compiles nothing; flags '-O1' need lanes or c"),
@@ -92,7 +92,7 @@ def test_a_rung_as_options(rung, options, tmp_path, monkeypatch):
             "backend 'vm' computes in doubles only; precision 'single' needs lanes or c",
         ),
         (["--backend", "vm", "--flags", "-O1"], "backend 'vm' compiles nothing; flags '-O1' need lanes or c"),
-        (["--flags", "-D'"], 'flags: expected words for a compiler, got "-D\'": No closing quotation'),
+        (["--flags", "-D'"], 'flags: expected options of a compiler, got "-D\'": No closing quotation'),
         (["--newton", "1", "--table", "64"], "newton and table exclude each other: a table is read, no loop is closed"),
     ],
 )

@@ -122,7 +122,7 @@ def test_what_is_there_is_not_overwritten(whole, tmp_path):
     with pytest.raises(StopError):
         run(tmp_path / "notes.h5", progress=stop_after(2))
     (tmp_path / "notes.h5").write_text("mine")
-    with pytest.raises(PathError, match=r"notes\.h5 is there now, which was not when the sweep began"):
+    with pytest.raises(PathError, match=r"notes\.h5 has appeared since the sweep began"):
         run(tmp_path / "notes.h5", resume=True)
     shutil.rmtree(tmp_path / "notes.h5.parts")
     for keywords, says in (({}, "exists"), ({"resume": True}, "not a whole HDF5 file")):

@@ -231,9 +231,9 @@ REFUSED = {
     ),
     "size": (
         lambda: arm(lambda q, w, t: -1e-3 * w * ca.fabs(w)),
-        r"quadratic in the rate of joint 'pin', but a load by a rate's sign",
+        r"quadratic in the rate of joint 'pin', but a load that depends on a rate's sign",
     ),
-    "cube": (lambda: arm(lambda q, w, t: 1e-6 * w**3), r"sign, size or other power enters 'load:load:mz', 'effort:pin'$"),
+    "cube": (lambda: arm(lambda q, w, t: 1e-6 * w**3), r"sign, size or another power enters 'load:load:mz', 'effort:pin'$"),
     "at rest": (lambda: arm(lambda q, w, t: w**2 / ca.fabs(w)), r"'load:load:mz' is not finite at rest, where pin = 0\.\d+ rad"),
     "quick_return": (lambda: case("quick_return"), r"quadratic in the rate of joint 'O', .* enters 'load:cut:fx', .* and 16 more"),
     "rocker": (
@@ -248,7 +248,10 @@ REFUSED = {
         flat_parallelogram,
         r"the loop closed by joint 'B' is at a dead centre, or about a degree from one, near O = 3\.\d+ rad",
     ),
-    "gear": (lambda: geared(0.7), r"repeat after at most 4 turns of joint 'first', but 'effort:first', .* and \d more go on"),
+    "gear": (
+        lambda: geared(0.7),
+        r"after at most 4 turns of joint 'first', but 'effort:first', .* and \d more do not repeat",
+    ),
     "grows": (
         lambda: arm(lambda q, w, t: 2 * q**2),
         r"repeat after at most 4 turns of joint 'pin', but 'load:load:mz', 'effort:pin'",

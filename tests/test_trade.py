@@ -60,7 +60,8 @@ def test_the_front_and_the_fastest():
     assert found.fastest(1e-3).seconds == 1
     assert found.fastest(9e-4).seconds == 3
     with pytest.raises(
-        AccuracyError, match=r"no rung of 'x' keeps 1e-16 .*; the best, --backend c --flags -D5, keeps 1e-15 \(effort:O"
+        AccuracyError,
+        match=r"no method of evaluating 'x' keeps 1e-16 .*; the best, --backend c --flags -D5, keeps 1e-15 \(",
     ):
         found.fastest(1e-16)
     for wrong in (0.0, -1.0, float("nan")):
@@ -105,7 +106,7 @@ def test_the_command(tmp_path, monkeypatch, capfd):
     assert (tmp_path / "slider_crank_trade.png").stat().st_size > 10_000
     assert main([*arguments, "--accuracy", "1e-30"]) == 1
     out, err = capfd.readouterr()
-    assert err.startswith("error: no rung of 'slider_crank' keeps 1e-30 of the peak; the best, ")
+    assert err.startswith("error: no method of evaluating 'slider_crank' keeps 1e-30 of the peak; the best, ")
     assert err.count("\n") == 1
 
 

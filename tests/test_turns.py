@@ -155,7 +155,7 @@ def test_a_table_serves_what_comes_round_and_says_what_does_not():
     together = sprung("AB", **DRAG_LINK)
     exact, read = evaluate(together), evaluate(together, table=1e-9)
     np.testing.assert_allclose(read.effort("O"), exact.effort("O"), rtol=0, atol=1e-8 * np.abs(exact.effort("O")).max())
-    with pytest.raises(DeclarationError, match=r"effort:O.* go on.*a load that sees an angle with its turns may wind up"):
+    with pytest.raises(DeclarationError, match=r"effort:O.* do not repeat.*a load that sees an angle with its turns may wind up"):
         evaluate(sprung("C", **DRAG_LINK), table=64, wanted=["effort"])
 
 

@@ -12,7 +12,7 @@ from ..system import cache as kept
 @click.command()
 @click.option("--clear", is_flag=True, help="Remove all of it.")
 def cache(clear: bool) -> None:
-    """Show how much is kept of what was derived and compiled, where, and how much that may be; or remove it."""
+    """Show where the cache of graphs and libraries is, how much it holds and may hold; or empty it."""
     place, most = kept.place(), kept.limit()
     try:
         entries = list(kept.entries(place).values()) if place.exists() else []

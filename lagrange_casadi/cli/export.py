@@ -23,9 +23,13 @@ from .options import arithmetic, parameters, setting
 )
 @click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
 @arithmetic
-@click.option("--largest", type=click.IntRange(0), metavar="BYTES", help="Of a table; default: 16 MB, in single precision 64 kB.")
-@click.option("--fmu", is_flag=True, help="Also DIR/CASE.fmu, a unit of FMI 2.0 for simulation tools; needs FMPy and a C compiler.")
-@click.option("--force", is_flag=True, help="Also into a folder that holds other files; these are not touched.")
+@click.option(
+    "--largest", type=click.IntRange(0), metavar="BYTES", help="Most bytes of a table; default: 16 MB, in single precision 64 kB."
+)
+@click.option(
+    "--fmu", is_flag=True, help="Also write DIR/CASE.fmu, a unit of FMI 2.0 for simulation tools; needs FMPy and a C compiler."
+)
+@click.option("--force", is_flag=True, help="Write into a folder that holds other files too; these are not touched.")
 def export(
     case: Path,
     out: Path,

@@ -108,10 +108,10 @@ def _together(*options: Callable[..., Any]) -> Callable[[Callable[..., Any]], Ca
 
 
 _BACKEND = click.option(
-    "--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="Packs in C++, C, or CasADi's VM."
+    "--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="SIMD in C++ (lanes), C, or CasADi's VM."
 )
 _PRECISION = click.option(
-    "--precision", type=click.Choice(PRECISIONS), default="double", show_default=True, help="Of the arithmetic."
+    "--precision", type=click.Choice(PRECISIONS), default="double", show_default=True, help="Precision of all arithmetic."
 )
 _NEWTON = click.option(
     "--newton", type=int, metavar="STEPS", help="Close every loop by so many Newton steps from the instant before."

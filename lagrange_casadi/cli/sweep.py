@@ -24,10 +24,22 @@ from .progress import shown
 
 @click.command()
 @click.argument("case", type=click.Path(path_type=Path))
-@click.option("--grid", "axes", type=axis, metavar=AXIS, multiple=True, help="Sweep a parameter; repeatable, the last is fastest.")
-@click.option("--designs", type=click.Path(path_type=Path), metavar="FILE.csv", help="Sweep a list: names, then a line a design.")
 @click.option(
-    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give one that is not swept a value; repeatable."
+    "--grid", "axes", type=axis, metavar=AXIS, multiple=True, help="Sweep a parameter; repeatable, the last varies fastest."
+)
+@click.option(
+    "--designs",
+    type=click.Path(path_type=Path),
+    metavar="FILE.csv",
+    help="Sweep a list: a line of names, then one line for each design.",
+)
+@click.option(
+    "--set",
+    "settings",
+    type=setting,
+    metavar="NAME=VALUE",
+    multiple=True,
+    help="Give a parameter that is not swept another value; repeatable.",
 )
 @click.option("--t", type=grid, metavar=GRID, help="Instants [s]; default: the case's.")
 @click.option("--xi", type=grid, metavar=GRID, help="Keep section forces at these ratios xi/l too, each the largest over time.")
@@ -35,10 +47,14 @@ from .progress import shown
     "--want",
     multiple=True,
     metavar="OUTPUT",
-    help="effort or what else info CASE lists, but all leaves out the motion; repeatable.",
+    help="An output that info CASE lists; all leaves out the motion; repeatable.",
 )
 @click.option(
-    "--keep", type=click.Choice(KEEPS), default="peaks", show_default=True, help="Peaks; also section laws; also all over time."
+    "--keep",
+    type=click.Choice(KEEPS),
+    default="peaks",
+    show_default=True,
+    help="Keep peaks, section laws too, or all outputs over time too.",
 )
 @untabled_rung
 @click.option("--workers", type=click.IntRange(1, MOST_THREADS), metavar="N", help="Threads of this machine; default: one a core.")
@@ -72,7 +88,7 @@ def sweep(
     """Evaluate CASE for every design of a grid or a list, and write one HDF5 file.
 
     CASE is a folder with a case.py, or a Python file. Of each design the peaks of what is wanted are kept, with their instants and
-    places, and means of efforts. What was stopped goes on with --resume. best, table and plot read the file.
+    places, and means of efforts. A stopped sweep goes on with --resume. best, table and plot read the file.
 
     \b
     lagrange-casadi sweep cases/slider_crank --grid l=0.12:0.4:57 --grid m3=0.1,0.5
@@ -111,8 +127,8 @@ def sweep(
     click.echo(f"wrote {found.path}" if progress.begun else f"{found.path} was complete already: nothing was done")
     if wrong := found.counts()[Status.UNCERTIFIED]:
         raise CertificateError(
-            f"{counted(wrong)} of those that were looked at closely, one a block, {'fails its' if wrong == 1 else 'fail their'} "
-            f"certificate: others may be wrong as well"
+            f"{counted(wrong)} of those that were checked in full, one of each block, "
+            f"{'fails its' if wrong == 1 else 'fail their'} certificate: others may be wrong as well"
         )
 
 

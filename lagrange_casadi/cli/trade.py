@@ -27,7 +27,7 @@ from .options import GRID, grid, parameters, setting
 )
 @click.option("--t", type=grid, metavar=GRID, help="Instants [s]; default: the case's.")
 @click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
-@click.option("--accuracy", type=float, metavar="ERROR", help="Recommend the fastest rung within this error, relative to the peak.")
+@click.option("--accuracy", type=float, metavar="ERROR", help="Recommend the fastest method within this error of the peak.")
 @click.option("--out", type=click.Path(path_type=Path), help="The numbers, as JSON; default: <case>_trade.json here.")
 @click.option("--figure", type=click.Path(path_type=Path), help="The picture; default: <case>_trade.png here.")
 def trade(
@@ -39,7 +39,7 @@ def trade(
     out: Path | None,
     figure: Path | None,
 ) -> None:
-    """Measure time and error of every rung on CASE, side by side: backends, precisions, Newton steps, tables, flags."""
+    """Measure time and error of every method on CASE, side by side: backends, precisions, Newton steps, tables, flags."""
     if accuracy is not None and not accuracy > 0.0:
         raise DeclarationError(f"accuracy: expected a number above 0, got {accuracy!r}")
     loaded = load_case(case)
@@ -48,7 +48,7 @@ def trade(
         if target.suffix not in endings:
             raise click.UsageError(f"{option} {target}: expected a name that ends in {' or '.join(endings)}")
         check_writable(target)
-    with tqdm(total=len(RUNGS), desc="rungs", leave=False, disable=None) as bar:
+    with tqdm(total=len(RUNGS), desc="methods", leave=False, disable=None) as bar:
 
         def progress(rung: Rung) -> None:
             bar.set_postfix_str(rung.options)
@@ -74,7 +74,7 @@ def _print(found: Trade) -> None:
         f"{found.case}: every output at {found.instants} instants, one thread; errors at {found.compared} instants, relative to "
         "each quantity's peak; * nothing is faster and more accurate"
     )
-    click.echo(f"  {'rung':<{width}} {'ns/instant':>11} {'x lanes':>8} {'largest':>9} {'median':>9}   worst quantity")
+    click.echo(f"  {'method':<{width}} {'ns/instant':>11} {'x lanes':>8} {'largest':>9} {'median':>9}   worst quantity")
     for one in found.measurements:
         mark = "*" if one in found.front else " "
         note = f"; {one.note}" if one.note else ""

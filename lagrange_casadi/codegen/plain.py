@@ -54,7 +54,7 @@ def plain(functions: Mapping[str, ca.Function], precision: Precision) -> str:
 
 
 def _used(found: re.Match[str]) -> str:
-    """A function that makes no compiler ask for what an argument is there."""
+    """The function with its unused arguments marked, so that compilers do not warn of them."""
     head, arguments, body = found.groups()
     idle = [name for name in ("arg", "res", "a") if re.search(rf"\b{name}\b", arguments) and not re.search(rf"\b{name}\b", body)]
     return head + "".join(f"  (void) {name};\n" for name in idle) + body + "}\n"

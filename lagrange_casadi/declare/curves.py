@@ -30,8 +30,9 @@ def rows(what: str, places: Sequence[float], values: Sequence[float], least: int
 def table(x: Any, places: Sequence[float], values: Sequence[float]) -> Any:
     """A curve for loads: linear between values at increasing places, and straight on beyond them.
 
-    ``x`` is an expression, such as a joint's coordinate. Constraints and motions refuse it, for there slopes must not jump. Raises
-    :class:`DeclarationError` for places that do not increase.
+    ``x`` is an expression, such as a joint's coordinate; ``places`` are in its unit, and ``values`` in that of the load. Returns a
+    ``casadi.SX`` expression. Constraints and motions refuse it, for there slopes must not jump. Raises :class:`DeclarationError`
+    for places that do not increase.
     """
     at, to = rows("table", places, values, 2)
     return ca.pw_lin(ca.SX(x), ca.DM(at), ca.DM(to))

@@ -98,12 +98,15 @@ class NumericDensity:
 
 
 def uniform(mass: Any) -> Density:
-    """A link of one density throughout, by its whole mass [kg]."""
+    """A link of one density throughout, by its whole mass [kg], a number or an expression in parameters."""
     return Density((0.0, 1.0), ((mass,),), per_length=False)
 
 
 def polynomial(*coefficients: Any) -> Density:
-    """c0 + c1 u + c2 u^2 + ... [kg/m] with u = xi/l; ``polynomial(a, b - a)`` tapers from a at the base to b at the tip."""
+    """c0 + c1 u + c2 u^2 + ... [kg/m] with u = xi/l; ``polynomial(a, b - a)`` tapers from a at the base to b at the tip.
+
+    Coefficients are numbers or expressions in parameters. Raises :class:`DeclarationError` without a coefficient.
+    """
     if not coefficients:
         raise DeclarationError("density polynomial: expected at least one coefficient")
     return Density((0.0, 1.0), (tuple(coefficients),), per_length=True)

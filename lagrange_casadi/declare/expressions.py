@@ -35,7 +35,7 @@ def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str) -> Expre
         known = {symbol.element_hash() for symbol in symbols}
         foreign = [f"'{symbol}'" for symbol in ca.symvar(value) if symbol.element_hash() not in known]
         if foreign:
-            raise DeclarationError(f"{what} depends on {', '.join(foreign)}: no {allowed}")
+            raise DeclarationError(f"{what} depends on {', '.join(foreign)}, not a {allowed}")
         return value
     try:
         number = float(value)

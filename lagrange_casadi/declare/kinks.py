@@ -62,8 +62,8 @@ def refuse_kinks(what: str, expression: Any, moving: Any, fixed: Any, values: Se
     found = kink(expression, moving, fixed, values, span)
     if found is not None:
         raise DeclarationError(
-            f"{what}: {found}, so rates would jump there, and accelerations would not know of it; expected a curve whose slope "
-            "does not jump, of CasADi's functions, as a polynomial or a Fourier sum is in place of a table"
+            f"{what}: {found}: rates would jump there, and accelerations would miss that; expected a curve whose slope does not "
+            "jump, of CasADi's functions: in place of a table, a polynomial or a Fourier sum"
         )
 
 

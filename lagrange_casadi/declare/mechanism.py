@@ -21,6 +21,7 @@ from .expressions import check_line, check_name, scalar, unit_vector
 from .kinks import refuse_kinks
 from .limits import check_connected, check_parts, parameter_values
 from .measures import Measures
+from .names import Part, check_free
 from .parts import (
     Body,
     Constraint,
@@ -48,8 +49,12 @@ class Mechanism:
     """A planar mechanism under declaration: links and point masses in the x-y plane, joined to each other and to the ground.
 
     Gravity is (0, -9.81) m/s^2 unless :meth:`set_gravity` says otherwise. Lengths, masses, places and gravity may be numbers or
-    expressions in the symbols that :meth:`parameter` returns; loads, constraints and rows also in :attr:`time`,
-    :meth:`coordinate` and :meth:`rate`.
+    expressions in the symbols that :meth:`parameter` returns. Loads and constraints may also depend on :attr:`time` [s],
+    :meth:`coordinate`, :meth:`place` and :meth:`direction`; loads and non-holonomic constraints on :meth:`rate` and
+    :meth:`velocity`.
+
+    Methods that declare raise :class:`.DeclarationError`, which names the part: for a name that is taken, a part of another
+    mechanism, an expression in other symbols, and once a scene has been made. :class:`.Joint` says what joints hold.
     """
 
     name: str
@@ -93,7 +98,7 @@ class Mechanism:
         return ca.vertcat(ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values()))
 
     def parameter(self, name: str, default: float, unit: str = "1", *, low: float = -math.inf, high: float = math.inf) -> Any:
-        """Declare a parameter and return its symbol, a ``casadi.SX`` scalar to build lengths, masses and places from."""
+        """Declare a parameter from ``low`` to ``high``, and return its ``casadi.SX`` symbol to build lengths and places from."""
         self._add("parameter", name, self.parameters)
         check_line(f"parameter '{name}': its unit", unit)
         parameter = Parameter(name, float(default), unit, float(low), float(high), ca.SX.sym(name))
@@ -137,7 +142,7 @@ class Mechanism:
         return link
 
     def point_mass(self, name: str, mass: Expression) -> PointMass:
-        """Declare a mass [kg] without extent; welded to a link it is a lump of it."""
+        """Declare a mass [kg] without extent, at a point; welded to a link it moves with the link."""
         self._add("point mass", name, self.bodies)
         body = PointMass(name, self._expression(f"point mass '{name}': mass", mass))
         self.bodies[name] = body
@@ -158,14 +163,15 @@ class Mechanism:
     ) -> Joint:
         """Let a point of ``child`` slide along ``axis`` (in the parent's axes) through a point of ``parent``.
 
-        ``angle`` [rad] is the child's direction against the parent's, which carries the line and is loaded where the point is.
+        ``angle`` [rad] is the child's direction against the parent's. The parent carries the line, and is loaded where the point
+        is at the moment. The coordinate is the place on the line [m].
         """
         return self._joint(name, "prismatic", parent, child, axis, angle)
 
     def slot(
         self, name: str, parent: Body | Point, child: Body | Point, *, axis: tuple[Expression, Expression] = (1.0, 0.0)
     ) -> Joint:
-        """Let a pin at a point of ``child`` slide in a slot of ``parent`` along ``axis``, its direction free."""
+        """Let a pin at a point of ``child`` slide in a slot of ``parent`` along ``axis``, in the parent's axes."""
         return self._joint(name, "slot", parent, child, axis)
 
     def weld(self, name: str, parent: Body | Point, child: Body | Point, *, angle: Expression = 0.0) -> Joint:
@@ -180,7 +186,8 @@ class Mechanism:
     def constraint(self, name: str, phi: Any) -> Constraint:
         """Declare Phi = 0, an expression of coordinates, places, directions, time and parameters (paper eq. 5); no slope may jump.
 
-        Its multiplier works on what it is written in: on joints' coordinates between their bodies, on places from the ground.
+        The force of its multiplier lambda is + lambda dPhi/dq (paper eq. 2). It acts on what Phi is written in: on a joint's
+        coordinate between the joint's bodies, on a place from the ground.
         """
         self._add("constraint", name, self.constraints)
         phi = self._expression(f"constraint '{name}'", phi, moving=True)
@@ -197,20 +204,22 @@ class Mechanism:
         return constraint
 
     def nonholonomic(self, name: str, expression: Any, *, replaces: Joint) -> Row:
-        """Declare a row A(q) q' + b = 0 (paper eq. 3), linear in rates and velocities.
+        """Declare a non-holonomic constraint A(q) q' + b = 0 (paper eq. 3): an expression that is linear in rates and velocities.
 
-        ``replaces`` is a driven joint that needs no effort for the row's sake: its motion is prescribed, and the row holds it.
+        ``replaces`` is a driven joint. Its motion is prescribed and must satisfy the constraint; the constraint's multiplier then
+        takes the place of the joint's effort.
         """
-        self._add("non-holonomic row", name, self.rows)
-        expression = self._expression(f"row '{name}'", expression, moving=True)
+        self._add("non-holonomic constraint", name, self.rows)
+        what = f"non-holonomic constraint '{name}'"
+        expression = self._expression(what, expression, moving=True)
         if not isinstance(expression, ca.SX) or not ca.depends_on(expression, self.measures.rates):
-            raise DeclarationError(f"row '{name}' depends on no rate; build it from rate(JOINT) or velocity(POINT)")
+            raise DeclarationError(f"{what} depends on no rate; build it from rate(JOINT) or velocity(POINT)")
         if ca.depends_on(ca.jacobian(expression, self.measures.rates), self.measures.rates):
-            raise DeclarationError(f"row '{name}' must be linear in the rates")
+            raise DeclarationError(f"{what} must be linear in the rates")
         row = Row(name, expression, self._own_joint(replaces).name)
         for other in self.rows.values():
             if other.replaces == row.replaces:
-                raise DeclarationError(f"row '{name}': row '{other.name}' replaces the drive of joint '{row.replaces}' already")
+                raise DeclarationError(f"{what}: '{other.name}' already replaces the drive of joint '{row.replaces}'")
         self.rows[name] = row
         return row
 
@@ -226,7 +235,7 @@ class Mechanism:
         return load
 
     def torque(self, name: str, point: Body | Point, value: Expression, *, against: Body | Point | None = None) -> Torque:
-        """Apply a torque [N m] to a body at a point, and its opposite to another one (default: the ground).
+        """Apply a torque [N m], counter-clockwise, to a body at a point, and its opposite to another one (default: the ground).
 
         Where on a link it acts matters to the link's sections only; a link stands for its base.
         """
@@ -248,7 +257,7 @@ class Mechanism:
         length: Expression,
         damping: Expression = 0.0,
     ) -> Spring:
-        """Stretch a spring [N/m] of a free length [m], with a damper [N s/m] beside it, between two points."""
+        """Stretch a spring [N/m] of a free length [m], with a damper [N s/m] beside it, between two points: :class:`.Spring`."""
         ends = self._load_point(name, first), self._load_point(name, second)
         load = Spring(name, *ends, self._load(name, stiffness), self._load(name, length), self._load(name, damping))
         self.loads[name] = load
@@ -293,7 +302,7 @@ class Mechanism:
         return self.measures.link(body).places[0]
 
     def set_gravity(self, x: Expression, y: Expression) -> None:
-        """Set the acceleration of gravity [m/s^2], in ground axes."""
+        """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in parameters."""
         self._check_open("set gravity")
         self.gravity = (self._expression("gravity", x), self._expression("gravity", y))
 
@@ -379,17 +388,12 @@ class Mechanism:
         allowed = "parameter, time, coordinate or rate" if moving else "parameter"
         return scalar(what, value, own, f"{allowed} of mechanism '{self.name}'")
 
-    def _add(self, kind: str, name: str, table: Mapping[str, object]) -> None:
+    def _add(self, kind: str, name: str, table: Mapping[str, Part]) -> None:
         self._check_open(f"add {kind} '{name}'")
-        check_name(kind, name)
-        if name in table:
-            raise DeclarationError(f"{kind} '{name}' is declared twice in mechanism '{self.name}'")
-        # Files know all that acts by names alone, beside those of links.
-        acting: tuple[Mapping[str, object], ...] = (self.joints, self.loads, self.constraints, self.rows)
-        if any(table is other for other in acting):
-            kinds = zip(("joint", "load", "constraint", "row", "body"), (*acting, self.bodies), strict=True)
-            for what in (what for what, other in kinds if name in other):
-                raise DeclarationError(f"{kind} '{name}': the name is taken by a {what}; expected another")
+        # Files know joints, loads, constraints and rows by their names alone, beside those of links.
+        acting: tuple[Mapping[str, Part], ...] = (self.joints, self.loads, self.constraints, self.rows)
+        acts = any(table is other for other in acting)
+        check_free(kind, name, self.name, (self.bodies, *acting) if acts else (table,))
 
     def _check_open(self, what: str) -> None:
         if self.frozen:

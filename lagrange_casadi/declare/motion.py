@@ -35,7 +35,10 @@ class Motion:
 
 
 def polynomial(*coefficients: Expression) -> Motion:
-    """c0 + c1 t + c2 t^2 + ... (paper eq. 22: ``polynomial(0, Omega0, epsilon0/2)``); numbers or parameters' symbols."""
+    """c0 + c1 t + c2 t^2 + ... (paper eq. 22: ``polynomial(0, Omega0, epsilon0/2)``); numbers or parameters' symbols.
+
+    The value is the joint's coordinate [rad or m] at the time t [s]. Raises :class:`.DeclarationError` without a coefficient.
+    """
     if not coefficients:
         raise DeclarationError("polynomial: expected at least one coefficient")
 
@@ -49,19 +52,24 @@ def polynomial(*coefficients: Expression) -> Motion:
 
 
 def harmonic(mean: Expression, amplitude: Expression, frequency: Expression, phase: Expression = 0.0) -> Motion:
-    """mean + amplitude sin(2 pi frequency t + phase), the frequency in Hz."""
+    """mean + amplitude sin(2 pi frequency t + phase): [rad or m], the frequency in Hz, the phase in rad; numbers or symbols."""
     return Motion(lambda t: mean + amplitude * ca.sin(2.0 * math.pi * frequency * t + phase))
 
 
 def expression(law: Callable[[Any], Any]) -> Motion:
-    """Any law: a function that takes the symbol t and returns a ``casadi.SX`` expression of it and of parameters."""
+    """Any law: a function that takes the symbol t [s] and returns a ``casadi.SX`` expression of it and of parameters [rad or m].
+
+    Its value and rate must not jump. Raises :class:`.DeclarationError` for what is no function; a scene refuses other expressions.
+    """
     if not callable(law):
         raise DeclarationError(f"expression: expected a function of the symbol t, got {law!r}")
     return Motion(law)
 
 
 def samples(times: Sequence[float], values: Sequence[float]) -> Motion:
-    """A C2 cubic spline through samples, not-a-knot at its ends; defined between the first and the last time only.
+    """A C2 cubic spline through samples, not-a-knot at its ends: ``values`` [rad or m] at ``times`` [s].
+
+    It is defined between the first and the last time only.
 
     Raises :class:`DeclarationError` for fewer than four samples, for times that do not increase, or for what is not finite.
     """

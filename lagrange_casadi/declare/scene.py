@@ -158,7 +158,10 @@ class Scene:
         Rough directions of links [rad] and places of slides [m] at the first instant, to choose between the ways in which a loop
         can be assembled.
     assembly
-        Values of parameters with which loops are first assembled, in place of the defaults: ways to assemble are chosen there.
+        Values of parameters with which loops are first assembled, in place of the defaults. The way to assemble is chosen there.
+
+    Raises :class:`.DeclarationError` for what does not fit the mechanism, :class:`.UnknownNameError` for names it does not have,
+    and :class:`.ParameterError` where the default parameters make a part impossible.
     """
 
     mechanism: Mechanism
@@ -181,7 +184,11 @@ class Scene:
             if name not in joints:
                 raise UnknownNameError("joint in motion", name, joints)
             if joints[name].coordinate is None:
-                why = "a weld does not move" if joints[name].kind == "weld" else "a pin at a point mass turns nothing"
+                why = (
+                    "a weld does not move"
+                    if joints[name].kind == "weld"
+                    else "a point mass has no direction, so a pin at it has no angle"
+                )
                 raise DeclarationError(f"joint '{name}' cannot be driven: {why}")
             if not isinstance(law, Motion):
                 raise DeclarationError(f"motion of joint '{name}': expected a law of lagrange_casadi.motion, got {law!r}")
@@ -193,7 +200,9 @@ class Scene:
                 raise DeclarationError(f"posture of '{name}': expected a finite number, got {rough!r}")
         for row in self.mechanism.rows.values():
             if row.replaces not in self.motion:
-                raise DeclarationError(f"row '{row.name}' replaces the drive of joint '{row.replaces}', which has no motion")
+                raise DeclarationError(
+                    f"non-holonomic constraint '{row.name}' replaces the drive of joint '{row.replaces}', which has no motion"
+                )
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)
         checked("t", self.t)

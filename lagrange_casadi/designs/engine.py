@@ -1,8 +1,8 @@
 """Many designs of one scene at once: of each parameter set the peaks, means, and whether there is a result at all.
 
-Instants of a design are evaluated in packs, and reduced in C to what is kept; between instants peaks are sought by evaluating the
-same graph at a few more instants there. A design depends on nothing but its own parameters: its row has the same bytes whatever
-stands beside it.
+Instants of a design are evaluated several at once, by SIMD, and reduced in C to what is kept. Between instants peaks are sought by
+evaluating the same graph at a few more instants there. A design depends on nothing but its own parameters: its row has the same
+bytes whatever stands beside it.
 """
 
 from __future__ import annotations

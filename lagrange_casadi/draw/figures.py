@@ -196,7 +196,7 @@ def draw(solution: Solution, specs: Sequence[Spec], folder: Path) -> Iterator[tu
         if not isinstance(spec, Spec):
             raise DeclarationError(f"expected specs of lagrange_casadi.figures, got {spec!r}")
         if not _FILE.fullmatch(spec.name) or sum(other.name == spec.name for other in chosen) > 1:
-            raise DeclarationError(f"figure '{spec.name}': names must be letters, digits, underscores and hyphens, each once")
+            raise DeclarationError(f"figure '{spec.name}': expected letters, digits, underscores and hyphens, each name once")
         _check_parts(solution, spec)
     for spec in chosen:
         if not _has(solution, spec):

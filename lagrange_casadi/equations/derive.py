@@ -31,7 +31,9 @@ from .turns import count_turns
 
 
 def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool = False) -> SceneGraph:
-    """Derive the graphs of a scene, for its own wanted outputs or for others; with ``iterate``, without closed forms of loops.
+    """Derive the graphs of a scene, for its own wanted outputs or for others: CasADi functions of an instant, and their names.
+
+    With ``iterate`` every loop is left to Newton's method, and none is solved in closed form.
 
     A graph is derived once: it is kept while the process lasts, and in the cache folder by the content of the declaration.
 

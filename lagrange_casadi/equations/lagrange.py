@@ -167,7 +167,7 @@ class LagrangeSystem:
         if wrong:
             raise DeclarationError(
                 f"tangent{'' if self.drift is None else ' and drift'}: {_listed('coordinate', wrong)} no function of coordinates "
-                "that the rates are the rates of; a body's rates of turning about its axes in space are the rates of nothing"
+                "whose rates are the given rates; the angular velocity of a body in space, for one, is the rate of no coordinates"
             )
         # Along what bears no energy, forces do work whatever it is.
         symbols = {symbol.element_hash() for symbol in ca.symvar(ca.SX(self.kinetic))}
@@ -190,10 +190,14 @@ class LagrangeSystem:
         return Course(self.coordinates, self.rates, self.accelerations, time, tangent, drift)
 
     def terms(self) -> tuple[Any, Any]:
-        """R along the coordinates (n) and along the mobilities (k), at e = e' = e'' = 0.
+        """R along the coordinates (n) and along the mobilities (k), at e = e' = e'' = 0, as CasADi SX columns.
 
-        One reverse sweep of E and one forward sweep of its result, and one reverse sweep of the velocities, whatever n and k, so
-        the cost is a small multiple of E's.
+        Each entry has the unit of E over that of its coordinate: N along a length, N m along an angle. Along a coordinate R is the
+        effort that the motion needs. Along a mobility it is the internal force on what the mobility moves (paper eq. 13, 20): where
+        the mobility stretches a rope, minus the tension.
+
+        The cost is a small multiple of E's, whatever n and k: one reverse sweep of E, one forward sweep of its result, and one
+        reverse sweep of the velocities.
         """
         n, p, k = self.rates.numel(), self.coordinates.numel(), self.mobility_rates.numel()
         course = self._course

@@ -1,8 +1,9 @@
 """A mechanism as graphs: kinetic energy over velocities, forces that do work along them, loop equations, extra mobilities.
 
 Every undriven pin on the tree takes the *absolute* direction of the body that hangs on it for its coordinate, which keeps the
-energy of a chain short; a driven pin takes the angle between its two bodies, the one its effort works on. Its cosine and sine
-are still those of the body's direction where drives alone set it, since angles are added with less than directions are turned.
+energy of a chain short. A driven pin takes the angle between its two bodies, on which its effort works. Where drives alone set the
+direction of a body, its cosine and sine are taken of the sum of the drives' angles: a sum costs fewer instructions than a product
+of rotations.
 """
 
 from __future__ import annotations

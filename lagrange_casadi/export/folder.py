@@ -80,8 +80,9 @@ def export(
     fmu
         Write ``<prefix>.fmu``, too: a unit of FMI 2.0. Needs FMPy and a C compiler.
 
-    Returns what it takes and gives. Raises :class:`PathError` where the folder is taken, :class:`SizeError` for a table that is too
-    large, :class:`CompilerError` for an FMU without a compiler, and what :func:`.evaluate` raises.
+    Returns the names, units, signs and ranges of the parameters, inputs and outputs of the C. Raises :class:`PathError` where the
+    folder is taken, :class:`SizeError` for a table that is too large, :class:`CompilerError` for an FMU without a compiler, and
+    what :func:`.evaluate` raises.
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"export: expected a Scene, got {scene!r}")

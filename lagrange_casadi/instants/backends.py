@@ -1,4 +1,4 @@
-"""The columns of a scene graph over instants: by packs, by scalar C, or by CasADi's virtual machine."""
+"""The columns of a scene graph over instants: by SIMD, by scalar C, or by CasADi's virtual machine."""
 
 from __future__ import annotations
 

@@ -239,7 +239,7 @@ def the_drive(graph: SceneGraph) -> str:
         raise DeclarationError(f"table: expected one driven joint, whose angle decides all, got {named}")
     (joint,) = graph.driven
     if graph.scene.mechanism.joints[joint].coordinate != "angle":
-        raise DeclarationError(f"table: the driven joint '{joint}' slides; expected one that turns, for only its angle comes again")
+        raise DeclarationError(f"table: the driven joint '{joint}' slides; expected one that turns, for only an angle repeats")
     return joint
 
 
@@ -271,8 +271,8 @@ def cycle_of(graph: SceneGraph, p: Array, rates: tuple[float, float]) -> Cycle:
     names = [name for name, does in zip(graph.columns, moved, strict=True) if does]
     wound = bool(graph.checks("turned"))
     raise DeclarationError(
-        f"table: expected columns that repeat after at most {TURNS} turns of joint '{drive.joint}', but {_listed(names)} go on"
-        f"{'; a load that sees an angle with its turns may wind up' if wound else ''}"
+        f"table: expected columns that repeat after at most {TURNS} turns of joint '{drive.joint}', "
+        f"but {_listed(names)} do not repeat{'; a load that sees an angle with its turns may wind up' if wound else ''}"
     )
 
 
@@ -292,8 +292,8 @@ def _refuse_other_powers(drive: Drive, course: Course, sizes: Array, rates: tupl
     if wrong.any():
         names = [name for name, is_wrong in zip(columns, wrong, strict=True) if is_wrong]
         raise DeclarationError(
-            f"table: expected columns quadratic in the rate of joint '{drive.joint}', but a load by a rate's sign, size or other "
-            f"power enters {_listed(names)}"
+            f"table: expected columns quadratic in the rate of joint '{drive.joint}', but a load that depends on a rate's sign, "
+            f"size or another power enters {_listed(names)}"
         )
 
 

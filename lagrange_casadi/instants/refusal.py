@@ -63,15 +63,15 @@ _MEANINGS = {
     Status.OUT_OF_REACH: "a loop cannot be closed: its links do not reach",
     Status.JUMPED: "an iterated loop has jumped to another branch: more instants may help",
     Status.DEAD_CENTRE: "a loop is at a dead centre, within rounding: its forces are not determined there",
-    Status.PASSES_DEAD_CENTRE: "a loop passes a dead centre between two instants, and how it goes on is open",
+    Status.PASSES_DEAD_CENTRE: "a loop passes a dead centre between two instants, and can go on in two ways",
     Status.MISFIT: "loops are over-constrained and do not fit",
-    Status.ROW_VIOLATED: "the motion violates a non-holonomic row",
+    Status.ROW_VIOLATED: "the motion violates a non-holonomic constraint",
     Status.IMPOSSIBLE: "a length is not positive, a mass or density is negative, or a station is outside its link",
     Status.INVALID: "a parameter is not finite",
     Status.NOT_CLOSED: "what was found for a loop does not satisfy its equations",
-    Status.UNCERTIFIED: "the design was looked at closely, and fails its certificate: others may be wrong as well",
+    Status.UNCERTIFIED: "the design was checked in full, and fails its certificate: others may be wrong as well",
     Status.TURNED: "an angle that a load sees with its turns might be a turn further",
-    Status.PEAK_NOT_TOLD: "a peak is not told: too much hides between the instants; more instants may help",
+    Status.PEAK_NOT_TOLD: "a peak cannot be told: too much may hide between the instants; more instants may help",
 }
 
 
@@ -166,7 +166,7 @@ def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str |
     for name, link in mechanism.links.items():
         length = mechanism.number(link.length, values)
         if not low <= length <= high:
-            what = f"link '{name}' is {length:.3g} m long, and {precision} precision squares lengths from {low:.1g} to {high:.1g} m"
+            what = f"link '{name}' is {length:.3g} m long, and {precision} precision can only square {low:.1g} to {high:.1g} m"
             return f"the mechanism has no result {at}: {what}"
     return None
 
@@ -195,7 +195,7 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]
         if kind == "closure" and joint in passed:
             near = "; if it only comes near one, take more instants" if graph.newton is not None else ""
             passing = f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}"
-            return Status.PASSES_DEAD_CENTRE, f"{passing}, and how it goes on is open{near}"
+            return Status.PASSES_DEAD_CENTRE, f"{passing}, and can go on in two ways{near}"
         if kind in ("gap", "misfit") and table.status[i] == SLOW:
             break
         if kind == "gap" and abs(value) > widest:
@@ -214,7 +214,7 @@ def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str]
                 f"{what} {swing}: it might be a turn further; take defaults and a motion that show how far it goes",
             )
         if kind == "row" and not abs(value) <= misfit * _largest_row(graph, table, joint):
-            return Status.ROW_VIOLATED, f"the motion violates the non-holonomic row '{joint}' by {value:.6g} {at}"
+            return Status.ROW_VIOLATED, f"the motion violates the non-holonomic constraint '{joint}' by {value:.6g} {at}"
     if table.status[i] == SLOW:
         assert graph.newton is not None
         cause = "they are near a dead centre, or the instant before is too far off"

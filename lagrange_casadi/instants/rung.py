@@ -1,4 +1,4 @@
-"""The rungs of the trade between speed and accuracy: by what, in which precision and how exactly a scene is evaluated."""
+"""Methods of evaluation, the rungs of the trade between speed and accuracy: by what, in which precision, how exactly."""
 
 from __future__ import annotations
 
@@ -19,19 +19,21 @@ MOST_STEPS = 1000
 
 @dataclass(frozen=True)
 class Rung:
-    """One choice of each.
+    """A method of evaluation: one choice of each.
 
     Parameters
     ----------
     backend
-        ``lanes`` compiles for packs of instants, by a C++ compiler; ``c`` for one instant at a time; ``vm`` runs in CasADi's
-        virtual machine. ``auto`` takes the first of them that there is a compiler for, and warns where there is none.
+        ``lanes`` compiles with a C++ compiler for SIMD: several instants at once, each in a lane of the vector registers. ``c``
+        compiles with a C compiler for one instant at a time; ``vm`` runs in CasADi's virtual machine. ``auto`` takes the first of
+        them that there is a compiler for, and warns where there is none.
     precision
-        ``double``, or ``single``: every operation, in code without a double; phases are kept all the same.
+        ``double``, or ``single``: then no operation is on doubles. Phases are kept in pairs of numbers, so that many turns cost no
+        digits.
     newton
         None solves loops in closed form where there is one, and iterates the others until they are closed. A number, at most
-        1000, takes so many steps of Newton's method for every loop, from the instant before, and no more; at the first instant it
-        is closed.
+        1000, takes exactly so many steps of Newton's method for every loop, from the instant before; at the first instant every
+        loop is closed.
     table
         A whole number of nodes, or a wanted accuracy below 1: outputs are read from a table over the turn of the one drive.
     flags
@@ -63,7 +65,7 @@ class Rung:
             if "\0" in self.flags:
                 raise ValueError("they hold a null character")
         except (ValueError, AttributeError) as error:
-            raise DeclarationError(f"flags: expected words for a compiler, got {self.flags!r}: {error}") from None
+            raise DeclarationError(f"flags: expected options of a compiler, got {self.flags!r}: {error}") from None
         if self.newton is not None and self.table is not None:
             raise DeclarationError("newton and table exclude each other: a table is read, no loop is closed")
         if self.backend == "vm" and self.precision == "single":

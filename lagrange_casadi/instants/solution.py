@@ -37,9 +37,10 @@ class Provenance:
 
 @dataclass(frozen=True)
 class Peak:
-    """The value largest in size of a quantity, with its sign, and where it is; ``xi`` is a ratio, None off a link.
+    """The value of a quantity that is largest in size, with its sign, in ``unit``, and where it is.
 
-    ``value`` is NaN where it could not be told between the instants, and ``least`` then the largest size that was found.
+    ``t`` is its time [s]; ``xi`` the ratio xi/l of a section force, None of other quantities. ``value`` is NaN where the peak
+    between the instants cannot be told; ``least`` is then the largest size that was found.
     """
 
     name: str
@@ -52,7 +53,10 @@ class Peak:
 
 @dataclass(frozen=True, eq=False)
 class JointMotion:
-    """Coordinate, rate and acceleration of a joint, each (t,)."""
+    """Coordinate of a joint [rad or m] with its rate and acceleration, each (t,): child against parent.
+
+    An angle is counter-clockwise, a slide along the joint's axis. Both are continuous in time.
+    """
 
     value: Array
     rate: Array
@@ -61,7 +65,10 @@ class JointMotion:
 
 @dataclass(frozen=True, eq=False)
 class Reaction:
-    """Action of the joint's parent on its child, ground axes, each (t,) [N]; ``mz`` [N m] is None where the joint bears none."""
+    """Action of the joint's parent on its child, in ground axes, each (t,): ``fx``, ``fy`` [N], ``mz`` [N m] counter-clockwise.
+
+    ``mz`` is about the joint's point on the child, and None where the joint bears no moment. The drive's effort is not part of it.
+    """
 
     fx: Array
     fy: Array
@@ -70,7 +77,10 @@ class Reaction:
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """Place of a body's base [m] and direction of its axis [rad], each (t,); ``angle`` is None for a point mass."""
+    """Place of a body's base in ground axes [m] and direction of its axis [rad], each (t,).
+
+    ``angle`` is counter-clockwise from x and continuous in time; it is None for a point mass.
+    """
 
     x: Array
     y: Array
@@ -79,7 +89,13 @@ class Pose:
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """The forces inside a link. The grids are made when first asked for; the law itself is seven numbers an instant."""
+    """The forces inside a link: what the part towards the tip does to the part towards the base, on the link's axes (e, n, z).
+
+    e runs from base to tip, n is 90 degrees counter-clockwise of e. At a station the grids hold the value on its tip side. What
+    equilibrium does not determine is NaN. A grid is made when it is first asked for, from ``law``, which holds seven numbers an
+    instant, and loads at stations; each raises :class:`.SizeError` where memory does not hold it. The paper's internal forces
+    (Nguyen, Petre, Stroe, eq. 13, 20 and 21) have the opposite sign.
+    """
 
     law: SectionLaw
     xi: Array
@@ -89,17 +105,21 @@ class Section:
 
     @cached_property
     def axial(self) -> Array:
-        """Axial force (t, xi) [N], tension positive."""
+        """Axial force (t, xi) [N], along e: positive in tension."""
         return self._grid("axial")
 
     @cached_property
     def shear(self) -> Array:
-        """Shear force (t, xi) [N]."""
+        """Shear force (t, xi) [N], positive along n; it is minus the slope of ``bending`` along the link."""
         return self._grid("shear")
 
     @cached_property
     def bending(self) -> Array:
-        """Bending moment (t, xi) [N m]."""
+        """Bending moment (t, xi) [N m], positive counter-clockwise.
+
+        A positive one stretches the fibres on the side of -n, to the right of whoever goes from base to tip, and compresses those
+        on the side of n. A cantilever whose tip is pulled along -n has a negative one.
+        """
         return self._grid("bending")
 
     def _grid(self, force: str) -> Array:
@@ -131,11 +151,14 @@ def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[
 class Solution:
     """The outputs of a scene over its instants.
 
-    ``outputs`` holds every array over time, each of shape (t,); :mod:`.quantities` says what each means. ``xi`` are the ratios of
-    the section grids. ``left_open`` are outputs that equilibrium does not determine, because the mechanism is over-constrained:
-    their values are NaN. :attr:`series` and :attr:`undetermined` are the same by full names. ``certificate`` holds the residuals of
-    :mod:`.certificate`, and how singular the loops are; a residual above ``tolerance`` means that the solution is wrong, not that
-    it is rounded. ``errors`` estimates by :mod:`.accuracy` how far each quantity may be off, over all instants, in its unit.
+    ``outputs`` holds every array over time, each of shape (t,); :mod:`.quantities` says what each means, its unit and its sign.
+    ``t`` are the instants [s], ``xi`` the ratios xi/l of the section grids. ``left_open`` are outputs that equilibrium does not
+    determine, because the mechanism is over-constrained: their values are NaN. :attr:`series` and :attr:`undetermined` are the same
+    by full names. ``certificate`` holds the residuals of :mod:`.certificate`, each (t,), and how near the loops are to a dead
+    centre; a residual above ``tolerance`` means that the solution is wrong, not that it is rounded. ``errors`` estimates by
+    :mod:`.accuracy` how far each quantity may be off, over all instants, in its unit.
+
+    Methods that take a name raise :class:`.UnknownNameError` for one that the solution does not have, and list those it has.
     """
 
     case: str
@@ -180,22 +203,25 @@ class Solution:
         return self._find("drive", Output("effort", joint))
 
     def reaction(self, joint: str) -> Reaction:
-        """Reaction of a joint."""
+        """Reaction of a joint: what its parent does to its child, without the drive's effort."""
         fx, fy = (self._find("joint with a reaction", Output("reaction", joint, member)) for member in ("fx", "fy"))
         return Reaction(fx, fy, self.outputs.get(Output("reaction", joint, "mz")))
 
     def motion(self, joint: str) -> JointMotion:
-        """Motion of a joint's coordinate."""
+        """Motion of a joint's coordinate: its value, rate and acceleration."""
         members = ("", "rate", "acceleration")
         return JointMotion(*(self._find("joint with a motion", Output("motion", joint, member)) for member in members))
 
     def pose(self, body: str) -> Pose:
-        """Place and direction of a link or point mass."""
+        """Place and direction of a link or point mass, in ground axes."""
         x, y = (self._find("body with a pose", Output("pose", body, member)) for member in ("x", "y"))
         return Pose(x, y, self.outputs.get(Output("pose", body, "angle")))
 
     def section(self, link: str) -> Section:
-        """Forces inside a link."""
+        """Forces inside a link.
+
+        Raises :class:`.DeclarationError` where they were not wanted, or where only the link's mass, centre and inertia are known.
+        """
         if link in self._sections:
             return self._sections[link]
         bodies = self.description["bodies"]
@@ -239,7 +265,7 @@ class Solution:
         return map(str, self.quantities())
 
     def unit(self, name: str | Output) -> str:
-        """The unit of a quantity by its full name."""
+        """The unit of a quantity by its full name, as text: ``N m``."""
         output = self._output(name)
         if output not in self.outputs and output.group != "certificate":
             self._of_section(output)
@@ -272,7 +298,10 @@ class Solution:
         return Peak(str(name), float(values[i]), self.unit(name), float(self.t[i]), None if places is None else float(places[i]))
 
     def to_xarray(self) -> xarray.Dataset:
-        """All quantities as an ``xarray.Dataset`` over t and xi, with units. Raises where xarray is not installed."""
+        """All quantities as an ``xarray.Dataset`` over t and xi, with units.
+
+        Raises :class:`.LagrangeCasadiError` where xarray is not installed.
+        """
         try:
             import xarray
         except ImportError:
@@ -313,7 +342,10 @@ class Solution:
         return self.section(output.part)
 
     def multiplier(self, name: str) -> Array:
-        """Multiplier of a constraint or a non-holonomic row (t,)."""
+        """Multiplier of a constraint or a non-holonomic constraint, (t,).
+
+        Its force is + lambda dPhi/dq along what Phi is written in (paper eq. 2); its unit is that of power over Phi'.
+        """
         return self._find("constraint or row with a multiplier", Output("multiplier", name))
 
     def _find(self, kind: str, output: Output) -> Array:

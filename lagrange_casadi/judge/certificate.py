@@ -137,7 +137,7 @@ def summary(residuals: Mapping[str, Array]) -> str:
     parts = [f"{name} {np.max(values):.1e}" for name, values in residuals.items() if name != "condition"]
     said = "certificate: " + (", ".join(parts) if parts else "nothing to check, for want of outputs")
     worst = float(np.max(residuals.get("condition", np.ones(1))))
-    return said + (f"; near a dead centre, where the loops magnify by {worst:.3g}" if worst > NEAR else "")
+    return said + (f"; near a dead centre, where the loops magnify errors by {worst:.3g}" if worst > NEAR else "")
 
 
 def _matter(body: Description) -> _Matter:

@@ -46,12 +46,13 @@ _TRIALS = 5
 def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None) -> list[Peak]:
     """The peaks of quantities of a solution, by full name, or of all: as :meth:`.Solution.peak`, but over all times of its span.
 
-    A smooth peak is exact to rounding, its time to 1e-12 of the step or the derivative's rounding, and so is one at a kink or on
-    the higher side of a jump. Where a quantity grows without bound, as where the drive that a row replaces could do nothing, the
-    peak is infinite. No peak is below that of the instants. Of several that are as large but for rounding the first is told.
+    A smooth peak is exact to rounding, and its time to 1e-12 of the step or to the derivative's rounding. So is a peak at a kink,
+    and one at a jump, where the higher side counts. Where a quantity grows without bound, the peak is infinite. No peak is below
+    that of the instants. Of several peaks that differ by rounding only, the first one in time is returned.
 
-    Where more hides between the instants than is worth the search, a peak is not told: its value is NaN, and ``least`` the largest
-    that was found; more instants may help. What equilibrium does not determine is NaN here too, without a ``least``.
+    Where the search would take too long, because much may hide between the instants, a peak cannot be told: its value is NaN, and
+    ``least`` the largest size that was found. More instants may help. What equilibrium does not determine is NaN too, without a
+    ``least``.
 
     Raises :class:`DeclarationError` where the solution is not of this scene, :class:`UnknownNameError` for a name that is none.
     """

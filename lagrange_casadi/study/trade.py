@@ -1,4 +1,4 @@
-"""The trade between speed and accuracy, measured: every rung on one scene, side by side on this machine.
+"""The trade between speed and accuracy, measured: every method of evaluation (rung) on one scene, side by side on this machine.
 
 Errors are against the scene's own graphs in many digits (:mod:`.reference`), at instants of the scene's own grid, relative to the
 peak of each quantity over them; of what is zero by structure, relative to the largest peak of its unit. Times are of the
@@ -100,8 +100,8 @@ class Trade:
                 return one
         best = min(self.measurements, key=lambda one: one.largest)
         raise AccuracyError(
-            f"no rung of '{self.case}' keeps {accuracy:g} of the peak; the best, {best.rung.options}, keeps {best.largest:.2g} "
-            f"({best.worst} is worst)"
+            f"no method of evaluating '{self.case}' keeps {accuracy:g} of the peak; the best, "
+            f"{best.rung.options}, keeps {best.largest:.2g} ({best.worst} is worst)"
         )
 
     def as_dict(self) -> dict[str, Any]:

@@ -85,9 +85,9 @@ def best(
 ) -> list[Design]:
     """The ``count`` best designs that have a result and meet all conditions, the best first; by default one.
 
-    With two objectives, all designs of which no other is better in both and none is as good in one and better in the other: the
-    front, in the order of the first, by default all of it. Each design comes with its parameters, the objectives and ``columns``.
-    Peaks count by size. A single name or condition may stand without a list around it.
+    With two objectives it is their front, in the order of the first one, by default all of it: a design is on the front where no
+    other is at least as good in both and better in one. Each :class:`Design` comes with its number, its parameters, the objectives
+    and ``columns``, in the columns' units. Peaks are compared by size. A single name or condition may stand without a list.
 
     Raises :class:`UnknownNameError` for a column that is not there, :class:`DeclarationError` for no objective or more than two.
     """

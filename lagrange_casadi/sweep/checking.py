@@ -76,7 +76,7 @@ def _check_column(file: h5py.File, sweep: Sweep, kept: Kept) -> Iterator[str]:
     if unknown:
         yield f"{kept.name}: {unknown} of the designs have a status that is none"
     if wrong:
-        yield f"{counted(wrong)}, of those that were looked at closely, without a certificate: others may be wrong as well"
+        yield f"{counted(wrong)}, of those that were checked in full, without a certificate: others may be wrong as well"
     if missing and "missing" not in dataset.attrs and not _open(sweep, kept.name):
         yield f"{kept.name}: {missing} of the designs that have a result lack it"
     if surplus:

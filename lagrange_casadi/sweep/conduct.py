@@ -81,7 +81,7 @@ def _settled(folder: Folder, plan: Plan, resume: bool, force: bool) -> bool:
     if folder.begun:
         _refuse_other(folder.path, difference(folder.identity, plan.identity))
         if there and not folder.forced and not _is_whole(folder.target, plan):
-            raise PathError(f"{folder.target} is there now, which was not when the sweep began: move it, or force=True starts anew")
+            raise PathError(f"{folder.target} has appeared since the sweep began: move it, or force=True starts anew")
         return there and _is_whole(folder.target, plan)
     _refuse_other(folder.target, difference(identity_of(folder.target), plan.identity))
     return True
@@ -142,7 +142,7 @@ def _fill(folder: Folder, plan: Plan, workers: Workers, breathe: Callable[[], No
             breathe()
             progress("file", joined, plan.size)
         if joined != plan.size:
-            raise StoreError(f"{folder.path}: no part goes on after {counted(joined)} of {grouped(plan.size)}")
+            raise StoreError(f"{folder.path}: no part continues after {counted(joined)} of {grouped(plan.size)}")
     with telling(folder.target):
         seen = seal(folder.joined, SCHEMA)
     folder.publish()

@@ -53,4 +53,4 @@ class Engine(Protocol):
         """Evaluate designs ``p`` (designs, parameters), every parameter in the order of declaration; default: a thread a core."""
 
     def failures(self, p: Array) -> Mapping[str, float]:
-        """What fails of one design that has a result, (parameters,), when it is looked at closely; nothing where all is well."""
+        """What fails of one design that has a result, (parameters,), when it is checked in full; nothing where all is well."""

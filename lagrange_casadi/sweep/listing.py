@@ -17,7 +17,9 @@ from .axes import Listed, check_known, not_parameter
 
 
 def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | None = None) -> Listed:
-    """Read a list of designs. Empty lines are passed over.
+    """Read a list of designs, for :func:`.sweep`: a first line of parameters' names, then a line of values for each design.
+
+    Cells are separated by commas, numbers have points, the text is UTF-8. Empty lines are passed over. Returns a :class:`.Listed`.
 
     With the names of ``parameters``, as of a mechanism, the head is checked against them before any number is read; without, a
     sweep checks it.

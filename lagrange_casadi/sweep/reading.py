@@ -39,9 +39,10 @@ Values = npt.NDArray[Any]
 class Sweep:
     """A finished sweep; arrays are read when they are asked for.
 
-    ``dimensions`` are the axes of the designs and their lengths, of parameters, or ``design`` of a list; ``columns`` what is kept
-    of each, by full name; ``parameters`` the units of what was swept; ``chosen`` the numbers along axes that :meth:`select` left.
-    All of the file is held to its seal when it is opened, and again only where it is another one since.
+    ``dimensions`` are the axes of the designs and their lengths: the swept parameters of a grid, or ``design`` of a list.
+    ``columns`` are what is kept of each design, by full name, with units. ``parameters`` are the units of what was swept, and
+    ``chosen`` the numbers along axes that :meth:`select` left. The whole file is compared with its seal when it is opened, and
+    again only where it has changed since.
     """
 
     path: Path
@@ -59,7 +60,7 @@ class Sweep:
     def open(cls, path: str | Path, keeper: Any = None, seen: Seen | None = None) -> Sweep:
         """Open a file. Raises :class:`PathError` for none, :class:`StoreError` for what is not a whole file of a sweep.
 
-        It is held to its seal, unless it is the one that was ``seen`` already; ``keeper`` is what it lives as long as.
+        It is compared with its seal, unless it is the one that was ``seen`` already. ``keeper`` is kept alive as long as the sweep.
         """
         _refuse_unfinished(path)
         seen = seen if seen and seen.is_at(path) else verify(path)
@@ -85,7 +86,10 @@ class Sweep:
         return int(np.prod(self.shape, dtype=np.int64))
 
     def __getitem__(self, name: str) -> Values:
-        """A column (designs' axes, its own axes), a parameter along its axis, or ``t`` [s] or ``xi`` of columns that have them."""
+        """A column (designs' axes, its own axes), a parameter along its axis, or ``t`` [s] or ``xi`` of columns that have them.
+
+        A design without a result is NaN. Raises :class:`UnknownNameError` for another name, :class:`StoreError` for a damaged file.
+        """
         if name not in self.parameters and name not in self._over:
             self.column(name)
         with self.opened() as file:
@@ -182,7 +186,7 @@ class Sweep:
         return tuple(int(i) for i in np.unravel_index(number, dims))
 
     def counts(self) -> dict[int, int]:
-        """How many designs have each status."""
+        """How many designs have each status, by its number; ``statuses`` has the words."""
         found = dict.fromkeys(self.statuses, 0)
         for _, values in self.blocks([STATUS]):
             for status, count in zip(*np.unique(values[STATUS], return_counts=True), strict=True):
@@ -190,7 +194,10 @@ class Sweep:
         return found
 
     def to_xarray(self, names: Sequence[str] | None = None) -> xarray.Dataset:
-        """Columns, or all, as an ``xarray.Dataset`` over the parameters, with units. Raises where xarray is not installed."""
+        """Columns, or all, as an ``xarray.Dataset`` over the parameters, with units.
+
+        Raises :class:`UnknownNameError`, and :class:`LagrangeCasadiError` where xarray is not installed.
+        """
         try:
             import xarray
         except ImportError:
@@ -219,7 +226,7 @@ class Sweep:
             if axis not in self._over:
                 raise UnknownNameError("axis", axis, self._over)
             if axis in self.parameters:
-                raise DeclarationError(f"parameter '{axis}' bears the name of an axis: its columns cannot be rows")
+                raise DeclarationError(f"parameter '{axis}' has the name of an axis: rows cannot go along both")
         if unknown := [name for name in names if name not in (*self.parameters, *self.columns, *along)]:
             raise self._unknown(unknown)
         for name in names:

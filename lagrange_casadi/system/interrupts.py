@@ -21,9 +21,10 @@ _NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
 
 
 def interrupts() -> list[signal.Signals]:
-    """Ctrl-C, a wish to end, and a terminal that goes, where the platform has them and they are not ignored.
+    """The signals that stop the program: Ctrl-C (SIGINT), a request to end (SIGTERM), and a terminal that closes (SIGHUP).
 
-    ``nohup``, and a shell for what it runs in the background, start a program that ignores some: those stay ignored.
+    Those that the platform lacks are left out, and so are those that are ignored: ``nohup``, and a shell that runs something in
+    the background, start a program that ignores some, and it goes on ignoring them.
     """
     numbers = [getattr(signal, name) for name in _NAMES if hasattr(signal, name)]
     return [number for number in numbers if signal.getsignal(number) not in (signal.SIG_IGN, None)]

@@ -1,0 +1,34 @@
+"""Names of parts: which part has a name that is taken."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from ..errors import DeclarationError
+from .expressions import check_name
+from .parts import Body, Constraint, Force, Ground, Joint, Link, Load, Parameter, PointMass, Row, Spring, Torque
+
+_WORDS: dict[type[object], str] = {
+    Constraint: "a constraint",
+    Force: "a load",
+    Ground: "the ground",
+    Joint: "a joint",
+    Link: "a link",
+    Parameter: "a parameter",
+    PointMass: "a point mass",
+    Row: "a non-holonomic constraint",
+    Spring: "a load",
+    Torque: "a load",
+}
+
+Part = Parameter | Body | Joint | Load | Constraint | Row
+
+
+def check_free(kind: str, name: str, mechanism: str, others: Iterable[Mapping[str, Part]]) -> None:
+    """Raise :class:`DeclarationError` for what cannot be a name, or is that of one of the other parts."""
+    check_name(kind, name)
+    for part in (parts[name] for parts in others if name in parts):
+        bearer = _WORDS[type(part)]
+        if bearer == f"a {kind}":
+            raise DeclarationError(f"{kind} '{name}' is declared twice in mechanism '{mechanism}'")
+        raise DeclarationError(f"{kind} '{name}': the name is taken by {bearer} of mechanism '{mechanism}'")
