@@ -232,8 +232,8 @@ def test_what_is_no_line_of_text_is_refused(tmp_path, wicked):
     assert not list(tmp_path.iterdir())
 
 
-@settings(max_examples=40, deadline=None)
-@given(lines=st.lists(LINES, min_size=1, max_size=20))
+@settings(max_examples=20, deadline=None)
+@given(lines=st.lists(LINES, min_size=1, max_size=40))
 def test_any_line_is_what_c_reads(lines, tmp_path_factory):
     """In strings and formats, byte by byte, with trigraphs; and no comment ends in it."""
     folder = tmp_path_factory.mktemp("lines")

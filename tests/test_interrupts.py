@@ -168,11 +168,10 @@ STEPPING = {
 }
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
-@pytest.mark.parametrize("arguments", STEPPING.values(), ids=STEPPING)
-def test_an_interrupt_does_not_wait_for_newtons_steps(here, arguments, number):
+@pytest.mark.parametrize(("name", "number"), zip(STEPPING, [signal.SIGINT, signal.SIGTERM] * 2, strict=True))
+def test_an_interrupt_does_not_wait_for_newtons_steps(here, name, number):
     """The whole takes minutes or hours."""
-    with program(*arguments) as stopped:
+    with program(*STEPPING[name]) as stopped:
         sweeps.wait_for(lambda: caught(stopped, signal.SIGALRM))
         time.sleep(2.0)
         stopped.send_signal(number)
