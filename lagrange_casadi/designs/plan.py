@@ -16,15 +16,13 @@ from ..declare.density import Array, Density
 from ..declare.limits import margins
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link, RigidMass
-from ..equations.checks import Check
 from ..equations.gaps import extent
 from ..equations.kinematics import NEAR
 from ..equations.mobility import stations_of
 from ..equations.scene_graph import SceneGraph
-from ..equations.turns import REACH
 from ..errors import DeclarationError
-from ..instants.determinacy import open_limits
-from ..instants.refusal import MISFIT, Status, dead_centre, gap_limit
+from ..instants.refusal import Status
+from ..instants.rules import rules
 from ..instants.rung import Rung
 from ..instants.section_law import made_of
 from ..quantities import FORCE, FORCES, LAW, PLACE_FIRST, Output
@@ -137,25 +135,12 @@ def _made_of(graph: SceneGraph, quantity: Output) -> list[Output]:
 
 
 def _checks(graph: SceneGraph, rung: Rung) -> list[tuple[int, str, float]]:
+    """The rules of a graph as the emitted C takes them: a row is followed by the column that is the size of its terms."""
     found: list[tuple[int, str, float]] = []
-    precision, opened = rung.precision, open_limits(graph, rung)
-    for k, check in enumerate(graph.columns):
-        if not isinstance(check, Check):
-            continue
-        if isinstance(check.part, Output):
-            limit, moment = opened[check.part]
-            found.append((k, "OPEN_MOMENT" if moment else "OPEN", limit))
-        elif check.kind == "closure":
-            jumps = graph.newton is not None and f"'{check.part}'" in graph.newton.joints
-            found.append((k, "BRANCH" if jumps else "CLOSURE", dead_centre(graph, precision, check.part)))
-        elif check.kind == "gap":
-            found.append((k, "GAP", gap_limit(precision, rung.newton)))
-        elif check.kind == "turned":
-            found.append((k, "TURNED", REACH))
-        elif check.kind == "misfit":
-            found.append((k, "MISFIT", MISFIT[precision]))
-        elif check.kind == "row":
-            found += [(k, "ROW", MISFIT[precision]), (graph.checks("rowsize")[check.part], "ROWSIZE", 0.0)]
+    for rule in rules(graph, rung.precision, rung.newton):
+        found.append((rule.column, rule.kind, rule.limit))
+        if rule.kind == "ROW":
+            found.append((rule.beside, "ROWSIZE", 0.0))
     return found
 
 

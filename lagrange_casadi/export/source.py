@@ -11,11 +11,7 @@ import casadi as ca
 
 from ..codegen.emit import newton_rule
 from ..declare.density import Density
-from ..equations.checks import Check
-from ..equations.turns import REACH
-from ..instants.determinacy import open_limits
-from ..instants.refusal import MISFIT, dead_centre, gap_limit
-from ..instants.rung import Rung
+from ..instants.rules import rules
 from ..quantities import LAW, PLACE_FIRST, Output
 from ..version import __version__
 from .contract import REST, Contract
@@ -315,34 +311,29 @@ class Source:
             yield f"closed = {P}_OK;"
 
     def _verdict(self) -> Iterable[str]:
-        P, precision, number = self._upper, self.contract.precision, self._number
-        graph, misfit, closed = self.program.graph, number(MISFIT[precision]), self.iterated
-        for k, check in enumerate(self.program.columns):
-            if not isinstance(check, Check):
-                continue
-            kind, part = check.kind, str(check.part)
-            if closed and kind in ("gap", "misfit"):
+        P, number, closed = self._upper, self._number, self.iterated
+        fabs, graph = self._function("fabs"), self.program.graph
+        for rule in rules(graph, self.contract.precision, self.program.newton):
+            k, limit = self.program.columns.index(graph.columns[rule.column]), number(rule.limit)
+            beside = f"{limit}*model->matter[0]"
+            if closed and rule.kind not in ("CLOSURE", "BRANCH"):
                 yield f"if (closed != {P}_OK) return closed;"
                 closed = False
-            if kind == "closure":
-                dead = number(dead_centre(graph, precision, part))
-                lost = "JUMPED" if graph.iterates(part) else "NOT_ASSEMBLED"
-                yield f"if (y[{k}] < -{dead}) return {P}_{lost};"
-                yield f"if (!(y[{k}] > {dead})) return {P}_DEAD_CENTRE;"
-            elif kind == "gap" and self.program.sizes["gapped"]:
-                limit = f"{number(gap_limit(precision, self.program.newton))}*model->matter[0]"
-                yield f"if ({self._function('fabs')}(y[{k}]) > {limit}) return {P}_NOT_CLOSED;"
-            elif isinstance(check.part, Output):
-                least, moment = open_limits(graph, Rung("auto", precision, self.program.newton))[check.part]
-                limit = f"{number(least)}*model->matter[0]" if moment else number(least)
-                yield f"if (!(y[{k}] <= {limit})) return {P}_UNDETERMINED;"
-            elif kind == "turned":
-                yield f"if (!({self._function('fabs')}(y[{k}]) <= {number(REACH)})) return {P}_TURNED;"
-            elif kind == "misfit":
-                yield f"if (y[{k}] > {misfit}) return {P}_INCONSISTENT;"
-            elif kind == "row":
-                size = self.program.columns.index(Check("rowsize", part))
-                yield f"if (!({self._function('fabs')}(y[{k}]) <= {misfit}*y[{size}])) return {P}_INCONSISTENT;"
+            if rule.kind in ("CLOSURE", "BRANCH"):
+                lost = "JUMPED" if rule.kind == "BRANCH" else "NOT_ASSEMBLED"
+                yield f"if (y[{k}] < -{limit}) return {P}_{lost};"
+                yield f"if (!(y[{k}] > {limit})) return {P}_DEAD_CENTRE;"
+            elif rule.kind == "GAP" and self.program.sizes["gapped"]:
+                yield f"if ({fabs}(y[{k}]) > {beside}) return {P}_NOT_CLOSED;"
+            elif rule.kind in ("OPEN", "OPEN_MOMENT"):
+                yield f"if (!(y[{k}] <= {beside if rule.kind == 'OPEN_MOMENT' else limit})) return {P}_UNDETERMINED;"
+            elif rule.kind == "TURNED":
+                yield f"if (!({fabs}(y[{k}]) <= {limit})) return {P}_TURNED;"
+            elif rule.kind == "MISFIT":
+                yield f"if (y[{k}] > {limit}) return {P}_INCONSISTENT;"
+            elif rule.kind == "ROW":
+                size = self.program.columns.index(graph.columns[rule.beside])
+                yield f"if (!({fabs}(y[{k}]) <= {limit}*y[{size}])) return {P}_INCONSISTENT;"
         if closed:
             yield f"if (closed != {P}_OK) return closed;"
         rows = len(self.program.columns)

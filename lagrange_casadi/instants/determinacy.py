@@ -13,35 +13,22 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
-from ..arithmetic.compensated import Precision
 from ..codegen.emit import OK
 from ..declare.density import Array
 from ..equations.checks import Check, Column
 from ..equations.scene_graph import SceneGraph
 from ..quantities import MOMENT, Output
 from .backends import run
+from .rules import open_limit
 from .rung import Rung
-
-_OPEN: dict[Precision, float] = {"double": 1e-9, "single": 1e-4}
-_COUNTED = 1e-3
-"""Where loops are closed by so many steps: what is zero where they are closed is as small as what is left of them."""
-
-
-def open_limits(graph: SceneGraph, rung: Rung) -> dict[Output, tuple[float, bool]]:
-    """Of each output that equilibrium may leave open, the size of s above which it does.
-
-    And whether that goes times the mechanism's extent, as moments do.
-    """
-    least = _OPEN[rung.precision] if rung.newton is None else max(_COUNTED, _OPEN[rung.precision])
-    return {output: (least, output.unit(graph.scene.mechanism.joints) == MOMENT) for output in graph.doubtful}
 
 
 def undetermined(graph: SceneGraph, out: Array, p: Array, rung: Rung) -> tuple[Output, ...]:
     """The outputs that equilibrium leaves open at any of some instants, by the columns there, (columns, t)."""
     if not graph.doubtful:
         return ()
-    extent, limits = graph.extent(p), open_limits(graph, rung)
-    sizes = {output: limit * (extent if moment else 1.0) for output, (limit, moment) in limits.items()}
+    extent, joints, limit = graph.extent(p), graph.scene.mechanism.joints, open_limit(rung.precision, rung.newton)
+    sizes = {output: limit * (extent if output.unit(joints) == MOMENT else 1.0) for output in graph.doubtful}
     return tuple(output for output, k in graph.doubtful.items() if np.any(out[k] > sizes[output]))
 
 

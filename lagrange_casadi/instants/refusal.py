@@ -10,23 +10,17 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..arithmetic.compensated import DTYPES, ROUNDING, Precision
+from ..arithmetic.compensated import DTYPES, Precision
 from ..codegen.designs import INSIDE, ROUNDS
-from ..codegen.emit import NEWTON_LOST, NOT_CONVERGED, NOT_FINITE, OK, SLOW
+from ..codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW
 from ..declare.density import Array
-from ..equations.checks import Check
 from ..equations.kinematics import passes_dead_centre, where
 from ..equations.scene_graph import SceneGraph
-from ..equations.turns import LEAP, REACH
+from ..equations.turns import LEAP
 from ..errors import AssemblyError
 from .backends import Table, run
+from .rules import Rule, dead_centre, rules
 from .rung import Rung
-
-MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
-"""How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
-
-_DEAD = 64.0
-"""Roundings below which a closure says nothing but that it is zero."""
 
 
 class Status(enum.IntEnum):
@@ -92,21 +86,12 @@ def refuse(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> N
 
 def refusal(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> Refusal | None:
     """Why the first instant that has no result has none; None where all have."""
-    precision = table.stages.precision
-    bad, misfit = table.status != OK, MISFIT[precision]
-    widest = gap_limit(precision, rung.newton) * graph.extent(p)
+    held, extent, bad = rules(graph, table.stages.precision, rung.newton), graph.extent(p), table.status != OK
     passed: dict[str, npt.NDArray[np.bool_]] = {}
-    for name, k in graph.checks("closure").items():
-        bad |= ~(table.out[k] > dead_centre(graph, precision, name))
-        passed[name] = passes_dead_centre(table.out[k], ends=graph.newton is None)
-    for k in graph.checks("gap").values():
-        bad |= ~(np.abs(table.out[k].astype(float)) <= widest)
-    for k in graph.checks("turned").values():
-        bad |= _turned(table.out[k])
-    for k in graph.checks("misfit").values():
-        bad |= ~(table.out[k] <= misfit)
-    for name, k in graph.checks("row").items():
-        bad |= ~(np.abs(table.out[k]) <= misfit * _largest_row(graph, table, name))
+    for rule in held:
+        bad |= broken(rule, table.out, extent)
+        if rule.kind in ("CLOSURE", "BRANCH"):
+            passed[str(rule.part)] = passes_dead_centre(table.out[rule.column], ends=graph.newton is None)
     for name, found in passed.items():
         if graph.newton is None and found.any():
             after = np.flatnonzero(found)
@@ -119,30 +104,26 @@ def refusal(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> 
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
     at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
     at = f"at t = {t[i]:.6g} s{at}"
-    status, why = _why(graph, table, i, at, [name for name in passed if passed[name][i]], widest)
-    return Refusal(status, _beyond(graph, p, precision, at) or why)
+    status, why = _why(graph, table, held, i, at, [name for name in passed if passed[name][i]], extent)
+    return Refusal(status, _beyond(graph, p, table.stages.precision, at) or why)
 
 
-def _turned(swing: Array) -> npt.NDArray[np.bool_]:
-    """Where an angle may have made another turn: too far from the middle of its swing, or about to be as far on the other side."""
-    return ~(np.abs(swing) <= REACH) | (np.abs(np.diff(swing, append=swing[-1:])) > LEAP)
-
-
-def dead_centre(graph: SceneGraph, precision: Precision, closure: str) -> float:
-    """Below what a closure says nothing: of a closed form it is the square of a sine, of an iterated loop as the sine itself."""
-    square = _DEAD * ROUNDING[precision]
-    return math.sqrt(square) if graph.iterates(closure) else square
-
-
-def _largest_row(graph: SceneGraph, table: Table, row: str) -> float:
-    """The largest size of a row over the instants: where all stands still, what rounding leaves of rates violates nothing."""
-    sizes = table.out[graph.checks("rowsize")[row]]
-    return float(np.fmax.reduce(sizes, initial=0.0))
-
-
-def gap_limit(precision: Precision, newton: int | None) -> float:
-    """How far what is left of a loop's equations may be from zero, of the mechanism's extent; ``newton`` as in :class:`.Rung`."""
-    return MISFIT[precision] if newton is None else NEWTON_LOST
+def broken(rule: Rule, out: Array, extent: float) -> npt.NDArray[np.bool_]:
+    """At which instants of the columns ``out`` (columns, t) a rule is broken; what is open is no reason to refuse the rest."""
+    column = np.asarray(out[rule.column], float)
+    if rule.kind in ("CLOSURE", "BRANCH"):
+        return np.asarray(~(column > rule.limit))
+    if rule.kind == "GAP":
+        return np.asarray(~(np.abs(column) <= rule.limit * extent))
+    if rule.kind == "MISFIT":
+        return np.asarray(~(column <= rule.limit))
+    if rule.kind == "ROW":
+        # Where all stands still, what rounding leaves of rates violates nothing.
+        return np.asarray(~(np.abs(column) <= rule.limit * float(np.fmax.reduce(out[rule.beside], initial=0.0))))
+    if rule.kind == "TURNED":
+        # Too far from the middle of its swing, or about to be as far on the other side.
+        return np.asarray(~(np.abs(column) <= rule.limit) | (np.abs(np.diff(column, append=column[-1:])) > LEAP))
+    return np.zeros(column.shape, dtype=bool)
 
 
 def _dead_between(graph: SceneGraph, name: str, start: Array, stop: Array, p: Array, rung: Rung) -> npt.NDArray[np.bool_]:
@@ -171,53 +152,53 @@ def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str |
     return None
 
 
-def _why(graph: SceneGraph, table: Table, i: int, at: str, passed: Sequence[str], widest: float) -> tuple[Status, str]:
+def _why(
+    graph: SceneGraph, table: Table, held: Sequence[Rule], i: int, at: str, passed: Sequence[str], extent: float
+) -> tuple[Status, str]:
     if table.status[i] == NOT_CONVERGED:
         assert graph.newton is not None
         cause = "their links do not reach, or the instant before is too far off"
         return Status.NOT_CONVERGED, f"the loops closed by {graph.newton.joints} did not converge {at}: {cause}"
-    precision = table.stages.precision
-    values = dict(zip(graph.columns, table.out[:, i], strict=True))
-    misfit = MISFIT[precision]
-    for column, value in values.items():
-        if not isinstance(column, Check):
-            continue
-        kind, joint = column.kind, str(column.part)
-        limit = dead_centre(graph, precision, joint)
-        closed = f"{'joint' if joint in graph.scene.mechanism.joints else 'constraint'} '{joint}'"
-        if kind == "closure" and value < -limit:
-            if graph.newton is not None and f"'{joint}'" in graph.newton.joints:
+    for rule in held:
+        part, value = str(rule.part), float(table.out[rule.column, i])
+        closed = f"{'joint' if part in graph.scene.mechanism.joints else 'constraint'} '{part}'"
+        if rule.kind not in ("CLOSURE", "BRANCH"):
+            if table.status[i] == SLOW:
+                break
+            if not broken(rule, table.out, extent)[i]:
+                continue
+        elif value < -rule.limit:
+            if rule.kind == "BRANCH":
                 return Status.JUMPED, f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
             return Status.OUT_OF_REACH, f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
-        if kind == "closure" and not value > limit:
+        elif not value > rule.limit:
             why = f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces are not determined there"
             return Status.DEAD_CENTRE, why
-        if kind == "closure" and joint in passed:
+        elif part in passed:
             near = "; if it only comes near one, take more instants" if graph.newton is not None else ""
             passing = f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}"
             return Status.PASSES_DEAD_CENTRE, f"{passing}, and can go on in two ways{near}"
-        if kind in ("gap", "misfit") and table.status[i] == SLOW:
-            break
-        if kind == "gap" and abs(value) > widest:
+        if rule.kind == "GAP" and math.isfinite(value):
             gap = f"a gap of {abs(value):.3g} m"
             return Status.NOT_CLOSED, f"what was found for the loop closed by {closed} does not close it {at}: {gap}"
-        if kind == "misfit" and value > misfit:
+        if rule.kind == "MISFIT" and math.isfinite(value):
             gap = f"a gap of {value:.3g} of the links' length"
             return Status.MISFIT, f"the loops closed by {closed} are over-constrained and do not fit {at}: {gap}"
-        if kind == "turned" and _turned(table.out[graph.columns.index(column), i : i + 2])[0]:
-            what = f"the angle of '{joint}', which a load sees with its turns,"
-            if abs(value) <= REACH:
+        if rule.kind == "TURNED":
+            what = f"the angle of '{part}', which a load sees with its turns,"
+            if abs(value) <= rule.limit:
                 return Status.TURNED, f"{what} goes most of a turn from the instant {at} to the next: take more instants"
             swing = f"swings {math.degrees(value):.3g} deg from the middle of its swing over the scene's motion {at}"
             return (
                 Status.TURNED,
                 f"{what} {swing}: it might be a turn further; take defaults and a motion that show how far it goes",
             )
-        if kind == "row" and not abs(value) <= misfit * _largest_row(graph, table, joint):
-            return Status.ROW_VIOLATED, f"the motion violates the non-holonomic constraint '{joint}' by {value:.6g} {at}"
+        if rule.kind == "ROW":
+            return Status.ROW_VIOLATED, f"the motion violates the non-holonomic constraint '{part}' by {value:.6g} {at}"
     if table.status[i] == SLOW:
         assert graph.newton is not None
         cause = "they are near a dead centre, or the instant before is too far off"
         return Status.SLOW, f"the loops closed by {graph.newton.joints} converge slowly {at}: {cause}"
-    name = next(column for column, value in values.items() if not math.isfinite(value))
+    values = zip(graph.columns, table.out[:, i], strict=True)
+    name = next(column for column, value in values if not math.isfinite(value))
     return Status.NOT_FINITE, f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"

@@ -1,0 +1,87 @@
+"""When an instant has a result, and when not: one list, for what is evaluated here, for designs and for exported C.
+
+The rules stand in the order in which they are told: of an instant that breaks several, the first says why it has no result. Loops
+that iteration did not close, or closes slowly, are told beside them: the former before all rules, the latter after those of loops
+that are at a dead centre, for what else is wrong follows from that.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from ..arithmetic.compensated import ROUNDING, Precision
+from ..codegen.emit import NEWTON_LOST
+from ..equations.checks import Check
+from ..equations.scene_graph import SceneGraph
+from ..equations.turns import REACH
+from ..quantities import MOMENT, Output
+
+MISFIT: dict[Precision, float] = {"double": 1e-8, "single": 1e-5}
+"""How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
+
+OPEN: dict[Precision, float] = {"double": 1e-9, "single": 1e-4}
+_COUNTED = 1e-3
+"""Where loops are closed by so many steps: what is zero where they are closed is as small as what is left of them."""
+
+_DEAD = 64.0
+"""Roundings below which a closure says nothing but that it is zero."""
+
+Kind: TypeAlias = Literal["CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "TURNED", "OPEN", "OPEN_MOMENT"]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What a column must keep to, so that an instant has a result.
+
+    A ``CLOSURE`` must be above its limit, and above its opposite unless links do not reach; so must a ``BRANCH``, whose loop
+    iteration follows. ``GAP`` and ``TURNED`` must be within it by size, a ``GAP`` times the mechanism's extent. A ``MISFIT`` must
+    not be above it, nor a ``ROW`` by size, times the column ``beside``, which is the size of its terms. What is ``OPEN`` must not
+    be above it, an ``OPEN_MOMENT`` times the extent: else the output ``part`` is not determined.
+    """
+
+    kind: Kind
+    column: int
+    part: str | Output
+    limit: float
+    beside: int = -1
+
+
+def rules(graph: SceneGraph, precision: Precision, newton: int | None) -> tuple[Rule, ...]:
+    """The rules of a graph, in the order in which they are told; ``newton`` as in :class:`.Rung`."""
+    found: list[Rule] = []
+    for k, check in enumerate(graph.columns):
+        if not isinstance(check, Check):
+            continue
+        part = check.part
+        if isinstance(part, Output):
+            moment = part.unit(graph.scene.mechanism.joints) == MOMENT
+            found.append(Rule("OPEN_MOMENT" if moment else "OPEN", k, part, open_limit(precision, newton)))
+        elif check.kind == "closure":
+            found.append(Rule("BRANCH" if graph.follows(part) else "CLOSURE", k, part, dead_centre(graph, precision, part)))
+        elif check.kind == "gap":
+            found.append(Rule("GAP", k, part, gap_limit(precision, newton)))
+        elif check.kind == "misfit":
+            found.append(Rule("MISFIT", k, part, MISFIT[precision]))
+        elif check.kind == "row":
+            found.append(Rule("ROW", k, part, MISFIT[precision], graph.checks("rowsize")[part]))
+        elif check.kind == "turned":
+            found.append(Rule("TURNED", k, part, REACH))
+    return tuple(found)
+
+
+def dead_centre(graph: SceneGraph, precision: Precision, closure: str) -> float:
+    """Below what a closure says nothing: of a closed form it is the square of a sine, of an iterated loop as the sine itself."""
+    square = _DEAD * ROUNDING[precision]
+    return math.sqrt(square) if graph.iterates(closure) else square
+
+
+def gap_limit(precision: Precision, newton: int | None) -> float:
+    """How far what is left of a loop's equations may be from zero, of the mechanism's extent; ``newton`` as in :class:`.Rung`."""
+    return MISFIT[precision] if newton is None else NEWTON_LOST
+
+
+def open_limit(precision: Precision, newton: int | None) -> float:
+    """How far a force may change with what equilibrium leaves open, and be determined: of a moment, of the mechanism's extent."""
+    return OPEN[precision] if newton is None else max(_COUNTED, OPEN[precision])
