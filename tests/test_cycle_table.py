@@ -5,7 +5,6 @@ import re
 import shutil
 import subprocess
 from dataclasses import replace
-from importlib import resources
 
 import numpy as np
 import pytest
@@ -102,7 +101,7 @@ def test_single_precision_is_near_and_says_how_near():
 def test_single_precision_takes_no_double(tmp_path):
     compiler = codegen.find_compiler("c")
     source = tmp_path / "interpolate.c"
-    source.write_text(resources.files("lagrange_casadi.codegen").joinpath("interpolate.c").read_text())
+    source.write_text(cycle_table.source())
     found = {}
     for real in ("float", "double"):
         target = tmp_path / f"{real}.o"
@@ -125,7 +124,7 @@ def test_single_precision_takes_no_double(tmp_path):
 @pytest.mark.parametrize("real", ["float", "double"])
 def test_the_reader_is_pedantically_clean(real, tmp_path):
     source = tmp_path / "interpolate.c"
-    source.write_text(resources.files("lagrange_casadi.codegen").joinpath("interpolate.c").read_text())
+    source.write_text(cycle_table.source())
     flags = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wdouble-promotion", "-Wconversion", "-Werror", f"-DREAL={real}"]
     command = [*codegen.find_compiler("c").command, *flags, "-c", source, "-o", tmp_path / "out.o"]
     result = subprocess.run(command, capture_output=True, text=True, check=False)

@@ -94,8 +94,9 @@ def test_a_row_has_the_same_bytes_whatever_stands_beside_it(name, rung, monkeypa
 def bare(designs, p):
     """What the C leaves in arrays that held NaN."""
     n, q, e = len(p), len(designs.quantities), len(designs.efforts)
-    results = [np.full(n, -1, np.int8), *(np.full((n, q), np.nan) for _ in range(3)), *(np.full((n, e), np.nan) for _ in range(2))]
-    designs.library.evaluate(p, [*results, np.full((n, len(designs.graph.columns), designs.t.size), np.nan)])
+    shapes = {"value": q, "peak_t": q, "xi": q, "mean": e, "rms": e}
+    results = {"status": np.full(n, -1, np.int8)} | {name: np.full((n, many), np.nan) for name, many in shapes.items()}
+    designs.library.evaluate(p, {**results, "history": np.full((n, len(designs.graph.columns), designs.t.size), np.nan)})
     return results
 
 
@@ -106,7 +107,8 @@ def test_every_value_is_written_or_is_nan(backend):
     designs = DesignEngine.of(scene, rung=Rung(backend))
     p = around(scene, 5)
     p[2, 1] = 0.05
-    status, value, t, xi, mean, rms = bare(designs, p)
+    found = bare(designs, p)
+    status, value, t, xi, mean, rms = found.values()
     good = status == Status.OK
     assert good.tolist() == [True, True, False, True, True]
     along = np.array([name.startswith("section:") for name in designs.quantities])
@@ -115,9 +117,9 @@ def test_every_value_is_written_or_is_nan(backend):
         assert np.isnan(array[~good]).all()
     assert np.array_equal(np.isfinite(xi), good[:, None] & along)
     # And what held numbers holds NaN after a design without a result.
-    results = [np.zeros_like(array) for array in (status, value, t, xi, mean, rms)]
-    designs.library.evaluate(p, [*results, None])
-    assert all(np.isnan(array[2]).all() for array in results[1:])
+    results = {name: np.zeros_like(array) for name, array in found.items()}
+    designs.library.evaluate(p, {**results, "history": None})
+    assert all(np.isnan(array[2]).all() for name, array in results.items() if name != "status")
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "four_bar", "rrr3", "quick_return"])

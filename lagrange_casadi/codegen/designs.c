@@ -3,9 +3,11 @@
 static int designs_one(designs_now* now, const double* p, const double* guess, double* value, double* t, double* xi, double* mean,
                        double* rms, double* history) {
   designs_real pairs[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], pair[DESIGNS_NT], z[DESIGNS_SOME(DESIGNS_NZ)], margin;
+  lagrange_casadi_instants follow;
   casadi_int i;
   int j, k, why;
   (void) z;
+  (void) follow;
   for (k = 0; k < DESIGNS_NP; ++k) {
     if (!(p[k] - p[k] == 0)) return DESIGNS_INVALID;
     designs_split(p[k], pair);
@@ -21,8 +23,18 @@ static int designs_one(designs_now* now, const double* p, const double* guess, d
   if (DESIGNS_NZ) {
     for (k = 0; k < DESIGNS_NZ; ++k) z[k] = (designs_real) guess[k];
     designs_split(now->t[0], pair);
-    DESIGNS_BEGIN(1, 1, pair, now->p, z, z, &why);
-    DESIGNS_FOLLOW(now->n, now->stride, now->times, now->p, z, now->z, now->status);
+    follow.n = follow.stride = 1;
+    follow.t = pair;
+    follow.p = now->p;
+    follow.guess = follow.z = z;
+    follow.status = &why;
+    DESIGNS_BEGIN(&follow);
+    follow.n = now->n;
+    follow.stride = now->stride;
+    follow.t = now->times;
+    follow.z = now->z;
+    follow.status = now->status;
+    DESIGNS_FOLLOW(&follow);
     for (k = 0; k < DESIGNS_NZ; ++k) {
       for (i = now->n; i < now->n + LANES; ++i) now->z[k*now->stride + i] = now->z[k*now->stride + now->n - 1];
     }
@@ -39,16 +51,15 @@ static int designs_one(designs_now* now, const double* p, const double* guess, d
   return DESIGNS_OK;
 }
 
-/* So many designs, rows of parameters p, over n instants t. value, t_peak and xi become rows of quantities, mean and rms of efforts,
+/* So many designs, rows of parameters p, over n instants t. value, peak_t and xi become rows of quantities, mean and rms of efforts,
    and history, unless it is NULL, outputs by instants; of a design without a result all is NaN. bent tells after which instants the
    motion bends more than they show. Of the room there are DESIGNS_ROOM rows of stride values, of which the first is zero, and as many
    panels of DESIGNS_STRIDE values a row as may lie within each other; of the status stride integers that are zero, and of hiding
    twice as many. */
-LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(casadi_int designs, casadi_int n, casadi_int stride, const double* t,
-                                                    const double* p, const double* guess, const signed char* bent,
-                                                    DESIGNS_REAL* room, int* statuses, signed char* hiding, signed char* status,
-                                                    double* value, double* t_peak, double* xi, double* mean, double* rms,
-                                                    double* history) {
+LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_designs_call* call) {
+  const casadi_int n = call->n, stride = call->stride;
+  const double *t = call->t, *p = call->p;
+  DESIGNS_REAL* room = call->room;
   designs_now now;
   designs_real moment[DESIGNS_NT];
   casadi_int i, d;
@@ -60,20 +71,21 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(casadi_int designs, casadi_i
   now.z = room + DESIGNS_NT*stride;
   now.rows = now.z + DESIGNS_NZ*stride;
   now.inner = now.rows + (DESIGNS_CHECKED + DESIGNS_CHECKS + 1 + DESIGNS_WATCHES)*stride;
-  now.status = statuses;
-  now.bent = bent;
-  now.hiding = hiding;
+  now.status = call->statuses;
+  now.bent = call->bent;
+  now.hiding = call->hiding;
   now.half = n > 1 ? (t[n - 1] - t[0])/(double) (2*(n - 1)) : 1;
   for (i = 0; i < stride; ++i) {
     designs_split(t[i < n ? i : n - 1], moment);
     for (k = 0; k < DESIGNS_NT; ++k) room[k*stride + i] = moment[k];
   }
-  for (d = 0; d < designs; ++d) {
-    double *values = value + d*DESIGNS_QUANTITIES, *times = t_peak + d*DESIGNS_QUANTITIES, *places = xi + d*DESIGNS_QUANTITIES;
-    double *means = mean + d*DESIGNS_EFFORTS, *squares = rms + d*DESIGNS_EFFORTS;
-    double* whole = history ? history + d*DESIGNS_OUTPUTS*n : 0;
-    status[d] = (signed char) designs_one(&now, p + d*DESIGNS_NP, guess, values, times, places, means, squares, whole);
-    if (status[d] == DESIGNS_OK) continue;
+  for (d = 0; d < call->designs; ++d) {
+    double *values = call->value + d*DESIGNS_QUANTITIES, *times = call->peak_t + d*DESIGNS_QUANTITIES;
+    double *places = call->xi + d*DESIGNS_QUANTITIES, *means = call->mean + d*DESIGNS_EFFORTS;
+    double *squares = call->rms + d*DESIGNS_EFFORTS, *whole = call->history ? call->history + d*DESIGNS_OUTPUTS*n : 0;
+    const int why = designs_one(&now, p + d*DESIGNS_NP, call->guess, values, times, places, means, squares, whole);
+    call->status[d] = (signed char) why;
+    if (why == DESIGNS_OK) continue;
     for (k = 0; k < DESIGNS_QUANTITIES; ++k) values[k] = times[k] = places[k] = NAN;
     for (k = 0; k < DESIGNS_EFFORTS; ++k) means[k] = squares[k] = NAN;
     for (i = 0; whole && i < DESIGNS_OUTPUTS*n; ++i) whole[i] = NAN;

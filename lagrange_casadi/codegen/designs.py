@@ -17,10 +17,35 @@ from ..equations.turns import LEAP
 from ..summits import between, panels
 from ..summits import search as summits
 from ..summits.sharpness import Kind, Watch
+from .calls import Call
 from .emit import FOLLOW, Parts, dump, emit, following, in_single, work
 from .stages import Stages
 
 DESIGNS, BEGIN = "lagrange_casadi_designs", "lagrange_casadi_begin"
+CALL = Call(
+    "lagrange_casadi_designs_call",
+    {
+        "designs": "long long",
+        "n": "long long",
+        "stride": "long long",
+        "t": "const double*",
+        "p": "const double*",
+        "guess": "const double*",
+        "bent": "const signed char*",
+        "room": "real*",
+        "statuses": "int*",
+        "hiding": "signed char*",
+        "status": "signed char*",
+        "value": "double*",
+        "peak_t": "double*",
+        "xi": "double*",
+        "mean": "double*",
+        "rms": "double*",
+        "history": "double*",
+    },
+)
+"""What :data:`DESIGNS` takes; the C says of each what it reads and writes."""
+
 CHECKS = ("CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT", "TURNED")
 """What is checked at every instant: a closure, one whose branch iteration may leave, what is left of a loop's equations, beside the
 mechanism's extent, a misfit, a row's residual and its size, and how far a force is open, a moment beside the extent, and the swing
@@ -138,7 +163,8 @@ def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, plan: Pl
     if stages.loops and newton is not None:
         text += following(graph, stages, None, parts.sizes | {"follow": BEGIN})
     text = emit(graph, stages, newton) + (in_single(text) if single else text)
-    text += _defined(_macros(graph, stages, newton, plan, parts)) + _tables(plan) + _source("sections.c")
+    text += CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, plan, parts))
+    text += _tables(plan) + _source("sections.c")
     text += _WORK.format(**parts.sizes | work("", *parts.wide, *parts.narrow, plan.matter), drive=parts.drive)
     text += _curves(plan)
     return text + "".join(_source(name) for name in _FILES)
@@ -148,7 +174,6 @@ def _macros(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan, p
     sizes, precision = parts.sizes, stages.precision
     plain, links, checks, curves = len(plan.quantities), len(plan.links), len(plan.checks), len(plan.curves)
     numbers = np.finfo(DTYPES[precision])
-    loops = "(n, stride, t, p, guess, z, status)"
     return {
         "REAL": sizes["real"],
         "SOME(count)": "((count) > 0 ? (count) : 1)",
@@ -192,8 +217,8 @@ def _macros(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan, p
         "SIDE": f"{SIDE[precision]:.17g}",
         "RATE": f"{between.RATE:.17g}",
         **{f"IS_{kind.name}": int(kind) for kind in Kind},
-        f"FOLLOW{loops}": f"{FOLLOW}{loops}" if stages.loops else "((void) 0)",
-        f"BEGIN{loops}": f"{BEGIN}{loops}" if stages.loops and newton is not None else "((void) 0)",
+        "FOLLOW(call)": f"{FOLLOW}(call)" if stages.loops else "((void) (call))",
+        "BEGIN(call)": f"{BEGIN}(call)" if stages.loops and newton is not None else "((void) (call))",
         **{f"IS_{kind}": k for k, kind in enumerate(CHECKS)},
         **plan.statuses,
     }

@@ -19,6 +19,7 @@ import numpy as np
 from ..arithmetic.compensated import Precision
 from ..equations.scene_graph import SceneGraph
 from ..errors import SizeError
+from .calls import Call
 from .split import split
 from .stages import Stages, plain
 
@@ -34,6 +35,21 @@ where corrections end early, as in single, their square is not far below them.""
 NEWTON_ROUNDING, NEWTON_ROUNDING_SINGLE = 1e-13, 1e-5
 NEWTON_LOST = 0.1
 """A last correction, of a fixed number, after which nothing is known."""
+
+INSTANTS = Call(
+    "lagrange_casadi_instants",
+    {
+        "n": "long long",
+        "stride": "long long",
+        "t": "const real*",
+        "p": "const real*",
+        "guess": "real*",
+        "z": "real*",
+        "out": "real*",
+        "status": "int*",
+    },
+)
+"""What :data:`EVALUATE` and :data:`FOLLOW` take; the C says of each what it reads and writes."""
 
 OK, NOT_CONVERGED, NOT_FINITE, SLOW = 0, 1, 2, 3
 """Status of an instant."""
@@ -78,8 +94,11 @@ _WIDE = """
 _EVALUATE = """
 /* n instants t, for parameters p. out[k*stride + i] becomes column k at instant i, z[k*stride + i] is iterated coordinate k there.
    status[i], {OK} where there is nothing to say against the instant, becomes {NOT_FINITE} where a value is not finite.{single} */
-LAGRANGE_CASADI_EXPORT void {evaluate}(casadi_int n, casadi_int stride, const {real}* t, const {real}* p, const {real}* z,
-                                       {real}* out, int* status) {{
+LAGRANGE_CASADI_EXPORT void {evaluate}(const {call}* call) {{
+  const casadi_int n = call->n, stride = call->stride;
+  const {real} *t = call->t, *p = call->p, *z = call->z;
+  {real}* out = call->out;
+  int* status = call->status;
   casadi_int i, j, k, many, iw[{iw}];
   {real} lanes[LANES];
   casadi_real at[{inputs}], y[{rows}], w[{w}], sum[4];
@@ -167,9 +186,12 @@ _SPLINE = """    {{
 _FOLLOW = """
 /* Iterated loops, each instant from the one before: z[k*stride + i] becomes coordinate k at instant i, and guess, on entry that for
    the first instant, the last good one. {told} */
-LAGRANGE_CASADI_EXPORT void {follow}(casadi_int n, casadi_int stride, const {real}* t, const {real}* p, {real}* guess, {real}* z,
-                                     int* status) {{
+LAGRANGE_CASADI_EXPORT void {follow}(const {call}* call) {{
   static const int turns[{nz}] = {{{turns}}};
+  const casadi_int n = call->n, stride = call->stride;
+  const {real} *t = call->t, *p = call->p;
+  {real} *guess = call->guess, *z = call->z;
+  int* status = call->status;
   casadi_int i, k, step, iw[{iw}];
   {real} correction[{nz}], at[{nz}], w[{w}], counted[{nc} + 2*{nd}], moment[{nt}], size, before;
   const {real}* arg[{arg}];
@@ -214,7 +236,8 @@ def emit(graph: SceneGraph, stages: Stages | None = None, newton: int | None = N
     """
     stages = plain(graph) if stages is None else stages
     parts = Parts.of(graph, stages)
-    sizes, text = parts.sizes, _START
+    sizes = parts.sizes
+    text = _START + INSTANTS.text(sizes["real"])
     if parts.narrow:
         text += dump("follow", parts.narrow)
     if stages.loops:
@@ -289,6 +312,7 @@ def _sizes(graph: SceneGraph, stages: Stages) -> dict[str, Any]:
     return {
         "evaluate": EVALUATE,
         "follow": FOLLOW,
+        "call": INSTANTS.name,
         "real": "double" if stages.precision == "double" else "float",
         "columns": columns,
         "rows": max(1, columns),

@@ -48,8 +48,11 @@ static void act(long long n, double station, double constant, double slope, cons
 /* out[i*k + j], n rows of k ratios u. columns[m][i] are the coefficients of basis[m*k + j], and acting[3*s], [3*s + 1], [3*s + 2] the
    station, the constant and the slope of load s. */
 __attribute__((visibility("default")))
-void lagrange_casadi_grid(long long n, long long k, int terms, const double* const* columns, const double* basis, int loads,
-                          const double* const* acting, const double* u, int streams, double* out) {
+void lagrange_casadi_grid(const lagrange_casadi_grid_call* call) {
+  const long long n = call->n, k = call->k;
+  const int terms = call->terms, loads = call->loads, streams = call->streams;
+  const double *const *columns = call->columns, *const *acting = call->acting, *basis = call->basis, *u = call->u;
+  double* out = call->out;
   double tile[TILE], c[4];
   const double* along[4];
   const long long width = k < TILE ? k : TILE, rows = TILE/width;
@@ -81,8 +84,11 @@ void lagrange_casadi_grid(long long n, long long k, int terms, const double* con
    the same, the positive one. As above, but columns[m][d*n + i] are the coefficients of basis[(m*designs + d)*k + j], and loads have
    a value for every d*n + i. All of them must be finite. */
 __attribute__((visibility("default")))
-void lagrange_casadi_largest(long long designs, long long n, long long k, int terms, const double* const* columns,
-                             const double* basis, int loads, const double* const* acting, const double* u, double* out) {
+void lagrange_casadi_largest(const lagrange_casadi_largest_call* call) {
+  const long long designs = call->designs, n = call->n, k = call->k;
+  const int terms = call->terms, loads = call->loads;
+  const double *const *columns = call->columns, *const *acting = call->acting, *basis = call->basis, *u = call->u;
+  double* out = call->out;
   double row[TILE], high[TILE], low[TILE], c[4];
   const double* along[4];
   long long d, start, i, j;

@@ -45,13 +45,20 @@ static void designs_split(double t, designs_real* moment) {
 static void designs_at(const designs_now* now, const double* t, const casadi_int* near, casadi_real* y) {
   designs_real lane[DESIGNS_NT][LANES], moment[DESIGNS_NT], place[DESIGNS_SOME(DESIGNS_NZ)][LANES], z[DESIGNS_SOME(DESIGNS_NZ)];
   casadi_real at[DESIGNS_INPUTS];
+  lagrange_casadi_instants follow;
   int j, k, status = 0;
+  (void) follow;
   for (j = 0; j < LANES; ++j) {
     designs_split(t[j], moment);
     for (k = 0; k < DESIGNS_NT; ++k) lane[k][j] = moment[k];
     if (DESIGNS_NZ == 0) continue;
     for (k = 0; k < DESIGNS_NZ; ++k) z[k] = now->z[k*now->stride + near[j]];
-    DESIGNS_FOLLOW(1, 1, moment, now->p, z, z, &status);
+    follow.n = follow.stride = 1;
+    follow.t = moment;
+    follow.p = now->p;
+    follow.guess = follow.z = z;
+    follow.status = &status;
+    DESIGNS_FOLLOW(&follow);
     for (k = 0; k < DESIGNS_NZ; ++k) place[k][j] = status == DESIGNS_NOT_CONVERGED ? (designs_real) NAN : z[k];
   }
   memcpy(at, lane, sizeof lane);

@@ -8,12 +8,6 @@
 #endif
 typedef REAL real;
 
-#ifdef __GNUC__
-#define EXPORT __attribute__((visibility("default")))
-#else
-#define EXPORT
-#endif
-
 /* Instants of a block, which a column gets side by side, and of a pack, which may lie between the same two nodes: where instants come
    one by one, define both as 1. Columns of a tile. */
 #ifndef BLOCK
@@ -87,10 +81,9 @@ static void apart(const int* run, const int* end, int first, int size, int terms
 /* out[order[k]*stride + i] becomes the column in place k at instant i of n. coefficients has a row of terms for each node and five
    more. runs holds triples: a factor (0: one, 1: rate, 2: its square, 3: acceleration) multiplies the next so many terms of a row,
    for columns from this place on; no run goes over a multiple of TILE, and they are in the order of these. */
-EXPORT
-void lagrange_casadi_interpolate(long long n, long long stride, const real* angle, const real* rate, const real* acceleration,
-                                 int nodes, const real* cell, int terms, const real* coefficients, int columns, const int* order,
-                                 const real* drift, int count, const int* runs, real* out) {
+static void interpolate(long long n, long long stride, const real* angle, const real* rate, const real* acceleration,
+                        int nodes, const real* cell, int terms, const real* coefficients, int columns, const int* order,
+                        const real* drift, int count, const int* runs, real* out) {
   real at[BLOCK], node[BLOCK], w[WEIGHTS][BLOCK], factor[FACTORS][BLOCK], y[TILE][BLOCK];
   long long i;
   for (i = 0; i < n; i += BLOCK) {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from importlib import resources
@@ -13,9 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.compensated import DTYPES, Precision
+from .calls import Call
 from .compiler import Compiler, broken, loaded, statements
-from .designs import DEEPEST, DESIGNS, STRIDE, Plan
-from .emit import EVALUATE, FOLLOW, LANES_PLACE
+from .designs import CALL, DEEPEST, DESIGNS, STRIDE, Plan
+from .emit import EVALUATE, FOLLOW, INSTANTS, LANES_PLACE
 
 Array = npt.NDArray[Any]
 """Of the precision that the code was emitted in."""
@@ -53,7 +54,7 @@ class Library:
             return
         for start in range(0, t.shape[-1], self.reach):
             cut = slice(start, start + self.reach)
-            self._call(self.entry_follow, t[..., cut], z[:, cut], (p, guess, z[:, cut], status[cut]))
+            self._call(self.entry_follow, z, t=t[..., cut], p=p, guess=guess, z=z[:, cut], out=None, status=status[cut])
 
     def evaluate(self, t: Array, p: Array, z: Array, out: Array, status: Status, threads: int = 1) -> None:
         """Fill ``out`` (columns, n) for the instants ``t``, where the iterated coordinates are ``z`` (k, n).
@@ -66,12 +67,12 @@ class Library:
         shares = max(1, min(threads, n // self.share))
         size = min(self._stretch, -(-n // (shares * _CUT)) * _CUT)
         if size >= n:
-            self._call(self.entry, t, out, (p, z, out, status))
+            self._call(self.entry, out, t=t, p=p, guess=None, z=z, out=out, status=status)
             return
 
         def run(start: int) -> None:
             cut = slice(start, start + size)
-            self._call(self.entry, t[..., cut], out[:, cut], (p, z[:, cut], out[:, cut], status[cut]))
+            self._call(self.entry, out, t=t[..., cut], p=p, guess=None, z=z[:, cut], out=out[:, cut], status=status[cut])
 
         pool = ThreadPoolExecutor(shares)
         try:
@@ -85,8 +86,21 @@ class Library:
         return _LONGEST * self.share // _CUT * _CUT
 
     @staticmethod
-    def _call(entry: Any, t: Array, rows: Array, rest: tuple[npt.NDArray[Any], ...]) -> None:
-        entry(t.shape[-1], rows.strides[0] // rows.itemsize, t.ctypes.data, *(array.ctypes.data for array in rest))
+    def _call(
+        entry: Any, rows: Array, *, t: Array, p: Array, guess: Array | None, z: Array, out: Array | None, status: Status
+    ) -> None:
+        """Call with :data:`INSTANTS`; all rows are as far apart as those of ``rows``."""
+        call = INSTANTS.made(
+            n=t.shape[-1],
+            stride=rows.strides[0] // rows.itemsize,
+            t=t.ctypes.data,
+            p=p.ctypes.data,
+            guess=None if guess is None else guess.ctypes.data,
+            z=z.ctypes.data,
+            out=None if out is None else out.ctypes.data,
+            status=status.ctypes.data,
+        )
+        entry(call)
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,8 +119,8 @@ class DesignsLibrary:
     bent: npt.NDArray[np.bool_]
     precision: Precision
 
-    def evaluate(self, p: npt.NDArray[np.float64], results: Sequence[npt.NDArray[Any] | None], threads: int = 1) -> None:
-        """Fill ``results`` for designs ``p``, (n, parameters): as :data:`DESIGNS` wants them, None for no histories.
+    def evaluate(self, p: npt.NDArray[np.float64], results: Mapping[str, npt.NDArray[Any] | None], threads: int = 1) -> None:
+        """Fill ``results`` for designs ``p``, (n, parameters): arrays by their names in :data:`CALL`, ``history`` may be None.
 
         The bytes of a row do not depend on other rows, nor on ``threads``.
         """
@@ -122,10 +136,11 @@ class DesignsLibrary:
             room = np.zeros((self.plan.rows + self.guess.size + 2) * stride + inner + _LINE, DTYPES[self.precision])
             room = room[-room.ctypes.data // room.itemsize % _LINE :]
             status, hiding = np.zeros(stride, np.int32), np.zeros(2 * stride, np.int8)
-            rows = [None if array is None else array[start : start + size] for array in results]
-            given = (self.t, p[start : start + size], self.guess, bent, room, status, hiding, *rows)
-            pointers = (None if array is None else array.ctypes.data for array in given)
-            self.entry(min(size, n - start), self.t.size, stride, *pointers)
+            rows = {name: None if array is None else array[start : start + size] for name, array in results.items()}
+            arrays = {"t": self.t, "p": p[start : start + size], "guess": self.guess, "bent": bent, "room": room, **rows}
+            arrays |= {"statuses": status, "hiding": hiding}
+            places = {name: None if array is None else array.ctypes.data for name, array in arrays.items()}
+            self.entry(CALL.made(designs=min(size, n - start), n=self.t.size, stride=stride, **places))
 
         starts = range(0, n, size)
         if shares == 1:
@@ -145,9 +160,9 @@ def load(source: str, compiler: Compiler, extra: tuple[str, ...] = (), steps: in
     ``extra`` flags come after the package's own; loops take up to so many ``steps``. Raises :class:`CompilerError`.
     """
     library = _loaded(source, compiler, extra)
-    entry, follow = _entry(library, compiler, EVALUATE, 2, 5), None
+    entry, follow = _entry(library, compiler, EVALUATE, INSTANTS), None
     if hasattr(library, FOLLOW):
-        follow = _entry(library, compiler, FOLLOW, 2, 5)
+        follow = _entry(library, compiler, FOLLOW, INSTANTS)
     share, size = max(_CUT, _WORTH_A_THREAD // statements(source)), statements(source) * steps * _SLOWER
     return Library(entry, follow, (*compiler.flags(source), *extra), share, max(1, _LONGEST * _WORTH_A_THREAD // size))
 
@@ -166,7 +181,7 @@ def load_designs(
 
     ``bent`` tells in which steps between the instants the motion bends more than they show.
     """
-    entry = _entry(_loaded(source, compiler, extra), compiler, DESIGNS, 3, 14)
+    entry = _entry(_loaded(source, compiler, extra), compiler, DESIGNS, CALL)
     share = max(1, _WORTH_A_THREAD // (statements(source) * t.size))
     return DesignsLibrary(entry, (*compiler.flags(source), *extra), share, plan, t, guess, bent, precision)
 
@@ -177,10 +192,8 @@ def _loaded(source: str, compiler: Compiler, extra: tuple[str, ...]) -> ctypes.C
     return loaded(source, compiler, extra)
 
 
-def _entry(library: ctypes.CDLL, compiler: Compiler, name: str, numbers: int, arrays: int) -> Any:
+def _entry(library: ctypes.CDLL, compiler: Compiler, name: str, call: Call) -> Any:
     try:
-        entry = getattr(library, name)
+        return call.declare(getattr(library, name))
     except AttributeError as error:
         raise broken(compiler, error) from None
-    entry.restype, entry.argtypes = None, [ctypes.c_longlong] * numbers + [ctypes.c_void_p] * arrays
-    return entry

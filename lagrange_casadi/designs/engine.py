@@ -185,7 +185,9 @@ class DesignEngine:
         peaks, means = (np.empty((3, n, q)), np.empty((2, n, e)))
         found = Outcome(np.zeros(n, np.int8), peaks[0], peaks[1], peaks[2], means[0], means[1], columns)
         if self.library is not None:
-            self.library.evaluate(p, list(vars(found).values()), threads or cores())
+            peaks_of = {"value": found.value, "peak_t": found.t, "xi": found.xi}
+            results = {"status": found.status, **peaks_of, "mean": found.mean, "rms": found.rms, "history": found.series}
+            self.library.evaluate(p, results, threads or cores())
         else:
             self._interpret(p, found)
         if len(self._shown) < q:

@@ -87,17 +87,12 @@ def table_text(program: Program) -> str:
         return ""
     text = (resources.files("lagrange_casadi.codegen") / "interpolate.c").read_text()
     text = re.sub(r"^#.*\n", "", text, flags=re.MULTILINE)
-    text = (
-        text.replace("EXPORT\n", "static ")
-        .replace("typedef REAL real;\n", "")
-        .replace("*restrict ", "*")
-        .replace("* restrict ", "* ")
-    )
+    text = text.replace("typedef REAL real;\n", "").replace("*restrict ", "*").replace("* restrict ", "* ")
     for word, value in (("BLOCK", "1"), ("PACK", "1"), ("TILE", "32"), ("WEIGHTS", "6"), ("FACTORS", "4")):
         text = re.sub(rf"\b{word}\b", value, text)
     # A number becomes a long by one instruction of a small machine, a long long by a library's arithmetic of doubles.
     text = text.replace("long long", "long")
-    text = re.sub(r"\breal\b", "casadi_real", text).replace("lagrange_casadi_interpolate", "interpolate")
+    text = re.sub(r"\breal\b", "casadi_real", text)
     if program.precision == "single":
         text = text.replace("floor(", "floorf(")
     number = literal(program.precision)

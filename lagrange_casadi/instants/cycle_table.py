@@ -7,7 +7,6 @@ code reads where there is a compiler, NumPy elsewhere, with the same operations 
 
 from __future__ import annotations
 
-import ctypes
 import functools
 import math
 import warnings
@@ -20,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..codegen import find_compiler
+from ..codegen.calls import Call
 from ..codegen.compiler import loaded
 from ..declare.density import Array
 from ..errors import CompilerError, DeclarationError
@@ -39,6 +39,38 @@ _TURN = Fraction(math.tau) + Fraction(2.4492935982947064e-16)
 """Twice the digits of a turn: what they leave out adds up over many turns."""
 
 _REAL = {"float64": "double", "float32": "float"}
+
+INTERPOLATE = Call(
+    "lagrange_casadi_interpolate_call",
+    {
+        "n": "long long",
+        "stride": "long long",
+        "angle": "const real*",
+        "rate": "const real*",
+        "acceleration": "const real*",
+        "nodes": "int",
+        "cell": "const real*",
+        "terms": "int",
+        "coefficients": "const real*",
+        "columns": "int",
+        "order": "const int*",
+        "drift": "const real*",
+        "count": "int",
+        "runs": "const int*",
+        "out": "real*",
+    },
+)
+"""What compiled code reads a table by; ``interpolate.c`` says of each what it is."""
+
+_ENTRY = """
+#ifdef __GNUC__
+__attribute__((visibility("default")))
+#endif
+void lagrange_casadi_interpolate(const lagrange_casadi_interpolate_call* call) {
+  interpolate(call->n, call->stride, call->angle, call->rate, call->acceleration, call->nodes, call->cell, call->terms,
+              call->coefficients, call->columns, call->order, call->drift, call->count, call->runs, call->out);
+}
+"""
 
 Integers = npt.NDArray[np.int32]
 Reals = npt.NDArray[Any]
@@ -160,10 +192,23 @@ class CycleTable:
             return
         layout = self.layout
         entry(
-            *(angle.size, out.strides[0] // out.itemsize, angle.ctypes.data, rate.ctypes.data, acceleration.ctypes.data),
-            *(self.nodes, self.cell.ctypes.data, self.coefficients.shape[1], self.coefficients.ctypes.data),
-            *(len(self.columns), layout.order.ctypes.data, self.slopes.ctypes.data),
-            *(len(layout.runs), layout.runs.ctypes.data, out.ctypes.data),
+            INTERPOLATE.made(
+                n=angle.size,
+                stride=out.strides[0] // out.itemsize,
+                angle=angle.ctypes.data,
+                rate=rate.ctypes.data,
+                acceleration=acceleration.ctypes.data,
+                nodes=self.nodes,
+                cell=self.cell.ctypes.data,
+                terms=self.coefficients.shape[1],
+                coefficients=self.coefficients.ctypes.data,
+                columns=len(self.columns),
+                order=layout.order.ctypes.data,
+                drift=self.slopes.ctypes.data,
+                count=len(layout.runs),
+                runs=layout.runs.ctypes.data,
+                out=out.ctypes.data,
+            )
         )
 
     def _read(self, angle: Reals, rate: Reals, acceleration: Reals, out: Reals) -> None:
@@ -257,23 +302,20 @@ def splines(values: Array) -> Array:
     return np.ascontiguousarray(inside[:, np.arange(-2, nodes + _MORE - 2) % nodes].T)
 
 
+def source() -> str:
+    """The C that reads tables of numbers of type ``REAL``."""
+    return resources.files("lagrange_casadi.codegen").joinpath("interpolate.c").read_text() + INTERPOLATE.text("real") + _ENTRY
+
+
 @functools.cache
 def _compiled(dtype: str) -> Any | None:
     """The C function for numbers of a type, or None where there is no compiler that takes it."""
-    source = resources.files("lagrange_casadi.codegen").joinpath("interpolate.c").read_text()
     try:
         compiler = find_compiler()
         if compiler is None:
             return None
-        entry = loaded(source, compiler, (*_OPTIONS, f"-DREAL={_REAL[dtype]}")).lagrange_casadi_interpolate
+        entry = loaded(source(), compiler, (*_OPTIONS, f"-DREAL={_REAL[dtype]}")).lagrange_casadi_interpolate
     except CompilerError as error:
         warnings.warn(f"{error}; NumPy reads the tables", stacklevel=4)
         return None
-    size, integer, pointer = ctypes.c_longlong, ctypes.c_int, ctypes.c_void_p
-    entry.restype = None
-    entry.argtypes = [
-        *(size, size, pointer, pointer, pointer),
-        *(integer, pointer, integer, pointer),
-        *(integer, pointer, pointer, integer, pointer, pointer),
-    ]
-    return entry
+    return INTERPOLATE.declare(entry)

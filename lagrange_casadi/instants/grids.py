@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..codegen import find_compiler
+from ..codegen.calls import Call
 from ..codegen.compiler import loaded
 from ..declare.density import Array
 from ..errors import CompilerError, DeclarationError
@@ -33,6 +34,19 @@ _BLOCK = 1 << 14
 _LINE = 64
 _SHARE = 1 << 21
 _OPTIONS = ("-O3", "-march=native")
+
+_SUM = {
+    "terms": "int",
+    "columns": "const double* const*",
+    "basis": "const double*",
+    "loads": "int",
+    "acting": "const double* const*",
+    "u": "const double*",
+    "out": "double*",
+}
+GRID = Call("lagrange_casadi_grid_call", {"n": "long long", "k": "long long", **_SUM, "streams": "int"})
+LARGEST = Call("lagrange_casadi_largest_call", {"designs": "long long", "n": "long long", "k": "long long", **_SUM})
+"""What the functions of ``grids.c`` take; they say of each what it is."""
 
 Load = tuple[Array, Array, Array]
 """Station, constant and slope of what acts there: sections on its base side feel constant + slope (station - u)."""
@@ -57,13 +71,9 @@ def fill(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array
     size = -(-n // shares)
 
     def run(start: int) -> None:
-        addresses = [row.ctypes.data + start * row.itemsize for row in flat]
-        terms, acting = addresses[: len(columns)], addresses[len(columns) :]
-        library.lagrange_casadi_grid(
-            *(min(size, n - start), k, len(terms), (ctypes.c_void_p * len(terms))(*terms), functions.ctypes.data),
-            *(len(loads), (ctypes.c_void_p * len(acting))(*acting), ratios.ctypes.data),
-            *(int(out.nbytes >= _STREAMING), out[start:].ctypes.data),
-        )
+        rows = (ctypes.c_void_p * len(flat))(*(row.ctypes.data + start * row.itemsize for row in flat))
+        here = _sum(len(columns), rows, functions, ratios) | {"out": out[start:].ctypes.data}
+        library.lagrange_casadi_grid(GRID.made(n=min(size, n - start), k=k, streams=int(out.nbytes >= _STREAMING), **here))
 
     if shares == 1:
         run(0)
@@ -91,12 +101,9 @@ def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
         out[~finite] = np.nan
         return out
     flat, functions, ratios = _flat(columns, basis, loads, u)
-    addresses = [array.ctypes.data for array in flat]
-    terms, acting = addresses[: len(columns)], addresses[len(columns) :]
-    library.lagrange_casadi_largest(
-        *(n, t, u.size, len(terms), (ctypes.c_void_p * len(terms))(*terms), functions.ctypes.data),
-        *(len(loads), (ctypes.c_void_p * len(acting))(*acting), ratios.ctypes.data, out.ctypes.data),
-    )
+    rows = (ctypes.c_void_p * len(flat))(*(array.ctypes.data for array in flat))
+    whole = _sum(len(columns), rows, functions, ratios) | {"out": out.ctypes.data}
+    library.lagrange_casadi_largest(LARGEST.made(designs=n, n=t, k=u.size, **whole))
     out[~finite] = np.nan
     return out
 
@@ -119,6 +126,19 @@ def _flat(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Arra
     return rows, np.ascontiguousarray(basis, dtype=np.float64), np.ascontiguousarray(u, dtype=np.float64)
 
 
+def _sum(terms: int, rows: Any, functions: Array, ratios: Array) -> dict[str, int]:
+    """What a call takes of :func:`_flat`; ``rows`` are the addresses of the columns, so many ``terms``, and of the loads' parts."""
+    first = ctypes.addressof(rows)
+    return {
+        "terms": terms,
+        "columns": first,
+        "basis": functions.ctypes.data,
+        "loads": (len(rows) - terms) // 3,
+        "acting": first + terms * ctypes.sizeof(ctypes.c_void_p),
+        "u": ratios.ctypes.data,
+    }
+
+
 def _fill_in_blocks(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array) -> None:
     height = max(1, _BLOCK // max(1, out.shape[1]))
     for start in range(0, out.shape[0], height):
@@ -136,7 +156,8 @@ def _fill_in_blocks(columns: Sequence[Array], basis: Array, loads: Sequence[Load
 @functools.cache
 def _compiled() -> Any | None:
     """The C functions, or None where there is no compiler that takes them."""
-    source = resources.files("lagrange_casadi.codegen").joinpath("grids.c").read_text()
+    functions = resources.files("lagrange_casadi.codegen").joinpath("grids.c").read_text()
+    source = GRID.text() + LARGEST.text() + functions
     try:
         compiler = find_compiler()
         if compiler is None:
@@ -145,12 +166,6 @@ def _compiled() -> Any | None:
     except CompilerError as error:
         warnings.warn(f"{error}; NumPy fills the grids", stacklevel=4)
         return None
-    integer, number, pointer = ctypes.c_longlong, ctypes.c_int, ctypes.c_void_p
-    arguments = {
-        "lagrange_casadi_grid": [integer, integer, number, pointer, pointer, number, pointer, pointer, number, pointer],
-        "lagrange_casadi_largest": [integer, integer, integer, number, pointer, pointer, number, pointer, pointer, pointer],
-    }
-    for name, types in arguments.items():
-        entry = getattr(library, name)
-        entry.restype, entry.argtypes = None, types
+    for name, call in (("lagrange_casadi_grid", GRID), ("lagrange_casadi_largest", LARGEST)):
+        call.declare(getattr(library, name))
     return library

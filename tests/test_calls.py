@@ -1,0 +1,76 @@
+"""What crosses from Python to C: structs that lie alike on both sides, whose members are set by name."""
+
+import ctypes
+import subprocess
+
+import numpy as np
+import pytest
+from builders import slider_crank
+
+from lagrange_casadi import codegen, derive
+from lagrange_casadi.codegen.calls import Call
+from lagrange_casadi.codegen.designs import CALL as DESIGNS
+from lagrange_casadi.codegen.emit import INSTANTS
+from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.instants.cycle_table import INTERPOLATE
+from lagrange_casadi.instants.grids import GRID, LARGEST
+from lagrange_casadi.instants.rung import Rung
+
+CALLS = (INSTANTS, DESIGNS, GRID, LARGEST, INTERPOLATE)
+UNEVEN = Call("uneven", {"a": "int", "b": "const real*", "c": "int", "d": "int", "e": "long long", "f": "int"})
+
+
+@pytest.mark.parametrize("language", ["c", "c++"])
+@pytest.mark.parametrize("real", ["double", "float"])
+def test_structs_lie_alike_in_c_and_python(language, real, tmp_path):
+    """Sizes and places of all members, by the compilers that build what is called."""
+    compiler = codegen.find_compiler(language)
+    wanted, lines = [], []
+    for call in (*CALLS, UNEVEN):
+        wanted += [ctypes.sizeof(call.type)]
+        lines += [f"sizeof({call.name})"]
+        for name in call.members:
+            member = getattr(call.type, name)
+            wanted += [member.offset, member.size]
+            lines += [f"offsetof({call.name}, {name})", f"sizeof(((const {call.name}*) 0)->{name})"]
+    source = tmp_path / ("layout.c" if language == "c" else "layout.cpp")
+    printed = "".join(f'  printf("%lu\\n", (unsigned long) ({line}));\n' for line in lines)
+    types = "".join(call.text(real) for call in (*CALLS, UNEVEN))
+    source.write_text(f"#include <stddef.h>\n#include <stdio.h>\n{types}int main(void) {{\n{printed}  return 0;\n}}\n")
+    subprocess.run([*compiler.command, source, "-o", tmp_path / "layout"], check=True)
+    told = subprocess.run([tmp_path / "layout"], capture_output=True, text=True, check=True).stdout
+    assert [int(line) for line in told.split()] == wanted
+
+
+def test_the_emitted_c_has_the_structs():
+    """What the layout was asked of is what is compiled."""
+    graph = derive(slider_crank())
+    assert INSTANTS.text() in codegen.emit(graph)
+    engine = DesignEngine.of(slider_crank(), rung=Rung("vm"))
+    source = codegen.emit_designs(engine.graph, engine.stages, None, engine.kept.plan)
+    assert INSTANTS.text() in source
+    assert DESIGNS.text() in source
+
+
+def test_members_are_set_by_name_and_none_is_forgotten():
+    made = UNEVEN.made(f=6, e=5, d=4, c=3, b=None, a=1)
+    assert [getattr(made, name) for name in UNEVEN.members] == [1, None, 3, 4, 5, 6]
+    with pytest.raises(TypeError, match="uneven: without b, e"):
+        UNEVEN.made(a=1, c=3, d=4, f=6)
+    with pytest.raises(AttributeError):
+        UNEVEN.made(a=1, b=None, c=3, d=4, e=5, g=6)
+
+
+@pytest.mark.parametrize("backend", ["lanes", "c"])
+def test_the_order_of_results_does_not_matter(backend):
+    engine = DesignEngine.of(slider_crank(), rung=Rung(backend))
+    p = np.array([list(slider_crank().mechanism.values().values())])
+    expected = engine.evaluate(p)
+    q, e = len(engine.quantities), len(engine.efforts)
+    names = {"history": None, "rms": np.full((1, e), np.nan), "xi": np.full((1, q), np.nan), "value": np.full((1, q), np.nan)}
+    names |= {"mean": np.full((1, e), np.nan), "status": np.full(1, -1, np.int8), "peak_t": np.full((1, q), np.nan)}
+    engine.library.evaluate(p, names)
+    for name, own in (("status", "status"), ("value", "value"), ("peak_t", "t"), ("xi", "xi"), ("mean", "mean"), ("rms", "rms")):
+        assert names[name].tobytes() == getattr(expected, own).tobytes()
+    with pytest.raises(TypeError, match="without history"):
+        engine.library.evaluate(p, {name: array for name, array in names.items() if name != "history"})
