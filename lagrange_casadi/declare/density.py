@@ -84,18 +84,6 @@ class NumericDensity:
         cell = np.clip(np.searchsorted(self.breaks, u, side="right") - 1, 0, len(self.cells) - 1)
         return np.asarray(sum(np.where(cell == i, np.polynomial.polynomial.polyval(u, c), 0.0) for i, c in enumerate(self.cells)))
 
-    def lowest(self) -> tuple[float, float]:
-        """The ratio at which the density is lowest, and the density there."""
-        candidates: list[tuple[float, float]] = []
-        for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
-            curve = np.polynomial.Polynomial(cell)
-            turning = (
-                [float(r.real) for r in curve.deriv().roots() if abs(r.imag) < 1e-12 and a < r.real < b] if len(cell) > 2 else []
-            )
-            candidates += [(float(curve(u)), u) for u in (a, b, *turning)]
-        value, place = min(candidates)
-        return place, value
-
 
 def uniform(mass: Any) -> Density:
     """A link of one density throughout, by its whole mass [kg], a number or an expression in parameters."""

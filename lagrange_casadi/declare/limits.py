@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable, Mapping
 
 import casadi as ca
 
 from ..arithmetic.compensated import Precision
 from ..errors import DeclarationError, ParameterError, UnknownNameError
 from .density import Density
-from .parts import Body, Expression, Ground, Joint, Link, Load, Parameter, Point, PointMass, RigidMass
-
-Number = Callable[[Any], float]
+from .parts import Body, Expression, Ground, Joint, Link, Parameter, Point
 
 END: dict[Precision, float] = {"double": 1e-12, "single": 1e-6}
 """Of a link's length: what misses its end by so little misses it by rounding, and is at it."""
@@ -54,48 +50,6 @@ def parameter_faults(parameters: Mapping[str, Parameter], values: Mapping[str, f
     return [fault for name, value in values.items() if (fault := parameters[name].fault(value))]
 
 
-def check_parts(
-    name: str, bodies: Iterable[Link | PointMass], joints: Iterable[Joint], loads: Iterable[Load], number: Number
-) -> None:
-    """Raise :class:`ParameterError` for a part that is impossible at the values that ``number`` puts into expressions."""
-    if sum(_mass(body, number) for body in bodies) == 0.0:
-        raise ParameterError(f"mechanism '{name}' is massless: at least one link or point mass needs a mass")
-    for joint in joints:
-        for point in (joint.parent, joint.child):
-            _check_station(f"joint '{joint.name}'", point, number)
-    for load in loads:
-        for point in load.points:
-            _check_station(f"load '{load.name}'", point, number)
-
-
-def _mass(body: Link | PointMass, number: Number) -> float:
-    """The mass of a body, once everything about it is possible."""
-    what = f"link '{body.name}'" if isinstance(body, Link) else f"point mass '{body.name}'"
-    if isinstance(body, Link):
-        length = number(body.length)
-        if not (length > 0.0 and math.isfinite(length)):
-            raise ParameterError(f"{what}: length must be positive, got {length:.17g} m")
-        if isinstance(body.mass, Density):
-            return _density_mass(what, body.mass, length, number)
-    matter = body.mass
-    mass = number(matter.mass if isinstance(matter, RigidMass) else matter)
-    if not (mass >= 0.0 and math.isfinite(mass)):
-        raise ParameterError(f"{what}: mass must not be negative, got {mass:.17g} kg")
-    if isinstance(matter, RigidMass) and not number(matter.inertia) >= 0.0:
-        raise ParameterError(f"{what}: inertia must not be negative, got {number(matter.inertia):.17g} kg m^2")
-    return mass
-
-
-def _density_mass(what: str, matter: Density, length: float, number: Number) -> float:
-    density = matter.at(number, length)
-    place, lowest = density.lowest()
-    if not lowest >= 0.0:
-        if density.uniform:
-            raise ParameterError(f"{what}: mass must not be negative, got {lowest:.17g} kg")
-        raise ParameterError(f"{what}: density must not be negative, got {lowest / length:.17g} kg/m at xi/l = {place:.6g}")
-    return density.mass
-
-
 def margins(point: Point, precision: Precision) -> list[Expression]:
     """What must not be negative for a fixed point to be on its link, where that has sections: how far it is from either end."""
     if not (isinstance(point.body, Link) and isinstance(point.body.mass, Density) and point.end is None):
@@ -124,11 +78,3 @@ def no_sections(name: str, *, link: bool, links: Iterable[str]) -> str:
             "so give it a mass alone or a density"
         )
     return f"'{name}' is not a link and has no sections; links: {', '.join(links)}"
-
-
-def _check_station(what: str, point: Point, number: Number) -> None:
-    for margin in margins(point, "double"):
-        if not number(margin) >= 0.0:
-            assert isinstance(point.body, Link)
-            x, length = number(point.x), number(point.body.length)
-            raise ParameterError(f"{what}: station {x:.13g} m is outside link '{point.body.name}', 0 to {length:.13g} m")

@@ -19,7 +19,7 @@ from . import density as densities
 from .density import Density
 from .expressions import check_line, check_name, scalar, unit_vector
 from .kinks import refuse_kinks
-from .limits import check_connected, check_parts, parameter_values
+from .limits import check_connected, parameter_values
 from .measures import Measures
 from .names import Part, check_free
 from .parts import (
@@ -40,6 +40,7 @@ from .parts import (
     Spring,
     Torque,
 )
+from .possible import demands
 
 _GROUND = "ground"
 
@@ -321,7 +322,7 @@ class Mechanism:
         its link, or a mechanism without any mass.
         """
         values = parameter_values(self.parameters, overrides or {})
-        check_parts(self.name, self.moving, self.joints.values(), self.loads.values(), lambda e: self.number(e, values))
+        demands(self).check(list(values.values()), lambda e: self.number(e, values))
         return values
 
     def number(self, expression: Expression, values: Mapping[str, float]) -> float:

@@ -13,9 +13,9 @@ from ..arithmetic.compensated import Precision
 from ..codegen.designs import Along, Plan, matter_of
 from ..codegen.stages import Stages, compensated, counts, plain
 from ..declare.density import Array, Density
-from ..declare.limits import margins
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Link, RigidMass
+from ..declare.parts import Link
+from ..declare.possible import demands
 from ..equations.gaps import extent
 from ..equations.kinematics import NEAR
 from ..equations.mobility import stations_of
@@ -27,9 +27,6 @@ from ..instants.rung import Rung
 from ..instants.section_law import made_of
 from ..quantities import FORCE, FORCES, LAW, PLACE_FIRST, Output
 from ..summits.sharpness import Sharpness
-
-_BETWEEN = 9
-"""Places in a cell of density at which one of a higher degree than a line is asked for its sign."""
 
 
 def stages_of(graph: SceneGraph, rung: Rung, t: Array) -> Stages:
@@ -148,13 +145,8 @@ def _matter(
     mechanism: Mechanism, links: list[Link], along: tuple[Along, ...], precision: Precision
 ) -> tuple[ca.Function, int, int]:
     """What the plan wants to know of the parts, and how many numbers must be positive, and not negative."""
-    lengths = {name: link.length for name, link in mechanism.links.items()}
-    masses = [_masses(body.mass, lengths.get(body.name, 0.0)) for body in mechanism.moving]
-    positive = [extent(mechanism), *lengths.values(), sum((mass for mass, _ in masses), ca.SX(0))]
-    others = [value for _, values in masses for value in values]
-    points = [point for joint in mechanism.joints.values() for point in (joint.parent, joint.child)]
-    for point in (*points, *(point for load in mechanism.loads.values() for point in load.points)):
-        others += margins(point, precision)
+    positive, others = demands(mechanism, precision).in_order(mechanism.symbols)
+    positive = [extent(mechanism), *positive]
     rest: list[Any] = []
     for link, part in zip(links, along, strict=True):
         assert isinstance(link.mass, Density)
@@ -162,17 +154,3 @@ def _matter(
         rest += matter_of(part, link.length, [[c * scale for c in cell] for cell in link.mass.cells])
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.SX(value) for value in (*positive, *others, *rest))))
     return ca.Function("matter_of", [mechanism.symbols], [out], {"cse": True}), len(positive), len(positive) + len(others)
-
-
-def _masses(matter: Any, length: Any) -> tuple[Any, list[Any]]:
-    """A mass, and what of it must not be negative."""
-    if isinstance(matter, RigidMass):
-        return matter.mass, [matter.mass, matter.inertia]
-    if not isinstance(matter, Density):
-        return matter, [matter]
-    base, tip, _ = matter.ends(length)
-    values: list[Any] = []
-    for a, b, cell in zip(matter.breaks, matter.breaks[1:], matter.cells, strict=False):
-        for u in np.linspace(a, b, min(len(cell), 2) if len(cell) < 3 else _BETWEEN):
-            values.append(sum(c * float(u) ** j for j, c in enumerate(cell)))
-    return base + tip, values

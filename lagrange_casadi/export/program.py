@@ -15,8 +15,7 @@ from ..codegen.emit import hoisted, newton_rule
 from ..codegen.plain import plain
 from ..codegen.stages import controlled
 from ..declare.density import Array, Density
-from ..declare.limits import margins
-from ..declare.parts import Link, RigidMass
+from ..declare.possible import demands
 from ..equations.checks import Check, Column
 from ..equations.gaps import extent
 from ..equations.scene_graph import SceneGraph
@@ -78,12 +77,13 @@ def program(
     mechanism = graph.scene.mechanism
     symbols, fixed = mechanism.symbols, read is not None
     gapped = read is None and any(isinstance(column, Check) and column.kind in ("gap", "open") for column in columns)
+    sound, positive = _sound(graph, symbols, precision)
     functions = {
         "law": stages.law,
         "count": stages.count,
         "constants_of": constants,
         "matter": _matter(graph, symbols, extent_first=gapped),
-        "sound": _sound(graph, symbols, precision),
+        "sound": sound,
     }
     if fixed:
         # They were checked when they were fixed.
@@ -105,7 +105,7 @@ def program(
         "matter": functions["matter"].size1_out(0),
         "gapped": int(gapped),
         "sound": 0 if fixed else functions["sound"].size1_out(0),
-        "lengths": 0 if fixed else len(_lengths(graph)),
+        "positive": 0 if fixed else positive,
     }
     samples = tuple(_samples(graph, joint, p) for joint in graph.driven if graph.scene.motion[joint].spline)
     filled, cycle = {name: f for name, f in functions.items() if f.size1_out(0)}, None if read is None else read[1]
@@ -132,28 +132,15 @@ def _matter(graph: SceneGraph, symbols: Any, *, extent_first: bool) -> Any:
     return ca.Function("matter", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *found))])
 
 
-def _lengths(graph: SceneGraph) -> list[Any]:
-    """The lengths of links that parameters change: they must be positive."""
-    links = (body for body in graph.scene.mechanism.moving if isinstance(body, Link))
-    return [link.length for link in links if _changes(link.length)]
+def _sound(graph: SceneGraph, symbols: Any, precision: Precision) -> tuple[Any, int]:
+    """``sound(p)``: what parameters change and must not be negative for the parts to be possible; and how many must be positive.
 
-
-def _sound(graph: SceneGraph, symbols: Any, precision: Precision) -> Any:
-    """``sound(p)``: the lengths, and what else parameters change and must not be negative for the parts to be possible."""
-    mechanism = graph.scene.mechanism
-    found: list[Any] = []
-    for body in mechanism.moving:
-        if isinstance(body.mass, Density):
-            density = body.mass
-            ends = zip(density.breaks, density.breaks[1:], density.cells, strict=False)
-            found += [sum(c * u**n for n, c in enumerate(cell)) for a, b, cell in ends for u in (a, b)]
-        else:
-            found += [body.mass.mass, body.mass.inertia] if isinstance(body.mass, RigidMass) else [body.mass]
-    points = [point for joint in mechanism.joints.values() for point in (joint.parent, joint.child)]
-    for point in [*points, *(point for load in mechanism.loads.values() for point in load.points)]:
-        found += margins(point, precision)
-    checked = [*_lengths(graph), *(value for value in found if _changes(value))]
-    return ca.Function("sound", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *checked))], {"cse": True})
+    Those come first.
+    """
+    both = demands(graph.scene.mechanism, precision).in_order(symbols)
+    positive, others = ([value for value in values if _changes(value)] for values in both)
+    out = ca.densify(ca.vertcat(ca.SX(0, 1), *positive, *others))
+    return ca.Function("sound", [symbols], [out], {"cse": True}), len(positive)
 
 
 def _changes(value: Any) -> bool:

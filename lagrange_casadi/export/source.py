@@ -182,13 +182,13 @@ class Source:
         if sizes["sound"]:
             yield "res[0] = sound_of;"
             yield "sound(arg, res);"
-            if sizes["lengths"]:
-                yield f"for (k = 0; k < {sizes['lengths']}; ++k) {{"
-                yield f"  if (!(sound_of[k] > 0)) return {P}_BAD_PARAMETER;"
+            if sizes["positive"]:
+                yield f"for (k = 0; k < {sizes['positive']}; ++k) {{"
+                yield f"  if (!(sound_of[k] > 0 && is_finite(sound_of[k]))) return {P}_BAD_PARAMETER;"
                 yield "}"
-            if sizes["sound"] > sizes["lengths"]:
-                yield f"for (k = {sizes['lengths']}; k < {sizes['sound']}; ++k) {{"
-                yield f"  if (!(sound_of[k] >= 0)) return {P}_BAD_PARAMETER;"
+            if sizes["sound"] > sizes["positive"]:
+                yield f"for (k = {sizes['positive']}; k < {sizes['sound']}; ++k) {{"
+                yield f"  if (!(sound_of[k] >= 0 && is_finite(sound_of[k]))) return {P}_BAD_PARAMETER;"
                 yield "}"
         for vector, function in (("constants", "constants_of"), ("matter", "matter")):
             if sizes[vector]:

@@ -99,19 +99,20 @@ static void matter(const casadi_real** arg, casadi_real** res) {
 }
 
 static void sound(const casadi_real** arg, casadi_real** res) {
-  casadi_real a0;
+  casadi_real a0, a1, a2, a3;
   a0=arg[0][0];
   res[0][0]=a0;
   a0=arg[0][1];
   res[0][1]=a0;
   a0=arg[0][2];
-  res[0][2]=a0;
+  a1=arg[0][3];
+  a2=(a0+a1);
+  a3=arg[0][4];
+  a2=(a2+a3);
+  res[0][2]=a2;
   res[0][3]=a0;
-  a0=arg[0][3];
-  res[0][4]=a0;
-  res[0][5]=a0;
-  a0=arg[0][4];
-  res[0][6]=a0;
+  res[0][4]=a1;
+  res[0][5]=a3;
 }
 
 static void instant(const casadi_real** arg, casadi_real** res) {
@@ -258,7 +259,7 @@ const press_parameters press_defaults = {
 
 press_status press_prepare(press_model* model, const press_parameters* parameters) {
   const press_parameters* values = parameters ? parameters : &press_defaults;
-  casadi_real sound_of[7];
+  casadi_real sound_of[6];
   int k;
   const casadi_real* arg[1];
   casadi_real* res[1];
@@ -276,11 +277,11 @@ press_status press_prepare(press_model* model, const press_parameters* parameter
   arg[0] = model->parameters;
   res[0] = sound_of;
   sound(arg, res);
-  for (k = 0; k < 2; ++k) {
-    if (!(sound_of[k] > 0)) return PRESS_BAD_PARAMETER;
+  for (k = 0; k < 3; ++k) {
+    if (!(sound_of[k] > 0 && is_finite(sound_of[k]))) return PRESS_BAD_PARAMETER;
   }
-  for (k = 2; k < 7; ++k) {
-    if (!(sound_of[k] >= 0)) return PRESS_BAD_PARAMETER;
+  for (k = 3; k < 6; ++k) {
+    if (!(sound_of[k] >= 0 && is_finite(sound_of[k]))) return PRESS_BAD_PARAMETER;
   }
   res[0] = model->constants;
   constants_of(arg, res);

@@ -1,0 +1,157 @@
+"""What makes parts possible: one function of the parameters, which :func:`.evaluate`, sweeps and exported C all ask."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import casadi as ca
+import numpy as np
+
+from ..arithmetic.compensated import Precision
+from ..errors import ParameterError
+from .density import Density
+from .limits import END, margins
+from .lowest import lowest
+from .parts import Expression, Link, PointMass, RigidMass
+
+if TYPE_CHECKING:
+    from .mechanism import Mechanism
+
+Number = Callable[[Any], float]
+"""Gives the value of an expression."""
+
+
+@dataclass(frozen=True, eq=False)
+class Demand:
+    """A value that must be finite and not negative, nor zero where ``positive``; ``refusal`` says in words what is wrong."""
+
+    value: Expression
+    positive: bool
+    refusal: Callable[[Number], str]
+
+
+@dataclass(frozen=True, eq=False)
+class Demands:
+    """All demands of a mechanism's parts, in the order in which they are told."""
+
+    symbols: Any
+    each: tuple[Demand, ...]
+
+    @cached_property
+    def function(self) -> Any:
+        """``possible(p)``: the value of each demand."""
+        values = ca.vertcat(ca.SX(0, 1), *(ca.SX(demand.value) for demand in self.each))
+        return ca.Function("possible", [self.symbols], [ca.densify(values)], {"cse": True})
+
+    def in_order(self, symbols: Any) -> tuple[list[Any], list[Any]]:
+        """The values as expressions in the parameters: those that must be positive, and the others."""
+        values = self.function(symbols)
+        chosen = [(demand.positive, values[k]) for k, demand in enumerate(self.each)]
+        return [value for positive, value in chosen if positive], [value for positive, value in chosen if not positive]
+
+    def check(self, p: Sequence[float], number: Number) -> None:
+        """Raise :class:`ParameterError` for parameters at which a part is impossible, by the first demand that is not met."""
+        values = self.function(list(p)).full().ravel()
+        strict = np.array([demand.positive for demand in self.each], bool)
+        refused = ~(np.isfinite(values) & (values >= 0.0) & ((values > 0.0) | ~strict))
+        if refused.any():
+            raise ParameterError(self.each[int(np.argmax(refused))].refusal(number))
+
+
+def demands(mechanism: Mechanism, precision: Precision = "double") -> Demands:
+    """What a mechanism's parts demand: of lengths, masses, densities, stations; what a precision rounds is forgiven."""
+    return _of_frozen(mechanism, precision) if mechanism.frozen else _of(mechanism, precision)
+
+
+@functools.lru_cache(maxsize=64)
+def _of_frozen(mechanism: Mechanism, precision: Precision) -> Demands:
+    return _of(mechanism, precision)
+
+
+def _of(mechanism: Mechanism, precision: Precision) -> Demands:
+    found: list[Demand] = []
+    masses: list[Expression] = []
+    for body in mechanism.moving:
+        mass, own = _of_body(body, precision)
+        masses.append(mass)
+        found += own
+    if not any(_surely_positive(mass) for mass in masses):
+        found.append(_some_mass(mechanism.name, masses))
+    for joint in mechanism.joints.values():
+        for point in (joint.parent, joint.child):
+            found += _of_station(f"joint '{joint.name}'", point, precision)
+    for load in mechanism.loads.values():
+        for point in load.points:
+            found += _of_station(f"load '{load.name}'", point, precision)
+    return Demands(mechanism.symbols, tuple(found))
+
+
+def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, list[Demand]]:
+    """The mass of a body, and its demands."""
+    what = f"link '{body.name}'" if isinstance(body, Link) else f"point mass '{body.name}'"
+    found: list[Demand] = []
+    if isinstance(body, Link):
+        length = body.length
+        found.append(Demand(length, True, lambda n: f"{what}: length must be positive, got {n(length):.17g} m"))
+        if isinstance(body.mass, Density):
+            base, tip, _ = body.mass.ends(length)
+            return base + tip, [*found, *_of_density(what, body.mass, length, precision)]
+    matter = body.mass
+    mass = matter.mass if isinstance(matter, RigidMass) else matter
+    assert not isinstance(mass, Density)
+    found.append(Demand(mass, False, lambda n: f"{what}: mass must not be negative, got {n(mass):.17g} kg"))
+    if isinstance(matter, RigidMass):
+        inertia = matter.inertia
+        found.append(Demand(inertia, False, lambda n: f"{what}: inertia must not be negative, got {n(inertia):.17g} kg m^2"))
+    return mass, found
+
+
+def _of_density(what: str, density: Density, length: Expression, precision: Precision) -> list[Demand]:
+    """The lowest density of each cell, beside what the sum of its terms rounds [kg or kg/m]; not finite where a term is not."""
+    if len(density.cells) == len(density.cells[0]) == 1:
+        mass = density.cells[0][0] * (length if density.per_length else 1.0)
+        return [Demand(mass, False, lambda n: f"{what}: mass must not be negative, got {n(mass):.17g} kg")]
+    spans = zip(density.breaks, density.breaks[1:], density.cells, strict=False)
+    places = [lowest(cell, a, b) for a, b, cell in spans]
+    place, value = places[0]
+    for other_place, other in places[1:]:
+        lower = other < value
+        place, value = ca.if_else(lower, other_place, place), ca.if_else(lower, other, value)
+
+    def refusal(number: Number) -> str:
+        got = number(value) / (1.0 if density.per_length else number(length))
+        return f"{what}: density must not be negative, got {got:.17g} kg/m at xi/l = {number(place):.6g}"
+
+    sizes = [sum(ca.fabs(ca.SX(c)) for c in cell) for cell in density.cells]
+    return [Demand(own + END[precision] * size, False, refusal) for (_, own), size in zip(places, sizes, strict=True)]
+
+
+def _some_mass(name: str, masses: list[Expression]) -> Demand:
+    total = sum(masses[1:], masses[0])
+
+    def refusal(number: Number) -> str:
+        mass = number(total)
+        if mass == 0.0:
+            return f"mechanism '{name}' is massless: at least one link or point mass needs a mass"
+        return f"mechanism '{name}': its whole mass must be finite and positive, got {mass:.17g} kg"
+
+    return Demand(total, True, refusal)
+
+
+def _surely_positive(mass: Expression) -> bool:
+    """Whether a mass is positive whatever the parameters are."""
+    constant = ca.SX(mass)
+    return bool(constant.is_constant() and 0.0 < float(constant) < math.inf)
+
+
+def _of_station(what: str, point: Any, precision: Precision) -> list[Demand]:
+    def refusal(number: Number) -> str:
+        x, length = number(point.x), number(point.body.length)
+        return f"{what}: station {x:.13g} m is outside link '{point.body.name}', 0 to {length:.13g} m"
+
+    return [Demand(margin, False, refusal) for margin in margins(point, precision)]
