@@ -8,7 +8,7 @@ import pytest
 from design_rows import DENSITIES, alone, assert_refined, loaded, peaks_of
 from mechanisms import crank_and_rod, lobes, pendulum
 
-from lagrange_casadi import derive, evaluate, motion
+from lagrange_casadi import Mechanism, Scene, derive, evaluate, motion
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.instants.refusal import Status
@@ -124,3 +124,46 @@ def test_two_summits_between_the_same_instants(backend):
     value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["motion:pin"]
     assert value == pytest.approx(fine.value, rel=1e-9)
     assert t == pytest.approx(fine.t, abs=1e-4)
+
+
+@pytest.mark.parametrize("backend", ["lanes", "c"])
+@pytest.mark.parametrize("seed", [1, 2])
+def test_random_curves_have_the_peaks_of_the_reference(seed, backend):
+    """The search in C against the one in ``summits/search.py``, which designs without a compiler take."""
+    generator, many = np.random.default_rng(seed), 24
+    m = Mechanism("wave")
+    names = ["a", "v", "start", "b", "w", "then", "height", "place", "width"]
+    a, v, start, b, w, then, height, place, width = (m.parameter(name, 1.0) for name in names)
+    m.revolute("pin", m.ground, m.link("arm", length=0.5, mass=1.2))
+
+    def law(t):
+        return a * ca.sin(v * t + start) + b * ca.sin(w * t + then) + height * ca.exp(-(((t - place) / width) ** 2))
+
+    scene = Scene(m, {"pin": motion.expression(law)}, ["motion", "effort", "section:arm"], t=(0.0, 2.0, 41))
+    low = [-1, 0.5, 0, -0.5, 4, 0, -1, 0.0, 0.05]
+    high = [1, 4.0, 6, 0.5, 12, 6, 1, 2.0, 0.5]
+    p = generator.uniform(low, high, (many, len(names)))
+    designs, reference = (DesignEngine.of(scene, rung=Rung(name)) for name in (backend, "vm"))
+    found, expected = designs.evaluate(p), reference.evaluate(p)
+    assert designs.quantities == reference.quantities
+    assert found.status.tolist() == expected.status.tolist()
+    told = expected.status == Status.OK
+    assert told.sum() > many / 2
+    sizes = np.abs(expected.value[told])
+    np.testing.assert_array_less(np.abs(found.value[told] - expected.value[told]), 1e-9 * sizes + 1e-12)
+    # A summit of size one is flat within 1e-9 of it for some 1e-5 of its width.
+    np.testing.assert_allclose(found.t[told], expected.t[told], atol=1e-4)
+    instants = (0.0, 2.0, 4001)
+    fine = [evaluate(scene, parameters=values(scene, row), t=instants, certificate=False) for row in p[told][:4]]
+    largest = np.array([[np.abs(solution.array("motion:pin")).max()] for solution in fine])
+    np.testing.assert_allclose(found.xi[told], expected.xi[told], atol=1e-4)
+    k = designs.quantities.index("motion:pin")
+    assert (np.abs(found.value[told][:4, k : k + 1]) >= largest * (1 - 1e-12)).all()
+
+
+@pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
+def test_what_is_zero_throughout_peaks_at_the_first_instant(backend):
+    """A place that does not move, an acceleration of an even motion: no time is infinite."""
+    designs = DesignEngine.of(pendulum(polynomial(0.1, 1.0), t=(0.5, 2.0, 41), wanted=["motion"]), rung=Rung(backend))
+    value, t, _ = peaks_of(designs, designs.evaluate(np.zeros((1, 0))), 0)["motion:pin_acceleration"]
+    assert (value, t) == (0.0, 0.5)

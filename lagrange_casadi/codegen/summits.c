@@ -1,4 +1,5 @@
-/* What is largest of each quantity, at the instants and between them: the same search as in summits/search.py, which see.
+/* What is largest of each quantity, at the instants and between them: the same search as in summits/search.py, which is the
+   reference: tests hold this to it.
 
    A panel is a row of equal steps with the values at their ends. In each step every curve is bounded; what could rise above the largest
    size so far is looked at, a pack at once: a polynomial through seven values says where, and what it misses there says whether it is to
@@ -263,7 +264,7 @@ static void designs_largest(designs_now* now) {
 /* The first instant at which a quantity is as large as its peak, but for rounding, if it is before what was found. */
 static void designs_sampled(designs_now* now, const designs_panel* panel, int q) {
   designs_peak* peak = now->peaks + q;
-  const designs_real least = peak->best - peak->rounding, under = least - DESIGNS_CLOSE*least;
+  const designs_real least = peak->best - peak->rounding, under = least - DESIGNS_CLOSE*least - DESIGNS_LEAST;
   const designs_real* row;
   designs_real size = -1, x;
   casadi_real pack, most;
