@@ -14,6 +14,7 @@ from hypothesis import settings
 
 from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.codegen import compiler
+from lagrange_casadi.instants import backends, cycle_table, grids
 
 # Where a failure must be the change's own, the same examples every time; elsewhere new ones.
 settings.register_profile("ci", derandomize=True, print_blob=True)
@@ -55,11 +56,16 @@ def _quick_to_build():
 
 @pytest.fixture(scope="module")
 def released(_quick_to_build):
-    """Build with the flags that users have."""
+    """Build with the flags that users have, and forget what was built with others, or is built now."""
+    loaded = (backends._library, grids._compiled, cycle_table._compiled)
     with pytest.MonkeyPatch.context() as patch:
         for language, flags in _quick_to_build.items():
             patch.setitem(compiler.FLAGS, language, flags)
+        for kept in loaded:
+            kept.cache_clear()
         yield
+    for kept in loaded:
+        kept.cache_clear()
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -24,6 +24,9 @@ from lagrange_casadi.sweep.plan import Task, signature
 
 distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install 'lagrange_casadi[cluster]'")
 
+# Workers build as users do, and give numbers of the same code only.
+pytestmark = pytest.mark.usefixtures("released")
+
 ASKED = {"t": (0, 0.08, 41), "wanted": ["effort"]}
 GRID = {"l": (0.055, 0.4, 240), "r": [0.05, 0.1]}
 
