@@ -204,13 +204,14 @@ def test_a_residual_that_rounding_does_not_explain_is_an_error(solution):
     fx = Output("reaction", "A", "fx")
     wrong = replace(solution, outputs=dict(solution.outputs) | {fx: 1.001 * solution.outputs[fx]})
     balance = {"balance": np.array([1e-16, 3e-4]), "closure": np.array([1e-16, 1e-15])}
-    raised = explained(wrong, balance, solution.errors)
-    for name in solution.names():
-        if name.startswith(("effort", "reaction", "section")):
-            assert raised[name] == pytest.approx(3e-4 * abs(wrong.peak(name).value), rel=1e-12)
+    errors = {Output.of(name): error for name, error in solution.errors.items()}
+    raised = explained(wrong, balance, errors)
+    for output in solution.quantities():
+        if output.group in ("effort", "reaction", "section"):
+            assert raised[output] == pytest.approx(3e-4 * abs(wrong.peak(output).value), rel=1e-12)
         else:
-            assert raised[name] == solution.errors[name]
-    assert explained(wrong, {"balance": np.array([1e-15])}, solution.errors) == solution.errors
+            assert raised[output] == errors[output]
+    assert explained(wrong, {"balance": np.array([1e-15])}, errors) == errors
     assert explained(wrong, balance, {}) == {}
 
 

@@ -157,7 +157,6 @@ def test_drive_between_two_moving_links():
             DeclarationError,
             "'J': the name is taken by a joint",
         ),
-        (lambda m, a: m.link("law", length=1, mass=1), DeclarationError, "link 'law': the name is reserved: files keep it"),
         (
             lambda m, a: [m.nonholonomic(n, m.rate(m.joints["J"]), replaces=m.joints["J"]) for n in "rs"],
             DeclarationError,
