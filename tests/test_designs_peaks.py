@@ -5,7 +5,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from design_rows import DENSITIES, alone, assert_refined, loaded, peaks_of
+from design_rows import DENSITIES, alone, assert_refined, loaded, peaks_of, values
 from mechanisms import crank_and_rod, lobes, pendulum
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, motion

@@ -4,7 +4,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from test_export import cc
+from compiled import cc
 
 from lagrange_casadi import Mechanism, Scene, density, evaluate, export
 from lagrange_casadi.declare.motion import polynomial

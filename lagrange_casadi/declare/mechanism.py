@@ -393,8 +393,7 @@ class Mechanism:
         self._check_open(f"add {kind} '{name}'")
         # Files know joints, loads, constraints and rows by their names alone, beside those of links.
         acting: tuple[Mapping[str, Part], ...] = (self.joints, self.loads, self.constraints, self.rows)
-        acts = any(table is other for other in acting)
-        check_free(kind, name, self.name, (self.bodies, *acting) if acts else (table,))
+        check_free(kind, name, self.name, (self.bodies, *acting) if any(table is other for other in acting) else (table,))
 
     def _check_open(self, what: str) -> None:
         if self.frozen:

@@ -52,7 +52,7 @@ class Status(enum.IntEnum):
 _MEANINGS = {
     Status.OK: "there is a result",
     Status.NOT_CONVERGED: "the iterated loops did not converge",
-    Status.NOT_FINITE: "a value is not finite: the mechanism is singular, or its numbers overflow",
+    Status.NOT_FINITE: "a result is not finite: the mechanism is singular, or its numbers overflow",
     Status.SLOW: "the iterated loops converge slowly: they are near a dead centre",
     Status.OUT_OF_REACH: "a loop cannot be closed: its links do not reach",
     Status.JUMPED: "an iterated loop has jumped to another branch: more instants may help",

@@ -493,21 +493,21 @@ const char* press_message(press_status status) {
   case PRESS_NOT_ASSEMBLED:
     return "a loop cannot be closed: its links do not reach";
   case PRESS_DEAD_CENTRE:
-    return "a loop is at a dead centre: the forces are not determined";
+    return "a loop is at a dead centre, within rounding: its forces are not determined there";
   case PRESS_NOT_CONVERGED:
-    return "the iteration of the loops did not converge";
+    return "the iterated loops did not converge";
   case PRESS_JUMPED:
-    return "an iterated loop has jumped to another branch";
+    return "an iterated loop has jumped to another branch: more instants may help";
   case PRESS_SLOW:
-    return "the iteration of the loops converges slowly: they are near a dead centre";
+    return "the iterated loops converge slowly: they are near a dead centre";
   case PRESS_INCONSISTENT:
-    return "the motion violates a loop that is over-constrained, or a non-holonomic row";
+    return "loops are over-constrained and do not fit, or the motion violates a non-holonomic constraint";
   case PRESS_NOT_CLOSED:
     return "what was found for a loop does not satisfy its equations";
   case PRESS_UNDETERMINED:
     return "equilibrium does not determine all outputs: the mechanism has more constraints than it needs";
   case PRESS_NOT_FINITE:
-    return "a result is not finite: the mechanism is singular there, or its numbers overflow";
+    return "a result is not finite: the mechanism is singular, or its numbers overflow";
   case PRESS_TURNED:
     return "an angle that a load sees with its turns might be a turn further";
   }

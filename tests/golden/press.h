@@ -51,14 +51,14 @@ typedef enum {
   PRESS_BAD_RATIO = 5 /* a ratio xi/l is outside 0 to 1 */,
   PRESS_NO_LINK = 6 /* there is no such link */,
   PRESS_NOT_ASSEMBLED = 7 /* a loop cannot be closed: its links do not reach */,
-  PRESS_DEAD_CENTRE = 8 /* a loop is at a dead centre: the forces are not determined */,
-  PRESS_NOT_CONVERGED = 9 /* the iteration of the loops did not converge */,
-  PRESS_JUMPED = 10 /* an iterated loop has jumped to another branch */,
-  PRESS_SLOW = 11 /* the iteration of the loops converges slowly: they are near a dead centre */,
-  PRESS_INCONSISTENT = 12 /* the motion violates a loop that is over-constrained, or a non-holonomic row */,
+  PRESS_DEAD_CENTRE = 8 /* a loop is at a dead centre, within rounding: its forces are not determined there */,
+  PRESS_NOT_CONVERGED = 9 /* the iterated loops did not converge */,
+  PRESS_JUMPED = 10 /* an iterated loop has jumped to another branch: more instants may help */,
+  PRESS_SLOW = 11 /* the iterated loops converge slowly: they are near a dead centre */,
+  PRESS_INCONSISTENT = 12 /* loops are over-constrained and do not fit, or the motion violates a non-holonomic constraint */,
   PRESS_NOT_CLOSED = 13 /* what was found for a loop does not satisfy its equations */,
   PRESS_UNDETERMINED = 14 /* equilibrium does not determine all outputs: the mechanism has more constraints than it needs */,
-  PRESS_NOT_FINITE = 15 /* a result is not finite: the mechanism is singular there, or its numbers overflow */,
+  PRESS_NOT_FINITE = 15 /* a result is not finite: the mechanism is singular, or its numbers overflow */,
   PRESS_TURNED = 16 /* an angle that a load sees with its turns might be a turn further */
 } press_status;
 
