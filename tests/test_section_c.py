@@ -6,7 +6,7 @@ from string import Template
 
 import numpy as np
 import pytest
-from test_export import cc
+from compiled import cc
 
 from lagrange_casadi.codegen.designs import Along, matter_of
 from lagrange_casadi.declare.density import NumericDensity
