@@ -5,10 +5,11 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from exported import by_c99, compare, expected, exported, instants, solve
 from mechanisms import crank_and_rod, four_bar, parallelogram, slider_crank, truss_platform
 from tables import case, made, some_motion, values, worst_gap
 
-from lagrange_casadi import Mechanism, Scene, derive, motion
+from lagrange_casadi import Mechanism, Scene, derive, evaluate, motion
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.instants import tabulate
 from lagrange_casadi.instants.cycle import Cycle
@@ -307,3 +308,30 @@ def test_each_place_is_evaluated_once(monkeypatch):
     monkeypatch.undo()
     again = made(case("slider_crank"), 64)
     np.testing.assert_allclose(table.coefficients, again.coefficients, rtol=0, atol=1e-13 * np.abs(again.coefficients).max())
+
+
+def with_a_load(place):
+    """A slider-crank whose rod bears a load between its ends."""
+    m = Mechanism("loaded")
+    crank, rod = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.4, mass=1.0)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.slot("guide", m.ground, rod.tip)
+    m.force("load", rod.at(m.parameter("place", place)), y=-20.0)
+    return Scene(m, {"O": motion.polynomial(0.0, 10.0)}, t=(0.0, 0.6, 31), posture={"rod": 0.0}, xi=(0.0, 1.0, 41))
+
+
+@pytest.mark.parametrize("place", [0.2, 0.13, 0.3])
+def test_a_station_that_stands_still_is_on_no_other_side_of_a_section(place):
+    """A spline through one number rounds it: at a ratio of the grid that is the load's own, 20 N would be on the other side."""
+    scene = with_a_load(place)
+    read, true = (evaluate(scene, backend="vm", **rung).section("rod") for rung in ({"table": 256}, {}))
+    np.testing.assert_array_equal(read.law.loads[0].station, true.law.loads[0].station)
+    np.testing.assert_allclose(read.shear, true.shear, rtol=0, atol=1e-9)
+
+
+def test_an_exported_table_knows_it_too(tmp_path):
+    scene = with_a_load(0.2)
+    made, told = exported(scene, tmp_path, table=256)
+    solution = solve(scene, "double", table=256)
+    compare(by_c99(tmp_path, told, instants(solution.t, "double")), expected(scene, told, solution), told, made, solution)

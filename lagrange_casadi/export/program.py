@@ -21,6 +21,8 @@ from ..equations.gaps import extent
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
 from ..instants.cycle_table import CycleTable
+from ..instants.tabulate import still
+from ..quantities import Output
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +39,8 @@ class Program:
     """What is emitted.
 
     ``columns`` are those of a table or of ``functions``, in order, ``sizes`` the lengths of all vectors. ``order`` says which of
-    the motions, written in scalars and then ``samples``, each drive has. ``cycle`` is a table to be read instead of an instant.
+    the motions, written in scalars and then ``samples``, each drive has. ``cycle`` is a table to be read instead of an instant, and
+    ``still`` are stations that are told beside it, for they do not move.
     """
 
     graph: SceneGraph
@@ -49,6 +52,7 @@ class Program:
     samples: tuple[Samples, ...]
     newton: int | None
     cycle: CycleTable | None
+    still: Mapping[Output, float]
 
     @property
     def text(self) -> str:
@@ -109,7 +113,8 @@ def program(
     }
     samples = tuple(_samples(graph, joint, p) for joint in graph.driven if graph.scene.motion[joint].spline)
     filled, cycle = {name: f for name, f in functions.items() if f.size1_out(0)}, None if read is None else read[1]
-    return Program(graph, precision, filled, columns, sizes, graph.laws.order, samples, newton, cycle)
+    places = {} if read is None else still(graph, tuple(p.tolist()))
+    return Program(graph, precision, filled, columns, sizes, graph.laws.order, samples, newton, cycle, places)
 
 
 def _fixed(function: Any, p: Array) -> Any:

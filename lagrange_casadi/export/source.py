@@ -115,6 +115,8 @@ class Source:
 
     def _value(self, source: str) -> str:
         output = Output.of(source)
+        if output in self.program.still:
+            return self._number(self.program.still[output])
         value = f"y[{self.program.columns.index(output)}]"
         return f"direction({value})" if output in self.program.graph.wrapped else value
 

@@ -20,7 +20,7 @@ from .cycle import TURNS, the_drive
 from .cycle_table import CycleTable
 from .rung import Rung
 from .solution import Provenance
-from .tabulate import tabulate
+from .tabulate import still, tabulate
 
 _SHARE = 1 << 14
 _MARGIN = 1.01
@@ -58,6 +58,8 @@ def columns(
             list(pool.map(fill, range(0, t.size, size)))
     for k in np.flatnonzero(cycle.drift):
         table.out[k] += cycle.drift[k] * (angle - phase)
+    for output, place in still(graph, tuple(p.tolist())).items():
+        table.out[graph.outputs[output]] = place
     table.status[~np.isfinite(table.out.sum(axis=0)) & (table.status == OK)] = NOT_FINITE
     return table, replace(provenance, rung=rung.options)
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from numbers import Integral, Real
 
+import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
+from ..quantities import Output
 from .cycle import Cycle, cycle_of
 from .cycle_table import LEAST, CycleTable, arranged, splines, weights
 
@@ -67,6 +70,20 @@ def tabulate(graph: SceneGraph, p: Array, table: int | float, rates: tuple[float
         f"table: an accuracy of {accuracy:g} is not reached; the best is {best.error:.2g}, with {best.nodes} nodes, and "
         f"'{worst}' is the worst there"
     )
+
+
+@functools.lru_cache(maxsize=32)
+def still(graph: SceneGraph, p: tuple[float, ...]) -> dict[Output, float]:
+    """The stations that do not move, as ratios xi/l for parameters ``p``: a spline would round them to either side of a section."""
+    rows = {output: k for output, k in graph.outputs.items() if output.group == "station" and output.member == "station"}
+    if not rows:
+        return {}
+    t, *moving, parameters = graph.instant.sx_in()
+    found = graph.instant(t, *moving, parameters)[list(rows.values())]
+    depends = ca.jacobian_sparsity(found, ca.vertcat(t, *moving))
+    fixed = [k for k in range(len(rows)) if k not in depends.row()]
+    places = ca.Function("still", [parameters], [ca.substitute(found[fixed], ca.vertcat(t, *moving), 0)])(list(p)).full().ravel()
+    return dict(zip((list(rows)[k] for k in fixed), places.tolist(), strict=True))
 
 
 def _table(cycle: Cycle, values: Array, between: Array, kept: npt.NDArray[np.bool_], rates: tuple[float, float]) -> CycleTable:
