@@ -151,6 +151,14 @@ def test_a_table_too_large_for_its_target(tmp_path):
     export(scene, tmp_path / "out", precision="single", largest=120_000)
 
 
+def test_what_no_drive_moves_is_refused(tmp_path):
+    m = Mechanism("bracket")
+    m.weld("wall", m.ground, m.link("arm", length=1.0, mass=2.0))
+    with pytest.raises(DeclarationError, match="'bracket' has no drive, and C without inputs computes nothing"):
+        export(Scene(m, {}), tmp_path / "out")
+    assert not list(tmp_path.iterdir())
+
+
 def test_mistakes(tmp_path):
     with pytest.raises(UnknownNameError, match="unknown output 'effrot'"):
         export(slider_crank(), tmp_path / "out", wanted=["effrot"])

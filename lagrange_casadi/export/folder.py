@@ -96,6 +96,8 @@ def export(
     p = np.array(list(values.values()))
     scene = assembled(scene, values, wanted, iterate=newton is not None)
     graph = derive(scene, wanted, iterate=newton is not None)
+    if not graph.driven:
+        raise DeclarationError(f"export: '{scene.mechanism.name}' has no drive, and C without inputs computes nothing; evaluate it")
     # What rounding alone makes of it: all steps that loops want, and no table.
     enough = None if newton is None else max(newton, _ENOUGH)
     instants = points(checked_times(scene, None))
