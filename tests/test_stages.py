@@ -12,7 +12,7 @@ from estimates import kind
 from mechanisms import counting, four_bar, harmonics, sampled, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
-from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, counts, plain
+from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, plain, turns_many
 from lagrange_casadi.declare.motion import expression, harmonic, polynomial, samples
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.instants.backends import run
@@ -198,7 +198,7 @@ def test_springs_on_joints_without_a_drive():
 def test_motion_by_samples():
     graph = derive(sampled(10.0), ["load:load", "effort"])
     t = 90.0 + np.linspace(0.0, 3.0, 7)
-    assert counts(graph, t, values(graph))
+    assert turns_many(graph, t, values(graph))
     truth = exact(graph, t)
     for rung in DOUBLE:
         assert gap(graph, t, rung, truth) < 1e-13
@@ -222,7 +222,7 @@ def test_steady_drives_beside_samples():
     scene = two_drives()
     graph = derive(scene, ["all"])
     t = np.linspace(3600.1, 3601.9, 7)
-    assert counts(graph, t, values(graph))
+    assert turns_many(graph, t, values(graph))
     truth = exact(graph, t)
     for rung in DOUBLE:
         assert gap(graph, t, rung, truth) < 1e-13
@@ -295,8 +295,8 @@ def test_from_few_turns_to_many():
     graph = derive(slider_crank(["all"]))
     p, stop = values(graph), (FEW_TURNS - 0.05) / (25 * math.pi)
     below, above = np.linspace(0.0, stop, 50), np.linspace(0.0, stop + 1e-3, 50)
-    assert not counts(graph, below, p)
-    assert counts(graph, above, p)
+    assert not turns_many(graph, below, p)
+    assert turns_many(graph, above, p)
     one, two = (run(graph, t, p, Rung("vm"))[0] for t in (below, above))
     assert (one.stages.compensated, two.stages.compensated) == (False, True)
     assert gap(graph, below[-5:], Rung("vm")) < 1e-13
@@ -327,7 +327,7 @@ def test_from_few_turns_to_many():
 )
 def test_what_counts(scene, instants, expected):
     graph = derive(scene(), ["load:load", "effort"])
-    assert counts(graph, np.linspace(*instants, 101), values(graph)) is expected
+    assert turns_many(graph, np.linspace(*instants, 101), values(graph)) is expected
 
 
 def test_what_cannot_be_followed_is_not_in_single():
@@ -335,7 +335,7 @@ def test_what_cannot_be_followed_is_not_in_single():
     called = ca.Function("called", [x], [ca.sin(x)], {"never_inline": True})
     scene = counting(RAMP, lambda m, angle: called(angle))
     graph = derive(scene, ["load:load"])
-    assert not counts(graph, np.array([1e6]), values(graph))
+    assert not turns_many(graph, np.array([1e6]), values(graph))
     with pytest.raises(DeclarationError, match="function 'instant' cannot be followed: it calls another one"):
         evaluate(scene, precision="single", wanted=["load:load"])
 

@@ -121,7 +121,7 @@ def _paired_law(smooth: Any, pairs: Pairs, p: Any) -> Any:
     return ca.Function("law", [time, p], [_column([*found[0], *found[1]]), *(_column(row) for row in found[2:])], {"cse": True})
 
 
-def counts(graph: SceneGraph, t: Array, p: Array) -> bool:
+def turns_many(graph: SceneGraph, t: Array, p: Array) -> bool:
     """Whether some angle counts so many turns over the instants that one double loses its phase."""
     functions = (graph.instant, graph.laws.smooth, *([graph.newton.step] if graph.newton else []))
     if not all(followable(function) for function in functions):

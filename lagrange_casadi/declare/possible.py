@@ -22,7 +22,7 @@ from .parts import Expression, Link, PointMass, RigidMass
 if TYPE_CHECKING:
     from .mechanism import Mechanism
 
-Number = Callable[[Any], float]
+Evaluator = Callable[[Any], float]
 """Gives the value of an expression."""
 
 
@@ -32,7 +32,7 @@ class Demand:
 
     value: Expression
     positive: bool
-    refusal: Callable[[Number], str]
+    refusal: Callable[[Evaluator], str]
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ class Demands:
         chosen = [(demand.positive, values[k]) for k, demand in enumerate(self.each)]
         return [value for positive, value in chosen if positive], [value for positive, value in chosen if not positive]
 
-    def check(self, p: Sequence[float], number: Number) -> None:
+    def check(self, p: Sequence[float], number: Evaluator) -> None:
         """Raise :class:`ParameterError` for parameters at which a part is impossible, by the first demand that is not met."""
         values = self.function(list(p)).full().ravel()
         strict = np.array([demand.positive for demand in self.each], bool)
@@ -123,7 +123,7 @@ def _of_density(what: str, density: Density, length: Expression, precision: Prec
         lower = other < value
         place, value = ca.if_else(lower, other_place, place), ca.if_else(lower, other, value)
 
-    def refusal(number: Number) -> str:
+    def refusal(number: Evaluator) -> str:
         got = number(value) / (1.0 if density.per_length else number(length))
         return f"{what}: density must not be negative, got {got:.17g} kg/m at xi/l = {number(place):.6g}"
 
@@ -134,7 +134,7 @@ def _of_density(what: str, density: Density, length: Expression, precision: Prec
 def _some_mass(name: str, masses: list[Expression]) -> Demand:
     total = sum(masses[1:], masses[0])
 
-    def refusal(number: Number) -> str:
+    def refusal(number: Evaluator) -> str:
         mass = number(total)
         if mass == 0.0:
             return f"mechanism '{name}' is massless: at least one link or point mass needs a mass"
@@ -150,7 +150,7 @@ def _surely_positive(mass: Expression) -> bool:
 
 
 def _of_station(what: str, point: Any, precision: Precision) -> list[Demand]:
-    def refusal(number: Number) -> str:
+    def refusal(number: Evaluator) -> str:
         x, length = number(point.x), number(point.body.length)
         return f"{what}: station {x:.13g} m is outside link '{point.body.name}', 0 to {length:.13g} m"
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arithmetic.compensated import Precision
 from ..codegen.designs import Along, Plan, matter_of
-from ..codegen.stages import Stages, compensated, counts, plain
+from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array, Density
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link
@@ -39,7 +39,7 @@ def stages_of(graph: SceneGraph, rung: Rung, t: Array) -> Stages:
             return compensated(graph, "double")
         except DeclarationError:
             return plain(graph)
-    many = counts(graph, t, np.array(list(graph.scene.mechanism.values().values())))
+    many = turns_many(graph, t, np.array(list(graph.scene.mechanism.values().values())))
     return compensated(graph, "double") if many else plain(graph)
 
 

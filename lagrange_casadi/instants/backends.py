@@ -18,7 +18,7 @@ import numpy.typing as npt
 from .. import codegen
 from ..arithmetic.compensated import DTYPES
 from ..codegen.emit import NEWTON_STEPS, NOT_CONVERGED, NOT_FINITE, OK, SLOW, newton_rule
-from ..codegen.stages import Stages, compensated, counts, plain
+from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
 from ..errors import CompilerError
@@ -72,7 +72,7 @@ def run(
     where the backend needs a compiler and there is none, or it fails.
     """
     rung = rung or Rung()
-    many = rung.precision == "single" or counts(graph, t, p)
+    many = rung.precision == "single" or turns_many(graph, t, p)
     stages = compensated(graph, rung.precision) if many else plain(graph)
     found = _compiled(graph, stages, rung)
     table = into or empty_table(graph, stages, t.size)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from ..codegen.stages import Stages, compensated, counts, plain
+from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array
 from ..declare.motion import jerk_function
 from ..declare.scene import Scene, checked
@@ -154,7 +154,7 @@ class _Cycle:
         wanted = list(dict.fromkeys(map(_wanted, solution.outputs)))
         graph = derive(assembled(scene, told, wanted), wanted)
         p = np.array(list(told.values()))
-        stages = compensated(graph, "double") if counts(graph, solution.t, p) else plain(graph)
+        stages = compensated(graph, "double") if turns_many(graph, solution.t, p) else plain(graph)
         z, _ = follow(graph, solution.t, p, stages=stages)
         cycle = cls(graph, stages, solution, p, z, graph.outputs)
         if not cycle.agrees():
