@@ -34,7 +34,7 @@ from ..quantities import Output
 from ..summits.sharpness import bent, with_watched
 from ..system.room import cores, require
 from .plain import outcome
-from .plan import Kept, stages_of
+from .plan import KeptOutputs, stages_of
 from .witness import failures
 
 _LOOKS = 32
@@ -71,7 +71,7 @@ class DesignEngine:
     scene: Scene
     rung: Rung
     t: Array
-    kept: Kept
+    kept: KeptOutputs
     graph: SceneGraph
     stages: Stages
     library: codegen.DesignsLibrary | None
@@ -89,7 +89,7 @@ class DesignEngine:
         checked_laws(scene, (float(instants[0]), float(instants[-1])), tuple(scene.mechanism.values().values()))
         p = np.array(list(scene.mechanism.values().values()))
         _, left_open = determinate(graph, instants, p)
-        kept = Kept.of(graph, rung, left_open)
+        kept = KeptOutputs.of(graph, rung, left_open)
         require("the instants of a design", (kept.plan.rows, instants.size))
         watched = with_watched(graph, kept.sharpness)
         stages = stages_of(watched, rung, instants)

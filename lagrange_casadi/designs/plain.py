@@ -17,7 +17,7 @@ from ..instants.refusal import Status, refusal
 from ..instants.rung import Rung
 from ..instants.signals import Quantity, SectionForce, Signals
 from ..quantities import FORCES
-from .plan import Kept
+from .plan import KeptOutputs
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +29,7 @@ class Row:
     columns: Array
 
 
-def outcome(graph: SceneGraph, kept: Kept, t: Array, p: Array, newton: int | None) -> tuple[Status, Row | None]:
+def outcome(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, Row | None]:
     """What is kept of a design, or why it has no result."""
     if not np.isfinite(p).all():
         return Status.INVALID, None
@@ -66,7 +66,9 @@ def _means(rows: Array) -> tuple[Array, Array]:
     return rows @ weights, np.sqrt(rows**2 @ weights)
 
 
-def _signals(graph: SceneGraph, kept: Kept, t: Array, p: Array, newton: int | None, table: Table, some: Sequence[int]) -> Signals:
+def _signals(
+    graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None, table: Table, some: Sequence[int]
+) -> Signals:
     """Some quantities that are kept of a design, as curves over time."""
     mechanism, plan = graph.scene.mechanism, kept.plan
     matter = _matter(kept, mechanism, dict(zip(mechanism.parameters, p.tolist(), strict=True)))
@@ -79,7 +81,7 @@ def _signals(graph: SceneGraph, kept: Kept, t: Array, p: Array, newton: int | No
     return Signals(graph, table.stages, kept.sharpness, [quantities[k] for k in some], t, p, table.iterated, newton)
 
 
-def _matter(kept: Kept, mechanism: Mechanism, values: Mapping[str, float]) -> list[tuple[float, NumericDensity]]:
+def _matter(kept: KeptOutputs, mechanism: Mechanism, values: Mapping[str, float]) -> list[tuple[float, NumericDensity]]:
     """Lengths and densities of the links that have section forces."""
 
     def number(expression: Any) -> float:

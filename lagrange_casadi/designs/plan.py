@@ -44,11 +44,12 @@ def stages_of(graph: SceneGraph, rung: Rung, t: Array) -> Stages:
 
 
 @dataclass(frozen=True, eq=False)
-class Kept:
-    """What is kept, and the plan by which: peaks of ``quantities``, in ``units``, and means of ``efforts``.
+class KeptOutputs:
+    """The outputs of which something is kept of each design: peaks of ``quantities``, in ``units``, and means of ``efforts``.
 
     Quantities are the wanted outputs, without angles that loops set, and sizes of joints' reactions; the section forces of
-    ``links`` come last. What equilibrium leaves open for the parameters' defaults is left out.
+    ``links`` come last. What equilibrium leaves open for the parameters' defaults is left out. ``plan`` is the same in numbers
+    of columns, as C takes it.
     """
 
     quantities: tuple[Output, ...]
@@ -59,7 +60,7 @@ class Kept:
     sharpness: Sharpness
 
     @classmethod
-    def of(cls, graph: SceneGraph, rung: Rung, left_open: Collection[Output] = ()) -> Kept:
+    def of(cls, graph: SceneGraph, rung: Rung, left_open: Collection[Output] = ()) -> KeptOutputs:
         """What is kept of a scene's designs on a rung, less what is ``left_open``."""
         mechanism, at = graph.scene.mechanism, graph.outputs
         chosen: dict[Output, tuple[int, ...]] = {}

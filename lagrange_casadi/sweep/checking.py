@@ -15,7 +15,7 @@ from ..store.untrusted import check_chunks, told_as
 from .axes import counted, grouped, size_of
 from .blocks import slabs
 from .columns import STATUS
-from .contents import Kept
+from .contents import KeptColumn
 from .parts import Folder
 from .reading import Sweep
 
@@ -55,7 +55,7 @@ def progress(folder: Folder) -> str:
     return f"unfinished: {grouped(folder.done())} of {counted(size)} done; the same sweep goes on when it is resumed"
 
 
-def _check_column(file: h5py.File, sweep: Sweep, kept: Kept) -> Iterator[str]:
+def _check_column(file: h5py.File, sweep: Sweep, kept: KeptColumn) -> Iterator[str]:
     dataset, status = file[kept.name.replace(":", "/")], file[STATUS]
     names = (*sweep.dimensions, *kept.axes)
     for axis, name in enumerate(names):

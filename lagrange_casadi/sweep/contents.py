@@ -19,7 +19,7 @@ _NAMED = ("backend", "precision", "compiler", "flags", "rung", "sources", "keep"
 
 
 @dataclass(frozen=True)
-class Kept:
+class KeptColumn:
     """What a file says of a column: unit, meaning, and its axes beyond those of the designs."""
 
     name: str
@@ -37,7 +37,7 @@ def contents(file: h5py.File, *, sealed: bool) -> dict[str, Any]:
     attributes = file.attrs
     identity = {key: json.loads(attributes[key]) for key in WORDS} | {key: _plain(attributes[key]) for key in _NAMED}
     check_shape(identity, IDENTITY, "attributes")
-    columns: dict[str, Kept] = {}
+    columns: dict[str, KeptColumn] = {}
     status = file[STATUS]
     names = [dim[0].name.rpartition("/")[2] for dim in status.dims]
     dimensions = dict(zip(names, status.shape, strict=True))
@@ -54,7 +54,7 @@ def contents(file: h5py.File, *, sealed: bool) -> dict[str, Any]:
                 axes = tuple(item.dims[axis][0].name.rpartition("/")[2] for axis in range(len(names), item.ndim))
                 check_dataset(item, [*status.shape, *map(length, axes)])
                 name = place.replace("/", ":")
-                columns[name] = Kept(name, shown(item.attrs["units"]), shown(item.attrs["long_name"]), axes)
+                columns[name] = KeptColumn(name, shown(item.attrs["units"]), shown(item.attrs["long_name"]), axes)
             if not sealed:
                 check_chunks(item)
 

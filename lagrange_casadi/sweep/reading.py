@@ -21,7 +21,7 @@ from ..system.seal import Seen, verify
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
 from .columns import STATUS
-from .contents import Kept, contents
+from .contents import KeptColumn, contents
 from .parts import Folder
 from .plan import SCHEMA, SCHEMA_VERSION
 from .selection import matches
@@ -49,7 +49,7 @@ class Sweep:
     identity: Mapping[str, Any]
     dimensions: Mapping[str, int]
     parameters: Mapping[str, str]
-    columns: Mapping[str, Kept]
+    columns: Mapping[str, KeptColumn]
     statuses: Mapping[int, tuple[str, str]]
     undetermined: tuple[str, ...] = ()
     chosen: Mapping[str, npt.NDArray[np.int64]] = field(default_factory=dict)
@@ -99,7 +99,7 @@ class Sweep:
                 return _taken(file[name])
             return self._cut(file[name.replace(":", "/")], (*self.dimensions, *self.columns[name].axes))
 
-    def column(self, name: str) -> Kept:
+    def column(self, name: str) -> KeptColumn:
         """What a column is. Raises :class:`UnknownNameError`."""
         if name not in self.columns:
             raise self._unknown([name])
