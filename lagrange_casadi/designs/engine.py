@@ -33,7 +33,7 @@ from ..instants.solution import Provenance
 from ..quantities import Output
 from ..summits.sharpness import bent, with_watched
 from ..system.room import cores, require
-from .plain import outcome
+from .interpreted import outcome
 from .plan import KeptOutputs, stages_of
 from .witness import failures
 

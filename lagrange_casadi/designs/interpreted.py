@@ -21,7 +21,7 @@ from .plan import KeptOutputs
 
 
 @dataclass(frozen=True, eq=False)
-class Row:
+class DesignResult:
     """What is kept of a design that has a result: peaks (3, q) as value, time and ratio, means (2, e), and columns (columns, t)."""
 
     peaks: Array
@@ -29,7 +29,7 @@ class Row:
     columns: Array
 
 
-def outcome(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, Row | None]:
+def outcome(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, DesignResult | None]:
     """What is kept of a design, or why it has no result."""
     if not np.isfinite(p).all():
         return Status.INVALID, None
@@ -55,7 +55,7 @@ def outcome(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: in
     peaks = np.full((3, len(plan.units)), np.nan)
     peaks[:, told] = found.value, found.t, found.xi
     means[:, [effort not in told for effort in plan.efforts]] = np.nan
-    return Status.OK, Row(peaks, means, table.out)
+    return Status.OK, DesignResult(peaks, means, table.out)
 
 
 def _means(rows: Array) -> tuple[Array, Array]:
