@@ -19,7 +19,7 @@ from lagrange_casadi import Case, load_case
 from lagrange_casadi.errors import ClusterError, DeclarationError, StoppedError
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.sweep import cluster, columns, sweep
-from lagrange_casadi.sweep.cluster import Cluster, Source
+from lagrange_casadi.sweep.cluster import Cluster, SentCase
 from lagrange_casadi.sweep.plan import Task, signature
 
 distributed = pytest.importorskip("distributed", reason="Dask is not installed: pip install 'lagrange_casadi[cluster]'")
@@ -309,31 +309,31 @@ def test_a_case_travels_without_its_file(tmp_path):
         "    m.revolute('O', m.ground, m.link('a', length=m.parameter('l', 0.5, 'm'), mass=1.0))\n"
         "    return Scene(m, {'O': polynomial(0, 1)})\n"
     )
-    source = Source(str(path), path.read_text())
-    assert source.load().mechanism.name == "arm"
+    sent = SentCase(str(path), path.read_text())
+    assert sent.load().mechanism.name == "arm"
     path.write_text("raise SystemExit\n")
-    assert source.load().mechanism.name == "arm"
+    assert sent.load().mechanism.name == "arm"
     path.unlink()
-    assert source.load().mechanism.name == "arm"
+    assert sent.load().mechanism.name == "arm"
 
 
 def test_a_worker_that_would_give_other_numbers_is_refused(slider_crank):
     """What runs on a worker, here with what another version would have told it."""
-    source = Source(str(slider_crank.path), slider_crank.path.read_text())
+    sent = SentCase(str(slider_crank.path), slider_crank.path.read_text())
     task = Task(("effort",), (0.0, 0.08, 9), None, "peaks", Rung())
     harvest = task.harvest(slider_crank.scene)
     told = signature(slider_crank.scene, task, harvest.engine.provenance)
     p = np.array([[0.1, 0.2, 0.1, 0.1, 0.1]])
-    assert cluster._evaluate(source, task, told, p, 3) == harvest.chunks(p, 3)
+    assert cluster._evaluate(sent, task, told, p, 3) == harvest.chunks(p, 3)
     other = told | {"versions": told["versions"] | {"casadi": "3.7.0"}}
     with pytest.raises(ClusterError, match=r"not give the same numbers: versions casadi was 3\.7\.0 and is .* there"):
-        cluster._evaluate(source, task, other, p, 3)
+        cluster._evaluate(sent, task, other, p, 3)
 
 
 def test_what_fails_on_a_worker_is_one_line(slider_crank):
-    source = Source("/nowhere/case.py", "1 / 0\n")
+    sent = SentCase("/nowhere/case.py", "1 / 0\n")
     with pytest.raises(ClusterError, match=r"a worker failed: case .*, line 1: ZeroDivisionError"):
-        cluster._evaluate(source, Task(("effort",), (0.0, 0.08, 9), None, "peaks", Rung()), {}, np.zeros((1, 5)), 1)
+        cluster._evaluate(sent, Task(("effort",), (0.0, 0.08, 9), None, "peaks", Rung()), {}, np.zeros((1, 5)), 1)
 
 
 def test_a_cluster_needs_a_case(slider_crank, tmp_path):

@@ -34,7 +34,7 @@ class Samples(NamedTuple):
         return Samples(*(rows[:, which] for rows in self))
 
 
-class Source(Protocol):
+class CurveSource(Protocol):
     """What gives curves at any times; where they have no value, NaN."""
 
     def at(self, t: Array) -> Samples:
@@ -76,7 +76,7 @@ class Summit:
     again: bool = False
 
 
-def sides(source: Source, panel: Panel, step: int, watches: Sequence[Watch], beside: float) -> tuple[Array, Samples] | None:
+def sides(source: CurveSource, panel: Panel, step: int, watches: Sequence[Watch], beside: float) -> tuple[Array, Samples] | None:
     """The times just before and just after a kink or a jump in a step, and of itself, and what there is; None where none is found.
 
     They are ``beside`` it, as far as the step goes. What is watched tells where it is: between both it passes its number.

@@ -21,7 +21,7 @@ import numpy as np
 from ..declare.density import Array
 from . import fits
 from .between import Flags, highest, unresolved
-from .panels import SIDE, SPACING, Panel, Samples, Source, Summit, sides
+from .panels import SIDE, SPACING, CurveSource, Panel, Samples, Summit, sides
 from .sharpness import Watch
 
 INNER = 8
@@ -97,7 +97,7 @@ class Peaks:
     told: Flags
 
 
-def peaks(source: Source, curves: Curves, t: Array, samples: Samples, hiding: Flags) -> Peaks:
+def peaks(source: CurveSource, curves: Curves, t: Array, samples: Samples, hiding: Flags) -> Peaks:
     """The peaks of quantities over the span of equally spaced instants ``t``, of which ``samples`` are.
 
     ``hiding`` (n - 1,) tells in which of their steps something is known to hide. No peak is below the largest sample. Of several
@@ -112,7 +112,7 @@ def peaks(source: Source, curves: Curves, t: Array, samples: Samples, hiding: Fl
 class _Search:
     """What is known so far of each quantity: its largest size, and where one as large was found first."""
 
-    def __init__(self, source: Source, curves: Curves, t: Array, samples: Samples) -> None:
+    def __init__(self, source: CurveSource, curves: Curves, t: Array, samples: Samples) -> None:
         self.source, self.curves = source, curves
         self.quantity, self.knots = np.array(curves.quantities, dtype=int), np.array(curves.knots)
         self.best = np.zeros(len(curves.units))

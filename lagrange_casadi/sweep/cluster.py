@@ -47,7 +47,7 @@ _building = threading.Lock()
 
 
 @dataclass(frozen=True)
-class Source:
+class SentCase:
     """A case as it is sent: its file's path and content. Where a worker has no such file, the content alone serves."""
 
     path: str
@@ -83,7 +83,7 @@ class Cluster:
 
     def results(self, plan: Plan, queue: Queue) -> Blocks:
         """Evaluate what is in the queue, in the order in which workers are done."""
-        source = Source(str(self.case.path), self.case.path.read_text())
+        sent = SentCase(str(self.case.path), self.case.path.read_text())
         told = signature(plan.scene, plan.task, plan.harvest.engine.provenance)
         _dask()
         with _silenced():
@@ -94,11 +94,11 @@ class Cluster:
                     if queue.stopped:
                         return
                 client = self._connected(connecting)
-                yield from self._served(client, _Roll(client), plan, queue, source, told)
+                yield from self._served(client, _Roll(client), plan, queue, sent, told)
             finally:
                 connecting.add_done_callback(_let_go)
 
-    def _served(self, client: Any, roll: _Roll, plan: Plan, queue: Queue, source: Source, told: Mapping[str, Any]) -> Blocks:
+    def _served(self, client: Any, roll: _Roll, plan: Plan, queue: Queue, sent: SentCase, told: Mapping[str, Any]) -> Blocks:
         waiting = _dask().as_completed(loop=client.loop)
         blocks: dict[Any, tuple[int, int]] = {}
         end = 0.0
@@ -107,7 +107,7 @@ class Cluster:
             most = max(1, _AHEAD * roll.threads)
             while len(blocks) < most and (block := queue.take()):
                 # As bytes: a scheduler needs to know Dask alone.
-                asked = pickle.dumps(_Asked((source, plan.task, told, plan.block(*block), plan.room)))
+                asked = pickle.dumps(_Asked((sent, plan.task, told, plan.block(*block), plan.room)))
                 future = client.submit(pickle.loads, asked, pure=False)
                 blocks[future] = block
                 waiting.add(future)
@@ -305,11 +305,11 @@ class _Asked:
         return _evaluate, self.arguments
 
 
-def _evaluate(source: Source, task: Task, told: Mapping[str, Any], p: Array, room: int) -> list[bytes]:
+def _evaluate(sent: SentCase, task: Task, told: Mapping[str, Any], p: Array, room: int) -> list[bytes]:
     """On a worker: the columns of a block of designs."""
     try:
         with _building:
-            scene, harvest = _built(source, task)
+            scene, harvest = _built(sent, task)
         found = difference(told, signature(scene, task, harvest.engine.provenance))
         if found:
             raise ClusterError(f"a worker would not give the same numbers: {found} there")
@@ -322,6 +322,6 @@ def _evaluate(source: Source, task: Task, told: Mapping[str, Any], p: Array, roo
 
 
 @functools.lru_cache(maxsize=4)
-def _built(source: Source, task: Task) -> tuple[Scene, Harvest]:
-    scene = task.scene(source.load())
+def _built(sent: SentCase, task: Task) -> tuple[Scene, Harvest]:
+    scene = task.scene(sent.load())
     return scene, task.harvest(scene)
