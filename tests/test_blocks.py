@@ -7,7 +7,7 @@ import pytest
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.equations.assembly import assemble
-from lagrange_casadi.equations.blocks import plan
+from lagrange_casadi.equations.blocks import solving_order
 from lagrange_casadi.equations.tree import span
 from lagrange_casadi.errors import MobilityError
 
@@ -35,7 +35,7 @@ def truss(triangles):
 def blocks_of(scene):
     mechanism = scene.mechanism
     multibody = assemble(mechanism, span(mechanism, scene.motion), scene.motion, ())
-    return plan(multibody, {"posture": {}, "inputs": [], "values": []})
+    return solving_order(multibody, {"posture": {}, "inputs": [], "values": []})
 
 
 def test_coupled_loops_fall_apart_into_dyads():

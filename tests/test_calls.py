@@ -47,7 +47,7 @@ def test_the_emitted_c_has_the_structs():
     graph = derive(slider_crank())
     assert INSTANTS.text() in codegen.emit(graph)
     engine = DesignEngine.of(slider_crank(), rung=Rung("vm"))
-    source = codegen.emit_designs(engine.graph, engine.stages, None, engine.kept.plan)
+    source = codegen.emit_designs(engine.graph, engine.stages, None, engine.kept.reduction)
     assert INSTANTS.text() in source
     assert DESIGNS.text() in source
 

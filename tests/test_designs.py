@@ -14,7 +14,7 @@ from parametric import declared
 from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate, motion
 from lagrange_casadi.codegen import library
 from lagrange_casadi.designs.engine import DesignEngine
-from lagrange_casadi.designs.plan import KeptOutputs, stages_of
+from lagrange_casadi.designs.reduction import KeptOutputs, stages_of
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
@@ -179,7 +179,7 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
     for rung in (Rung(), Rung(newton=2), Rung(precision="single")):
         graph = derive(scene, iterate=rung.newton is not None)
         stages, kept = stages_of(graph, rung, np.linspace(*scene.t)), KeptOutputs.of(graph, rung)
-        source.write_text(codegen.emit_designs(graph, stages, rung.newton, kept.plan))
+        source.write_text(codegen.emit_designs(graph, stages, rung.newton, kept.reduction))
         command = [*compiler.command, *PEDANTIC, "-fsyntax-only", source]
         result = subprocess.run(command, capture_output=True, text=True, check=False)
         assert result.returncode == 0, result.stderr

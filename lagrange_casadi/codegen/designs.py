@@ -102,8 +102,8 @@ class Along:
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
-    """What is kept of a design.
+class Reduction:
+    """To what the instants of a design are reduced: what is kept of it, in numbers of columns.
 
     ``quantities`` off links are one column, or the size of a vector of two; then come three forces of each of ``links``. ``units``
     numbers the units of all of them, ``efforts`` says which have means. ``checks`` are columns with a kind of :data:`CHECKS` and a
@@ -155,24 +155,24 @@ class Plan:
         return len(self.curves) + self.places + len(self.watches)
 
 
-def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan) -> str:
+def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, reduction: Reduction) -> str:
     """The whole C file; as :func:`.emit`, with :data:`DESIGNS` in it."""
     parts = Parts.of(graph, stages)
     single = stages.precision == "single"
-    text = f"\n#undef CASADI_PREFIX\n{dump('matter', [plan.matter])}"
+    text = f"\n#undef CASADI_PREFIX\n{dump('matter', [reduction.matter])}"
     if stages.loops and newton is not None:
         text += following(graph, stages, None, parts.sizes | {"follow": BEGIN})
     text = emit(graph, stages, newton) + (in_single(text) if single else text)
-    text += CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, plan, parts))
-    text += _tables(plan) + _source("sections.c")
-    text += _WORK.format(**parts.sizes | work("", *parts.wide, *parts.narrow, plan.matter), drive=parts.drive)
-    text += _curves(plan)
+    text += CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, reduction, parts))
+    text += _tables(reduction) + _source("sections.c")
+    text += _WORK.format(**parts.sizes | work("", *parts.wide, *parts.narrow, reduction.matter), drive=parts.drive)
+    text += _curves(reduction)
     return text + "".join(_source(name) for name in _FILES)
 
 
-def _macros(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan, parts: Parts) -> dict[str, object]:
+def _macros(graph: SceneGraph, stages: Stages, newton: int | None, reduction: Reduction, parts: Parts) -> dict[str, object]:
     sizes, precision = parts.sizes, stages.precision
-    plain, links, checks, curves = len(plan.quantities), len(plan.links), len(plan.checks), len(plan.curves)
+    plain, links, checks, curves = len(reduction.quantities), len(reduction.links), len(reduction.checks), len(reduction.curves)
     numbers = np.finfo(DTYPES[precision])
     return {
         "REAL": sizes["real"],
@@ -188,24 +188,24 @@ def _macros(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan, p
         **{name.upper(): sizes[name] for name in ("nt", "np", "nz", "columns", "constants")},
         "PLACE": sizes["nt"] + sizes["nc"] + 2 * sizes["nd"],
         "INPUTS": sizes["nt"] + sizes["nc"] + 2 * sizes["nd"] + sizes["nz"],
-        "MATTER": max(1, plan.matter.size1_out(0)),
-        "MARGINS": plan.margins,
-        "POSITIVE": plan.positive,
+        "MATTER": max(1, reduction.matter.size1_out(0)),
+        "MARGINS": reduction.margins,
+        "POSITIVE": reduction.positive,
         "QUANTITIES": plain + 3 * links,
         "CURVES": curves,
-        "PLACES": plan.places,
-        "CHECKED": curves + plan.places,
-        "WATCHES": len(plan.watches),
-        "OUTPUTS": sizes["columns"] - len(plan.watches),
-        "KNOTS": len(plan.knots),
+        "PLACES": reduction.places,
+        "CHECKED": curves + reduction.places,
+        "WATCHES": len(reduction.watches),
+        "OUTPUTS": sizes["columns"] - len(reduction.watches),
+        "KNOTS": len(reduction.knots),
         "AT_BASE": -1,
         "AT_TIP": -2,
         "AT_OFF": -3,
         "CHECKS": checks,
-        "DOUBTS": len(plan.doubts),
-        "UNITS": max(plan.units) + 1,
-        "EFFORTS": len(plan.efforts),
-        "NEAR": _real(plan.near),
+        "DOUBTS": len(reduction.doubts),
+        "UNITS": max(reduction.units) + 1,
+        "EFFORTS": len(reduction.efforts),
+        "NEAR": _real(reduction.near),
         "INSIDE": INSIDE,
         "ROUNDS": ROUNDS,
         **{name: _real(value) for name, value in _numbers(precision).items()},
@@ -220,7 +220,7 @@ def _macros(graph: SceneGraph, stages: Stages, newton: int | None, plan: Plan, p
         "FOLLOW(call)": f"{FOLLOW}(call)" if stages.loops else "((void) (call))",
         "BEGIN(call)": f"{BEGIN}(call)" if stages.loops and newton is not None else "((void) (call))",
         **{f"IS_{kind}": k for k, kind in enumerate(CHECKS)},
-        **plan.statuses,
+        **reduction.statuses,
     }
 
 
@@ -252,29 +252,29 @@ def _defined(macros: Mapping[str, object]) -> str:
     return "".join(f"#define DESIGNS_{name} {value}\n" for name, value in macros.items())
 
 
-def _tables(plan: Plan) -> str:
-    columns, kinds, limits = zip(*plan.checks, strict=True) if plan.checks else ((0,), ("CLOSURE",), (0.0,))
-    quantities, on, places = zip(*plan.curves, strict=True)
+def _tables(reduction: Reduction) -> str:
+    columns, kinds, limits = zip(*reduction.checks, strict=True) if reduction.checks else ((0,), ("CLOSURE",), (0.0,))
+    quantities, on, places = zip(*reduction.curves, strict=True)
     firsts = [quantities.index(q) for q in range(quantities[-1] + 1)] + [len(quantities)]
-    others = [(k, link.breaks) for k, link in enumerate(plan.links) if not link.uniform]
+    others = [(k, link.breaks) for k, link in enumerate(reduction.links) if not link.uniform]
     breaks = [_table("DESIGNS_REAL", f"designs_breaks{k}", map(_number, ratios)) for k, ratios in others]
     return "".join(
         (
             _table("int", "designs_checked", columns),
             _table("int", "designs_kind", (f"DESIGNS_IS_{kind}" for kind in kinds)),
             _table("DESIGNS_REAL", "designs_limit", map(_number, limits)),
-            _table("int", "designs_unit", plan.units),
+            _table("int", "designs_unit", reduction.units),
             _table("int", "designs_first", firsts),
             _table("int", "designs_of", quantities),
             _table("int", "designs_link_of", on),
             _table("int", "designs_placed", (place if isinstance(place, int) else f"DESIGNS_AT_{place}" for place in places)),
-            _table("int", "designs_watch", (int(watch.kind) for watch in plan.watches or (Watch(Kind.RATE),))),
-            _table("int", "designs_watch_first", itertools.accumulate((len(watch.at) for watch in plan.watches), initial=0)),
-            _table("DESIGNS_REAL", "designs_watch_at", [_number(x) for watch in plan.watches for x in watch.at] or (0,)),
-            _table("double", "designs_knot", [_number(x) for x in plan.knots] or (0,)),
-            _table("int", "designs_effort", plan.efforts or (0,)),
-            _table("int", "designs_doubted", [check for check, _ in plan.doubts] or (0,)),
-            _table("int", "designs_doubtful", [quantity for _, quantity in plan.doubts] or (0,)),
+            _table("int", "designs_watch", (int(watch.kind) for watch in reduction.watches or (Watch(Kind.RATE),))),
+            _table("int", "designs_watch_first", itertools.accumulate((len(watch.at) for watch in reduction.watches), initial=0)),
+            _table("DESIGNS_REAL", "designs_watch_at", [_number(x) for watch in reduction.watches for x in watch.at] or (0,)),
+            _table("double", "designs_knot", [_number(x) for x in reduction.knots] or (0,)),
+            _table("int", "designs_effort", reduction.efforts or (0,)),
+            _table("int", "designs_doubted", [check for check, _ in reduction.doubts] or (0,)),
+            _table("int", "designs_doubtful", [quantity for _, quantity in reduction.doubts] or (0,)),
             *breaks,
         )
     )
@@ -288,14 +288,14 @@ def _number(value: float) -> str:
     return f"(DESIGNS_REAL) {value:.17g}"
 
 
-def _curves(plan: Plan) -> str:
+def _curves(reduction: Reduction) -> str:
     """The function that makes curves of columns."""
     lines = []
-    for k, columns in enumerate(plan.quantities):
+    for k, columns in enumerate(reduction.quantities):
         squares = " + ".join(f"y[{c}]*y[{c}]" for c in columns)
         lines.append(f"  value[{k}] = {f'DESIGNS_ROOT({squares})' if len(columns) > 1 else f'y[{columns[0]}]'};\n")
-    value, place, offset = len(plan.quantities), 0, plan.margins
-    for k, link in enumerate(plan.links):
+    value, place, offset = len(reduction.quantities), 0, reduction.margins
+    for k, link in enumerate(reduction.links):
         lines.append(_along(k, link, f"value + {value}, place + {place}", offset))
         value += sum(map(len, link.places))
         place += link.rows

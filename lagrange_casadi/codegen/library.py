@@ -15,7 +15,7 @@ import numpy.typing as npt
 from ..arithmetic.compensated import DTYPES, Precision
 from .calls import Call
 from .compiler import Compiler, broken, loaded, statements
-from .designs import CALL, DEEPEST, DESIGNS, STRIDE, Plan
+from .designs import CALL, DEEPEST, DESIGNS, STRIDE, Reduction
 from .emit import EVALUATE, FOLLOW, INSTANTS, LANES_PLACE
 
 Array = npt.NDArray[Any]
@@ -113,7 +113,7 @@ class DesignsLibrary:
     entry: Any
     flags: tuple[str, ...]
     share: int
-    plan: Plan
+    reduction: Reduction
     t: npt.NDArray[np.float64]
     guess: npt.NDArray[np.float64]
     bent: npt.NDArray[np.bool_]
@@ -128,12 +128,12 @@ class DesignsLibrary:
         shares = max(1, min(threads, n // self.share))
         size = max(1, min(_LONGEST * self.share, -(-n // (_SPREAD * shares)) if shares > 1 else n))
         stride = (-(-self.t.size // _LINE) | 1) * _LINE + 2 * _LINE
-        inner = DEEPEST[self.precision] * self.plan.inner * STRIDE
+        inner = DEEPEST[self.precision] * self.reduction.inner * STRIDE
         bent = np.zeros(stride, np.int8)
         bent[: self.bent.size] = self.bent
 
         def run(start: int) -> None:
-            room = np.zeros((self.plan.rows + self.guess.size + 2) * stride + inner + _LINE, DTYPES[self.precision])
+            room = np.zeros((self.reduction.rows + self.guess.size + 2) * stride + inner + _LINE, DTYPES[self.precision])
             room = room[-room.ctypes.data // room.itemsize % _LINE :]
             status, hiding = np.zeros(stride, np.int32), np.zeros(2 * stride, np.int8)
             rows = {name: None if array is None else array[start : start + size] for name, array in results.items()}
@@ -171,7 +171,7 @@ def load_designs(
     source: str,
     compiler: Compiler,
     extra: tuple[str, ...],
-    plan: Plan,
+    reduction: Reduction,
     t: npt.NDArray[np.float64],
     guess: npt.NDArray[np.float64],
     bent: npt.NDArray[np.bool_],
@@ -183,7 +183,7 @@ def load_designs(
     """
     entry = _entry(_loaded(source, compiler, extra), compiler, DESIGNS, CALL)
     share = max(1, _WORTH_A_THREAD // (statements(source) * t.size))
-    return DesignsLibrary(entry, (*compiler.flags(source), *extra), share, plan, t, guess, bent, precision)
+    return DesignsLibrary(entry, (*compiler.flags(source), *extra), share, reduction, t, guess, bent, precision)
 
 
 def _loaded(source: str, compiler: Compiler, extra: tuple[str, ...]) -> ctypes.CDLL:

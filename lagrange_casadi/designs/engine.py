@@ -34,7 +34,7 @@ from ..quantities import Output
 from ..summits.sharpness import bent, with_watched
 from ..system.room import cores, require
 from .interpreted import outcome
-from .plan import KeptOutputs, stages_of
+from .reduction import KeptOutputs, stages_of
 from .witness import failures
 
 _LOOKS = 32
@@ -90,16 +90,16 @@ class DesignEngine:
         p = np.array(list(scene.mechanism.values().values()))
         _, left_open = determinate(graph, instants, p)
         kept = KeptOutputs.of(graph, rung, left_open)
-        require("the instants of a design", (kept.plan.rows, instants.size))
+        require("the instants of a design", (kept.reduction.rows, instants.size))
         watched = with_watched(graph, kept.sharpness)
         stages = stages_of(watched, rung, instants)
         guess = np.array(graph.newton.guess if graph.newton else (), float)
 
         def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:
-            source = codegen.emit_designs(watched, stages, rung.newton, kept.plan)
+            source = codegen.emit_designs(watched, stages, rung.newton, kept.reduction)
             hidden = bent(graph, kept.sharpness, instants, p)
             return codegen.load_designs(
-                source, compiler, tuple(shlex.split(rung.flags)), kept.plan, instants, guess, hidden, rung.precision
+                source, compiler, tuple(shlex.split(rung.flags)), kept.reduction, instants, guess, hidden, rung.precision
             )
 
         found = compiled(rung, build)
@@ -143,7 +143,7 @@ class DesignEngine:
     @property
     def doubtful(self) -> tuple[str, ...]:
         """The names of the quantities, and the outputs in histories, that equilibrium may leave open for some designs."""
-        numbers = sorted({quantity for _, quantity in self.kept.plan.doubts})
+        numbers = sorted({quantity for _, quantity in self.kept.reduction.doubts})
         return tuple(dict.fromkeys(map(str, [*(self.kept.quantities[k] for k in numbers), *self.graph.doubtful])))
 
     @property
@@ -165,7 +165,7 @@ class DesignEngine:
     @property
     def room(self) -> int:
         """Bytes of memory that a core takes while it evaluates."""
-        return 8 * self.kept.plan.rows * self.t.size
+        return 8 * self.kept.reduction.rows * self.t.size
 
     def evaluate(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of designs ``p``, (n, parameters), in the order of :attr:`parameters`; with ``histories``, its series too.

@@ -17,7 +17,7 @@ from ..instants.refusal import Status, refusal
 from ..instants.rung import Rung
 from ..instants.signals import Quantity, SectionForce, Signals
 from ..quantities import FORCES
-from .plan import KeptOutputs
+from .reduction import KeptOutputs
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,9 +33,9 @@ def outcome(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: in
     """What is kept of a design, or why it has no result."""
     if not np.isfinite(p).all():
         return Status.INVALID, None
-    plan = kept.plan
-    margins = plan.matter(p).full().ravel()[: plan.margins]
-    if not (np.isfinite(margins).all() and (margins >= 0.0).all() and (margins[: plan.positive] > 0.0).all()):
+    reduction = kept.reduction
+    margins = reduction.matter(p).full().ravel()[: reduction.margins]
+    if not (np.isfinite(margins).all() and (margins >= 0.0).all() and (margins[: reduction.positive] > 0.0).all()):
         return Status.IMPOSSIBLE, None
     rung = Rung("vm", newton=newton)
     table, _ = run(graph, t, p, rung)
@@ -43,18 +43,18 @@ def outcome(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: in
     if why is not None:
         return why.status, None
     left_open = {graph.doubtful[output] for output in undetermined(graph, table.out, p, rung)}
-    doubted = {quantity for check, quantity in plan.doubts if plan.checks[check][0] in left_open}
-    told = [k for k in range(len(plan.units)) if k not in doubted]
+    doubted = {quantity for check, quantity in reduction.doubts if reduction.checks[check][0] in left_open}
+    told = [k for k in range(len(reduction.units)) if k not in doubted]
     signals = _signals(graph, kept, t, p, newton, table, told)
     efforts = table.out[[graph.outputs[effort] for effort in kept.efforts]]
     with np.errstate(all="ignore"):
-        found = signals.peaks([plan.units[k] for k in told])
+        found = signals.peaks([reduction.units[k] for k in told])
         means = np.stack(_means(efforts))
     if not found.told.all():
         return Status.PEAK_NOT_TOLD, None
-    peaks = np.full((3, len(plan.units)), np.nan)
+    peaks = np.full((3, len(reduction.units)), np.nan)
     peaks[:, told] = found.value, found.t, found.xi
-    means[:, [effort not in told for effort in plan.efforts]] = np.nan
+    means[:, [effort not in told for effort in reduction.efforts]] = np.nan
     return Status.OK, DesignResult(peaks, means, table.out)
 
 
@@ -70,14 +70,14 @@ def _signals(
     graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None, table: Table, some: Sequence[int]
 ) -> Signals:
     """Some quantities that are kept of a design, as curves over time."""
-    mechanism, plan = graph.scene.mechanism, kept.plan
+    mechanism, reduction = graph.scene.mechanism, kept.reduction
     matter = _matter(kept, mechanism, dict(zip(mechanism.parameters, p.tolist(), strict=True)))
     sections = [
         SectionForce(force, along.law, along.stations, length, density)
-        for along, (length, density) in zip(plan.links, matter, strict=True)
+        for along, (length, density) in zip(reduction.links, matter, strict=True)
         for force in FORCES
     ]
-    quantities: list[Quantity] = [*plan.quantities, *sections]
+    quantities: list[Quantity] = [*reduction.quantities, *sections]
     return Signals(graph, table.stages, kept.sharpness, [quantities[k] for k in some], t, p, table.iterated, newton)
 
 

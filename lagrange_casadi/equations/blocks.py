@@ -102,7 +102,7 @@ Part = tuple[list[Equation], list[Coordinate]]
 """Equations, and the coordinates that they are solved for."""
 
 
-def plan(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block, ...]:
+def solving_order(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block, ...]:
     """The blocks in the order of solution; among those that can be solved next, first the one that fewest joints close.
 
     Where the equations do not match the unknowns, the rank of their Jacobian decides, at the assembled start: equations

@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from ..declare.density import Array
 from ..errors import AssemblyError, DeclarationError
-from .blocks import Block, plan
+from .blocks import Block, solving_order
 from .gaps import left, misfit, reach
 from .linear import LinearSystem
 from .loops import ClosedForm
@@ -95,7 +95,7 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start, *, i
     leaves the branch open, :class:`AssemblyError` where the mechanism cannot be assembled at the start.
     """
     solver = _Solver(multibody, dict(posture), start, iterate)
-    blocks = plan(multibody, solver.beginning())
+    blocks = solving_order(multibody, solver.beginning())
     for block in blocks:
         solver.close(block)
     return solver.finish(blocks)

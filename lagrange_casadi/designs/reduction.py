@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.compensated import Precision
-from ..codegen.designs import Along, Plan, matter_of
+from ..codegen.designs import Along, Reduction, matter_of
 from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array, Density
 from ..declare.mechanism import Mechanism
@@ -48,7 +48,7 @@ class KeptOutputs:
     """The outputs of which something is kept of each design: peaks of ``quantities``, in ``units``, and means of ``efforts``.
 
     Quantities are the wanted outputs, without angles that loops set, and sizes of joints' reactions; the section forces of
-    ``links`` come last. What equilibrium leaves open for the parameters' defaults is left out. ``plan`` is the same in numbers
+    ``links`` come last. What equilibrium leaves open for the parameters' defaults is left out. ``reduction`` is the same in numbers
     of columns, as C takes it.
     """
 
@@ -56,7 +56,7 @@ class KeptOutputs:
     units: tuple[str, ...]
     efforts: tuple[Output, ...]
     links: tuple[str, ...]
-    plan: Plan
+    reduction: Reduction
     sharpness: Sharpness
 
     @classmethod
@@ -88,7 +88,7 @@ class KeptOutputs:
         doubted = {k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")}
         made = {name: _made_of(graph, name) for name in names}
         doubts = [(doubted[graph.doubtful[n]], k) for k, name in enumerate(names) for n in made[name] if n in graph.doubtful]
-        plan = Plan(
+        reduction = Reduction(
             quantities=tuple(chosen.values()),
             links=along,
             units=tuple(numbers[unit] for unit in units),
@@ -103,7 +103,7 @@ class KeptOutputs:
             watches=sharpness.watches,
             knots=sharpness.knots,
         )
-        return cls(tuple(names), units, efforts, tuple(link.name for link in links), plan, sharpness)
+        return cls(tuple(names), units, efforts, tuple(link.name for link in links), reduction, sharpness)
 
 
 def _unit(mechanism: Mechanism, output: Output) -> str:
@@ -145,7 +145,7 @@ def _checks(graph: SceneGraph, rung: Rung) -> list[tuple[int, str, float]]:
 def _matter(
     mechanism: Mechanism, links: list[Link], along: tuple[Along, ...], precision: Precision
 ) -> tuple[ca.Function, int, int]:
-    """What the plan wants to know of the parts, and how many numbers must be positive, and not negative."""
+    """What the reduction takes of the parts, and how many numbers must be positive, and not negative."""
     positive, others = demands(mechanism, precision).in_order(mechanism.symbols)
     positive = [extent(mechanism), *positive]
     rest: list[Any] = []
