@@ -13,8 +13,8 @@ from ..errors import NoDesignError
 from ..store.runs import figure_specs, load
 from ..store.untrusted import told_as
 from ..sweep import Sweep, is_sweep
+from ..sweep.default_figures import default_plots
 from ..sweep.plots import Spec, draw_sweep
-from ..sweep.usual import default_plots
 from ..system.publish import check_writable, filling
 from .drawing import draw_with_progress
 from .options import place

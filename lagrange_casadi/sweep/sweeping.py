@@ -18,8 +18,8 @@ from ..errors import DeclarationError
 from ..instants.rung import Backend, Rung
 from ..system.room import MOST_THREADS
 from .axes import designs_of
+from .carrying_out import Progress, carry_out
 from .columns import Keep
-from .conduct import Progress, conduct
 from .plan import Plan
 from .reading import Sweep
 from .workers import Threads, Workers
@@ -102,7 +102,7 @@ def sweep(
     keeper = _Temporary() if out is None else None
     target = keeper.path / "sweep.h5" if keeper else Path(out or "")
     hands = hired(workers, dask, case)
-    seen = conduct(plan, target, hands, resume=resume, force=force, progress=progress or (lambda *_: None))
+    seen = carry_out(plan, target, hands, resume=resume, force=force, progress=progress or (lambda *_: None))
     return Sweep.open(target, keeper, seen)
 
 

@@ -27,7 +27,7 @@ _CATCHING_UP = 4
 """Parts joined for each that is committed, where there are more."""
 
 
-def conduct(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: bool, progress: Progress) -> Seen | None:
+def carry_out(plan: Plan, target: Path, workers: Workers, *, resume: bool, force: bool, progress: Progress) -> Seen | None:
     """Carry out a plan into the file ``target``; what was seen of that, unless it was there already.
 
     ``resume`` goes on with what an earlier sweep left, ``force`` starts anew whatever is there. Raises :class:`BusyError`,
