@@ -22,8 +22,8 @@ from .errors import CertificateWarning, DeclarationError
 from .instants.backends import Table
 from .instants.cost import seconds
 from .instants.determinacy import determinate, undetermined
+from .instants.from_table import columns
 from .instants.phases import phases
-from .instants.reading import columns
 from .instants.refusal import refuse
 from .instants.rung import Backend, Rung
 from .instants.solution import Solution, in_order

@@ -242,7 +242,7 @@ def test_what_the_code_did_wrong_is_an_error_of_what_it_did_wrong(monkeypatch):
         table.out[arguments[0].names.index("reaction:A:fx")] *= 1.001
         return table, provenance
 
-    monkeypatch.setattr(sys.modules["lagrange_casadi.instants.reading"], "run", spoilt)
+    monkeypatch.setattr(sys.modules["lagrange_casadi.instants.from_table"], "run", spoilt)
     with pytest.warns(CertificateWarning, match="balance"):
         solution = evaluate(slider_crank(["all"]))
     assert solution.errors["reaction:A:fx"] == pytest.approx(0.001 / 1.001 * abs(solution.peak("reaction:A:fx").value), rel=1e-9)

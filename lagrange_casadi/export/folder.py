@@ -21,7 +21,7 @@ from ..equations.scene_graph import SceneGraph
 from ..errors import CertificateError, DeclarationError, PathError
 from ..evaluate import checked_times, evaluate
 from ..instants.determinacy import determinate
-from ..instants.reading import drive_of, table_of
+from ..instants.from_table import drive_of, table_of
 from ..instants.rung import Rung
 from ..judge.certificate import failure
 from ..system.publish import check_writable, filling

@@ -102,13 +102,13 @@ def _require_room(solution: Solution, target: Path) -> None:
 
 def load(path: str | os.PathLike[str]) -> Solution:
     """Read a solution. Raises :class:`StoreError` for what is not a whole file of this schema, :class:`PathError` for none."""
-    with reading(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
         return _read(file)
 
 
 def figure_specs(path: str | os.PathLike[str]) -> str:
     """How the case wants to be drawn, as it was given to :func:`save`. Raises what :func:`load` does."""
-    with reading(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
         return shown(file.attrs.get("figures", ""))
 
 
@@ -118,7 +118,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
     Every dataset is read, so its checksum is verified; every value must be finite, every axis have its scale, every unit and sign
     be the schema's; and the section grids must be what the laws give, to 1e-12 of their peak. Raises what :func:`load` does.
     """
-    with reading(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
         solution = _read(file)
         certificate = (Output("certificate", "", name) for name in solution.certificate)
         outputs = dict.fromkeys([*solution.quantities(), *solution.outputs, *certificate])
@@ -300,7 +300,7 @@ def _check_numbers(dataset: Any, shape: Sequence[int] | None) -> None:
 
 
 @contextmanager
-def reading(
+def opened_file(
     path: str | os.PathLike[str], schema: str, version: int, kind: str, of: str = "", seen: Seen | None = None
 ) -> Iterator[h5py.File]:
     """A whole file of a schema, which messages call ``kind``, its versions those ``of`` it.

@@ -57,7 +57,7 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
     Raises :class:`DeclarationError` where the solution is not of this scene, :class:`UnknownNameError` for a name that is none.
     """
     chosen = list(solution.quantities()) if names is None else [Output.of(solution.peak(name).name) for name in names]
-    return _Cycle.of(scene, solution).peaks(chosen)
+    return _ContinuousSolution.of(scene, solution).peaks(chosen)
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,7 @@ def rates(graph: SceneGraph) -> ca.Function:
 
 
 @dataclass(frozen=True, eq=False)
-class _Cycle:
+class _ContinuousSolution:
     """A solution, and what its quantities and their time derivatives are at any time of its span."""
 
     graph: SceneGraph
@@ -148,7 +148,7 @@ class _Cycle:
     rows: Mapping[Output, int]
 
     @classmethod
-    def of(cls, scene: Scene, solution: Solution) -> _Cycle:
+    def of(cls, scene: Scene, solution: Solution) -> _ContinuousSolution:
         mechanism = scene.mechanism
         told = mechanism.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
         wanted = list(dict.fromkeys(map(_wanted, solution.outputs)))
@@ -156,10 +156,10 @@ class _Cycle:
         p = np.array(list(told.values()))
         stages = compensated(graph, "double") if turns_many(graph, solution.t, p) else plain(graph)
         z, _ = follow(graph, solution.t, p, stages=stages)
-        cycle = cls(graph, stages, solution, p, z, graph.outputs)
-        if not cycle.agrees():
+        found = cls(graph, stages, solution, p, z, graph.outputs)
+        if not found.agrees():
             raise DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{mechanism.name}'")
-        return cycle
+        return found
 
     def agrees(self) -> bool:
         """Whether the graph gives what the solution has: at one of three instants, for at a jump rounding decides."""

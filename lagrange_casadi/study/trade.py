@@ -22,7 +22,7 @@ from ..equations.derive import assembled, derive
 from ..equations.scene_graph import SceneGraph
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
 from ..instants.backends import Table, run
-from ..instants.reading import columns
+from ..instants.from_table import columns
 from ..instants.rung import Rung
 from ..judge.reference import reference
 from .peaks import Shortfall, shortfall

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from ..declare.density import Array
 from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, one_line
-from ..store.runs import reading, schema_of
+from ..store.runs import opened_file, schema_of
 from ..system.seal import Seen, verify
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
@@ -64,7 +64,7 @@ class Sweep:
         """
         _refuse_unfinished(path)
         seen = seen if seen and seen.is_at(path) else verify(path)
-        with _reading(path, seen) as file:
+        with _opened(path, seen) as file:
             return cls(Path(path), **contents(file, sealed=seen.sealed), keeper=keeper, seen=seen)
 
     def __repr__(self) -> str:
@@ -296,7 +296,7 @@ class Sweep:
 
     def opened(self) -> AbstractContextManager[h5py.File]:
         """Its file, to read. Raises what :meth:`open` does."""
-        return _reading(self.path, self.seen)
+        return _opened(self.path, self.seen)
 
 
 def is_sweep(path: str | Path) -> bool:
@@ -343,8 +343,8 @@ def _along(dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], wher
     return np.broadcast_to(np.reshape(_taken(dataset, where[axis]), shape), kept).ravel()
 
 
-def _reading(path: str | Path, seen: Seen | None) -> AbstractContextManager[h5py.File]:
-    return reading(path, SCHEMA, SCHEMA_VERSION, "the file of a sweep", " of sweeps", seen)
+def _opened(path: str | Path, seen: Seen | None) -> AbstractContextManager[h5py.File]:
+    return opened_file(path, SCHEMA, SCHEMA_VERSION, "the file of a sweep", " of sweeps", seen)
 
 
 def _refuse_unfinished(path: str | Path) -> None:
