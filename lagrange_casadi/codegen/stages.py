@@ -1,4 +1,7 @@
-"""What is evaluated at an instant, in order: the drive, iterated loops, and all that follows from them.
+"""The stages of an instant: the functions that are called one after another to evaluate it.
+
+First the drive, which gives the driven coordinates and their rates at a time; then, where loops are iterated, a Newton step of
+theirs, as often as it takes; last the instant itself, all that follows from both.
 
 What is *counted* (time, driven coordinates, and sums, products and whole parts of them) grows with the turns; nothing else does.
 Where turns are few, the drive hands on time and coordinates as they are. Where they are many, or numbers are single, all that is
