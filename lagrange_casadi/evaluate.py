@@ -14,7 +14,7 @@ from .arithmetic.compensated import Precision
 from .declare.density import Array
 from .declare.description import describe
 from .declare.motion import refuse_kinked
-from .declare.scene import Grid, Scene, checked, checked_ratios, points
+from .declare.scene import EvenPoints, Scene, checked, checked_ratios, points
 from .equations.checks import Check
 from .equations.derive import assembled, derive
 from .equations.scene_graph import SceneGraph
@@ -44,8 +44,8 @@ def evaluate(
     scene: Scene,
     *,
     parameters: Mapping[str, float] | None = None,
-    t: Grid | None = None,
-    xi: Grid | None = None,
+    t: EvenPoints | None = None,
+    xi: EvenPoints | None = None,
     wanted: Sequence[str] | None = None,
     backend: Backend = "auto",
     precision: Precision = "double",
@@ -132,7 +132,7 @@ def _announce(graph: SceneGraph, count: int, rung: Rung, threads: int) -> None:
         warnings.warn(f"{many} instants{each} take about {in_words(takes)}", stacklevel=3)
 
 
-def checked_times(scene: Scene, t: Grid | None) -> Grid:
+def checked_times(scene: Scene, t: EvenPoints | None) -> EvenPoints:
     """A grid of instants, or the scene's own, in numbers. Raises :class:`DeclarationError` where samples of a motion end before."""
     start, stop, count = checked("t", scene.t if t is None else t)
     for joint, law in scene.motion.items():

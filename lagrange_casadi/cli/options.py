@@ -10,19 +10,19 @@ from typing import Any, TypeVar
 import click
 
 from ..arithmetic.compensated import PRECISIONS
-from ..declare.scene import Grid
+from ..declare.scene import EvenPoints
 from ..errors import DeclarationError
 from ..instants.rung import BACKENDS
 from ..sweep import Axis, Range, Values
 from ..system.numerals import real, whole
 
-GRID = "START:STOP:COUNT"
+EVEN_POINTS = "START:STOP:COUNT"
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
 Number = TypeVar("Number", int, float)
 
 
-def grid(text: str) -> Grid:
+def even_points(text: str) -> EvenPoints:
     """START:STOP:COUNT, both ends included."""
     try:
         start, stop, count = text.split(":")

@@ -11,7 +11,7 @@ import click
 
 from ..arithmetic.compensated import Precision
 from ..case import load_case
-from ..declare.scene import Grid
+from ..declare.scene import EvenPoints
 from ..draw.figures import dump_specs
 from ..errors import CertificateError
 from ..evaluate import evaluate
@@ -23,7 +23,7 @@ from ..study.peaks import forces, refine
 from ..system.publish import check_free, check_writable, filling
 from ..system.room import MOST_THREADS
 from .drawing import draw_with_progress
-from .options import GRID, grid, parameters, rung, setting
+from .options import EVEN_POINTS, even_points, parameters, rung, setting
 from .report import peak_line
 
 
@@ -32,8 +32,8 @@ from .report import peak_line
 @click.option(
     "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
 )
-@click.option("--t", type=grid, metavar=GRID, help="Instants [s]; default: the case's.")
-@click.option("--xi", type=grid, metavar=GRID, help="Section ratios xi/l, within 0 and 1; default: the case's.")
+@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@click.option("--xi", type=even_points, metavar=EVEN_POINTS, help="Section ratios xi/l, within 0 and 1; default: the case's.")
 @click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
 @rung
 @click.option("--threads", type=click.IntRange(1, MOST_THREADS), metavar="N", help="Threads; default: one a core.")
@@ -45,8 +45,8 @@ from .report import peak_line
 def run(
     case: Path,
     settings: Sequence[tuple[str, float]],
-    t: Grid | None,
-    xi: Grid | None,
+    t: EvenPoints | None,
+    xi: EvenPoints | None,
     want: Sequence[str],
     backend: Backend,
     precision: Precision,

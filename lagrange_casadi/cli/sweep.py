@@ -10,7 +10,7 @@ import click
 
 from ..arithmetic.compensated import Precision
 from ..case import load_case
-from ..declare.scene import Grid
+from ..declare.scene import EvenPoints
 from ..errors import CertificateError
 from ..instants.refusal import Status
 from ..instants.rung import Backend
@@ -18,7 +18,7 @@ from ..sweep import KEEPS, Axis, Keep, Sweep, read_designs
 from ..sweep import sweep as carry_out
 from ..sweep.axes import counted, grouped
 from ..system.room import MOST_THREADS
-from .options import AXIS, GRID, axis, grid, parameters, setting, untabled_rung
+from .options import AXIS, EVEN_POINTS, axis, even_points, parameters, setting, untabled_rung
 from .progress import shown
 
 
@@ -41,8 +41,10 @@ from .progress import shown
     multiple=True,
     help="Give a parameter that is not swept another value; repeatable.",
 )
-@click.option("--t", type=grid, metavar=GRID, help="Instants [s]; default: the case's.")
-@click.option("--xi", type=grid, metavar=GRID, help="Keep section forces at these ratios xi/l too, each the largest over time.")
+@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@click.option(
+    "--xi", type=even_points, metavar=EVEN_POINTS, help="Keep section forces at these ratios xi/l too, each the largest over time."
+)
 @click.option(
     "--want",
     multiple=True,
@@ -69,8 +71,8 @@ def sweep(
     axes: Sequence[tuple[str, Axis]],
     designs: Path | None,
     settings: Sequence[tuple[str, float]],
-    t: Grid | None,
-    xi: Grid | None,
+    t: EvenPoints | None,
+    xi: EvenPoints | None,
     want: Sequence[str],
     keep: Keep,
     backend: Backend,

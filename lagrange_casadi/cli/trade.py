@@ -10,14 +10,14 @@ import click
 from tqdm import tqdm
 
 from ..case import load_case
-from ..declare.scene import Grid
+from ..declare.scene import EvenPoints
 from ..draw.trade_plot import PICTURES, draw_trade
 from ..errors import DeclarationError
 from ..instants.rung import Rung
 from ..study.trade import RUNGS, Trade
 from ..study.trade import trade as measure
 from ..system.publish import check_writable, writing
-from .options import GRID, grid, parameters, setting
+from .options import EVEN_POINTS, even_points, parameters, setting
 
 
 @click.command()
@@ -25,7 +25,7 @@ from .options import GRID, grid, parameters, setting
 @click.option(
     "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
 )
-@click.option("--t", type=grid, metavar=GRID, help="Instants [s]; default: the case's.")
+@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
 @click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
 @click.option("--accuracy", type=float, metavar="ERROR", help="Recommend the fastest method within this error of the peak.")
 @click.option("--out", type=click.Path(path_type=Path), help="The numbers, as JSON; default: <case>_trade.json here.")
@@ -33,7 +33,7 @@ from .options import GRID, grid, parameters, setting
 def trade(
     case: Path,
     settings: Sequence[tuple[str, float]],
-    t: Grid | None,
+    t: EvenPoints | None,
     want: Sequence[str],
     accuracy: float | None,
     out: Path | None,

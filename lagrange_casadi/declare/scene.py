@@ -19,8 +19,8 @@ from .limits import no_sections
 from .mechanism import Mechanism
 from .motion import Motion
 
-Grid = tuple[float, float, int]
-"""Start, stop and count; both ends are included."""
+EvenPoints = tuple[float, float, int]
+"""Evenly spaced: start, stop and count; both ends are included."""
 
 _TOLD = 8
 _MADE_FROM = 3
@@ -30,16 +30,16 @@ _EXACT = 2**53
 """Up to which doubles hold all whole numbers, so that a quotient of two is rounded once."""
 
 
-def checked(what: str, grid: Grid) -> Grid:
-    """A grid in numbers. Raises :class:`DeclarationError` for a count below 1, ends that are not finite, fall, or are one."""
+def checked(what: str, even: EvenPoints) -> EvenPoints:
+    """Even points in numbers. Raises :class:`DeclarationError` for a count below 1, ends that are not finite, fall, or are one."""
     try:
-        start, stop, count = float(grid[0]), float(grid[1]), int(grid[2])
-        if len(grid) != 3:
+        start, stop, count = float(even[0]), float(even[1]), int(even[2])
+        if len(even) != 3:
             raise ValueError
     except (TypeError, ValueError, IndexError, OverflowError):
-        raise DeclarationError(f"{what}: expected (start, stop, count), got {grid!r}") from None
-    if count < 1 or count != grid[2]:
-        raise DeclarationError(f"{what}: COUNT must be a whole number of at least 1, got {grid[2]}")
+        raise DeclarationError(f"{what}: expected (start, stop, count), got {even!r}") from None
+    if count < 1 or count != even[2]:
+        raise DeclarationError(f"{what}: COUNT must be a whole number of at least 1, got {even[2]}")
     if not (math.isfinite(start) and math.isfinite(stop)):
         raise DeclarationError(f"{what}: START and STOP must be finite, got {start:g} and {stop:g}")
     if stop < start or (count > 1 and stop == start):
@@ -49,14 +49,14 @@ def checked(what: str, grid: Grid) -> Grid:
     return start, stop, count
 
 
-def points(grid: Grid, numbers: npt.NDArray[np.int64] | None = None) -> Array:
-    """All points of a grid, or those of given numbers, evenly spaced.
+def points(even: EvenPoints, numbers: npt.NDArray[np.int64] | None = None) -> Array:
+    """All of some even points, or those of given numbers.
 
     Each is rounded once from what the decimals of the ends say, so that 0.2:0.4:3 has 0.3, not 0.30000000000000004; where
     these take more than the digits of a double, they are those of ``numpy.linspace``. Raises :class:`SizeError` for more than
     memory holds.
     """
-    start, stop, count = grid
+    start, stop, count = even
     if numbers is None:
         require(f"the points from {start:g} to {stop:g}", (_MADE_FROM, count))
     numbers = np.arange(count) if numbers is None else numbers
@@ -79,9 +79,9 @@ def told_parameters(mechanism: Mechanism, values: Mapping[str, float]) -> str:
     return f"; with the {'' if values else 'default '}parameters {', '.join(listed)}" if listed else ""
 
 
-def checked_ratios(grid: Grid) -> Grid:
-    """A grid of section ratios xi/l in numbers. Raises :class:`DeclarationError` outside [0, 1]."""
-    start, stop, count = checked("xi", grid)
+def checked_ratios(even: EvenPoints) -> EvenPoints:
+    """Even section ratios xi/l in numbers. Raises :class:`DeclarationError` outside [0, 1]."""
+    start, stop, count = checked("xi", even)
     if start < 0.0 or stop > 1.0:
         raise DeclarationError(f"xi: ratios xi/l must lie in [0, 1], got {start:g} to {stop:g}")
     return start, stop, count
@@ -167,8 +167,8 @@ class Scene:
     mechanism: Mechanism
     motion: Mapping[str, Motion]
     wanted: Sequence[str] = ("all",)
-    t: Grid = (0.0, 1.0, 101)
-    xi: Grid = (0.0, 1.0, 101)
+    t: EvenPoints = (0.0, 1.0, 101)
+    xi: EvenPoints = (0.0, 1.0, 101)
     posture: Mapping[str, float] = field(default_factory=dict)
     assembly: Mapping[str, float] = field(default_factory=dict)
 

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from .. import codegen
 from ..codegen.stages import Stages
 from ..declare.density import Array
-from ..declare.scene import Grid, Scene, points
+from ..declare.scene import EvenPoints, Scene, points
 from ..equations.derive import derive
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
@@ -79,7 +79,9 @@ class DesignEngine:
     provenance: Provenance
 
     @classmethod
-    def of(cls, scene: Scene, wanted: Sequence[str] | None = None, t: Grid | None = None, rung: Rung | None = None) -> DesignEngine:
+    def of(
+        cls, scene: Scene, wanted: Sequence[str] | None = None, t: EvenPoints | None = None, rung: Rung | None = None
+    ) -> DesignEngine:
         """Derive and compile: ``wanted`` outputs, instants ``t`` and ``rung`` as in :func:`.evaluate`."""
         rung = rung or Rung()
         if rung.table is not None:

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..codegen import find_compiler
 from ..declare.density import Array
-from ..declare.scene import Grid, Scene, checked, points
+from ..declare.scene import EvenPoints, Scene, checked, points
 from ..equations.derive import assembled, derive
 from ..equations.scene_graph import SceneGraph
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
@@ -115,7 +115,7 @@ def trade(
     scene: Scene,
     *,
     parameters: Mapping[str, float] | None = None,
-    t: Grid | None = None,
+    t: EvenPoints | None = None,
     wanted: Sequence[str] | None = None,
     rungs: Sequence[Rung] = RUNGS,
     progress: Callable[[Rung], None] = lambda rung: None,

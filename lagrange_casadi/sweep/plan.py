@@ -16,8 +16,7 @@ import numpy as np
 from ..declare.density import Array
 from ..declare.description import SHAPE as DESCRIPTION
 from ..declare.description import Description, describe
-from ..declare.scene import Grid as Span
-from ..declare.scene import Scene, Wanted, checked, checked_ratios, outputs, points
+from ..declare.scene import EvenPoints, Scene, Wanted, checked, checked_ratios, outputs, points
 from ..designs.engine import DesignEngine
 from ..equations.derive import derive
 from ..equations.fingerprint import fingerprint, sources
@@ -72,8 +71,8 @@ class Task:
     """
 
     wanted: tuple[str, ...]
-    t: Span
-    xi: Span | None
+    t: EvenPoints
+    xi: EvenPoints | None
     keep: Keep
     rung: Rung
     assembly: tuple[tuple[str, float], ...] = ()
@@ -89,7 +88,7 @@ class Task:
         return Harvest(engine, scene.mechanism, self.keep, points(self.t), xi)
 
 
-def compiled(scene: Scene, wanted: Sequence[str], t: Span, rung: Rung) -> Engine:
+def compiled(scene: Scene, wanted: Sequence[str], t: EvenPoints, rung: Rung) -> Engine:
     """The engine of a scene."""
     return DesignEngine.of(scene, wanted, t, rung)
 
@@ -111,8 +110,8 @@ class Plan:
         designs: Designs,
         *,
         fixed: Mapping[str, float] | None = None,
-        t: Span | None = None,
-        xi: Span | None = None,
+        t: EvenPoints | None = None,
+        xi: EvenPoints | None = None,
         wanted: Sequence[str] | None = None,
         keep: Keep = "peaks",
         rung: Rung | None = None,

@@ -12,8 +12,7 @@ from typing import Any
 
 from ..arithmetic.compensated import Precision
 from ..case import Case
-from ..declare.scene import Grid as Span
-from ..declare.scene import Scene
+from ..declare.scene import EvenPoints, Scene
 from ..errors import DeclarationError
 from ..instants.rung import Backend, Rung
 from ..system.room import MOST_THREADS
@@ -31,8 +30,8 @@ def sweep(
     *,
     out: str | os.PathLike[str] | None = None,
     parameters: Mapping[str, float] | None = None,
-    t: Span | None = None,
-    xi: Span | None = None,
+    t: EvenPoints | None = None,
+    xi: EvenPoints | None = None,
     wanted: Sequence[str] | None = None,
     keep: Keep = "peaks",
     backend: Backend = "auto",
