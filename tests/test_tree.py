@@ -12,7 +12,7 @@ pytestmark = pytest.mark.quick
 
 
 def names(tree):
-    return [branch.joint.name for branch in tree.branches], [joint.name for joint in tree.closures]
+    return [branch.joint.name for branch in tree.branches], [joint.name for joint in tree.closing]
 
 
 def test_a_guided_point_is_left_open():
@@ -71,4 +71,4 @@ def test_a_driven_slide_carries_its_mass_whatever_else_is_pinned_to_it():
     m.slot("S", c, pin, axis=(1, 0))
     tree = span(m, ["S", "R"])
     assert [branch.joint.name for branch in tree.branches] == ["O", "Q", "R", "S"]
-    assert [joint.name for joint in tree.closures] == ["P"]
+    assert [joint.name for joint in tree.closing] == ["P"]

@@ -12,7 +12,18 @@ from ..declare.density import Density
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Force, Joint, Link, Load, Point, PointMass, RigidMass, Spring, Torque
 from ..geometry.planar import Frame, Pair, Rotation, Velocities, closure, gap_motion, reaction, slide
-from .multibody import Applied, Closure, Coordinate, Multibody, RowGraph, Turned, change, column, joint_coordinate, joint_rates
+from .multibody import (
+    Applied,
+    Coordinate,
+    LoopEquations,
+    Multibody,
+    RowGraph,
+    Turned,
+    change,
+    column,
+    joint_coordinate,
+    joint_rates,
+)
 from .tree import Branch, Tree
 
 
@@ -29,24 +40,29 @@ def assemble(mechanism: Mechanism, tree: Tree, driven: Collection[str], reaction
     for branch in tree.branches:
         resting.hang(branch, displace=False)
         felt.hang(branch, displace=branch.joint.name in reactions)
-    closures = [_closure(joint.name, joint, *closure(joint, *resting.ends(joint))) for joint in tree.closures]
+    loops = [_loop_equations(joint.name, joint, *closure(joint, *resting.ends(joint))) for joint in tree.closing]
     for constraint in mechanism.constraints.values():
         gap = resting.counted(constraint.phi)
         rate = change(gap, resting.coordinates, mechanism.time)
-        closures.append(_closure(constraint.name, None, gap, rate, change(rate, resting.coordinates, mechanism.time)))
+        loops.append(_loop_equations(constraint.name, None, gap, rate, change(rate, resting.coordinates, mechanism.time)))
     rows = tuple(_row(resting, row) for row in mechanism.rows.values())
     applied = tuple(part for load in mechanism.loads.values() for part in _apply(load, resting))
-    held = [part for c in closures if c.joint is None for part in _hold(resting, c.name, mechanism.constraints[c.name].phi, c)]
+    held = [
+        part
+        for loop in loops
+        if loop.joint is None
+        for part in _hold(resting, loop.name, mechanism.constraints[loop.name].phi, loop)
+    ]
     held += [part for graph in rows for part in _hold(resting, graph.row.name, graph.row.expression, graph)]
     velocities = Velocities()
     spun = {b.far.body for b in tree.branches if not b.joint.slides and (b.joint.name in driven or b.near.body is mechanism.ground)}
     kinetic = sum((_kinetic(body, felt, velocities, body in spun) for body in mechanism.moving), ca.SX(0))
-    _work(felt, (*applied, *held), closures, velocities)
+    _work(felt, (*applied, *held), loops, velocities)
     return Multibody(
         mechanism=mechanism,
         tree=tree,
         coordinates=resting.coordinates,
-        closures=tuple(closures),
+        loop_equations=tuple(loops),
         rows=rows,
         mobilities=felt.mobilities,
         frames=resting.frames,
@@ -223,8 +239,8 @@ def _coordinates(mechanism: Mechanism, tree: Tree, driven: Collection[str]) -> d
     return found
 
 
-def _closure(name: str, joint: Joint | None, gap: Any, rate: Any, acceleration: Any) -> Closure:
-    return Closure(name, joint, gap, rate, acceleration, ca.SX.sym(f"lambda_{name}", gap.numel()))
+def _loop_equations(name: str, joint: Joint | None, gap: Any, rate: Any, acceleration: Any) -> LoopEquations:
+    return LoopEquations(name, joint, gap, rate, acceleration, ca.SX.sym(f"lambda_{name}", gap.numel()))
 
 
 def _apply(load: Load, resting: _Builder) -> list[Applied]:
@@ -255,11 +271,11 @@ def _apply(load: Load, resting: _Builder) -> list[Applied]:
     ]
 
 
-def _hold(resting: _Builder, name: str, expression: Any, of: Closure | RowGraph) -> Iterator[Applied]:
+def _hold(resting: _Builder, name: str, expression: Any, of: LoopEquations | RowGraph) -> Iterator[Applied]:
     """What a multiplier does to bodies, by what its equation is written in: a joint's coordinate, a place, a direction."""
-    multiplier, seen = (of.multipliers, resting.counted) if isinstance(of, Closure) else (of.multiplier, resting.at_state)
+    multiplier, seen = (of.multipliers, resting.counted) if isinstance(of, LoopEquations) else (of.multiplier, resting.at_state)
     for measure in resting.mechanism.measures.asked:
-        symbols = ca.vertcat(*(measure.places if isinstance(of, Closure) else measure.rates))
+        symbols = ca.vertcat(*(measure.places if isinstance(of, LoopEquations) else measure.rates))
         if not ca.depends_on(expression, symbols):
             continue
         part = [multiplier * seen(slope) for slope in ca.vertsplit(ca.jacobian(expression, symbols).T)]
@@ -293,16 +309,16 @@ def _row(resting: _Builder, row: Any) -> RowGraph:
     return RowGraph(row, residual, slopes @ going + rest, ca.SX.sym(f"mu_{row.name}"))
 
 
-def _work(felt: _Builder, applied: Iterable[Applied], closures: Iterable[Closure], velocities: Velocities) -> None:
+def _work(felt: _Builder, applied: Iterable[Applied], loops: Iterable[LoopEquations], velocities: Velocities) -> None:
     """Let loads and multipliers do work: along the velocities of points, and of what a closing joint holds together."""
     for part in applied:
         frame = felt.frames[part.point.body.name]
         velocities.point(frame.motion_of(part.point.x, part.point.y), (part.fx, part.fy))
         velocities.turn(frame.rate, frame.angular, part.mz)
-    for closed in closures:
-        if closed.joint is not None:
-            parent, child = felt.ends(closed.joint)
-            action = reaction(closed.joint, parent, child, closed.multipliers, closing=True)
-            velocities.point(gap_motion(closed.joint, parent, child), (action["fx"], action["fy"]))
+    for loop in loops:
+        if loop.joint is not None:
+            parent, child = felt.ends(loop.joint)
+            action = reaction(loop.joint, parent, child, loop.multipliers, closing=True)
+            velocities.point(gap_motion(loop.joint, parent, child), (action["fx"], action["fy"]))
             if "mz" in action:
                 velocities.turn(child.rate - parent.rate, child.angular - parent.angular, action["mz"])

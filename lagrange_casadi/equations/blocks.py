@@ -18,7 +18,7 @@ import numpy as np
 from ..declare.density import Array
 from ..errors import MobilityError
 from .loops import ClosedForm, solve_loop
-from .multibody import Closure, Coordinate, Multibody, column
+from .multibody import Coordinate, LoopEquations, Multibody, column
 from .sampling import drawn
 
 _STEPS = 200
@@ -33,9 +33,9 @@ _ABSENT = 1e-13
 
 @dataclass(frozen=True, eq=False)
 class Equation:
-    """One scalar equation of a closure, with its total time derivatives, in the undriven coordinates that are ``present``."""
+    """One scalar equation of a loop or constraint, with its time derivatives, in the undriven coordinates that are ``present``."""
 
-    closure: Closure
+    loop: LoopEquations
     row: int
     present: frozenset[Coordinate]
     gap: Any
@@ -45,8 +45,8 @@ class Equation:
     @property
     def aligns(self) -> bool:
         """Whether it holds the direction of a joint's child: by its sine, which a half turn has too."""
-        joint = self.closure.joint
-        return joint is not None and joint.holds_direction and self.row == self.closure.gap.numel() - 1
+        joint = self.loop.joint
+        return joint is not None and joint.holds_direction and self.row == self.loop.gap.numel() - 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,22 +75,22 @@ class Block:
     @property
     def multipliers(self) -> Any:
         """The symbols of their multipliers."""
-        return column(equation.closure.multipliers[equation.row] for equation in self.equations)
+        return column(equation.loop.multipliers[equation.row] for equation in self.equations)
 
     @property
-    def closures(self) -> tuple[Closure, ...]:
-        """The closures that they are of."""
-        return tuple(dict.fromkeys(equation.closure for equation in self.equations))
+    def loop_equations(self) -> tuple[LoopEquations, ...]:
+        """The loops and constraints that they are of."""
+        return tuple(dict.fromkeys(equation.loop for equation in self.equations))
 
     @property
     def name(self) -> str:
-        """The closure that stands for the block where one name is wanted: its last."""
-        return self.closures[-1].name
+        """The loop or constraint that stands for the block where one name is wanted: its last."""
+        return self.loop_equations[-1].name
 
     @property
     def joints(self) -> str:
         """The joints and constraints that close the loops, for messages."""
-        return ", ".join(f"{'joint' if closure.joint else 'constraint'} '{closure.name}'" for closure in self.closures)
+        return ", ".join(f"{'joint' if loop.joint else 'constraint'} '{loop.name}'" for loop in self.loop_equations)
 
     @property
     def jacobian(self) -> Any:
@@ -117,22 +117,22 @@ def solving_order(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block
     if any(len(rows) != len(columns) for rows, columns in parts):
         _require_freedom(multibody, len(equations), parts, start)
         parts = [piece for part in parts for piece in _pieces(part)]
-    counted = column(closure.gap for closure in multibody.closures if closure.joint is None)
-    ordered = _in_order(parts, multibody.closures)
+    counted = column(loop.gap for loop in multibody.loop_equations if loop.joint is None)
+    ordered = _in_order(parts, multibody.loop_equations)
     return tuple(Block(tuple(rows), tuple(columns), _form(multibody, rows, columns, counted)) for rows, columns in ordered)
 
 
 def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equation]:
     """All scalar equations, without the coordinates that stand in them by rounding alone."""
-    closures = multibody.closures
-    motion = [column(getattr(closure, name) for closure in closures) for name in ("gap", "gap_rate", "gap_acceleration")]
+    loops = multibody.loop_equations
+    motion = [column(getattr(loop, name) for loop in loops) for name in ("gap", "gap_rate", "gap_acceleration")]
     slopes = ca.jacobian(motion[1], column(c.rate for c in unknown))
     entries = drawn(ca.vertcat(ca.SX(0, 1), *slopes.nonzeros()), multibody.coordinates)
     sizes: list[dict[Coordinate, float]] = [{} for _ in range(slopes.size1())]
     for row, k, values in zip(*slopes.sparsity().get_triplet(), np.abs(entries), strict=True):
         sizes[row][unknown[k]] = float(np.where(np.isnan(values), np.inf, values).max())
     found = []
-    for k, (closure, row) in enumerate((own, row) for own in closures for row in range(own.gap.numel())):
+    for k, (loop, row) in enumerate((own, row) for own in loops for row in range(own.gap.numel())):
         least = _ABSENT * max(sizes[k].values(), default=0.0)
         present = frozenset(c for c, size in sizes[k].items() if size > least)
         parts = ca.vertcat(*(expressions[k] for expressions in motion))
@@ -141,7 +141,7 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
         if absent:
             symbols = column(ca.vertcat(c.variables, c.rate, c.acceleration) for c in absent)
             parts = ca.substitute(parts, symbols, column([1, 0, 0, 0, 0] if c.kind == "angle" else [0, 0, 0] for c in absent))
-        found.append(Equation(closure, row, present, *ca.vertsplit(parts)))
+        found.append(Equation(loop, row, present, *ca.vertsplit(parts)))
     return found
 
 
@@ -167,7 +167,7 @@ def _decomposed(equations: Sequence[Equation], unknown: Sequence[Coordinate]) ->
 
 
 def _pieces(part: Part) -> list[Part]:
-    """A part in pieces that share neither a coordinate nor a closure.
+    """A part in pieces that share neither a coordinate nor a loop or constraint.
 
     A piece with too many equations is not taken apart further: what is left of a parallelogram without one of its cranks
     is singular when its links lie on one line, and the whole is not.
@@ -177,19 +177,19 @@ def _pieces(part: Part) -> list[Part]:
         return [part]
     groups: list[tuple[list[Equation], set[Any]]] = []
     for equation in rows:
-        shared = {equation.closure, *equation.present.intersection(columns)}
+        shared = {equation.loop, *equation.present.intersection(columns)}
         joined = [group for group in groups if group[1] & shared]
         groups = [group for group in groups if group not in joined]
         groups.append(([e for group in joined for e in group[0]] + [equation], shared.union(*(group[1] for group in joined))))
     return [(equations, [c for c in columns if c in shared]) for equations, shared in groups]
 
 
-def _in_order(parts: Sequence[Part], closures: Sequence[Closure]) -> list[Part]:
+def _in_order(parts: Sequence[Part], loops: Sequence[LoopEquations]) -> list[Part]:
     """The parts in an order in which each stands on the ones before; next the one that fewest joints close, then as declared."""
     owner = {c: i for i, (_, columns) in enumerate(parts) for c in columns}
     needs = [{owner[c] for equation in rows for c in equation.present} - {i} for i, (rows, _) in enumerate(parts)]
-    declared = {closure: k for k, closure in enumerate(closures)}
-    ranks = [sorted({declared[equation.closure] for equation in rows}) for rows, _ in parts]
+    declared = {loop: k for k, loop in enumerate(loops)}
+    ranks = [sorted({declared[equation.loop] for equation in rows}) for rows, _ in parts]
     followers: list[list[int]] = [[] for _ in parts]
     for i, earlier in enumerate(needs):
         for j in earlier:
@@ -245,7 +245,7 @@ def _ranks(multibody: Multibody, start: Mapping[str, Any]) -> tuple[int, int] | 
     free = ca.SX.sym("u", len(coordinates))
     symbols = column(c.value for c in coordinates)
     values = column(c.placed(symbols, free) for c in coordinates)
-    gaps = ca.substitute(column(c.gap for c in multibody.closures), column(c.variables for c in coordinates), values)
+    gaps = ca.substitute(column(c.gap for c in multibody.loop_equations), column(c.variables for c in coordinates), values)
     f = ca.Function("gaps", [free, *start["inputs"]], [gaps, ca.jacobian(gaps, free)])
     u = np.array([start["posture"].get(c, 0.0) for c in coordinates])
     for _ in range(_STEPS):

@@ -16,7 +16,7 @@ def left(multibody: Multibody, block: Block, length: Any) -> Any:
     """What is left of a block's equations, in one number [m]: gaps as they are, any other over its slopes, times a ``length``."""
     total = ca.SX(0)
     for equation in block.equations:
-        if equation.closure.joint is None:
+        if equation.loop.joint is None:
             total += length * equation.gap / _slope(multibody, equation, length)
         elif equation.aligns:
             total += length * (ca.fabs(equation.gap) + _turned(multibody, equation))
@@ -48,7 +48,7 @@ def extent(mechanism: Mechanism) -> Any:
 
 def _turned(multibody: Multibody, equation: Equation) -> Any:
     """One less the cosine of what a direction is off."""
-    joint = equation.closure.joint
+    joint = equation.loop.joint
     assert joint is not None
     return 1 - misalignment(joint, *(multibody.frames[body.name] for body in joint.bodies)).c
 

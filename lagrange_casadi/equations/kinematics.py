@@ -243,7 +243,7 @@ class _Solver:
             self.iterated.append(symbol)
             self.guess.append(guess[coordinate])
             self.scales.append(1 if coordinate.kind == "angle" else self.length)
-            counted = any(ca.depends_on(closure.gap, coordinate.value) for closure in self.multibody.closures)
+            counted = any(ca.depends_on(loop.gap, coordinate.value) for loop in self.multibody.loop_equations)
             self.turning.append(coordinate.kind == "angle" and not counted)
             if self.turning[-1]:
                 self.loose.add(coordinate.joint)

@@ -82,7 +82,7 @@ def internal_forces(
     columns: dict[Column, Any] = {Output("effort", joint): force for joint, force in drives.items()} if effort else {}
     for name in reactions:
         columns |= {Output("reaction", name, member): force for member, force in borne[name].items()}
-    held = {c.name: c.multipliers for c in multibody.closures if c.joint is None}
+    held = {c.name: c.multipliers for c in multibody.loop_equations if c.joint is None}
     held |= {graph.row.name: graph.multiplier for graph in multibody.rows}
     columns |= {Output("multiplier", name): held[name] for name in multipliers}
     if reactions:
@@ -220,14 +220,14 @@ def _multipliers(multibody: Multibody, kinematics: Kinematics, along: Any) -> tu
     """
     rows = {c: along[i] for i, c in enumerate(multibody.coordinates)}
     symbols, values, free = ca.SX(0, 1), ca.SX(0, 1), ca.SX(0, 1)
-    every = column(closure.multipliers for closure in multibody.closures)
+    every = column(loop.multipliers for loop in multibody.loop_equations)
     for block, system in reversed(list(zip(kinematics.blocks, kinematics.systems, strict=True))):
         own = block.multipliers
         left = column(rows[c] for c in block.unknown)
         left = ca.substitute(left, symbols, values)
         # What no equation of theirs moves, others may still be written in, with factors that cancel.
         left = ca.substitute(left, every, ca.SX.zeros(every.numel()))
-        open_here = ca.SX.sym(f"free_{block.closures[0].name}", system.free)
+        open_here = ca.SX.sym(f"free_{block.loop_equations[0].name}", system.free)
         free = ca.vertcat(free, open_here)
         symbols, values = ca.vertcat(own, symbols), ca.vertcat(system.solve_transposed(left, open_here), values)
     if multibody.rows:
@@ -242,9 +242,9 @@ def _multipliers(multibody: Multibody, kinematics: Kinematics, along: Any) -> tu
 
 def _reaction(multibody: Multibody, joint: Joint, actions: dict[str, Any]) -> dict[str, Any]:
     parent, child = (multibody.frames[body.name] for body in joint.bodies)
-    for closure in multibody.closures:
-        if closure.joint is joint:
-            return reaction(joint, parent, child, closure.multipliers, closing=True)
+    for loop in multibody.loop_equations:
+        if loop.joint is joint:
+            return reaction(joint, parent, child, loop.multipliers, closing=True)
     branch = next(branch for branch in multibody.tree.branches if branch.joint is joint)
     return reaction(joint, parent, child, branch.sign * actions[joint.name], closing=False)
 

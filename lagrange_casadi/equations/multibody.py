@@ -60,8 +60,8 @@ class Coordinate:
 
 
 @dataclass(frozen=True, eq=False)
-class Closure:
-    """Equations that a joint or a constraint puts on the coordinates, and the symbols of their multipliers.
+class LoopEquations:
+    """Equations that a joint that closes a loop, or a constraint, puts on the coordinates, and the symbols of their multipliers.
 
     ``gap`` is Phi, with its total time derivatives. ``joint`` is None for a constraint of the user's.
     """
@@ -128,7 +128,7 @@ class Multibody:
     mechanism: Mechanism
     tree: Tree
     coordinates: tuple[Coordinate, ...]
-    closures: tuple[Closure, ...]
+    loop_equations: tuple[LoopEquations, ...]
     rows: tuple[RowGraph, ...]
     mobilities: dict[str, Any]
     frames: dict[str, Frame]

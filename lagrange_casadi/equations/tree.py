@@ -41,10 +41,10 @@ class Branch:
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """``branches`` in an order in which each hangs on the ground or on an earlier one; ``closures`` close the loops."""
+    """``branches`` in an order in which each hangs on the ground or on an earlier one; ``closing`` joints close the loops."""
 
     branches: tuple[Branch, ...]
-    closures: tuple[Joint, ...]
+    closing: tuple[Joint, ...]
 
 
 def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
