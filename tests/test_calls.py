@@ -5,7 +5,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from builders import slider_crank
+from mechanisms import slider_crank
 
 from lagrange_casadi import codegen, derive
 from lagrange_casadi.codegen.calls import Call
