@@ -93,7 +93,10 @@ QUANTITIES = (
     Quantity("station", "station", ("t",), "1", "place of the station, ratio xi/l"),
 )  # fmt: skip
 
-_BY_KEY = {(q.group, q.member): q for q in QUANTITIES}
+RESULTANT = Quantity("reaction", "", ("t",), FORCE, "resultant of the joint's reaction")
+"""The size of a reaction's force: a peak of designs, and no series of its own."""
+
+_BY_KEY = {(q.group, q.member): q for q in (*QUANTITIES, RESULTANT)}
 LAW = tuple(q.member for q in QUANTITIES if q.group == "law")
 STATION = tuple(q.member for q in QUANTITIES if q.group == "station")
 PLACE_FIRST = ("station", "n", "f", "m")

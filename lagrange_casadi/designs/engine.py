@@ -120,12 +120,7 @@ class DesignEngine:
     @property
     def quantities(self) -> tuple[str, ...]:
         """The names of the quantities that have peaks."""
-        return tuple(str(quantity) for quantity in self.shown)
-
-    @property
-    def shown(self) -> tuple[Output, ...]:
-        """The quantities that have peaks."""
-        return tuple(self.kept.quantities[k] for k in self._shown)
+        return tuple(str(self.kept.quantities[k]) for k in self._shown)
 
     @property
     def units(self) -> tuple[str, ...]:

@@ -25,7 +25,7 @@ from ..instants.refusal import Status
 from ..instants.rules import rules
 from ..instants.rung import Rung
 from ..instants.section_law import made_of
-from ..quantities import FORCE, FORCES, LAW, PLACE_FIRST, Output
+from ..quantities import FORCES, LAW, PLACE_FIRST, Output
 from ..summits.sharpness import Sharpness
 
 
@@ -76,7 +76,7 @@ class KeptOutputs:
         names = [*chosen, *(Output("section", link.name, force) for link in links for force in FORCES)]
         if not names:
             raise DeclarationError("designs: nothing is wanted that has a peak")
-        units = tuple(_unit(mechanism, name) for name in names)
+        units = tuple(output.unit(mechanism.joints) for output in names)
         numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
         efforts = tuple(name for name in names if name.group == "effort")
         along = tuple(_along(link, at) for link in links)
@@ -104,12 +104,6 @@ class KeptOutputs:
             knots=sharpness.knots,
         )
         return cls(tuple(names), units, efforts, tuple(link.name for link in links), reduction, sharpness)
-
-
-def _unit(mechanism: Mechanism, output: Output) -> str:
-    if output == Output("reaction", output.part):
-        return FORCE
-    return output.unit(mechanism.joints)
 
 
 def _along(link: Link, at: dict[Output, int]) -> Along:

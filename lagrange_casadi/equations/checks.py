@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, cast
 
 from ..quantities import Output
 
@@ -32,7 +32,7 @@ class Check:
     def of(cls, name: str) -> Check:
         """The check that a name says."""
         kind, _, part = name.removeprefix("_").partition(":")
-        return cls(kind, Output.of(part) if kind == "open" else part)  # type: ignore[arg-type]
+        return cls(cast(Kind, kind), Output.of(part) if kind == "open" else part)
 
 
 Column: TypeAlias = Output | Check

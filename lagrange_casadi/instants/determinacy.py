@@ -17,9 +17,9 @@ from ..codegen.emit import OK
 from ..declare.density import Array
 from ..equations.checks import Check, Column
 from ..equations.scene_graph import SceneGraph
-from ..quantities import MOMENT, Output
+from ..quantities import Output
 from .backends import run
-from .rules import open_limit
+from .rules import rules
 from .rung import Rung
 
 
@@ -27,9 +27,9 @@ def undetermined(graph: SceneGraph, out: Array, p: Array, rung: Rung) -> tuple[O
     """The outputs that equilibrium leaves open at any of some instants, by the columns there, (columns, t)."""
     if not graph.doubtful:
         return ()
-    extent, joints, limit = graph.extent(p), graph.scene.mechanism.joints, open_limit(rung.precision, rung.newton)
-    sizes = {output: limit * (extent if output.unit(joints) == MOMENT else 1.0) for output in graph.doubtful}
-    return tuple(output for output, k in graph.doubtful.items() if np.any(out[k] > sizes[output]))
+    extent = graph.extent(p)
+    limits = {r.column: r.limit * (extent if r.kind == "OPEN_MOMENT" else 1.0) for r in rules(graph, rung.precision, rung.newton)}
+    return tuple(output for output, k in graph.doubtful.items() if np.any(out[k] > limits[k]))
 
 
 def determinate(graph: SceneGraph, t: Array, p: Array, *, telling: bool = False) -> tuple[SceneGraph, tuple[Output, ...]]:

@@ -7,6 +7,7 @@ that are at a dead centre, for what else is wrong follows from that.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
@@ -48,6 +49,7 @@ class Rule:
     beside: int = -1
 
 
+@functools.lru_cache(maxsize=32)
 def rules(graph: SceneGraph, precision: Precision, newton: int | None) -> tuple[Rule, ...]:
     """The rules of a graph, in the order in which they are told; ``newton`` as in :class:`.Rung`."""
     found: list[Rule] = []

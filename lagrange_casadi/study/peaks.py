@@ -56,7 +56,7 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
 
     Raises :class:`DeclarationError` where the solution is not of this scene, :class:`UnknownNameError` for a name that is none.
     """
-    chosen = list(solution.quantities()) if names is None else [Output.of(solution.peak(name).name) for name in names]
+    chosen = list(solution.names() if names is None else names)
     return _ContinuousSolution.of(scene, solution).peaks(chosen)
 
 
@@ -179,26 +179,27 @@ class _ContinuousSolution:
         limits = [_SAME * sizes[unit] + rounding for unit in units]
         return bool(np.all([gap <= limit for gap, limit in zip(gaps, limits, strict=True)], axis=0).any())
 
-    def peaks(self, names: Sequence[Output]) -> list[Peak]:
+    def peaks(self, names: Sequence[str]) -> list[Peak]:
         """The peaks of quantities over all times."""
         solution = self.solution
-        found = {name: solution.peak(name) for name in names}
-        sought = [name for name in found if solution.determined(name)]
+        sampled = [solution.peak(name) for name in names]
+        found = {Output.of(peak.name): peak for peak in sampled}
+        sought = [output for output in found if solution.determined(output)]
         if not sought or solution.t.size == 1:
-            return [found[name] for name in names]
+            return sampled
         signals = self.signals(sought)
         units, scales = self.scales(sought)
         searched = signals.peaks(units, scales)
         value, t, xi = self.timed(signals, sought, searched)
-        for k, name in enumerate(sought):
-            sampled = found[name]
-            along = None if sampled.xi is None else float(xi[k])
+        for k, output in enumerate(sought):
+            peak = found[output]
+            along = None if peak.xi is None else float(xi[k])
             if not searched.told[k]:
-                least = max(abs(sampled.value), float(abs(value[k])))
-                found[name] = Peak(str(name), math.nan, sampled.unit, float(t[k]), along, least)
-            elif abs(value[k]) > abs(sampled.value):
-                found[name] = Peak(str(name), float(value[k]), sampled.unit, float(t[k]), along)
-        return [found[name] for name in names]
+                least = max(abs(peak.value), float(abs(value[k])))
+                found[output] = Peak(peak.name, math.nan, peak.unit, float(t[k]), along, least)
+            elif abs(value[k]) > abs(peak.value):
+                found[output] = Peak(peak.name, float(value[k]), peak.unit, float(t[k]), along)
+        return [found[Output.of(peak.name)] for peak in sampled]
 
     def signals(self, names: Sequence[Output]) -> Signals:
         """Quantities as curves over time."""

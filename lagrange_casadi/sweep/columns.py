@@ -22,7 +22,7 @@ from ..designs.engine import Outcome
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.refusal import Status
 from ..instants.section_law import SectionLaw, StationLoad
-from ..quantities import FORCE, FORCES, Output
+from ..quantities import FORCES, RESULTANT, Output
 from .chunks import encoded
 from .engine import STATUSES, Engine
 
@@ -148,9 +148,9 @@ class Harvest:
         """The columns of designs ``p`` (designs, parameters), each of shape (designs, its own axes)."""
         outcome = self.engine.evaluate(p, threads=1, histories=self._histories)
         found: list[Any] = [outcome.status.astype(np.int8, copy=False)]
-        for k, name in enumerate(self.engine.quantities):
+        for k, output in enumerate(self._quantities):
             found += [outcome.value[:, k], outcome.t[:, k]]
-            if Output.of(name).group == "section":
+            if output.group == "section":
                 found.append(outcome.xi[:, k])
         for k in range(len(self.engine.efforts)):
             found += [outcome.mean[:, k], outcome.rms[:, k]]
@@ -175,9 +175,12 @@ class Harvest:
         return max(1, room // (series + sum(column.width for column in self.columns)))
 
     @cached_property
+    def _quantities(self) -> tuple[Output, ...]:
+        return tuple(map(Output.of, self.engine.quantities))
+
+    @cached_property
     def _links(self) -> tuple[str, ...]:
-        quantities = map(Output.of, self.engine.quantities)
-        return tuple(dict.fromkeys(output.part for output in quantities if output.group == "section"))
+        return tuple(dict.fromkeys(output.part for output in self._quantities if output.group == "section"))
 
     @cached_property
     def _series(self) -> tuple[str, ...]:
@@ -197,11 +200,10 @@ class Harvest:
     def _peak(self, name: str) -> list[Column]:
         """The columns of one quantity of the engine's."""
         output, open_ = Output.of(name), self._open(name)
-        if output == Output("reaction", output.part):
-            name, unit, words = f"{name}:resultant", FORCE, {"long_name": "resultant of the joint's reaction"}
-        else:
-            unit, words = output.unit(self.mechanism.joints), output.quantity.attributes
+        unit, words = output.unit(self.mechanism.joints), output.quantity.attributes
         what = words["long_name"]
+        if output.quantity is RESULTANT:
+            name = f"{name}:resultant"
         found = [
             Column(f"peak:{name}", unit, words | {"long_name": f"largest in size over time: {what}"} | open_),
             Column(f"peak_t:{name}", "s", {"long_name": f"instant of the peak: {what}"} | open_),
