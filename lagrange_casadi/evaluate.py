@@ -19,7 +19,7 @@ from .equations.checks import Check
 from .equations.derive import assembled, derive
 from .equations.scene_graph import SceneGraph
 from .errors import CertificateWarning, DeclarationError
-from .instants.backends import Table
+from .instants.backends import Evaluated
 from .instants.cost import seconds
 from .instants.determinacy import determinate, undetermined
 from .instants.from_table import columns
@@ -157,11 +157,11 @@ def outputs_of(graph: SceneGraph, out: Array) -> dict[Output, Array]:
     They are those columns, not copies: in ``out`` too angles go on after this.
     """
     found = {output: out[k] for output, k in graph.outputs.items()}
-    parts = {part: out[graph.columns.index(part)] for signs in graph.wrapped.values() for part in signs}
+    parts = {part: out[graph.columns.index(part)] for signs in graph.loop_angles.values() for part in signs}
     turns = {
         part: math.tau * (row - row[..., :1]) if isinstance(part, Check) else np.unwrap(row) - row for part, row in parts.items()
     }
-    for angle, signs in graph.wrapped.items():
+    for angle, signs in graph.loop_angles.items():
         for part, sign in signs.items():
             found[angle] += sign * turns[part]
         found[angle] -= math.tau * np.ceil(found[angle][..., :1] / math.tau - 0.5)
@@ -191,7 +191,7 @@ def _closed(graph: SceneGraph, out: Array, p: Array) -> dict[str, Array]:
     return {"closure": np.max(gaps, axis=0)} if gaps else {}
 
 
-def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:
+def _condition(graph: SceneGraph, found: Evaluated) -> dict[str, Array]:
     """How much an error in a loop's lengths or drives grows in its solution: the worst 1/sin(transmission angle) of all loops.
 
     For an iterated loop it is 2/volume, the volume of its Jacobian's columns at length one.
@@ -200,5 +200,5 @@ def _condition(graph: SceneGraph, table: Table) -> dict[str, Array]:
     """
     worst: list[Array] = []
     for name, k in graph.checks("closure").items():
-        worst.append(2.0 / table.out[k] if graph.iterates(name) else 1.0 / np.sqrt(table.out[k]))
+        worst.append(2.0 / found.out[k] if graph.iterates(name) else 1.0 / np.sqrt(found.out[k]))
     return {"condition": np.max(worst, axis=0)} if worst else {}

@@ -268,6 +268,6 @@ def _gaps(solution, graph, meant):
                 mine = law(link).at(force, np.array([[float(place.ratio)]]))[0, 0]
             with mp.workdps(DIGITS):
                 gap = mp.mpf(float(mine)) - value
-                if place.name in map(str, graph.wrapped):
+                if place.name in map(str, graph.loop_angles):
                     gap -= 2 * mp.pi * mp.nint(gap / (2 * mp.pi))
             yield place, abs(gap), instant.changes[place]

@@ -57,7 +57,7 @@ def directly(scene, angle, rate, acceleration, wanted=None):
 
 def whole_turns_apart(graph):
     """The rows that are known up to whole turns."""
-    return [name in graph.wrapped for name in graph.columns]
+    return [name in graph.loop_angles for name in graph.columns]
 
 
 def worst_gap(scene, table, angle, rate, acceleration, wanted=None):

@@ -32,7 +32,7 @@ def test_a_graph_comes_back_from_its_text_as_it_was(name):
     again = SceneGraph.loads(graph.dumps(), graph.scene, graph.wanted)
     assert codegen.emit(again) == codegen.emit(graph)
     assert again.dumps() == graph.dumps()
-    for field in ("driven", "columns", "wrapped", "instructions"):
+    for field in ("driven", "columns", "loop_angles", "instructions"):
         assert getattr(again, field) == getattr(graph, field)
     if graph.newton:
         assert (again.newton.guess, again.newton.names, again.newton.joints) == (

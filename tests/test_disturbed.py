@@ -38,7 +38,7 @@ def instants_of(scene, stages):
     graph = derive(scene)
     t, p = points(scene.t), np.array(list(scene.mechanism.values().values()))
     found, _ = run(graph, t, p, Rung("vm"))
-    angles = np.array([name in graph.wrapped for name in graph.columns])
+    angles = np.array([name in graph.loop_angles for name in graph.columns])
     return graph, Instants(STAGES[stages](graph), t, p, found.iterated), np.array(found.out), angles
 
 
@@ -150,7 +150,7 @@ def test_loops_that_are_open():
     scene = truss_platform()
     graph = derive(scene)
     t, p = points(scene.t), np.array(list(scene.mechanism.values().values()))
-    angles = np.array([name in graph.wrapped for name in graph.columns])
+    angles = np.array([name in graph.loop_angles for name in graph.columns])
     closed, _ = run(graph, t, p, Rung("vm"))
     found, _ = run(graph, t, p, Rung("vm", newton=1))
     instants = Instants(plain(graph), t, p, found.iterated)

@@ -18,7 +18,7 @@ from lagrange_casadi import Mechanism, Scene, evaluate, export, motion, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.export import naming, text
-from lagrange_casadi.sweep.panels import label
+from lagrange_casadi.sweep.sheet import label
 
 WICKED = [
     'x"),fopen("PWNED","w"),printf("',

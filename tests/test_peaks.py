@@ -137,7 +137,7 @@ def test_angles_that_a_loop_sets_keep_their_turns():
     """A rocker about the direction in which arctangents jump by a turn."""
     scene = four_bar(frame=(-0.05, 0.3), rocker=1.5 + math.pi / 2)
     coarse, fine = (vm(scene, t=(0.3, 1.6, n), wanted=["motion"]) for n in (30, 300_001))
-    name = next(str(angle) for angle in derive(scene, ["motion"]).wrapped if str(angle) == "pose:c:angle")
+    name = next(str(angle) for angle in derive(scene, ["motion"]).loop_angles if str(angle) == "pose:c:angle")
     assert coarse.array(name).min() < -math.pi < coarse.array(name).max() < 0
     (peak,) = refine(scene, coarse, [name])
     assert peak.value == pytest.approx(fine.peak(name).value, rel=1e-9)

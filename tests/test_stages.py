@@ -36,7 +36,7 @@ def gap(graph, t, rung, truth=None):
     worst = 0.0
     for name, row, expected in zip(graph.names, np.asarray(table.out, float), truth, strict=True):
         off = row - expected
-        if name in map(str, graph.wrapped):
+        if name in map(str, graph.loop_angles):
             off = off - math.tau * np.rint(off / math.tau)
         if not name.startswith("_"):
             worst = max(worst, np.max(np.abs(off)) / (size[kind(name)] or 1.0))

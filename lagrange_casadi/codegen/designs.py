@@ -71,7 +71,7 @@ STRIDE = 64
 
 _STRETCH: dict[Precision, float] = {"double": summits.STRETCH, "single": 1e-2}
 _LAST: dict[Precision, float] = {"double": summits.LAST, "single": 1e-5}
-_FILES = ("instants.c", "between.c", "fits.c", "looks.c", "parts.c", "summits.c", "designs.c")
+_FILES = ("instants.c", "between.c", "fits.c", "looks.c", "within.c", "summits.c", "designs.c")
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 from ..declare.density import Array, Density, NumericDensity
 from ..declare.mechanism import Mechanism
 from ..equations.scene_graph import SceneGraph
-from ..instants.backends import Table, run
+from ..instants.backends import Evaluated, run
 from ..instants.determinacy import undetermined
 from ..instants.refusal import Status, refusal
 from ..instants.rung import Rung
@@ -38,15 +38,15 @@ def outcome(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: in
     if not (np.isfinite(margins).all() and (margins >= 0.0).all() and (margins[: reduction.positive] > 0.0).all()):
         return Status.IMPOSSIBLE, None
     rung = Rung("vm", newton=newton)
-    table, _ = run(graph, t, p, rung)
-    why = refusal(graph, table, t, p, rung)
+    evaluated, _ = run(graph, t, p, rung)
+    why = refusal(graph, evaluated, t, p, rung)
     if why is not None:
         return why.status, None
-    left_open = {graph.doubtful[output] for output in undetermined(graph, table.out, p, rung)}
+    left_open = {graph.doubtful[output] for output in undetermined(graph, evaluated.out, p, rung)}
     doubted = {quantity for check, quantity in reduction.doubts if reduction.checks[check][0] in left_open}
     told = [k for k in range(len(reduction.units)) if k not in doubted]
-    signals = _signals(graph, kept, t, p, newton, table, told)
-    efforts = table.out[[graph.outputs[effort] for effort in kept.efforts]]
+    signals = _signals(graph, kept, t, p, newton, evaluated, told)
+    efforts = evaluated.out[[graph.outputs[effort] for effort in kept.efforts]]
     with np.errstate(all="ignore"):
         found = signals.peaks([reduction.units[k] for k in told])
         means = np.stack(_means(efforts))
@@ -55,7 +55,7 @@ def outcome(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: in
     peaks = np.full((3, len(reduction.units)), np.nan)
     peaks[:, told] = found.value, found.t, found.xi
     means[:, [effort not in told for effort in reduction.efforts]] = np.nan
-    return Status.OK, DesignResult(peaks, means, table.out)
+    return Status.OK, DesignResult(peaks, means, evaluated.out)
 
 
 def _means(rows: Array) -> tuple[Array, Array]:
@@ -67,7 +67,7 @@ def _means(rows: Array) -> tuple[Array, Array]:
 
 
 def _signals(
-    graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None, table: Table, some: Sequence[int]
+    graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None, evaluated: Evaluated, some: Sequence[int]
 ) -> Signals:
     """Some quantities that are kept of a design, as curves over time."""
     mechanism, reduction = graph.scene.mechanism, kept.reduction
@@ -78,7 +78,7 @@ def _signals(
         for force in FORCES
     ]
     quantities: list[Quantity] = [*reduction.quantities, *sections]
-    return Signals(graph, table.stages, kept.sharpness, [quantities[k] for k in some], t, p, table.iterated, newton)
+    return Signals(graph, evaluated.stages, kept.sharpness, [quantities[k] for k in some], t, p, evaluated.iterated, newton)
 
 
 def _matter(kept: KeptOutputs, mechanism: Mechanism, values: Mapping[str, float]) -> list[tuple[float, NumericDensity]]:

@@ -65,7 +65,7 @@ class KeptOutputs:
         mechanism, at = graph.scene.mechanism, graph.outputs
         chosen: dict[Output, tuple[int, ...]] = {}
         for output, k in at.items():
-            if output.along or output in graph.wrapped or output in left_open:
+            if output.along or output in graph.loop_angles or output in left_open:
                 continue
             other = Output("reaction", output.part, "fy")
             if output == Output("reaction", output.part, "fx") and other in at and other not in left_open:

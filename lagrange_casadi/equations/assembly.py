@@ -11,7 +11,7 @@ import casadi as ca
 from ..declare.density import Density
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Force, Joint, Link, Load, Point, PointMass, RigidMass, Spring, Torque
-from ..geometry.planar import Frame, Pair, Rotation, Velocities, closure, gap_motion, reaction, slide
+from ..geometry.planar import Frame, Pair, Rotation, Velocities, closing_gaps, gap_motion, reaction, slide
 from .multibody import (
     Applied,
     Coordinate,
@@ -40,7 +40,7 @@ def assemble(mechanism: Mechanism, tree: Tree, driven: Collection[str], reaction
     for branch in tree.branches:
         resting.hang(branch, displace=False)
         felt.hang(branch, displace=branch.joint.name in reactions)
-    loops = [_loop_equations(joint.name, joint, *closure(joint, *resting.ends(joint))) for joint in tree.closing]
+    loops = [_loop_equations(joint.name, joint, *closing_gaps(joint, *resting.ends(joint))) for joint in tree.closing]
     for constraint in mechanism.constraints.values():
         gap = resting.counted(constraint.phi)
         rate = change(gap, resting.coordinates, mechanism.time)

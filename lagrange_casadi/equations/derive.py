@@ -104,18 +104,18 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     for graph in body.rows:
         columns |= {Check("row", graph.row.name): graph.residual, Check("rowsize", graph.row.name): graph.size}
     columns |= {Check("turned", name): swing for name, swing in swings.items()}
-    wrapped: dict[Output, dict[Column, int]] = {}
+    loop_angles: dict[Output, dict[Column, int]] = {}
     if want.motion:
         motions = _motion_columns(body, solved, driven)
         angles = [c for c in body.coordinates if c.kind == "angle"]
         loose: dict[Column, Any] = {Output("pose", c.body, "angle"): c.value for c in angles if c.joint in solved.loose}
         counted: dict[Column, Any] = {Check("turns", c.joint): c.value for c in angles if c.joint not in solved.loose}
-        wrapped = {output: _turns(value, loose | counted) for output, value in motions.items() if _is_angle(mechanism, output)}
-        wrapped = {output: turns for output, turns in wrapped.items() if not loose.keys().isdisjoint(turns)}
+        loop_angles = {output: _turns(value, loose | counted) for output, value in motions.items() if _is_angle(mechanism, output)}
+        loop_angles = {output: turns for output, turns in loop_angles.items() if not loose.keys().isdisjoint(turns)}
         whole = {check: ca.floor(value * (1 / math.tau)) for check, value in counted.items()}
         within = column(value - math.tau * whole[check] for check, value in counted.items())
-        motions |= {output: ca.substitute(ca.SX(motions[output]), column(counted.values()), within) for output in wrapped}
-        columns |= {check: value for check, value in whole.items() if any(check in turns for turns in wrapped.values())}
+        motions |= {output: ca.substitute(ca.SX(motions[output]), column(counted.values()), within) for output in loop_angles}
+        columns |= {check: value for check, value in whole.items() if any(check in turns for turns in loop_angles.values())}
         columns |= dict(motions.items())
     for part in reversed(body.applied):
         if part.source in want.loads:
@@ -137,7 +137,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
-    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), wrapped)
+    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), loop_angles)
 
 
 def _settled(columns: dict[Column, Any], free: Any) -> dict[Column, Any]:

@@ -25,7 +25,7 @@ class SceneGraph:
     """What a scene computes, as CasADi functions that hold nothing else.
 
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` for
-    each of ``columns``, which are outputs and checks; ``newton`` where loops must be iterated. ``wrapped`` are the angles that
+    each of ``columns``, which are outputs and checks; ``newton`` where loops must be iterated. ``loop_angles`` are the angles that
     loops set, and what they are sums and differences of: directions of bodies that are known up to whole turns, and by ``turns``
     of a joint the whole turns of angles that count them, which are in these columns without them.
     """
@@ -37,7 +37,7 @@ class SceneGraph:
     instant: Any
     newton: NewtonLoop | None
     columns: tuple[Column, ...]
-    wrapped: Mapping[Output, Mapping[Column, int]]
+    loop_angles: Mapping[Output, Mapping[Column, int]]
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -107,8 +107,8 @@ class SceneGraph:
                 "names": loop.names,
                 "joints": loop.joints,
             }
-        wrapped = {str(angle): {str(part): sign for part, sign in parts.items()} for angle, parts in self.wrapped.items()}
-        kept = {"driven": self.driven, "columns": self.names, "wrapped": wrapped}
+        loop_angles = {str(angle): {str(part): sign for part, sign in parts.items()} for angle, parts in self.loop_angles.items()}
+        kept = {"driven": self.driven, "columns": self.names, "loop_angles": loop_angles}
         return json.dumps(kept | {"motion": self.motion.serialize(), "instant": self.instant.serialize(), "newton": newton})
 
     @classmethod
@@ -122,5 +122,5 @@ class SceneGraph:
             step = ca.Function.deserialize(loop["step"])
             newton = NewtonLoop(step, tuple(loop["guess"]), tuple(loop["turning"]), tuple(loop["names"]), loop["joints"])
         columns = tuple(map(column_of, kept["columns"]))
-        wrapped = {Output.of(k): {column_of(part): sign for part, sign in v.items()} for k, v in kept["wrapped"].items()}
-        return cls(scene, wanted, tuple(kept["driven"]), motion, instant, newton, columns, wrapped)
+        loop_angles = {Output.of(k): {column_of(part): sign for part, sign in v.items()} for k, v in kept["loop_angles"].items()}
+        return cls(scene, wanted, tuple(kept["driven"]), motion, instant, newton, columns, loop_angles)

@@ -225,7 +225,7 @@ def _sign(graph: SceneGraph, output: Output) -> str:
 
 
 def _output(graph: SceneGraph, output: Output, member: str, solution: Solution, largest: Mapping[str, float]) -> Member:
-    unit, wrapped = output.unit(graph.scene.mechanism.joints), output in graph.wrapped
+    unit, wrapped = output.unit(graph.scene.mechanism.joints), output in graph.loop_angles
     within = "in (-pi, pi]" if wrapped else _range(solution, output, largest[unit])
     meaning = f"{_where(output)}: {_brief(output.quantity.long_name)}"
     return Member(member, str(output), unit, meaning, _sign(graph, output), within, wrapped)

@@ -9,7 +9,7 @@ from .contract import Contract
 from .source import Source
 from .stack import deepest
 from .statuses import STATUSES
-from .text import member, template, wrapped
+from .text import filled, member, template
 
 
 def header(source: Source) -> str:
@@ -22,13 +22,13 @@ def header(source: Source) -> str:
         space=" " * (2 * len(p) + 9),
         null=", 0" if c.settings else "",
         begin=_begin(source),
-        story=wrapped(source.story),
-        conventions=wrapped(f"Conventions: {CONVENTIONS}. {_ZERO} Gravity is ({_gravity(source)}) m/s^2."),
+        story=filled(source.story),
+        conventions=filled(f"Conventions: {CONVENTIONS}. {_ZERO} Gravity is ({_gravity(source)}) m/s^2."),
         law=_LAW if c.links else "",
-        mapping=wrapped("Called otherwise here: " + ", ".join(f"{k} is {v}" for k, v in c.mapped.items()) + ".", "\n\n")
+        mapping=filled("Called otherwise here: " + ", ".join(f"{k} is {v}" for k, v in c.mapped.items()) + ".", "\n\n")
         if c.mapped
         else "",
-        undetermined=wrapped("Not determined by equilibrium, and left out: " + ", ".join(c.undetermined) + ".", "\n\n")
+        undetermined=filled("Not determined by equilibrium, and left out: " + ", ".join(c.undetermined) + ".", "\n\n")
         if c.undetermined
         else "",
         precision=c.precision,

@@ -118,7 +118,7 @@ class Source:
         if output in self.program.still:
             return self._number(self.program.still[output])
         value = f"y[{self.program.columns.index(output)}]"
-        return f"direction({value})" if output in self.program.graph.wrapped else value
+        return f"direction({value})" if output in self.program.graph.loop_angles else value
 
     @property
     def _number(self) -> Format:
@@ -129,7 +129,7 @@ class Source:
 
     def _helpers(self) -> str:
         number, found = self._number, ""
-        if self.program.graph.wrapped:
+        if self.program.graph.loop_angles:
             turn = number(math.tau)
             found += (
                 "\n/* An angle without its whole turns, in (-pi, pi]. */\nstatic casadi_real direction(casadi_real angle) {\n"

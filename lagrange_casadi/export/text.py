@@ -60,7 +60,7 @@ def indented(lines: Iterable[str]) -> str:
     return "\n".join(f"  {line}" for line in lines)
 
 
-def wrapped(text: str, before: str = "") -> str:
+def filled(text: str, before: str = "") -> str:
     """Text within a comment."""
     lines = textwrap.wrap(comment(text), WIDTH - 3, break_long_words=False, break_on_hyphens=False)
     indented = "\n   ".join(lines)

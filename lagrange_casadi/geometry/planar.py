@@ -167,7 +167,7 @@ def slide_motion(joint: Joint, parent: Frame, child: Frame) -> Pair:
     return vx * tx + vy * ty, ax * tx + ay * ty
 
 
-def closure(joint: Joint, parent: Frame, child: Frame) -> tuple[Any, Any, Any]:
+def closing_gaps(joint: Joint, parent: Frame, child: Frame) -> tuple[Any, Any, Any]:
     """Phi of a joint that closes a loop (paper eq. 5) with Phi' and Phi''.
 
     Phi are gaps in ground axes or across a line, and of direction where it is held; its multipliers are the action of the parent

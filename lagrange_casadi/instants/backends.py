@@ -43,7 +43,7 @@ Built = TypeVar("Built")
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class Evaluated:
     """The columns of a scene graph over instants: ``out`` (columns, t) and the status of each instant (t).
 
     ``iterated`` (k, t) are the coordinates of iterated loops; ``stages`` say what was evaluated, ``cycle`` what the rest was read
@@ -64,31 +64,31 @@ def run(
     rung: Rung | None = None,
     threads: int | None = None,
     *,
-    into: Table | None = None,
-) -> tuple[Table, Provenance]:
+    into: Evaluated | None = None,
+) -> tuple[Evaluated, Provenance]:
     """The columns of a graph at instants ``t`` and parameters ``p``, on a rung; nothing is checked.
 
-    ``into`` is a table of an earlier run on the same rung and as many instants, to be filled anew. Raises :class:`CompilerError`
+    ``into`` is what an earlier run gave on the same rung and as many instants, to be filled anew. Raises :class:`CompilerError`
     where the backend needs a compiler and there is none, or it fails.
     """
     rung = rung or Rung()
     many = rung.precision == "single" or turns_many(graph, t, p)
     stages = compensated(graph, rung.precision) if many else plain(graph)
     found = _compiled(graph, stages, rung)
-    table = into or empty_table(graph, stages, t.size)
+    evaluated = into or unevaluated(graph, stages, t.size)
     begin = _begin(graph, rung.newton is not None, t[0], tuple(p))
     if found is None:
-        _interpret(graph, t, p, table, begin, rung.newton)
-        return table, provenance("vm", "", "", rung)
+        _interpret(graph, t, p, evaluated, begin, rung.newton)
+        return evaluated, provenance("vm", "", "", rung)
     compiler, library = found
     dtype = DTYPES[rung.precision]
     guess = np.array(begin, dtype)
     if rung.precision == "single":
         t, p = _paired(t, rows(2, t.size, dtype)), _paired(p, np.empty((2, p.size), dtype))
-    library.follow(t, p, guess, table.iterated, table.status)
-    library.evaluate(t, p, table.iterated, table.out, table.status, threads or cores())
+    library.follow(t, p, guess, evaluated.iterated, evaluated.status)
+    library.evaluate(t, p, evaluated.iterated, evaluated.out, evaluated.status, threads or cores())
     used = "lanes" if compiler.language == "c++" else "c"
-    return table, provenance(used, compiler.version, " ".join(library.flags), rung)
+    return evaluated, provenance(used, compiler.version, " ".join(library.flags), rung)
 
 
 @functools.lru_cache(maxsize=256)
@@ -149,11 +149,11 @@ def _library(graph: SceneGraph, stages: Stages, newton: int | None, flags: str, 
     return codegen.load(codegen.emit(graph, stages, newton), compiler, tuple(shlex.split(flags)), newton or NEWTON_STEPS)
 
 
-def empty_table(graph: SceneGraph, stages: Stages, size: int) -> Table:
-    """A table to be filled."""
+def unevaluated(graph: SceneGraph, stages: Stages, size: int) -> Evaluated:
+    """What is to be filled."""
     dtype = DTYPES[stages.precision]
     out, iterated = (rows(count, size, dtype) for count in (len(graph.columns), graph.instant.size1_in("z")))
-    return Table(out, np.full(size, OK, dtype=np.int32), iterated, stages)
+    return Evaluated(out, np.full(size, OK, dtype=np.int32), iterated, stages)
 
 
 def rows(count: int, size: int, dtype: Any = np.float64) -> Array:
@@ -175,17 +175,17 @@ def provenance(backend: str, compiler: str, flags: str, rung: Rung) -> Provenanc
     return Provenance(backend, rung.precision, compiler, flags, rung.options, versions)
 
 
-def _interpret(graph: SceneGraph, t: Array, p: Array, table: Table, begin: Sequence[float], newton: int | None) -> None:
+def _interpret(graph: SceneGraph, t: Array, p: Array, evaluated: Evaluated, begin: Sequence[float], newton: int | None) -> None:
     """What the emitted C does, by CasADi's virtual machine."""
-    stages = table.stages
+    stages = evaluated.stages
     guess = np.array(begin)
-    table.iterated[:], table.status[:] = follow(graph, t, p, guess, stages=stages, newton=newton)
+    evaluated.iterated[:], evaluated.status[:] = follow(graph, t, p, guess, stages=stages, newton=newton)
     for start in range(0, t.size, _VM_BLOCK):
         block = slice(start, min(start + _VM_BLOCK, t.size))
         counted, rate, acceleration = stages.drive(t[None, block], p)
-        table.out[:, block] = stages.instant(counted, rate, acceleration, table.iterated[:, block], p).full()
-    unclean = ~np.isfinite(table.out).all(axis=0) & (table.status == OK)
-    table.status[unclean] = NOT_FINITE
+        evaluated.out[:, block] = stages.instant(counted, rate, acceleration, evaluated.iterated[:, block], p).full()
+    unclean = ~np.isfinite(evaluated.out).all(axis=0) & (evaluated.status == OK)
+    evaluated.status[unclean] = NOT_FINITE
 
 
 def follow(

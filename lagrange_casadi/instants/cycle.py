@@ -136,7 +136,7 @@ class Drive:
     @property
     def loose(self) -> list[int]:
         """The rows of the angles that are known up to whole turns only."""
-        parts = {part for signs in self.graph.wrapped.values() for part in signs}
+        parts = {part for signs in self.graph.loop_angles.values() for part in signs}
         return [k for output, k in self.graph.outputs.items() if output in parts]
 
     def terms_at(self, angles: Array, places: Array) -> Array:
@@ -177,7 +177,7 @@ class Drive:
         whole = list(self.graph.checks("turns").values())
         own |= {self.graph.columns[k]: math.tau * columns[k] for k in whole}
         for angle, k in self.graph.outputs.items():
-            for part, sign in self.graph.wrapped.get(angle, {}).items():
+            for part, sign in self.graph.loop_angles.get(angle, {}).items():
                 columns[k] += sign * own[part]
         columns[whole] = 0.0
 

@@ -15,7 +15,7 @@ from ..declare.density import Array
 from ..equations.checks import Check
 from ..equations.scene_graph import SceneGraph
 from ..system.room import cores
-from .backends import Table, empty_table, run
+from .backends import Evaluated, run, unevaluated
 from .cycle import TURNS, the_drive
 from .cycle_table import CycleTable
 from .rung import Rung
@@ -27,8 +27,8 @@ _MARGIN = 1.01
 
 
 def columns(
-    graph: SceneGraph, t: Array, p: Array, rung: Rung, threads: int | None = None, *, into: Table | None = None
-) -> tuple[Table, Provenance]:
+    graph: SceneGraph, t: Array, p: Array, rung: Rung, threads: int | None = None, *, into: Evaluated | None = None
+) -> tuple[Evaluated, Provenance]:
     """The columns of a graph at instants ``t`` and parameters ``p``: evaluated, or read from a table, as the rung says.
 
     ``into`` is what an earlier call with the same rung and as many instants gave, to be filled anew. Raises
@@ -41,13 +41,13 @@ def columns(
     angle, rate, acceleration, *within = drive.out
     cycle = _serving(graph, p, rung, rate, acceleration)
     phase = within[cycle.turns - 1]
-    table = into or replace(empty_table(graph, drive.stages, t.size), cycle=cycle)
-    table.iterated[:] = np.nan
-    table.status[:] = drive.status
+    found = into or replace(unevaluated(graph, drive.stages, t.size), cycle=cycle)
+    found.iterated[:] = np.nan
+    found.status[:] = drive.status
 
     def fill(start: int) -> None:
         cut = slice(start, start + size)
-        cycle.evaluate(phase[cut], rate[cut], acceleration[cut], table.out[:, cut])
+        cycle.evaluate(phase[cut], rate[cut], acceleration[cut], found.out[:, cut])
 
     shares = max(1, min(threads or cores(), t.size // _SHARE))
     size = -(-t.size // shares)
@@ -57,11 +57,11 @@ def columns(
         with ThreadPoolExecutor(shares) as pool:
             list(pool.map(fill, range(0, t.size, size)))
     for k in np.flatnonzero(cycle.drift):
-        table.out[k] += cycle.drift[k] * (angle - phase)
+        found.out[k] += cycle.drift[k] * (angle - phase)
     for output, place in still(graph, tuple(p.tolist())).items():
-        table.out[graph.outputs[output]] = place
-    table.status[~np.isfinite(table.out.sum(axis=0)) & (table.status == OK)] = NOT_FINITE
-    return table, replace(provenance, rung=rung.options)
+        found.out[graph.outputs[output]] = place
+    found.status[~np.isfinite(found.out.sum(axis=0)) & (found.status == OK)] = NOT_FINITE
+    return found, replace(provenance, rung=rung.options)
 
 
 def table_of(graph: SceneGraph, t: Array, p: Array, rung: Rung) -> CycleTable:
@@ -95,7 +95,7 @@ def drive_of(graph: SceneGraph) -> SceneGraph:
     names = [graph.instant.name_in(i) for i in range(graph.instant.n_in())]
     instant = ca.Function("instant", [t, d, rate, acceleration, ca.SX(0, 1), p], [out], names, ["out"], {"cse": True})
     columns = ("angle", "rate", "acceleration", *(f"within_{turns}" for turns in range(1, TURNS + 1)))
-    return replace(graph, instant=instant, newton=None, columns=tuple(Check("drive", name) for name in columns), wrapped={})
+    return replace(graph, instant=instant, newton=None, columns=tuple(Check("drive", name) for name in columns), loop_angles={})
 
 
 def _above(values: Array) -> float:

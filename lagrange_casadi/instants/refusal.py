@@ -18,7 +18,7 @@ from ..equations.kinematics import passes_dead_centre, where
 from ..equations.scene_graph import SceneGraph
 from ..equations.turns import LEAP
 from ..errors import AssemblyError
-from .backends import Table, run
+from .backends import Evaluated, run
 from .rules import Rule, dead_centre, rules
 from .rung import Rung
 
@@ -77,21 +77,21 @@ class Refusal:
     message: str
 
 
-def refuse(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> None:
+def refuse(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: Rung) -> None:
     """Raise :class:`AssemblyError` for the first instant that has no result."""
-    found = refusal(graph, table, t, p, rung)
+    found = refusal(graph, evaluated, t, p, rung)
     if found is not None:
         raise AssemblyError(found.message)
 
 
-def refusal(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> Refusal | None:
+def refusal(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: Rung) -> Refusal | None:
     """Why the first instant that has no result has none; None where all have."""
-    held, extent, bad = rules(graph, table.stages.precision, rung.newton), graph.extent(p), table.status != OK
+    held, extent, bad = rules(graph, evaluated.stages.precision, rung.newton), graph.extent(p), evaluated.status != OK
     passed: dict[str, npt.NDArray[np.bool_]] = {}
     for rule in held:
-        bad |= broken(rule, table.out, extent)
+        bad |= broken(rule, evaluated.out, extent)
         if rule.kind in ("CLOSURE", "BRANCH"):
-            passed[str(rule.part)] = passes_dead_centre(table.out[rule.column], ends=graph.newton is None)
+            passed[str(rule.part)] = passes_dead_centre(evaluated.out[rule.column], ends=graph.newton is None)
     for name, found in passed.items():
         if graph.newton is None and found.any():
             after = np.flatnonzero(found)
@@ -104,8 +104,8 @@ def refusal(graph: SceneGraph, table: Table, t: Array, p: Array, rung: Rung) -> 
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
     at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
     at = f"at t = {t[i]:.6g} s{at}"
-    status, why = _why(graph, table, held, i, at, [name for name in passed if passed[name][i]], extent)
-    return Refusal(status, _beyond(graph, p, table.stages.precision, at) or why)
+    status, why = _why(graph, evaluated, held, i, at, [name for name in passed if passed[name][i]], extent)
+    return Refusal(status, _beyond(graph, p, evaluated.stages.precision, at) or why)
 
 
 def broken(rule: Rule, out: Array, extent: float) -> npt.NDArray[np.bool_]:
@@ -131,8 +131,8 @@ def _dead_between(graph: SceneGraph, name: str, start: Array, stop: Array, p: Ar
     lowest = np.full(start.size, np.inf)
     for _ in range(ROUNDS):
         inside = np.linspace(start, stop, INSIDE)
-        table, _ = run(graph, inside.ravel(), p, Rung(rung.backend, rung.precision, flags=rung.flags))
-        closure = table.out[graph.checks("closure")[name]].reshape(inside.shape)
+        evaluated, _ = run(graph, inside.ravel(), p, Rung(rung.backend, rung.precision, flags=rung.flags))
+        closure = evaluated.out[graph.checks("closure")[name]].reshape(inside.shape)
         place = np.argmin(closure, axis=0)[None]
         lowest = np.fmin(lowest, np.take_along_axis(closure, place, 0)[0])
         start, stop = (np.take_along_axis(inside, np.clip(place + k, 0, INSIDE - 1), 0)[0] for k in (-1, 1))
@@ -153,19 +153,19 @@ def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str |
 
 
 def _why(
-    graph: SceneGraph, table: Table, held: Sequence[Rule], i: int, at: str, passed: Sequence[str], extent: float
+    graph: SceneGraph, evaluated: Evaluated, held: Sequence[Rule], i: int, at: str, passed: Sequence[str], extent: float
 ) -> tuple[Status, str]:
-    if table.status[i] == NOT_CONVERGED:
+    if evaluated.status[i] == NOT_CONVERGED:
         assert graph.newton is not None
         cause = "their links do not reach, or the instant before is too far off"
         return Status.NOT_CONVERGED, f"the loops closed by {graph.newton.joints} did not converge {at}: {cause}"
     for rule in held:
-        part, value = str(rule.part), float(table.out[rule.column, i])
+        part, value = str(rule.part), float(evaluated.out[rule.column, i])
         closed = f"{'joint' if part in graph.scene.mechanism.joints else 'constraint'} '{part}'"
         if rule.kind not in ("CLOSURE", "BRANCH"):
-            if table.status[i] == SLOW:
+            if evaluated.status[i] == SLOW:
                 break
-            if not broken(rule, table.out, extent)[i]:
+            if not broken(rule, evaluated.out, extent)[i]:
                 continue
         elif value < -rule.limit:
             if rule.kind == "BRANCH":
@@ -195,10 +195,10 @@ def _why(
             )
         if rule.kind == "ROW":
             return Status.ROW_VIOLATED, f"the motion violates the non-holonomic constraint '{part}' by {value:.6g} {at}"
-    if table.status[i] == SLOW:
+    if evaluated.status[i] == SLOW:
         assert graph.newton is not None
         cause = "they are near a dead centre, or the instant before is too far off"
         return Status.SLOW, f"the loops closed by {graph.newton.joints} converge slowly {at}: {cause}"
-    values = zip(graph.columns, table.out[:, i], strict=True)
+    values = zip(graph.columns, evaluated.out[:, i], strict=True)
     name = next(column for column, value in values if not math.isfinite(value))
     return Status.NOT_FINITE, f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"

@@ -17,7 +17,7 @@ import numpy as np
 from ..arithmetic.compensated import DTYPES, ROUNDING
 from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
-from ..instants.backends import Table
+from ..instants.backends import Evaluated
 from ..instants.cycle_table import CycleTable
 from ..instants.solution import Solution
 from ..quantities import FORCES, Output
@@ -33,23 +33,23 @@ _SUMS = 64.0
 _ALONG = np.linspace(0.0, 1.0, 5)
 
 
-def estimate(graph: SceneGraph, table: Table, solution: Solution, p: Array) -> dict[Output, float]:
+def estimate(graph: SceneGraph, evaluated: Evaluated, solution: Solution, p: Array) -> dict[Output, float]:
     """How far each quantity of a solution may be off, in its unit: the largest error over the instants.
 
-    ``table`` are the columns that the solution was made of. Section forces are looked at from base to tip, either side of a station
-    by itself, and so is either side of a jump. Empty where the graphs call functions that cannot be followed.
+    ``evaluated`` has the columns that the solution was made of. Section forces are looked at from base to tip, either side of a
+    station by itself, and so is either side of a jump. Empty where the graphs call functions that cannot be followed.
     """
-    if table.cycle is not None:
-        return _of_cycle(graph, table.cycle, solution)
-    instants = Instants(table.stages, solution.t, p, np.asarray(table.iterated, float))
+    if evaluated.cycle is not None:
+        return _of_cycle(graph, evaluated.cycle, solution)
+    instants = Instants(evaluated.stages, solution.t, p, np.asarray(evaluated.iterated, float))
     if not instants.followable:
         return {}
-    found, angles = [], np.array([column in graph.wrapped for column in graph.columns])
-    for some in instants.blocks(np.union1d(_chosen(graph, table), _open(instants))):
-        found.append(_worst(graph, solution, *effects(instants.at(some), np.asarray(table.out[:, some], float), angles)))
+    found, angles = [], np.array([column in graph.loop_angles for column in graph.columns])
+    for some in instants.blocks(np.union1d(_chosen(graph, evaluated), _open(instants))):
+        found.append(_worst(graph, solution, *effects(instants.at(some), np.asarray(evaluated.out[:, some], float), angles)))
     largest = {output: max(errors[output] for errors in found) for output in found[0]}
     # What was exact at all these instants may be rounded once at others; and what underflows is in no trial.
-    once, least = ROUNDING[table.stages.precision], float(np.finfo(DTYPES[table.stages.precision]).tiny)
+    once, least = ROUNDING[evaluated.stages.precision], float(np.finfo(DTYPES[evaluated.stages.precision]).tiny)
     return {output: max(least, error or once * abs(solution.peak(output).value)) for output, error in largest.items()}
 
 
@@ -105,12 +105,12 @@ def _of_cycle(graph: SceneGraph, cycle: CycleTable, solution: Solution) -> dict[
     return errors
 
 
-def _chosen(graph: SceneGraph, table: Table) -> Array:
+def _chosen(graph: SceneGraph, evaluated: Evaluated) -> Array:
     """Instants to look at: evenly spread ones, those at which a loop is nearest to a dead centre, and where outputs peak."""
-    n = table.status.size
+    n = evaluated.status.size
     spread = np.linspace(0, n - 1, min(n, INSTANTS)).astype(int)
     closures = graph.checks("closure").values()
-    peaks = [int(np.argmin(row if k in closures else -np.abs(row))) for k, row in enumerate(table.out)]
+    peaks = [int(np.argmin(row if k in closures else -np.abs(row))) for k, row in enumerate(evaluated.out)]
     return np.unique([*spread, *peaks])
 
 

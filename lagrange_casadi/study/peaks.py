@@ -167,7 +167,7 @@ class _ContinuousSolution:
         outputs = [output for output in solution.outputs if output not in solution.left_open]
         if not all(output in self.rows for output in outputs):
             return False
-        outputs = [output for output in outputs if output not in self.graph.wrapped]
+        outputs = [output for output in outputs if output not in self.graph.loop_angles]
         some = np.array([0, solution.t.size // 2, solution.t.size - 1])
         out = self.stages.instant(*self.stages.drive(solution.t[None, some], self.p), self.z[:, some], self.p).full()
         units = [solution.unit(output) for output in outputs]
@@ -206,7 +206,7 @@ class _ContinuousSolution:
         quantities = [self.quantity(name) for name in names]
         columns = {k for quantity in quantities for k in _columns(quantity)}
         sharpness = Sharpness.of(self.graph, sorted(columns))
-        turned = {k: self.solution.outputs[name] for k, name in enumerate(names) if name in self.graph.wrapped}
+        turned = {k: self.solution.outputs[name] for k, name in enumerate(names) if name in self.graph.loop_angles}
         return Signals(self.graph, self.stages, sharpness, quantities, self.solution.t, self.p, self.z, turned=turned)
 
     def quantity(self, output: Output) -> Quantity:
@@ -274,7 +274,7 @@ class _ContinuousSolution:
                 found[:, k] = value[0], place[0], np.sign(value[0]) * rate
             else:
                 value = columns[self.rows[name], 0]
-                if name in self.graph.wrapped:
+                if name in self.graph.loop_angles:
                     value += math.tau * np.round((self.solution.outputs[name][near[k]] - value) / math.tau)
                 found[:, k] = value, np.nan, np.sign(value) * changes[self.rows[name], 0]
         return found[0], found[1], found[2]

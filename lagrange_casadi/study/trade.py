@@ -21,7 +21,7 @@ from ..declare.scene import EvenPoints, Scene, checked, points
 from ..equations.derive import assembled, derive
 from ..equations.scene_graph import SceneGraph
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
-from ..instants.backends import Table, run
+from ..instants.backends import Evaluated, run
 from ..instants.from_table import columns
 from ..instants.rung import Rung
 from ..judge.reference import reference
@@ -141,15 +141,15 @@ def trade(
             continue
         graph = graphs[rung.newton is not None]
         try:
-            table, _ = columns(graph, times, values, rung, 1)
-            if table.status.any():
+            evaluated, _ = columns(graph, times, values, rung, 1)
+            if evaluated.status.any():
                 raise AssemblyError("some instants have no result")
             works[rung] = _work(graph, times, values, rung)
         except (AssemblyError, CompilerError, DeclarationError) as error:
             refused[rung.options] = str(error)
             continue
-        nodes = "" if table.cycle is None else f"{table.cycle.nodes} nodes, {table.cycle.nbytes / 1000:.3g} kB"
-        found[rung] = (*truth.errors(graph, table), nodes)
+        nodes = "" if evaluated.cycle is None else f"{evaluated.cycle.nodes} nodes, {evaluated.cycle.nbytes / 1000:.3g} kB"
+        found[rung] = (*truth.errors(graph, evaluated), nodes)
     seconds = _in_turns(works)
     measured = [Measurement(rung, seconds[rung], *found[rung]) for rung in works]
     ordered = tuple(sorted(measured, key=lambda one: one.seconds))
@@ -162,14 +162,14 @@ def trade(
 
 
 class _Truth:
-    """The reference at some instants, and how far a table is from it."""
+    """The reference at some instants, and how far an evaluation is from it."""
 
     def __init__(self, graph: SceneGraph, t: Array, compared: Array, p: Array) -> None:
-        table, _ = run(graph, t, p, Rung("c" if find_compiler() else "vm"), 1)
+        evaluated, _ = run(graph, t, p, Rung("c" if find_compiler() else "vm"), 1)
         self.compared = compared
-        rows = reference(graph, list(t[compared]), list(p), z=table.iterated[:, compared])
+        rows = reference(graph, list(t[compared]), list(p), z=evaluated.iterated[:, compared])
         self.columns = {output: [row[k] for row in rows] for output, k in graph.outputs.items()}
-        self.angles = graph.wrapped
+        self.angles = graph.loop_angles
         peaks = {name: max(abs(float(x)) for x in column) for name, column in self.columns.items()}
         largest: dict[str, float] = {}
         for name, peak in peaks.items():
@@ -178,12 +178,12 @@ class _Truth:
         of_unit = {name: largest[name.quantity.unit] for name in peaks}
         self.scales = {name: (peak if peak > _NIL * of_unit[name] else of_unit[name]) or 1.0 for name, peak in peaks.items()}
 
-    def errors(self, graph: SceneGraph, table: Table) -> tuple[float, float, str]:
+    def errors(self, graph: SceneGraph, evaluated: Evaluated) -> tuple[float, float, str]:
         """The largest and the median error relative to the peaks, and which quantity errs most."""
         worst = {}
         for name, k in graph.outputs.items():
             if name in self.columns:
-                gaps = [float(x - float(y)) for x, y in zip(self.columns[name], table.out[k, self.compared], strict=True)]
+                gaps = [float(x - float(y)) for x, y in zip(self.columns[name], evaluated.out[k, self.compared], strict=True)]
                 if name in self.angles:
                     gaps = [math.remainder(gap, math.tau) for gap in gaps]
                 worst[name] = max(abs(gap) for gap in gaps) / self.scales[name]
@@ -200,8 +200,8 @@ def _work(graph: SceneGraph, t: Array, p: Array, rung: Rung) -> tuple[Callable[[
     """What is timed, made ready, and its instants."""
     count = INSTANTS // 10 if rung.backend == "vm" else INSTANTS
     dense = np.linspace(t[0], t[-1], count)
-    table, _ = columns(graph, dense, p, rung, 1)
-    return lambda: columns(graph, dense, p, rung, 1, into=table), count
+    evaluated, _ = columns(graph, dense, p, rung, 1)
+    return lambda: columns(graph, dense, p, rung, 1, into=evaluated), count
 
 
 def _in_turns(works: Mapping[Rung, tuple[Callable[[], Any], int]]) -> dict[Rung, float]:

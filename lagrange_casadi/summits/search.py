@@ -7,7 +7,7 @@ where it is known when in it a kink or a jump is, of steps a ninth as long, and 
 nothing but a jump, a kink or a pole is left in them. Where that takes too many panels, or a quantity grows on slowly without an
 end, its peak is not told.
 
-The emitted C does the same for many designs (``codegen/summits.c``, ``looks.c``, ``parts.c``), and is tested against this.
+The emitted C does the same for many designs (``codegen/summits.c``, ``looks.c``, ``within.c``), and is tested against this.
 """
 
 from __future__ import annotations

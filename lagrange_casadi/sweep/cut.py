@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from ..declare.density import Array
 from .axes import DESIGN
-from .panels import value
 from .reading import Sweep
+from .sheet import value
 
 PIXELS, DOTS, LINES = 800, 20_000, 6
 """No more places along an axis of a map, dots, or curves of a family are drawn."""

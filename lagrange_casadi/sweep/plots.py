@@ -16,10 +16,10 @@ from ..quantities import FORCES
 from .best import best, chosen, size
 from .columns import STATUS
 from .cut import DOTS, LINES, Cut, stays
-from .panels import STYLE, Gaps, Sheet, fitted, label, value
 from .reading import Sweep
 from .scale import Scale, edges, even_in_ratios, logarithmic, number
 from .selection import near
+from .sheet import STYLE, Gaps, Sheet, fitted, label, value
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -57,7 +57,7 @@ class Peaks:
         shown, same = _differing(self.columns, cut)
         gaps = Gaps.of(sweep, cut[STATUS])
         sheet = Sheet.of(len(shown), share=("all", "all") if len(self.over) == 2 else ("all", False))
-        for axes, (column, values) in zip(sheet.panels, shown.items(), strict=True):
+        for axes, (column, values) in zip(sheet.plots, shown.items(), strict=True):
             scale = Scale.of(values)
             if len(self.over) == 2:
                 sheet.bar(axes, _cells(axes, cut.axes, values, scale, gaps, sheet.legend), scale, label(sweep, column))
@@ -92,7 +92,7 @@ class Scatter:
         shown, same = _differing(self.columns, cut)
         gaps = Gaps.of(sweep, cut[STATUS])
         sheet = Sheet.of(len(shown) * len(self.over), columns=len(self.over), share=("col", "row"))
-        for k, axes in enumerate(sheet.panels):
+        for k, axes in enumerate(sheet.plots):
             (column, values), name = list(shown.items())[k // len(self.over)], self.over[k % len(self.over)]
             scale, x = Scale.of(values), cut.sweep[name]
             axes.plot(x, values, "o", color=_BLUE, markersize=3, alpha=0.6, markeredgewidth=0.0)
@@ -108,7 +108,7 @@ class Scatter:
             if k % len(self.over) == 0:
                 axes.set_ylabel(fitted(sheet.up, label(sweep, column), scale.note))
                 axes.set_title(f"★ {number(values[place])}, design {cut.numbers[place]}{_ties(values)}", loc="left", color=_RED)
-            if k + len(self.over) >= len(sheet.panels):
+            if k + len(self.over) >= len(sheet.plots):
                 axes.set_xlabel(fitted(0.9 * sheet.across, label(sweep, name)))
         return sheet.finish(f"{sweep.case}: peak over time of {cut.numbers.size} designs", *cut.notes, same)
 
@@ -134,7 +134,7 @@ class Along:
         flips: dict[str, Any] = {}
         gaps = Gaps.of(sweep, np.repeat(cut[STATUS][:, None], xi.size, axis=1))
         sheet = Sheet.of(len(FORCES), share=("all", mapped))
-        for axes, force in zip(sheet.panels, FORCES, strict=True):
+        for axes, force in zip(sheet.plots, FORCES, strict=True):
             column = f"peak_at:section:{self.link}:{force}"
             values = cut[column]
             if np.isnan(values).all():
@@ -196,7 +196,7 @@ class Front:
         x, y = np.concatenate(dots, axis=1)
         u, v = (size(name, np.array([design.values[name] for design in front])) for name in pair)
         sheet = Sheet.of(1)
-        (axes,) = sheet.panels
+        (axes,) = sheet.plots
         if count > len(front):
             words = "designs with a result" + (f", 1 in {stride} drawn" if stride > 1 else "")
             (sheet.legend[words],) = axes.plot(x, y, "o", color="0.75", markersize=2.5, markeredgewidth=0.0)

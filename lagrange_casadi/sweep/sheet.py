@@ -1,4 +1,4 @@
-"""What a sweep's figures are made of: designs without a result, words, and a sheet of panels with a title and a legend."""
+"""What a sweep's figures are made of: designs without a result, words, and a sheet of plots with a title and a legend."""
 
 from __future__ import annotations
 
@@ -88,10 +88,10 @@ class Gaps:
 
 @dataclass
 class Sheet:
-    """A figure of panels, a legend's entries below them, and a title above."""
+    """A figure of plots, a legend's entries below them, and a title above."""
 
     figure: Figure
-    panels: list[Any]
+    plots: list[Any]
     width: float
     columns: int
     legend: dict[str, Any] = field(default_factory=dict)
@@ -123,7 +123,7 @@ class Sheet:
     @property
     def up(self) -> float:
         """How long text beside a panel may be."""
-        return 0.8 * (_ALONE if len(self.panels) == 1 else _HEIGHT)
+        return 0.8 * (_ALONE if len(self.plots) == 1 else _HEIGHT)
 
     def bar(self, axes: Any, cells: Any, scale: Scale, text: str) -> None:
         """A bar of colours above a panel."""
@@ -138,9 +138,9 @@ class Sheet:
             tick(getattr(axes, f"{axis}axis"), there, 0.9 * self.across if axis == "x" else 0.7 * self.up)
 
     def name_axes(self, x: str, y: str = "") -> None:
-        """Say below the lowest panels, and left of the leftmost ones, what is along their axes."""
-        for k, axes in enumerate(self.panels):
-            if k + self.columns >= len(self.panels):
+        """Say below the lowest plots, and left of the leftmost ones, what is along their axes."""
+        for k, axes in enumerate(self.plots):
+            if k + self.columns >= len(self.plots):
                 axes.set_xlabel(fitted(0.9 * self.across, x))
                 axes.tick_params(labelbottom=True)
             if y and k % self.columns == 0:
@@ -157,9 +157,9 @@ class Sheet:
             columns = max(1, min(len(entries), int(17.0 * self.width / longest)))
             lines += -(-sum(text.count("\n") + 1 for text in entries) // columns)
             self.figure.legend(list(self.legend.values()), entries, loc="outside lower center", ncols=columns, frameon=False)
-        bars = [axes.get_xlabel() for axes in self.figure.axes if axes not in self.panels]
-        for texts in (bars, [axes.get_title(loc="left") for axes in self.panels]):
-            lines += -(-len(self.panels) // self.columns) * max((text.count("\n") for text in texts), default=0)
+        bars = [axes.get_xlabel() for axes in self.figure.axes if axes not in self.plots]
+        for texts in (bars, [axes.get_title(loc="left") for axes in self.plots]):
+            lines += -(-len(self.plots) // self.columns) * max((text.count("\n") for text in texts), default=0)
         self.figure.set_figheight(self.figure.get_figheight() + _LINE * lines)
         return self.figure
 
