@@ -105,7 +105,7 @@ def evaluate(
     left_open += undetermined(graph, out, p, rung)
     within = phases(graph, out, times, p) if certificate else {}
     outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
-    description = describe(scene.mechanism, values, scene.motion)
+    description = describe(scene.mechanism, values, scene.motion, scene.weights)
     ordered = in_order(outputs, description)
     solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open)
     solution = replace(solution, tolerance=tolerance(solution))

@@ -26,6 +26,7 @@ def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
     values = m.values(parameters)
     graph = derive(scene)
     found, drives = columns_at(graph, t, values)
+    beside = {"pushed": scene.drives and list(scene.drives)} | beside
     solved = oracle_of(m, values, **beside).solve(drives, postures(m, found, drives, nudge, rough))
     size = max((abs(x) for forces in solved.reactions.values() for x in forces), default=0.0) or 1.0
     gaps = {f"effort:{joint}": (found[f"effort:{joint}"] - effort) / size for joint, effort in solved.efforts.items()}

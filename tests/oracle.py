@@ -123,7 +123,7 @@ class Result:
 class Oracle:
     """A mechanism of bodies and joints; ``gravity`` in m/s^2; ``loads`` list (point, fx, fy, mz) from a posture.
 
-    ``unaided`` are driven joints that bear no effort.
+    ``unaided`` are driven joints that bear no effort; ``pushed`` the joints that do, where these are not the driven ones.
     """
 
     bodies: Sequence[Body]
@@ -132,6 +132,7 @@ class Oracle:
     loads: Sequence[Callable] = ()
     extras: Sequence[Extra] = ()
     unaided: Sequence[str] = ()
+    pushed: Sequence[str] | None = None
     arithmetic: Double | Digits = DOUBLE
 
     def solve(self, drives: dict[str, tuple[float, float, float]], guess: dict[str, tuple[float, float, float]]) -> Result:
@@ -257,7 +258,7 @@ class Oracle:
                 pair(joint, "reaction", force, 0.0)
             if self._holds_direction(joint):
                 pair(joint, "reaction", (0.0, 0.0), 1.0)
-            if joint.name in drives and joint.name not in self.unaided:
+            if joint.name in (drives if self.pushed is None else self.pushed) and joint.name not in self.unaided:
                 pair(joint, "effort", (ax, ay) if joint.slides else (0.0, 0.0), 0.0 if joint.slides else 1.0)
         for extra in self.extras:
             labels.append((extra.name, "multiplier", (0.0, 0.0, 0.0)))

@@ -50,10 +50,23 @@ def density_of(body: Description) -> NumericDensity:
     return NumericDensity(tuple(body["density"]["breaks"]), tuple(tuple(cell) for cell in body["density"]["cells"]))
 
 
-def describe(mechanism: Mechanism, values: Mapping[str, float], driven: Collection[str]) -> Description:
-    """Bodies with their length [m] (None for a point mass) and mass [kg], and joints with the places they join."""
+def drives_of(description: Description) -> list[str]:
+    """The joints whose efforts make the motion."""
+    driven = [name for name, joint in description["joints"].items() if joint["driven"] and name not in description["rows"].values()]
+    drives = description.get("drives")
+    return driven if drives is None else [name for name in drives if name in description["joints"]]
+
+
+def describe(
+    mechanism: Mechanism, values: Mapping[str, float], driven: Collection[str], drives: Collection[str] | None = None
+) -> Description:
+    """Bodies with their length [m] (None for a point mass) and mass [kg], and joints with the places they join.
+
+    ``driven`` are the joints whose motion is given, ``drives`` those whose efforts make it, where these are others.
+    """
     numbers = iter(_numbers(mechanism)([values[name] for name in mechanism.parameters]).full().ravel().tolist())
-    return _described(mechanism, values, driven, lambda _: next(numbers))
+    found = _described(mechanism, values, driven, lambda _: next(numbers))
+    return found if drives is None else found | {"drives": list(drives)}
 
 
 @functools.lru_cache(maxsize=32)

@@ -8,17 +8,21 @@ import numpy as np
 
 from ..quantities import Output
 from .density import Array
-from .description import Description
+from .description import Description, drives_of
 
 _EDGE = 1e-9
 """Of a link's length: what leaves it by so little does so by rounding."""
 
 
 def notes(t: Array, outputs: Mapping[Output, Array], description: Description) -> Iterator[str]:
-    """Each joint whose point slides beyond the end of a link that has sections, with the first instant and how far it goes.
+    """More drives than motions; and each joint whose point slides beyond the end of a link that has sections, and how far it goes.
 
-    As far as the motion of the joint, or the sections of the link, are among the outputs.
+    As far as efforts, the motion of the joint, or the sections of the link, are among the outputs.
     """
+    drives, moved = drives_of(description), drives_of({**description, "drives": None})
+    if len(drives) > len(moved) and Output("effort", drives[0]) in outputs:
+        told = f"{len(drives)} drives ({', '.join(drives)}) make {len(moved)} motion{'s' if len(moved) > 1 else ''}"
+        yield f"{told}: of all efforts that do, these have the least weighted sum of squares"
     for name, joint in description["joints"].items():
         body = description["bodies"].get(joint["parent"]["body"], {})
         if joint["kind"] not in ("prismatic", "slot") or "density" not in body:

@@ -15,9 +15,11 @@ import numpy.typing as npt
 from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError
 from ..system.room import require
 from .density import Array, Density
+from .drives import weighed
 from .limits import no_sections
 from .mechanism import Mechanism
 from .motion import Motion
+from .parts import Expression
 
 EvenPoints = tuple[float, float, int]
 """Evenly spaced: start, stop and count; both ends are included."""
@@ -159,6 +161,10 @@ class Scene:
         can be assembled.
     assembly
         Values of parameters with which loops are first assembled, in place of the defaults. The way to assemble is chosen there.
+    drives
+        The joints whose efforts make the motion; by default those whose motion is given. Of more drives than are needed, the
+        efforts are those of the least sum of squares, each times its joint's weight: a mapping gives weights by joint, numbers or
+        expressions of parameters; a list gives each the weight 1.
 
     Raises :class:`.DeclarationError` for what does not fit the mechanism, :class:`.UnknownNameError` for names it does not have,
     and :class:`.ParameterError` where the default parameters make a part impossible.
@@ -171,6 +177,7 @@ class Scene:
     xi: EvenPoints = (0.0, 1.0, 101)
     posture: Mapping[str, float] = field(default_factory=dict)
     assembly: Mapping[str, float] = field(default_factory=dict)
+    drives: Mapping[str, Expression] | Sequence[str] | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.mechanism, Mechanism):
@@ -203,6 +210,8 @@ class Scene:
                 raise DeclarationError(
                     f"non-holonomic constraint '{row.name}' replaces the drive of joint '{row.replaces}', which has no motion"
                 )
+        if self.drives is not None:
+            object.__setattr__(self, "drives", MappingProxyType(weighed(self.mechanism, self.drives, self.needs_drives)))
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)
         checked("t", self.t)
@@ -212,6 +221,17 @@ class Scene:
         except ParameterError as error:
             raise ParameterError(f"{error}{told_parameters(self.mechanism, {})}") from None
         self.mechanism.values(self.assembly)
+
+    @property
+    def needs_drives(self) -> tuple[str, ...]:
+        """The joints whose motion needs an effort: those with a motion, but for what non-holonomic constraints replace."""
+        replaced = {row.replaces for row in self.mechanism.rows.values()}
+        return tuple(name for name in self.motion if name not in replaced)
+
+    @property
+    def weights(self) -> Mapping[str, Expression] | None:
+        """The drives' weights by joint, in the order of the joints; None where efforts are where the motion is given."""
+        return self.drives if isinstance(self.drives, Mapping) else None
 
     def __repr__(self) -> str:
         start, stop, count = self.t

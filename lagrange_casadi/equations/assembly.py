@@ -27,8 +27,12 @@ from .multibody import (
 from .tree import Branch, Tree
 
 
-def assemble(mechanism: Mechanism, tree: Tree, driven: Collection[str], reactions: Collection[str]) -> Multibody:
+def assemble(
+    mechanism: Mechanism, tree: Tree, driven: Collection[str], reactions: Collection[str], pushed: Collection[str] = ()
+) -> Multibody:
     """The graphs of a frozen mechanism, with mobilities for the named joints' reactions, and for nothing else.
+
+    ``driven`` are the joints whose motion is given, and ``pushed`` those along which efforts are unknowns of their own.
 
     The frames and gaps that positions are solved from are built without any mobility: they do not depend on what is wanted.
     Gravity is an acceleration of the ground, upward, in the frames that matter is weighed in (d'Alembert).
@@ -58,6 +62,9 @@ def assemble(mechanism: Mechanism, tree: Tree, driven: Collection[str], reaction
     spun = {b.far.body for b in tree.branches if not b.joint.slides and (b.joint.name in driven or b.near.body is mechanism.ground)}
     kinetic = sum((_kinetic(body, felt, velocities, body in spun) for body in mechanism.moving), ca.SX(0))
     _work(felt, (*applied, *held), loops, velocities)
+    efforts = {name: ca.SX.sym(f"tau_{name}") for name in pushed}
+    for name, effort in efforts.items():
+        _push(felt, mechanism.joints[name], effort, velocities)
     return Multibody(
         mechanism=mechanism,
         tree=tree,
@@ -70,6 +77,7 @@ def assemble(mechanism: Mechanism, tree: Tree, driven: Collection[str], reaction
         applied=applied,
         held=tuple(held),
         turned=tuple(resting.turned.values()),
+        efforts=efforts,
         kinetic=kinetic,
         velocities=velocities,
     )
@@ -322,3 +330,13 @@ def _work(felt: _Builder, applied: Iterable[Applied], loops: Iterable[LoopEquati
             velocities.point(gap_motion(loop.joint, parent, child), (action["fx"], action["fy"]))
             if "mz" in action:
                 velocities.turn(child.rate - parent.rate, child.angular - parent.angular, action["mz"])
+
+
+def _push(felt: _Builder, joint: Joint, effort: Any, velocities: Velocities) -> None:
+    """Let an effort do work along a joint's coordinate."""
+    parent, child = felt.ends(joint)
+    if joint.coordinate == "angle":
+        velocities.turn(child.rate - parent.rate, child.angular - parent.angular, effort)
+    else:
+        ax, ay = parent.rotation.apply(*joint.axis)
+        velocities.point(gap_motion(joint, parent, child), (effort * ax, effort * ay))

@@ -7,7 +7,9 @@ from typing import Literal, TypeAlias, cast
 
 from ..quantities import Output
 
-Kind: TypeAlias = Literal["closure", "gap", "misfit", "row", "rowsize", "turned", "turns", "multiplier", "open", "drive", "watched"]
+Kind: TypeAlias = Literal[
+    "closure", "hold", "gap", "misfit", "row", "rowsize", "turned", "turns", "multiplier", "open", "drive", "watched"
+]
 
 
 @dataclass(frozen=True)
@@ -15,10 +17,11 @@ class Check:
     """A column that is no output.
 
     Whether there is a result, ``closure`` (see :mod:`.loops`), ``gap`` and ``misfit`` (see :mod:`.gaps`) of the joint or constraint
-    that closes a loop tell, ``row`` and ``rowsize`` of a non-holonomic row, and ``turned`` of a joint, how far an angle swings that
-    is seen with its turns (see :mod:`.turns`). Whether it is the only one tells ``open`` of an output (see :mod:`.determinacy`).
-    ``turns`` are the whole turns of a joint's angle that its column is without, ``multiplier`` is one that was not wanted,
-    ``drive`` is what a table needs of its drive, and ``watched`` what is watched for jumps and kinks between instants.
+    that closes a loop tell, ``hold`` of drives whether they can make the motion (see :mod:`.drives`), ``row`` and ``rowsize`` of a
+    non-holonomic row, and ``turned`` of a joint, how far an angle swings that is seen with its turns (see :mod:`.turns`). Whether
+    it is the only one tells ``open`` of an output (see :mod:`.determinacy`). ``turns`` are the whole turns of a joint's angle that
+    its column is without, ``multiplier`` is one that was not wanted, ``drive`` is what a table needs of its drive, and ``watched``
+    what is watched for jumps and kinks between instants.
     """
 
     kind: Kind

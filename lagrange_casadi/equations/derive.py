@@ -19,6 +19,7 @@ from ..system import cache
 from . import kinematics
 from .assembly import assemble
 from .checks import Check, Column
+from .drives import pushed
 from .fingerprint import fingerprint
 from .kinematics import Start
 from .mobility import internal_forces, needed_reactions
@@ -88,7 +89,8 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     mechanism = scene.mechanism
     p = mechanism.symbols
     tree = span(mechanism, scene.motion)
-    body = assemble(mechanism, tree, scene.motion, needed_reactions(mechanism, want.reactions, want.sections))
+    borne = needed_reactions(mechanism, want.reactions, want.sections)
+    body = assemble(mechanism, tree, scene.motion, borne, pushed(scene.needs_drives, scene.weights))
     driven = tuple(c.joint for c in body.coordinates if c.driven)
     motion = motion_function({name: scene.motion[name] for name in driven}, p)
     values = list(mechanism.values(scene.assembly).values())
@@ -131,6 +133,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
             reactions=want.reactions,
             multipliers=want.multipliers,
             sections=want.sections,
+            weights=scene.weights,
         )
         acting = gathered(forces.columns, forces.free, mechanism.links.values(), body.coordinates)
         columns |= _settled(acting, forces.free)

@@ -43,6 +43,8 @@ def declaration(scene: Scene, wanted: Wanted) -> str | None:
         wanted,
         list(scene.motion),
     ]
+    if scene.weights is not None:
+        content.append(scene.weights)
     try:
         _spell(content, words, expressions)
     except _UntoldError:

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,6 +30,8 @@ from ..declare.parts import Joint, Link, Point
 from ..geometry.planar import Frame, Velocities, reaction, slide
 from ..quantities import LAW, STATION, Output
 from .checks import Check, Column
+from .drives import solve_efforts
+from .gaps import reach
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
 from .multibody import Multibody, column
@@ -39,7 +41,8 @@ from .multibody import Multibody, column
 class InternalForces:
     """Every force that was asked for, over time, the driven motion, the iterated unknowns and the parameters.
 
-    ``free`` are the symbols of what equilibrium leaves open in an over-constrained mechanism.
+    ``free`` are the symbols of what equilibrium leaves open in an over-constrained mechanism. Among the columns, a check tells how
+    far drives are from a place where they cannot make the motion, where they are others than the joints whose motion is given.
     """
 
     columns: dict[Column, Any]
@@ -65,14 +68,29 @@ def internal_forces(
     reactions: Sequence[str],
     multipliers: Sequence[str],
     sections: Sequence[str],
+    weights: Mapping[str, Any] | None,
 ) -> InternalForces:
-    """Efforts of the drives, reactions of the named joints, multipliers of constraints and rows, and the laws of links."""
+    """Efforts of the drives, reactions of the named joints, multipliers of constraints and rows, and the laws of links.
+
+    ``weights`` are those of the drives, where these are others than the joints whose motion is given.
+    """
     along, across = multibody.system.terms()
     along = kinematics.evaluate(along)
     unknowns, values, free = _multipliers(multibody, kinematics, along)
 
     unaided = {graph.row.replaces for graph in multibody.rows}
     drives = {c.joint: along[i] for i, c in enumerate(multibody.coordinates) if c.driven and c.joint not in unaided}
+    held: dict[Column, Any] = {}
+    if weights is not None and multibody.efforts:
+        needs = {name: ca.substitute(ca.SX(need), unknowns, values) for name, need in drives.items()}
+        needs = {name: need for name, need in needs.items() if name in multibody.efforts or name not in weights}
+        size = reach(multibody.mechanism)
+        units = {name: 1 if joint.coordinate == "angle" else size for name, joint in multibody.mechanism.joints.items()}
+        efforts = solve_efforts(multibody.efforts, needs, weights, units)
+        drives = {name: multibody.efforts.get(name, drives.get(name)) for name in weights}
+        values = ca.substitute(values, efforts.symbols, efforts.values)
+        unknowns, values = ca.vertcat(unknowns, efforts.symbols), ca.vertcat(values, efforts.values)
+        held = {Check("hold", ", ".join(weights)): efforts.closure}
     starts = itertools.accumulate((rates.numel() for rates in multibody.mobilities.values()), initial=0)
     by_joint = dict(zip(multibody.mobilities, ca.vertsplit(across, [*starts]), strict=True))
     joints = multibody.mechanism.joints
@@ -82,18 +100,18 @@ def internal_forces(
     columns: dict[Column, Any] = {Output("effort", joint): force for joint, force in drives.items()} if effort else {}
     for name in reactions:
         columns |= {Output("reaction", name, member): force for member, force in borne[name].items()}
-    held = {c.name: c.multipliers for c in multibody.loop_equations if c.joint is None}
-    held |= {graph.row.name: graph.multiplier for graph in multibody.rows}
-    columns |= {Output("multiplier", name): held[name] for name in multipliers}
+    tying = {c.name: c.multipliers for c in multibody.loop_equations if c.joint is None}
+    tying |= {graph.row.name: graph.multiplier for graph in multibody.rows}
+    columns |= {Output("multiplier", name): tying[name] for name in multipliers}
     if reactions:
-        columns |= {Check("multiplier", name): multiplier for name, multiplier in held.items() if name not in multipliers}
+        columns |= {Check("multiplier", name): multiplier for name, multiplier in tying.items() if name not in multipliers}
     for name in sections:
         columns |= _section_law(multibody, name, borne, drives)
     # All at once, for a substitution visits the whole graph; and mobilities rest.
     rates = multibody.mobility_rates
     resting = ca.substitute(column(columns.values()), rates, ca.SX.zeros(rates.numel()))
     known = ca.substitute(kinematics.evaluate(resting), unknowns, values)
-    return InternalForces(dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True)), free)
+    return InternalForces(dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True)) | held, free)
 
 
 def _section_law(multibody: Multibody, name: str, borne: Any, drives: Any) -> dict[Column, Any]:

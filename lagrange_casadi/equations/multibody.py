@@ -122,7 +122,7 @@ class Multibody:
     """The graphs of a mechanism, over the symbols of its coordinates, mobilities, multipliers and time.
 
     ``frames`` are without mobilities; ``felt`` are with them, and their accelerations are less that of gravity, as matter feels
-    them.
+    them. ``efforts`` are the symbols of efforts along other coordinates than those whose motion is given, by joint.
     """
 
     mechanism: Mechanism
@@ -136,6 +136,7 @@ class Multibody:
     applied: tuple[Applied, ...]
     held: tuple[Applied, ...]
     turned: tuple[Turned, ...]
+    efforts: dict[str, Any]
     kinetic: Any
     velocities: Velocities
 

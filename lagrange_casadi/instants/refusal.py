@@ -19,7 +19,7 @@ from ..equations.scene_graph import SceneGraph
 from ..equations.turns import LEAP
 from ..errors import AssemblyError
 from .backends import Evaluated, run
-from .rules import Rule, dead_centre, rules
+from .rules import Rule, rules
 from .rung import Rung
 
 
@@ -56,8 +56,8 @@ _MEANINGS = {
     Status.SLOW: "the iterated loops converge slowly: they are near a dead centre",
     Status.OUT_OF_REACH: "a loop cannot be closed: its links do not reach",
     Status.JUMPED: "an iterated loop has jumped to another branch: more instants may help",
-    Status.DEAD_CENTRE: "a loop is at a dead centre, within rounding: its forces are not determined there",
-    Status.PASSES_DEAD_CENTRE: "a loop passes a dead centre between two instants, and can go on in two ways",
+    Status.DEAD_CENTRE: "a loop is at a dead centre, within rounding, or drives cannot make the motion: forces are open there",
+    Status.PASSES_DEAD_CENTRE: "a loop passes a dead centre between two instants, or drives pass where they cannot make the motion",
     Status.MISFIT: "loops are over-constrained and do not fit",
     Status.ROW_VIOLATED: "the motion violates a non-holonomic constraint",
     Status.IMPOSSIBLE: "a length is not positive, a mass or density is negative, or a station is outside its link",
@@ -87,15 +87,15 @@ def refuse(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: Ru
 def refusal(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: Rung) -> Refusal | None:
     """Why the first instant that has no result has none; None where all have."""
     held, extent, bad = rules(graph, evaluated.stages.precision, rung.newton), graph.extent(p), evaluated.status != OK
-    passed: dict[str, npt.NDArray[np.bool_]] = {}
+    passed: dict[Rule, npt.NDArray[np.bool_]] = {}
     for rule in held:
         bad |= broken(rule, evaluated.out, extent)
         if rule.kind in ("CLOSURE", "BRANCH"):
-            passed[str(rule.part)] = passes_dead_centre(evaluated.out[rule.column], ends=graph.newton is None)
-    for name, found in passed.items():
+            passed[rule] = passes_dead_centre(evaluated.out[rule.column], ends=graph.newton is None)
+    for rule, found in passed.items():
         if graph.newton is None and found.any():
             after = np.flatnonzero(found)
-            found[after] = _dead_between(graph, name, t[after], t[after + 1], p, rung)
+            found[after] = _dead_between(graph, rule, t[after], t[after + 1], p, rung)
         bad |= found
     if not bad.any():
         return None
@@ -104,7 +104,7 @@ def refusal(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: R
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
     at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
     at = f"at t = {t[i]:.6g} s{at}"
-    status, why = _why(graph, evaluated, held, i, at, [name for name in passed if passed[name][i]], extent)
+    status, why = _why(graph, evaluated, held, i, at, [rule for rule in passed if passed[rule][i]], extent)
     return Refusal(status, _beyond(graph, p, evaluated.stages.precision, at) or why)
 
 
@@ -126,17 +126,17 @@ def broken(rule: Rule, out: Array, extent: float) -> npt.NDArray[np.bool_]:
     return np.zeros(column.shape, dtype=bool)
 
 
-def _dead_between(graph: SceneGraph, name: str, start: Array, stop: Array, p: Array, rung: Rung) -> npt.NDArray[np.bool_]:
+def _dead_between(graph: SceneGraph, rule: Rule, start: Array, stop: Array, p: Array, rung: Rung) -> npt.NDArray[np.bool_]:
     """Whether a closure is zero between instants, looked for where it is lowest, ever closer."""
     lowest = np.full(start.size, np.inf)
     for _ in range(ROUNDS):
         inside = np.linspace(start, stop, INSIDE)
         evaluated, _ = run(graph, inside.ravel(), p, Rung(rung.backend, rung.precision, flags=rung.flags))
-        closure = evaluated.out[graph.checks("closure")[name]].reshape(inside.shape)
+        closure = evaluated.out[rule.column].reshape(inside.shape)
         place = np.argmin(closure, axis=0)[None]
         lowest = np.fmin(lowest, np.take_along_axis(closure, place, 0)[0])
         start, stop = (np.take_along_axis(inside, np.clip(place + k, 0, INSIDE - 1), 0)[0] for k in (-1, 1))
-    return ~(lowest > dead_centre(graph, rung.precision, name))
+    return ~(lowest > rule.limit)
 
 
 def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str | None:
@@ -153,7 +153,7 @@ def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str |
 
 
 def _why(
-    graph: SceneGraph, evaluated: Evaluated, held: Sequence[Rule], i: int, at: str, passed: Sequence[str], extent: float
+    graph: SceneGraph, evaluated: Evaluated, held: Sequence[Rule], i: int, at: str, passed: Sequence[Rule], extent: float
 ) -> tuple[Status, str]:
     if evaluated.status[i] == NOT_CONVERGED:
         assert graph.newton is not None
@@ -162,6 +162,7 @@ def _why(
     for rule in held:
         part, value = str(rule.part), float(evaluated.out[rule.column, i])
         closed = f"{'joint' if part in graph.scene.mechanism.joints else 'constraint'} '{part}'"
+        drives = f"the drives {part}" if rule.column in graph.checks("hold").values() else ""
         if rule.kind not in ("CLOSURE", "BRANCH"):
             if evaluated.status[i] == SLOW:
                 break
@@ -171,10 +172,14 @@ def _why(
             if rule.kind == "BRANCH":
                 return Status.JUMPED, f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
             return Status.OUT_OF_REACH, f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
+        elif drives and (rule in passed or not value > rule.limit):
+            where_to = f"after {at.removeprefix('at ')}" if value > rule.limit else at
+            status = Status.PASSES_DEAD_CENTRE if value > rule.limit else Status.DEAD_CENTRE
+            return status, f"{drives} cannot make the motion {where_to}: it can go on there without moving them; drive other joints"
         elif not value > rule.limit:
             why = f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces are not determined there"
             return Status.DEAD_CENTRE, why
-        elif part in passed:
+        elif rule in passed:
             near = "; if it only comes near one, take more instants" if graph.newton is not None else ""
             passing = f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}"
             return Status.PASSES_DEAD_CENTRE, f"{passing}, and can go on in two ways{near}"

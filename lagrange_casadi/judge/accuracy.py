@@ -109,7 +109,7 @@ def _chosen(graph: SceneGraph, evaluated: Evaluated) -> Array:
     """Instants to look at: evenly spread ones, those at which a loop is nearest to a dead centre, and where outputs peak."""
     n = evaluated.status.size
     spread = np.linspace(0, n - 1, min(n, INSTANTS)).astype(int)
-    closures = graph.checks("closure").values()
+    closures = [*graph.checks("closure").values(), *graph.checks("hold").values()]
     peaks = [int(np.argmin(row if k in closures else -np.abs(row))) for k, row in enumerate(evaluated.out)]
     return np.unique([*spread, *peaks])
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arithmetic.compensated import DTYPES, ROUNDING, Precision
 from ..declare.density import Array
-from ..declare.description import Description, density_of
+from ..declare.description import Description, density_of, drives_of
 from ..instants.solution import Solution
 from ..quantities import FORCES, Output
 from .placing import Complex, Moving, axis_of, measured, oriented, place
@@ -90,8 +90,7 @@ def _residuals(solution: Solution, turned: Solution, equations: Sequence[Written
         return {}
     found = {"closure": (_closure(solution, bodies, equations or ()), _size(solution))}
     wanted = [Output("reaction", name, "fx") for name in joints] + [Output("load", name, "fx") for name in description["loads"]]
-    drives = (name for name, joint in joints.items() if joint["driven"] and name not in description["rows"].values())
-    wanted += [Output("effort", name) for name in drives]
+    wanted += [Output("effort", name) for name in drives_of(description)]
     wanted += [Output("multiplier", name) for name in (*description["constraints"], *description["rows"])]
     told = equations is not None or not (description["constraints"] or description["rows"])
     known = (output in solution.outputs and np.isfinite(solution.outputs[output]).all() for output in wanted)

@@ -1,0 +1,40 @@
+"""Which joints' efforts make a motion, where those are others than the joints whose motion is given."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import casadi as ca
+
+from ..errors import DeclarationError, UnknownNameError
+from .mechanism import Mechanism
+from .parts import Expression
+
+
+def weighed(mechanism: Mechanism, drives: Mapping[str, Expression] | Sequence[str], moved: Sequence[str]) -> dict[str, Expression]:
+    """The drives with their weights, in the order of the joints' declaration.
+
+    ``moved`` are the joints whose motion needs an effort. Raises :class:`UnknownNameError` for a joint that is none, and
+    :class:`DeclarationError` for one that has no coordinate, for too few, and for a weight that is not positive.
+    """
+    if isinstance(drives, str) or not isinstance(drives, (Mapping, Sequence)):
+        raise DeclarationError(f"drives: expected a list of joints, or weights by joint, got {drives!r}")
+    weights = dict(drives) if isinstance(drives, Mapping) else dict.fromkeys(drives, 1.0)
+    if len(weights) < len(drives):
+        raise DeclarationError(f"drives: a joint stands twice in {', '.join(drives)}")
+    for name, weight in weights.items():
+        if name not in mechanism.joints:
+            raise UnknownNameError("joint in drives", name, mechanism.joints)
+        if mechanism.joints[name].coordinate is None:
+            raise DeclarationError(f"drives: joint '{name}' has no coordinate that an effort could work along")
+        if not isinstance(weight, ca.SX):
+            if not isinstance(weight, (int, float)) or not 0.0 < weight < float("inf"):
+                raise DeclarationError(f"drives: expected a positive weight of joint '{name}', got {weight!r}")
+        elif strange := [str(s) for s in ca.symvar(weight) if not ca.depends_on(mechanism.symbols, s)]:
+            raise DeclarationError(f"drives: the weight of joint '{name}' depends on {', '.join(strange)}, which is no parameter")
+    if len(weights) < len(moved):
+        raise DeclarationError(
+            f"drives: {len(weights)} cannot make {len(moved)} independent motions; name at least {len(moved)} joints for the "
+            f"motion of {', '.join(moved)}, got {', '.join(weights) or 'none'}"
+        )
+    return {name: weights[name] for name in mechanism.joints if name in weights}

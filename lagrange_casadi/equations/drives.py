@@ -1,0 +1,57 @@
+"""Efforts of drives where they are others than the joints whose motion is given.
+
+Efforts tau along the drives' coordinates must leave nothing to be done along the coordinates whose motion is given:
+R(tau) = R(0) + A tau = 0, a small linear system. Of more drives than motions, the efforts are those with the least sum of
+w tau^2 (weighted least norm): tau = W^-1/2 x, with x of the least length that satisfies (A W^-1/2) x = -R(0).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from .linear import LinearSystem
+from .multibody import column
+
+
+@dataclass(frozen=True, eq=False)
+class Efforts:
+    """Symbols of efforts and their values; ``closure`` is zero where the drives cannot make the motion, at most one.
+
+    It is the square of a sine, as that of a loop is (:mod:`.loops`): how far the drives are from depending on each other, times
+    how much they move.
+    """
+
+    symbols: Any
+    values: Any
+    closure: Any
+
+
+def pushed(moved: Sequence[str], drives: Mapping[str, Any] | None) -> tuple[str, ...]:
+    """The drives whose efforts are unknowns: all where they are too many, else those that are not at a joint that is ``moved``."""
+    if drives is None:
+        return ()
+    return tuple(name for name in drives if len(drives) > len(moved) or name not in moved)
+
+
+def solve_efforts(
+    efforts: Mapping[str, Any], needs: Mapping[str, Any], weights: Mapping[str, Any], units: Mapping[str, Any]
+) -> Efforts:
+    """The efforts, by joint their symbols, that leave nothing of ``needs``, which are linear in them.
+
+    ``units`` are by joint what its coordinate is measured in, to tell whether a drive moves much of a motion or little.
+    """
+    symbols, left = column(efforts.values()), column(needs.values())
+    rest = ca.substitute(left, symbols, ca.SX.zeros(symbols.numel()))
+    lighter = column(1 / ca.sqrt(ca.SX(weights[name])) for name in efforts)
+    effect = ca.densify(ca.jacobian(left, symbols)).T
+    system = LinearSystem.of(ca.diag(lighter) @ effect)
+    values = lighter * system.solve_transposed(-rest, ca.SX.zeros(system.free))
+    moved = ca.diag(column(1 / ca.SX(units[name]) for name in efforts)) @ effect @ ca.diag(column(units[name] for name in needs))
+    closure = system.volume * system.volume
+    for j in range(len(needs)):
+        closure *= ca.sumsqr(moved[:, j]) / (1 + ca.sumsqr(moved[:, j]))
+    return Efforts(symbols, values, closure)
