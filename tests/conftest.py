@@ -6,6 +6,8 @@ import json
 import os
 import signal
 import sys
+import zlib
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -101,12 +103,21 @@ def solution(slider_crank):
 def pytest_addoption(parser):
     generated = "parts of the documentation, and the golden text of an export"
     parser.addoption("--update", action="store_true", help=f"write anew what is generated: {generated}")
-    parser.addoption("--long", action="store_true", help="also the tests marked long, which take many minutes")
+    parser.addoption("--long", action="store_true", help="also tests marked long, and all parameters of those marked sampled")
 
 
 def pytest_collection_modifyitems(config, items):
-    """Leave long tests out, unless they are asked for."""
-    left = [] if config.getoption("--long") else [item for item in items if item.get_closest_marker("long")]
+    """Leave out long tests, and parameters of those that are sampled, unless they are asked for, all or by name."""
+    if config.getoption("--long") or any("::" in argument for argument in config.args):
+        return
+    seen, left = Counter(), []
+    for item in items:
+        sampled = item.get_closest_marker("sampled")
+        of = item.nodeid.partition("[")[0]
+        # Which one it begins with is another for every test, so that all cases are among them.
+        if item.get_closest_marker("long") or (sampled and (seen[of] + zlib.crc32(of.encode())) % sampled.args[0]):
+            left.append(item)
+        seen[of] += 1
     if left:
         config.hook.pytest_deselected(items=left)
         items[:] = [item for item in items if item not in left]

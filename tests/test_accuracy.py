@@ -34,6 +34,7 @@ def case(name):
     return scene, exactly(scene)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("rung", RUNGS)
 @pytest.mark.parametrize("name", NAMES)
 def test_cases(name, rung):
@@ -87,6 +88,7 @@ def drawn(build, rng):
     return masses | {"la": a, "lb": b, "lc": c, "x": frame * math.cos(angle), "y": frame * math.sin(angle)}
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("law", range(len(LAWS)))
 @pytest.mark.parametrize("build", [four_bar, offset_crank])
 @pytest.mark.parametrize("seed", range(2))
@@ -123,6 +125,7 @@ def test_other_mechanisms(scene):
         assert_near(ratios(evaluate(scene, **RUNGS[rung]), exact))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("later", "words", "certified"),
     [
@@ -143,6 +146,7 @@ def test_after_many_turns(later, words, certified):
     assert_near(ratios(solution, exactly(scene)))
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("kind", kinds.KINDS, ids=[kind.__name__ for kind in kinds.KINDS])
 def test_random_mechanisms(kind):
     """Some of every kind: none claims less than a tenth of its error, all together are near, and residuals are of rounding."""
@@ -160,6 +164,7 @@ def test_random_mechanisms(kind):
     assert 0.7 < np.median(every) < 3.0
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("kind", kinds.LINKAGES, ids=[kind.__name__ for kind in kinds.LINKAGES])
 def test_too_few_steps_claim_what_they_leave(kind):
     """Where loops begin near a dead centre the second instant is the worst, for the first is closed."""

@@ -31,6 +31,7 @@ STATIONS = {
 }
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("station", STATIONS)
 @pytest.mark.parametrize("rung", ["lanes", "single"])
 def test_a_station_on_a_ratio_that_is_looked_at(station, rung):
@@ -72,6 +73,7 @@ JUMPS = {
 }
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("jump", JUMPS)
 @pytest.mark.parametrize("rung", ["lanes", "c", "single"])
 def test_a_load_that_jumps(jump, rung):

@@ -26,6 +26,7 @@ def test_against_newton_euler(name):
         assert gap < 1e-12, f"{worst} at {part}"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", NAMES)
 def test_certificate_is_at_rounding_level(name):
     certificate = evaluate(load_case(CASES / name).scene).certificate
@@ -35,6 +36,7 @@ def test_certificate_is_at_rounding_level(name):
         assert np.max(certificate[residual]) < 1e-13, residual
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", NAMES)
 def test_every_figure_can_be_drawn(name, tmp_path):
     case = load_case(CASES / name)

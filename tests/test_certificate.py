@@ -74,6 +74,7 @@ def on_a_parabola():
     return Scene(m, {"A": polynomial(1.0, -0.4)}, t=(0, 0.8, 21), posture={"b": -1.0})
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.quick
 @pytest.mark.parametrize("made", [ladder, trammel, directed, geared, on_a_parabola, slider_crank, parallelogram])
 def test_it_is_whole_for_every_scene(made):

@@ -73,6 +73,7 @@ RIGHT = {
 }
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("name", RIGHT)
 def test_what_is_right_passes(name, precision):

@@ -21,6 +21,7 @@ SCENES |= {
 }
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("name", SCENES)
 def test_a_c99_program_has_the_numbers_of_the_api(name, precision, tmp_path):
@@ -33,6 +34,7 @@ def test_a_c99_program_has_the_numbers_of_the_api(name, precision, tmp_path):
     compare(found, expected(scene, told, solution), told, made, solution, **apart)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize(
     ("name", "rung"),
@@ -68,6 +70,7 @@ def test_the_folder_tests_itself(tmp_path):
     assert result.stdout.count("Passed") == 2
 
 
+@pytest.mark.sampled(3)
 @needs_cmake
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "rrr3"])
 def test_a_cpp17_program_finds_the_package(name, tmp_path):
@@ -86,6 +89,7 @@ def test_a_cpp17_program_finds_the_package(name, tmp_path):
     compare(found, expected(scene, told, solution), told, made, solution)
 
 
+@pytest.mark.sampled(3)
 @needs_cmake
 @pytest.mark.parametrize(
     ("name", "precision"), [("slider_crank", "double"), ("slider_crank", "single"), ("truss_platform", "double")]

@@ -25,6 +25,7 @@ INSTANTS = 128
 FIELDS = ("status", "value", "t", "xi", "mean", "rms")
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", NAMES)
 def test_designs_are_their_own_evaluations(name):
     """Every number of a case a parameter."""
@@ -45,6 +46,7 @@ def test_designs_are_their_own_evaluations(name):
             assert outcome.rms[row, k] == pytest.approx(math.sqrt(np.average(series**2, weights=weights)), rel=1e-13)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "sleigh", "rrr3"])
 def test_all_rungs_agree(name):
     """Packs, scalar C and NumPy to rounding; single precision as far as it goes; steps of Newton's method where they are enough."""
@@ -70,6 +72,7 @@ def test_all_rungs_agree(name):
             np.testing.assert_allclose(outcome.rms[row], expected.rms[row], rtol=50 * tolerance)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("rung", [Rung("lanes"), Rung("c"), Rung("lanes", "single")], ids=lambda rung: rung.options)
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "rrr3"])
 def test_a_row_has_the_same_bytes_whatever_stands_beside_it(name, rung, monkeypatch):

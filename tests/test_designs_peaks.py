@@ -18,6 +18,7 @@ from lagrange_casadi.study.peaks import forces, refine
 both = pytest.mark.parametrize("backend", ["lanes", "vm"])
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("matter", DENSITIES)
 def test_any_density_and_any_station(matter):
     """Along the link exact: nothing on a fine grid is larger, and the peaks are those of the section law; packs find the same."""
@@ -126,6 +127,7 @@ def test_two_summits_between_the_same_instants(backend):
     assert t == pytest.approx(fine.t, abs=1e-4)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("backend", ["lanes", "c"])
 @pytest.mark.parametrize("seed", [1, 2])
 def test_random_curves_have_the_peaks_of_the_reference(seed, backend):

@@ -37,6 +37,7 @@ def statuses(scene, p, rung, instants=None):
 both = pytest.mark.parametrize("backend", ["lanes", "vm"])
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
 def test_lengths_about_a_dead_centre(backend):
     """A crank as long as its rod, all but, and longer; on the instants of dead centres and beside them."""
@@ -100,6 +101,7 @@ def test_iterated_loops_begin_from_the_guess_and_say_what_fails(backend):
         assert found == expected == [status]
 
 
+@pytest.mark.sampled(2)
 @both
 def test_what_does_not_fit_and_what_a_row_forbids(backend):
     m = Mechanism("bridge")

@@ -33,6 +33,7 @@ def keywords():
 
 
 # Only one drive that turns has a cycle to be read from a table.
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("name", "options"), [(n, o) for n in SCENES for o in ARITHMETIC if n == "slider_crank" or "table" not in o], ids=str
 )
@@ -40,6 +41,7 @@ def test_the_source_is_clean(name, options, tmp_path):
     clean(SCENES[name](), tmp_path, options, compilers())
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("options", ARITHMETIC[:2], ids=str)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_the_source_of_every_case_is_clean(case, options, tmp_path):
@@ -57,6 +59,7 @@ def clean(scene, folder, options, commands):
             assert result.returncode == 0, f"{label} {source}: {result.stderr}"
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("options", ARITHMETIC[:3], ids=str)
 def test_the_self_test_passes_under_sanitizers(name, options, tmp_path):
@@ -126,6 +129,7 @@ def test_nothing_recurs_allocates_or_is_of_another_precision(tmp_path):
 PREPARED = "status = @_prepare(&model, &parameters); @_motion(&model, 0.01, &inputs); "
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("statements", "sentence"),
     [

@@ -58,6 +58,7 @@ def assert_alike(found, solution, names, rows=slice(None), within=WITHIN):
         assert gap <= within * np.abs(expected).max(), f"{name}: {gap:.3g} of {np.abs(expected).max():.3g}"
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", SCENES)
 def test_nothing_is_wrong_with_it(unit, name):
     from fmpy.validation import validate_fmu
@@ -65,6 +66,7 @@ def test_nothing_is_wrong_with_it(unit, name):
     assert validate_fmu(str(unit(name)[1])) == []
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", SCENES)
 def test_model_exchange_gives_the_numbers_of_the_api(unit, name):
     scene, path = unit(name)
@@ -111,6 +113,7 @@ def drive(scene):
     return next(iter(scene.motion))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("name", "how", "within"), [("robot", {"newton": 4}, 1e-12), ("slider_crank", {"table": 1e-9}, 1e-7)])
 def test_the_other_rungs(unit, name, how, within):
     scene, path = unit(name, **how)

@@ -33,6 +33,7 @@ RATIOS = (0.0, 0.1234567, 0.5012345, 0.9034567, 1.0)
 PARTS = {"engine": (340 / 720, 371.5 / 720, 397 / 720)}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", NAMES)
 def test_formulas_to_forty_digits(name, monkeypatch):
     monkeypatch.setattr("lagrange_casadi.judge.reference.arithmetic", lambda: EXACT)

@@ -46,6 +46,7 @@ def ignoring(*numbers):
     return {"preexec_fn": lambda: [signal.signal(number, signal.SIG_IGN) for number in numbers]}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda number: number.name)
 @pytest.mark.parametrize("arguments", [["--help"], RUN, [*SWEEP, *SHORT, "--force"]], ids=lambda arguments: arguments[0].strip("-"))
 def test_an_interrupt_at_any_moment_is_one_line(here, arguments, number):
@@ -94,6 +95,7 @@ WAITS = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 @pytest.mark.parametrize("text", WAITS.values(), ids=WAITS)
 def test_an_interrupt_in_a_case_is_one_line(here, tmp_path_factory, text, number):
@@ -168,6 +170,7 @@ STEPPING = {
 }
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("name", "number"), zip(STEPPING, [signal.SIGINT, signal.SIGTERM] * 2, strict=True))
 def test_an_interrupt_does_not_wait_for_newtons_steps(here, name, number):
     """The whole takes minutes or hours."""

@@ -44,6 +44,7 @@ def test_a_tail_of_any_length_has_the_same_bits(name, precision):
         assert np.array_equal(columns(graph, t[:n], "c++", precision=precision), whole[:, :n])
 
 
+@pytest.mark.sampled(3)
 @both
 @pytest.mark.parametrize("language", ["c", "c++"])
 @pytest.mark.parametrize("name", ["effort_alone", "iterated"])
@@ -119,6 +120,7 @@ EXACT += ["lanes_choose", "less", "most", "same", "other", "both", "either"]
 X86 = platform.machine() in ("x86_64", "AMD64")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("libmvec", ["where it is", "none"])
 @pytest.mark.parametrize("march", ["native", *(["x86-64", "x86-64-v3"] if X86 else [])])
 def test_every_function_of_a_pack(march, libmvec, tmp_path):

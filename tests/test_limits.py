@@ -59,7 +59,7 @@ def test_a_station_that_misses_the_base_by_rounding_is_there(scene, x):
     assert max(np.max(values) for key, values in solution.certificate.items() if key != "condition") < 1e-14
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(parts=st.lists(st.integers(1, 999), min_size=2, max_size=12))
 def test_sums_of_decimals(parts):
     """However a length is summed up, the station at its end is at the end."""

@@ -23,7 +23,7 @@ def at(cell, u):
 coefficient = st.floats(-10, 10) | st.integers(-3, 3).map(float)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(cell=st.lists(coefficient, min_size=1, max_size=6), ends=st.sampled_from([(0.0, 1.0), (0.25, 0.3), (0.0, 0.5)]))
 def test_nothing_on_the_interval_is_lower(cell, ends):
     place, value = found(cell, *ends)
@@ -33,7 +33,7 @@ def test_nothing_on_the_interval_is_lower(cell, ends):
     assert value <= at(cell, np.linspace(*ends, 2001)).min() + size
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(roots=st.lists(st.floats(0.0, 1.0), min_size=1, max_size=4), factor=st.floats(0.01, 10))
 def test_squares_touch_zero(roots, factor):
     """A product of squares is nowhere negative, and zero at its roots, also where these fall together."""

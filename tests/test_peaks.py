@@ -144,6 +144,7 @@ def test_angles_that_a_loop_sets_keep_their_turns():
     assert coarse.peak(name).value - peak.value > 1e-6
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", NAMES)
 def test_peaks_are_those_of_far_finer_instants(name):
     scene = load_case(CASES / name).scene

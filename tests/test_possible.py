@@ -80,6 +80,7 @@ def prepared(scene, values, folder):
     ]
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", MATTER)
 def test_all_programs_draw_the_same_line(name, tmp_path):
     scene = arm(MATTER[name], ["c"], default=0.25)

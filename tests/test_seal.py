@@ -98,14 +98,14 @@ def test_the_documentation_verifies_a_file(run, tmp_path, monkeypatch):
         exec(compile(block, "schema.md", "exec"), {})
 
 
-def test_every_bit_of_a_seal_counts(sealed):
+def test_every_byte_of_a_seal_counts(sealed):
+    """By one of its bits, each of them in turn."""
     content = sealed.read_bytes()
     for place in range(len(content) - seal.SIZE, len(content)):
-        for bit in range(8):
-            flip(sealed, place, 1 << bit)
-            with pytest.raises(StoreError, match=r"x\.bin: "):
-                seal.verify(sealed)
-            sealed.write_bytes(content)
+        flip(sealed, place, 1 << place % 8)
+        with pytest.raises(StoreError, match=r"x\.bin: "):
+            seal.verify(sealed)
+        sealed.write_bytes(content)
     assert seal.verify(sealed).sealed
 
 

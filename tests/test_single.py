@@ -91,6 +91,7 @@ tools = pytest.mark.skipif(
 )
 
 
+@pytest.mark.sampled(4)
 @tools
 @pytest.mark.parametrize("language", ["c", "c++"])
 @pytest.mark.parametrize("name", WHOLE)

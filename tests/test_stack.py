@@ -52,6 +52,7 @@ PAIRS = [(rung, name) for rung in ("double", "single", "table") for name in COMP
 PAIRS += [("newton", name) for name in COMPILERS if name.endswith("-O2")]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(("rung", "compiler"), PAIRS)
 def test_the_stack_that_the_header_states_is_never_exceeded(rung, compiler, sources, tmp_path):
     command = (*COMPILERS[compiler], *FLAGS)

@@ -71,6 +71,7 @@ def test_plain_stages_are_the_graphs_bits(name):
         assert out.full().tobytes() == graph.instant(t, *graph.motion(t, p), z, p).full().tobytes()
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("later", [1e3, 1e6])
 @pytest.mark.parametrize("rung", DOUBLE, ids=lambda rung: rung.backend)
 @pytest.mark.parametrize("name", NAMES)
@@ -79,6 +80,7 @@ def test_doubles_after_days(name, rung, later):
     assert gap(graph, t, rung, truth) < 1e-13
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("rung", SINGLE, ids=lambda rung: rung.backend)
 @pytest.mark.parametrize("name", [name for name in NAMES if name != "andrews_squeezer"])
 def test_singles_after_hours(name, rung):
@@ -109,6 +111,7 @@ LOADS = {
 }
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", LOADS)
 def test_loads_that_count(name):
     """After a million radians in double; in single, after an hour, as in :func:`test_singles_after_hours`."""

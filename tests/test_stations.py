@@ -117,6 +117,7 @@ def test_what_is_nearly_at_one_place_is_not(apart):
     assert not any(solution.determined(f"section:bar:{force}") for force in FORCES)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize(
     ("first", "second"),
@@ -233,6 +234,7 @@ def shaper(slots, length, base, **keywords):
 SHAPERS = {"within": (0.9, 0.0), "past the tip": (0.6, 0.0), "before the base": (0.9, 0.45)}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", SHAPERS)
 def test_what_slides_along_together_is_felt_as_a_sum(name):
     """The slots are at one place, which moves: within the rail, past its tip and back, before its base and back."""

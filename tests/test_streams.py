@@ -142,6 +142,7 @@ def test_a_device_that_is_full_is_one_line(here, capfd):
     assert stat.S_ISCHR(os.stat(here / "full").st_mode)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("command", TABLES)
 @pytest.mark.parametrize("onto", ["pipe", "file"])
 def test_standard_output_is_the_csv_alone(file, here, command, onto):

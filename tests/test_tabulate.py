@@ -260,6 +260,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_has_no_table_is_refused_with_the_reason(name):
     build, message = REFUSED[name]
