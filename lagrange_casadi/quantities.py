@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 CONVENTIONS = (
     "SI units; plane x-y; angles in rad, counter-clockwise; a link's axis e runs from its base (xi = 0) to its tip (xi = 1), "
@@ -31,7 +31,8 @@ class Quantity:
 
     ``axes`` is ``("t",)`` or ``("t", "xi")``. ``unit`` holds ``{q}`` where it depends on whether the joint's coordinate
     is an angle (rad) or a slide (m), and ``{Q}`` where it depends on the effort that works on it (N m or N). A multiplier's unit is
-    that of power over its own equation's: the file says ``1`` where the equation's unit is the user's affair.
+    that of power over its own equation's: the file says ``1`` where the equation's unit is the user's affair. An output of the
+    user's own has the unit that it was declared with.
     """
 
     group: str
@@ -72,6 +73,7 @@ QUANTITIES = (
     Quantity("load", "fx", ("t",), FORCE, "applied force, x", _ON_FIRST),
     Quantity("load", "fy", ("t",), FORCE, "applied force, y", _ON_FIRST),
     Quantity("load", "mz", ("t",), MOMENT, "applied torque", _ON_FIRST),
+    Quantity("output", "", ("t",), "1", "output of the user's own"),
     Quantity("certificate", "balance", ("t",), "1", "Newton-Euler balance of all bodies, over the largest force of the cycle"),
     Quantity("certificate", "power", ("t",), "1", "balance of power, over the largest force times speed of the cycle"),
     Quantity("certificate", "closure", ("t",), "1", "gaps of joints, and what users' equations miss, over the length of all links"),
@@ -105,6 +107,18 @@ PLACE_FIRST = ("station", "n", "f", "m")
 FORCES = tuple(q.member for q in QUANTITIES if q.group == "section")
 _ENDINGS = {"rate": "_rate", "acceleration": "_acceleration"}
 _COORDINATE = ".coordinate"
+
+
+class Declared(Protocol):
+    """What the units of outputs depend on: the joints and the user's outputs of a mechanism, by name."""
+
+    @property
+    def joints(self) -> Mapping[str, Any]:
+        """The joints."""
+
+    @property
+    def outputs(self) -> Mapping[str, Any]:
+        """The user's outputs."""
 
 
 @dataclass(frozen=True)
@@ -159,9 +173,11 @@ class Output:
         """Whether it goes into the section forces of a link."""
         return self.group in ("law", "station")
 
-    def unit(self, joints: Mapping[str, Any]) -> str:
-        """The unit in a mechanism of such joints, by name."""
-        joint = joints.get(self.part) if self.group in ("motion", "effort") else None
+    def unit(self, mechanism: Declared) -> str:
+        """The unit in a mechanism."""
+        if self.group == "output":
+            return str(mechanism.outputs[self.part].unit)
+        joint = mechanism.joints.get(self.part) if self.group in ("motion", "effort") else None
         return self.quantity.unit_for((joint and joint.coordinate) or "angle")
 
 

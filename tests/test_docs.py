@@ -85,7 +85,7 @@ def rows():
     yield "| /t | t | s | time | |"
     yield "| /xi | xi | 1 | place along a link, ratio xi/l | |"
     places = {"motion": "/motion/JOINT", "pose": "/pose/BODY/", "effort": "/effort/JOINT", "reaction": "/reaction/JOINT/"}
-    places |= {"multiplier": "/multiplier/NAME", "load": "/load/NAME/"}
+    places |= {"multiplier": "/multiplier/NAME", "load": "/load/NAME/", "output": "/output/NAME"}
     places |= {"certificate": "/certificate/"}
     places |= {"section": "/section/LINK/", "law": "/section/LINK/law/", "station": "/section/LINK/NAME/"}
     for q in QUANTITIES:

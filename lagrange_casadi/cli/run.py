@@ -108,7 +108,7 @@ def _report(solution: Solution, refined: Sequence[Peak] | None) -> None:
     what = "peaks" if refined is None else "peaks, refined between the instants"
     click.echo(f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {backend}; {what}:")
     for output in solution.quantities():
-        if output.group in ("effort", "reaction", "section"):
+        if output.group in ("effort", "reaction", "section", "output"):
             name = str(output)
             if not solution.determined(output):
                 click.echo(f"  {name:<28}{'open':>13} {'':<4} equilibrium does not determine it: the mechanism is over-constrained")

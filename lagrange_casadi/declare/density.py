@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
@@ -46,6 +47,18 @@ class Density:
         scale = length if self.per_length else 1.0
         return found[0] * scale, found[1] * scale, found[2] * scale * length * length
 
+    def tails(self, u: Any, length: Any) -> tuple[Any, Any, Any]:
+        """T0, T1 and T2 at a ratio ``u``, a number or an expression in parameters."""
+        larger = (lambda x: ca.fmax(x, 0.0)) if isinstance(u, ca.SX) else (lambda x: max(x, 0.0))
+        scale = length if self.per_length else 1.0
+        found: list[Any] = [0.0, 0.0, 0.0]
+        for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
+            parts = _differences(larger(b - u), larger(a - u), len(cell) + 2)
+            for j, shifted in enumerate(_shift(cell, u)):
+                for k in range(3):
+                    found[k] = found[k] + shifted * (parts[j + k] / (j + k + 1))
+        return found[0] * scale, found[1] * scale, found[2] * scale
+
     def at(self, number: Callable[[Any], float], length: float) -> NumericDensity:
         """The density at given parameters, per unit of the ratio."""
         scale = length if self.per_length else 1.0
@@ -75,8 +88,9 @@ class NumericDensity:
         for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
             parts = _differences(np.maximum(b - u, 0.0), np.maximum(a - u, 0.0), len(cell) + 2)
             for j, shifted in enumerate(_shift(cell, u)):
+                whole = np.asarray(shifted + np.zeros_like(u))
                 for k in range(3):
-                    found[k] = found[k] + shifted * parts[j + k] / (j + k + 1)
+                    found[k] = found[k] + whole * parts[j + k] / (j + k + 1)
         return found[0], found[1], found[2]
 
     def at(self, u: Array) -> Array:
@@ -124,9 +138,6 @@ def _differences(high: Any, low: Any, count: int) -> list[Any]:
     return found
 
 
-def _shift(cell: Sequence[float], u: Array) -> list[Array]:
+def _shift(cell: Sequence[Any], u: Any) -> list[Any]:
     """Coefficients of p(u + x) as a polynomial in x."""
-    return [
-        np.asarray(sum(c * math.comb(n, j) * u ** (n - j) for n, c in enumerate(cell) if n >= j) + np.zeros_like(u))
-        for j in range(len(cell))
-    ]
+    return [sum(c * math.comb(n, j) * u ** (n - j) for n, c in enumerate(cell) if n >= j) for j in range(len(cell))]

@@ -57,6 +57,12 @@ def drives_of(description: Description) -> list[str]:
     return driven if drives is None else [name for name in drives if name in description["joints"]]
 
 
+def parts_of(description: Description) -> list[str]:
+    """The names of all parts that outputs are of."""
+    tables = ("bodies", "joints", "constraints", "rows", "loads")
+    return [part for table in tables for part in description[table]] + list(description.get("outputs", ()))
+
+
 def describe(
     mechanism: Mechanism, values: Mapping[str, float], driven: Collection[str], drives: Collection[str] | None = None
 ) -> Description:
@@ -66,6 +72,8 @@ def describe(
     """
     numbers = iter(_numbers(mechanism)([values[name] for name in mechanism.parameters]).full().ravel().tolist())
     found = _described(mechanism, values, driven, lambda _: next(numbers))
+    if mechanism.outputs:
+        found["outputs"] = {name: own.unit for name, own in mechanism.outputs.items()}
     return found if drives is None else found | {"drives": list(drives)}
 
 

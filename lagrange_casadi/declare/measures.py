@@ -12,7 +12,7 @@ from .parts import Joint, Link, Point
 
 @dataclass(frozen=True, eq=False)
 class Measure:
-    """What is measured, the symbols of where it is, and those of their rates.
+    """What is measured, the symbols of where it is, and those of their rates and accelerations.
 
     A joint has its coordinate, a point its x and y, a link the angle of its axis.
     """
@@ -20,6 +20,7 @@ class Measure:
     of: Joint | Point | Link
     places: tuple[Any, ...]
     rates: tuple[Any, ...]
+    accelerations: tuple[Any, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,14 +56,19 @@ class Measures:
         return ca.vertcat(ca.SX(0, 1), *(symbol for measure in self.asked for symbol in measure.rates))
 
     @property
+    def accelerations(self) -> list[Any]:
+        """All symbols of accelerations, one by one."""
+        return [symbol for measure in self.asked for symbol in measure.accelerations]
+
+    @property
     def symbols(self) -> list[Any]:
-        """All symbols, one by one."""
+        """All symbols of places and rates, one by one."""
         return [symbol for measure in self.asked for symbol in (*measure.places, *measure.rates)]
 
     def _find(self, of: Joint | Point | Link, names: tuple[str, ...]) -> Measure:
         for measure in self.asked:
             if measure.of is of:
                 return measure
-        places, rates = (tuple(ca.SX.sym(f"{name}{end}") for name in names) for end in ("", "_rate"))
-        self.asked.append(Measure(of, places, rates))
+        symbols = (tuple(ca.SX.sym(f"{name}{end}") for name in names) for end in ("", "_rate", "_acceleration"))
+        self.asked.append(Measure(of, *symbols))
         return self.asked[-1]

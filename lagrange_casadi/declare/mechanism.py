@@ -17,11 +17,11 @@ import casadi as ca
 from ..errors import DeclarationError
 from . import density as densities
 from .density import Density
-from .expressions import check_line, check_name, scalar, unit_vector
+from .expressions import check_line, check_name, unit_vector
 from .kinks import refuse_kinks
 from .limits import check_connected, parameter_values
 from .measures import Measures
-from .names import Part, check_free
+from .ownership import Ownership
 from .parts import (
     Body,
     Constraint,
@@ -41,6 +41,7 @@ from .parts import (
     Torque,
 )
 from .possible import demands
+from .results import Asked, OwnOutput, Results
 
 _GROUND = "ground"
 
@@ -65,10 +66,12 @@ class Mechanism:
     loads: dict[str, Load] = field(default_factory=dict, init=False)
     constraints: dict[str, Constraint] = field(default_factory=dict, init=False)
     rows: dict[str, Row] = field(default_factory=dict, init=False)
+    outputs: dict[str, OwnOutput] = field(default_factory=dict, init=False)
     gravity: tuple[Expression, Expression] = field(default=(0.0, -9.81), init=False)
     frozen: bool = field(default=False, init=False)
     time: Any = field(default_factory=lambda: ca.SX.sym("t"), init=False)
     measures: Measures = field(default_factory=Measures, init=False)
+    asked: list[Asked] = field(default_factory=list, init=False)
 
     def __post_init__(self) -> None:
         check_name("mechanism", self.name)
@@ -94,13 +97,23 @@ class Mechanism:
         return {name: body for name, body in self.bodies.items() if isinstance(body, Link)}
 
     @property
+    def own(self) -> Ownership:
+        """What belongs to the mechanism."""
+        return Ownership(self)
+
+    @property
+    def results(self) -> Results:
+        """The symbols of accelerations and forces, for :meth:`output`."""
+        return Results(self)
+
+    @property
     def symbols(self) -> Any:
         """The parameters' symbols as one column, in the order of declaration."""
         return ca.vertcat(ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values()))
 
     def parameter(self, name: str, default: float, unit: str = "1", *, low: float = -math.inf, high: float = math.inf) -> Any:
         """Declare a parameter from ``low`` to ``high``, and return its ``casadi.SX`` symbol to build lengths and places from."""
-        self._add("parameter", name, self.parameters)
+        self.own.free("parameter", name, self.parameters)
         check_line(f"parameter '{name}': its unit", unit)
         parameter = Parameter(name, float(default), unit, float(low), float(high), ca.SX.sym(name))
         parameter.check(parameter.default)
@@ -122,7 +135,7 @@ class Mechanism:
         Its mass is one of: ``mass`` [kg] alone, a uniform rod; a ``density`` of :mod:`.density`; or ``mass``, ``centre`` (in the
         link's axes [m]) and ``inertia`` about the centre [kg m^2], for a body whose sections are not wanted.
         """
-        self._add("link", name, self.bodies)
+        self.own.free("link", name, self.bodies)
         what = f"link '{name}'"
         if (mass is None) == (density is None):
             raise DeclarationError(f"{what}: give its mass, or a density")
@@ -131,21 +144,21 @@ class Mechanism:
         if density is not None:
             if not isinstance(density, Density):
                 raise DeclarationError(f"{what}: expected a density of lagrange_casadi.density, got {density!r}")
-            cells = tuple(tuple(self._expression(f"{what}: density", c) for c in cell) for cell in density.cells)
+            cells = tuple(tuple(self.own.expression(f"{what}: density", c) for c in cell) for cell in density.cells)
             matter: Density | RigidMass = Density(density.breaks, cells, density.per_length)
         elif centre is not None:
-            x, y = (self._expression(f"{what}: centre", c) for c in centre)
-            matter = RigidMass(self._expression(f"{what}: mass", mass), (x, y), self._expression(f"{what}: inertia", inertia))
+            x, y = (self.own.expression(f"{what}: centre", c) for c in centre)
+            matter = RigidMass(self.own.expression(f"{what}: mass", mass), (x, y), self.own.expression(f"{what}: inertia", inertia))
         else:
-            matter = densities.uniform(self._expression(f"{what}: mass", mass))
-        link = Link(name, self._expression(f"{what}: length", length), matter)
+            matter = densities.uniform(self.own.expression(f"{what}: mass", mass))
+        link = Link(name, self.own.expression(f"{what}: length", length), matter)
         self.bodies[name] = link
         return link
 
     def point_mass(self, name: str, mass: Expression) -> PointMass:
         """Declare a mass [kg] without extent, at a point; welded to a link it moves with the link."""
-        self._add("point mass", name, self.bodies)
-        body = PointMass(name, self._expression(f"point mass '{name}': mass", mass))
+        self.own.free("point mass", name, self.bodies)
+        body = PointMass(name, self.own.expression(f"point mass '{name}': mass", mass))
         self.bodies[name] = body
         return body
 
@@ -181,7 +194,7 @@ class Mechanism:
 
     def gear(self, name: str, first: Joint, second: Joint, *, ratio: Expression, offset: Expression = 0.0) -> Constraint:
         """Tie two joints: coordinate of ``second`` = ratio (coordinate of ``first``) + offset. A mesh of gears has ratio -z1/z2."""
-        ratio, offset = self._expression(f"gear '{name}': ratio", ratio), self._expression(f"gear '{name}': offset", offset)
+        ratio, offset = self.own.expression(f"gear '{name}': ratio", ratio), self.own.expression(f"gear '{name}': offset", offset)
         return self.constraint(name, self.coordinate(second) - ratio * self.coordinate(first) - offset)
 
     def constraint(self, name: str, phi: Any) -> Constraint:
@@ -190,8 +203,8 @@ class Mechanism:
         The force of its multiplier lambda is + lambda dPhi/dq (paper eq. 2). It acts on what Phi is written in: on a joint's
         coordinate between the joint's bodies, on a place from the ground.
         """
-        self._add("constraint", name, self.constraints)
-        phi = self._expression(f"constraint '{name}'", phi, moving=True)
+        self.own.free("constraint", name, self.constraints)
+        phi = self.own.expression(f"constraint '{name}'", phi, moving=True)
         if not isinstance(phi, ca.SX) or not ca.depends_on(phi, self.measures.places):
             raise DeclarationError(
                 f"constraint '{name}' depends on no coordinate; build it from coordinate(JOINT), place(POINT) or direction(LINK)"
@@ -210,14 +223,14 @@ class Mechanism:
         ``replaces`` is a driven joint. Its motion is prescribed and must satisfy the constraint; the constraint's multiplier then
         takes the place of the joint's effort.
         """
-        self._add("non-holonomic constraint", name, self.rows)
+        self.own.free("non-holonomic constraint", name, self.rows)
         what = f"non-holonomic constraint '{name}'"
-        expression = self._expression(what, expression, moving=True)
+        expression = self.own.expression(what, expression, moving=True)
         if not isinstance(expression, ca.SX) or not ca.depends_on(expression, self.measures.rates):
             raise DeclarationError(f"{what} depends on no rate; build it from rate(JOINT) or velocity(POINT)")
         if ca.depends_on(ca.jacobian(expression, self.measures.rates), self.measures.rates):
             raise DeclarationError(f"{what} must be linear in the rates")
-        row = Row(name, expression, self._own_joint(replaces).name)
+        row = Row(name, expression, self.own.joint(replaces).name)
         for other in self.rows.values():
             if other.replaces == row.replaces:
                 raise DeclarationError(f"{what}: '{other.name}' already replaces the drive of joint '{row.replaces}'")
@@ -272,40 +285,49 @@ class Mechanism:
         self, name: str, joint: Joint, *, stiffness: Expression, angle: Expression = 0.0, damping: Expression = 0.0
     ) -> Torque:
         """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint, whose angle counts turns."""
-        if self._own_joint(joint).coordinate != "angle":
+        if self.own.joint(joint).coordinate != "angle":
             raise DeclarationError(f"load '{name}': joint '{joint.name}' has no angle for a torsion spring")
         stretch, rate = self.coordinate(joint) - angle, self.rate(joint)
         return self.torque(name, joint.child, -(stiffness * stretch) - damping * rate, against=joint.parent)
 
+    def output(self, name: str, expression: Any, *, unit: str = "1") -> OwnOutput:
+        """Declare an output of one's own, ``output:NAME``, with its unit: an expression of what loads see and of `results`."""
+        self.own.free("output", name, self.outputs)
+        check_line(f"output '{name}': its unit", unit)
+        expression = ca.SX(self.own.expression(f"output '{name}'", expression, moving=True, found=True))
+        made_of = tuple(asked for asked in self.asked if ca.depends_on(expression, asked.symbol))
+        self.outputs[name] = OwnOutput(name, expression, unit, made_of)
+        return self.outputs[name]
+
     def coordinate(self, joint: Joint) -> Any:
         """The symbol of a joint's coordinate, for loads and constraints; an angle counts turns from the start of the scene on."""
-        return self.measures.joint(self._moving_joint(joint)).places[0]
+        return self.measures.joint(self.own.moving_joint(joint)).places[0]
 
     def rate(self, joint: Joint) -> Any:
         """The symbol of a joint's rate, for loads and non-holonomic rows."""
-        return self.measures.joint(self._moving_joint(joint)).rates[0]
+        return self.measures.joint(self.own.moving_joint(joint)).rates[0]
 
     def place(self, point: Body | Point) -> tuple[Any, Any]:
         """The symbols of a point's x and y in ground axes [m], for loads and constraints."""
-        x, y = self.measures.point(self._point("place", point)).places
+        x, y = self.measures.point(self.own.point("place", point)).places
         return x, y
 
     def velocity(self, point: Body | Point) -> tuple[Any, Any]:
         """The symbols of a point's velocity in ground axes [m/s], for loads and non-holonomic rows."""
-        x, y = self.measures.point(self._point("velocity", point)).rates
+        x, y = self.measures.point(self.own.point("velocity", point)).rates
         return x, y
 
     def direction(self, link: Link) -> Any:
         """The symbol of the direction of a link's axis against the ground's x axis [rad]; it counts turns as a coordinate does."""
-        body = self._point("direction", link).body
+        body = self.own.point("direction", link).body
         if not isinstance(body, Link):
             raise DeclarationError(f"direction: expected a link, got '{body.name}'")
         return self.measures.link(body).places[0]
 
     def set_gravity(self, x: Expression, y: Expression) -> None:
         """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in parameters."""
-        self._check_open("set gravity")
-        self.gravity = (self._expression("gravity", x), self._expression("gravity", y))
+        self.own.open("set gravity")
+        self.gravity = (self.own.expression("gravity", x), self.own.expression("gravity", y))
 
     def freeze(self) -> None:
         """Check the whole and end the declaration. Raises :class:`DeclarationError` for a part that hangs on nothing."""
@@ -341,9 +363,9 @@ class Mechanism:
         axis: tuple[Expression, Expression] | None = None,
         angle: Expression = 0.0,
     ) -> Joint:
-        self._add("joint", name, self.joints)
+        self.own.free("joint", name, self.joints)
         what = f"joint '{name}'"
-        start, end = self._point(what, parent), self._point(what, child)
+        start, end = self.own.point(what, parent), self.own.point(what, child)
         if start.body is end.body:
             raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
         if kind != "revolute" and not start.body.oriented:
@@ -351,50 +373,14 @@ class Mechanism:
                 f"{what}: its parent '{start.body.name}' is a point mass and has no direction to carry "
                 f"{'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
             )
-        unit = (1.0, 0.0) if axis is None else unit_vector(what, axis, lambda a: self._expression(f"{what}: axis", a))
-        joint = Joint(name, kind, start, end, unit, self._expression(f"{what}: angle", angle))
+        unit = (1.0, 0.0) if axis is None else unit_vector(what, axis, lambda a: self.own.expression(f"{what}: axis", a))
+        joint = Joint(name, kind, start, end, unit, self.own.expression(f"{what}: angle", angle))
         self.joints[name] = joint
         return joint
 
-    def _point(self, what: str, place: Body | Point) -> Point:
-        point = place.base if isinstance(place, Link) else Point(place, 0.0, 0.0) if isinstance(place, Body) else place
-        if not isinstance(point, Point):
-            raise DeclarationError(f"{what}: expected a link, a point mass, the ground or a point of one, got {place!r}")
-        if self.bodies.get(point.body.name) is not point.body:
-            raise DeclarationError(f"{what}: '{point.body.name}' is of another mechanism than '{self.name}'")
-        what = f"{what}: place on '{point.body.name}'"
-        return Point(point.body, self._expression(what, point.x), self._expression(what, point.y), point.end)
-
     def _load_point(self, name: str, place: Body | Point) -> Point:
-        self._add("load", name, self.loads)
-        return self._point(f"load '{name}'", place)
+        self.own.free("load", name, self.loads)
+        return self.own.point(f"load '{name}'", place)
 
     def _load(self, name: str, value: Expression) -> Expression:
-        return self._expression(f"load '{name}'", value, moving=True)
-
-    def _own_joint(self, joint: Joint) -> Joint:
-        if not isinstance(joint, Joint) or self.joints.get(joint.name) is not joint:
-            raise DeclarationError(f"expected a joint of mechanism '{self.name}', got {joint!r}; joints: {', '.join(self.joints)}")
-        return joint
-
-    def _moving_joint(self, joint: Joint) -> Joint:
-        if self._own_joint(joint).coordinate is None:
-            raise DeclarationError(f"joint '{joint.name}' has no coordinate")
-        return joint
-
-    def _expression(self, what: str, value: Expression, *, moving: bool = False) -> Expression:
-        """A finite float, or an SX scalar in this mechanism's parameters, and where ``moving`` in its time and state."""
-        own = [parameter.symbol for parameter in self.parameters.values()]
-        own += [self.time, *self.measures.symbols] if moving else []
-        allowed = "parameter, time, coordinate or rate" if moving else "parameter"
-        return scalar(what, value, own, f"{allowed} of mechanism '{self.name}'")
-
-    def _add(self, kind: str, name: str, table: Mapping[str, Part]) -> None:
-        self._check_open(f"add {kind} '{name}'")
-        # Files know joints, loads, constraints and rows by their names alone, beside those of links.
-        acting: tuple[Mapping[str, Part], ...] = (self.joints, self.loads, self.constraints, self.rows)
-        check_free(kind, name, self.name, (self.bodies, *acting) if any(table is other for other in acting) else (table,))
-
-    def _check_open(self, what: str) -> None:
-        if self.frozen:
-            raise DeclarationError(f"cannot {what}: mechanism '{self.name}' is frozen, a scene has been made of it")
+        return self.own.expression(f"load '{name}'", value, moving=True)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from ..errors import DeclarationError
 from .expressions import check_name
 from .parts import Body, Constraint, Force, Ground, Joint, Link, Load, Parameter, PointMass, Row, Spring, Torque
+from .results import OwnOutput
 
 _WORDS: dict[type[object], str] = {
     Constraint: "a constraint",
@@ -14,6 +15,7 @@ _WORDS: dict[type[object], str] = {
     Ground: "the ground",
     Joint: "a joint",
     Link: "a link",
+    OwnOutput: "an output",
     Parameter: "a parameter",
     PointMass: "a point mass",
     Row: "a non-holonomic constraint",
@@ -21,7 +23,7 @@ _WORDS: dict[type[object], str] = {
     Torque: "a load",
 }
 
-Part = Parameter | Body | Joint | Load | Constraint | Row
+Part = Parameter | Body | Joint | Load | Constraint | Row | OwnOutput
 
 
 def check_free(kind: str, name: str, mechanism: str, others: Iterable[Mapping[str, Part]]) -> None:
@@ -29,6 +31,6 @@ def check_free(kind: str, name: str, mechanism: str, others: Iterable[Mapping[st
     check_name(kind, name)
     for part in (parts[name] for parts in others if name in parts):
         bearer = _WORDS[type(part)]
-        if bearer == f"a {kind}":
+        if bearer in (f"a {kind}", f"an {kind}"):
             raise DeclarationError(f"{kind} '{name}' is declared twice in mechanism '{mechanism}'")
         raise DeclarationError(f"{kind} '{name}': the name is taken by {bearer} of mechanism '{mechanism}'")

@@ -99,10 +99,13 @@ class Wanted:
     multipliers: tuple[str, ...]
     loads: tuple[str, ...]
     sections: tuple[str, ...]
+    own: tuple[str, ...]
 
     @classmethod
     def of(cls, mechanism: Mechanism, names: Sequence[str]) -> Wanted:
-        """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``, ``load:NAME``, ``section:LINK``, ``all``."""
+        """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``, ``load:NAME``, ``section:LINK``,
+        ``output:NAME``, ``all``. What an output of the user's own is made of is wanted with it.
+        """
         choices = outputs(mechanism)
         if isinstance(names, str) or not all(isinstance(name, str) for name in names):
             raise DeclarationError(f"wanted: expected a list of output names, got {names!r}; valid: {', '.join(choices)}")
@@ -111,13 +114,15 @@ class Wanted:
                 _refuse_output(mechanism, name)
                 raise UnknownNameError("output", name, choices)
         chosen = set(choices if "all" in names else names)
+        own = (mechanism.outputs[name.partition(":")[2]] for name in list(chosen) if name.startswith("output:"))
+        chosen |= {asked.wanted for output in own for asked in output.made_of}
         if not chosen:
             raise DeclarationError(f"no output wanted; valid: {', '.join(choices)}")
 
         def parts(kind: str) -> tuple[str, ...]:
             return tuple(name.partition(":")[2] for name in choices if name in chosen and name.startswith(f"{kind}:"))
 
-        kinds = ("reaction", "multiplier", "load", "section")
+        kinds = ("reaction", "multiplier", "load", "section", "output")
         return cls("effort" in chosen, "motion" in chosen, *(parts(kind) for kind in kinds))
 
     @property
@@ -132,7 +137,8 @@ def outputs(mechanism: Mechanism) -> list[str]:
     multipliers = [f"multiplier:{name}" for name in (*mechanism.constraints, *mechanism.rows)]
     loads = [f"load:{name}" for name in mechanism.loads]
     sections = [f"section:{name}" for name, link in mechanism.links.items() if isinstance(link.mass, Density)]
-    return ["all", "effort", "motion", *reactions, *multipliers, *loads, *sections]
+    own = [f"output:{name}" for name in mechanism.outputs]
+    return ["all", "effort", "motion", *reactions, *multipliers, *loads, *sections, *own]
 
 
 def _refuse_output(mechanism: Mechanism, name: str) -> None:

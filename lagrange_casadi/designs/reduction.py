@@ -45,7 +45,8 @@ def stages_of(graph: SceneGraph, rung: Rung, t: Array) -> Stages:
 
 @dataclass(frozen=True, eq=False)
 class KeptOutputs:
-    """The outputs of which something is kept of each design: peaks of ``quantities``, in ``units``, and means of ``efforts``.
+    """The outputs of which something is kept of each design: peaks of ``quantities``, in ``units``, and means of ``efforts``,
+    which are efforts and outputs of the user's own.
 
     Quantities are the wanted outputs, without angles that loops set, and sizes of joints' reactions; the section forces of
     ``links`` come last. What equilibrium leaves open for the parameters' defaults is left out. ``reduction`` is the same in numbers
@@ -76,9 +77,9 @@ class KeptOutputs:
         names = [*chosen, *(Output("section", link.name, force) for link in links for force in FORCES)]
         if not names:
             raise DeclarationError("designs: nothing is wanted that has a peak")
-        units = tuple(output.unit(mechanism.joints) for output in names)
+        units = tuple(output.unit(mechanism) for output in names)
         numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
-        efforts = tuple(name for name in names if name.group == "effort")
+        efforts = tuple(name for name in names if name.group in ("effort", "output"))
         along = tuple(_along(link, at) for link in links)
         matter, positive, margins = _matter(mechanism, links, along, rung.precision)
         columns = {column for columns in chosen.values() for column in columns}

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ..declare.description import parts_of
 from ..errors import DeclarationError, StoreError, UnknownNameError, one_line
 from ..instants.solution import Solution
 from ..quantities import FORCES, Output, quantity_of
@@ -155,7 +156,7 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     specs: list[Spec] = []
     groups: dict[tuple[str, str], list[str]] = {}
     for output, values in solution.outputs.items():
-        drawn = output.group in ("effort", "reaction", "multiplier", "load") or output == Output("motion", output.part)
+        drawn = output.group in ("effort", "reaction", "multiplier", "load", "output") or output == Output("motion", output.part)
         if drawn and solution.determined(output) and np.any(values):
             groups.setdefault((output.group + ("_moment" if output.member == "mz" else ""), output.part), []).append(str(output))
     for (group, part), names in groups.items():
@@ -210,7 +211,7 @@ def draw(solution: Solution, specs: Sequence[Spec], folder: Path) -> Iterator[tu
 
 def _check_parts(solution: Solution, spec: Spec) -> None:
     """Raise :class:`UnknownNameError` for a quantity of a part that the mechanism does not have."""
-    parts = [part for table in ("bodies", "joints", "loads", "constraints", "rows") for part in solution.description[table]]
+    parts = parts_of(solution.description)
     for name in spec.needs():
         part = Output.of(name).part
         if part not in parts:

@@ -28,11 +28,17 @@ from .tree import Branch, Tree
 
 
 def assemble(
-    mechanism: Mechanism, tree: Tree, driven: Collection[str], reactions: Collection[str], pushed: Collection[str] = ()
+    mechanism: Mechanism,
+    tree: Tree,
+    driven: Collection[str],
+    reactions: Collection[str],
+    pushed: Collection[str] = (),
+    own: Collection[str] = (),
 ) -> Multibody:
     """The graphs of a frozen mechanism, with mobilities for the named joints' reactions, and for nothing else.
 
-    ``driven`` are the joints whose motion is given, and ``pushed`` those along which efforts are unknowns of their own.
+    ``driven`` are the joints whose motion is given, and ``pushed`` those along which efforts are unknowns of their own; ``own``
+    names the user's outputs.
 
     The frames and gaps that positions are solved from are built without any mobility: they do not depend on what is wanted.
     Gravity is an acceleration of the ground, upward, in the frames that matter is weighed in (d'Alembert).
@@ -62,6 +68,7 @@ def assemble(
     spun = {b.far.body for b in tree.branches if not b.joint.slides and (b.joint.name in driven or b.near.body is mechanism.ground)}
     kinetic = sum((_kinetic(body, felt, velocities, body in spun) for body in mechanism.moving), ca.SX(0))
     _work(felt, (*applied, *held), loops, velocities)
+    outputs = {name: resting.at_state(mechanism.outputs[name].expression) for name in own}
     efforts = {name: ca.SX.sym(f"tau_{name}") for name in pushed}
     for name, effort in efforts.items():
         _push(felt, mechanism.joints[name], effort, velocities)
@@ -76,8 +83,9 @@ def assemble(
         felt=felt.frames,
         applied=applied,
         held=tuple(held),
-        turned=tuple(resting.turned.values()),
         efforts=efforts,
+        own=outputs,
+        turned=tuple(resting.turned.values()),
         kinetic=kinetic,
         velocities=velocities,
     )
@@ -120,17 +128,19 @@ class _Builder:
         symbols: list[Any] = []
         values: list[Any] = []
         for measure in self.mechanism.measures.asked:
-            symbols += [*measure.places, *measure.rates]
+            symbols += [*measure.places, *measure.rates, *measure.accelerations]
             of = measure.of
             if isinstance(of, Joint):
                 known = turns or of.coordinate != "angle" or any(c.joint == of.name and c.driven for c in self.coordinates)
                 place = joint_coordinate(of, self.frames, self.coordinates) if known else self._seen(of)
-                values += [place, joint_rates(of, self.frames, self.coordinates)[0]]
+                values += [place, *joint_rates(of, self.frames, self.coordinates)]
             elif isinstance(of, Point):
                 frame = self.frames[of.body.name]
-                values += [*frame.place_of(of.x, of.y), *frame.motion_of(of.x, of.y)[0]]
+                speed, acceleration = frame.motion_of(of.x, of.y)
+                values += [*frame.place_of(of.x, of.y), *speed, *acceleration]
             else:
-                values += [self.frames[of.name].rotation.angle if turns else self._seen(of), self.frames[of.name].rate]
+                frame = self.frames[of.name]
+                values += [frame.rotation.angle if turns else self._seen(of), frame.rate, frame.angular]
         return ca.substitute(ca.SX(expression), column(symbols), column(values))
 
     def _seen(self, of: Joint | Link) -> Any:

@@ -24,6 +24,7 @@ from .fingerprint import fingerprint
 from .kinematics import Start
 from .mobility import internal_forces, needed_reactions
 from .multibody import Multibody, column
+from .own import own_outputs
 from .reciprocals import share_reciprocals
 from .scene_graph import SceneGraph
 from .stations import gathered
@@ -90,7 +91,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     p = mechanism.symbols
     tree = span(mechanism, scene.motion)
     borne = needed_reactions(mechanism, want.reactions, want.sections)
-    body = assemble(mechanism, tree, scene.motion, borne, pushed(scene.needs_drives, scene.weights))
+    body = assemble(mechanism, tree, scene.motion, borne, pushed(scene.needs_drives, scene.weights), want.own)
     driven = tuple(c.joint for c in body.coordinates if c.driven)
     motion = motion_function({name: scene.motion[name] for name in driven}, p)
     values = list(mechanism.values(scene.assembly).values())
@@ -125,6 +126,8 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     placed = solved.evaluate(ca.vertcat(ca.SX(0, 1), *columns.values()))
     columns = dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True))
     inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, p]
+    acting: dict[Column, Any] = {}
+    free = ca.SX(0, 1)
     if want.forces:
         forces = internal_forces(
             body,
@@ -135,8 +138,9 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
             sections=want.sections,
             weights=scene.weights,
         )
-        acting = gathered(forces.columns, forces.free, mechanism.links.values(), body.coordinates)
-        columns |= _settled(acting, forces.free)
+        acting, free = gathered(forces.columns, forces.free, mechanism.links.values(), body.coordinates), forces.free
+    acting |= own_outputs(body, solved, columns | acting)
+    columns |= _settled(acting, free)
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
@@ -163,6 +167,7 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
     """The expressions of loads, rows and multipliers that are evaluated, by what they are of."""
     parts = [part for part in (*body.applied, *body.held) if want.forces or part.source in want.loads]
     found = {f"row '{graph.row.name}'": ca.vertcat(graph.residual, graph.size) for graph in body.rows}
+    found |= {f"output '{name}'": expression for name, expression in body.own.items()}
     for part in parts:
         name = f"{'load' if part.source in body.mechanism.loads else 'row'} '{part.source}'"
         found[name] = ca.vertcat(found.get(name, ca.SX(0, 1)), part.fx, part.fy, part.mz)
@@ -191,7 +196,7 @@ def _motion_columns(body: Multibody, solved: kinematics.Kinematics, driven: Sequ
 
 
 def _is_angle(mechanism: Mechanism, output: Output) -> bool:
-    return output.member in ("", "angle") and output.unit(mechanism.joints) == ANGLE
+    return output.member in ("", "angle") and output.unit(mechanism) == ANGLE
 
 
 def _turns(angle: Any, parts: dict[Column, Any]) -> dict[Column, int]:

@@ -122,7 +122,8 @@ class Multibody:
     """The graphs of a mechanism, over the symbols of its coordinates, mobilities, multipliers and time.
 
     ``frames`` are without mobilities; ``felt`` are with them, and their accelerations are less that of gravity, as matter feels
-    them. ``efforts`` are the symbols of efforts along other coordinates than those whose motion is given, by joint.
+    them. ``efforts`` are the symbols of efforts along other coordinates than those whose motion is given, by joint;
+    ``own`` are the user's outputs, in symbols of results too.
     """
 
     mechanism: Mechanism
@@ -137,6 +138,7 @@ class Multibody:
     held: tuple[Applied, ...]
     turned: tuple[Turned, ...]
     efforts: dict[str, Any]
+    own: dict[str, Any]
     kinetic: Any
     velocities: Velocities
 

@@ -311,7 +311,7 @@ def _kind(graph: SceneGraph, column: Column) -> str | Column:
     """What columns are compared by: their unit, or, where that says nothing, themselves."""
     if isinstance(column, Check):
         return ANGLE if column.kind == "turns" else column
-    unit = column.unit(graph.scene.mechanism.joints)
+    unit = column.unit(graph.scene.mechanism)
     return column if unit == "1" else unit
 
 

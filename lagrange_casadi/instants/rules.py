@@ -59,7 +59,7 @@ def rules(graph: SceneGraph, precision: Precision, newton: int | None) -> tuple[
             continue
         part = check.part
         if isinstance(part, Output):
-            moment = part.unit(graph.scene.mechanism.joints) == MOMENT
+            moment = part.unit(graph.scene.mechanism) == MOMENT
             found.append(Rule("OPEN_MOMENT" if moment else "OPEN", k, part, open_limit(precision, newton)))
         elif check.kind == "closure":
             found.append(Rule("BRANCH" if graph.follows(part) else "CLOSURE", k, part, dead_centre(graph, precision, part)))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.description import Description, density_of
+from ..declare.description import Description, density_of, parts_of
 from ..declare.limits import no_sections
 from ..declare.notes import notes
 from ..errors import DeclarationError, LagrangeCasadiError, UnknownNameError
@@ -138,7 +138,7 @@ def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[
     """
     groups = list(dict.fromkeys(q.group for q in QUANTITIES))
     sections = groups.index("section")
-    parts = [part for table in ("bodies", "joints", "constraints", "rows", "loads") for part in description[table]]
+    parts = parts_of(description)
 
     def rank(output: Output) -> tuple[int, int, str, int]:
         group = sections if output.along else groups.index(output.group)
@@ -212,6 +212,10 @@ class Solution:
         members = ("", "rate", "acceleration")
         return JointMotion(*(self._find("joint with a motion", Output("motion", joint, member)) for member in members))
 
+    def output(self, name: str) -> Array:
+        """An output of the mechanism's own (t,), in the unit that it was declared with."""
+        return self._find("output of the mechanism's own", Output("output", name))
+
     def pose(self, body: str) -> Pose:
         """Place and direction of a link or point mass, in ground axes."""
         x, y = (self._find("body with a pose", Output("pose", body, member)) for member in ("x", "y"))
@@ -269,6 +273,8 @@ class Solution:
         output = self._output(name)
         if output not in self.outputs and output.group != "certificate":
             self._of_section(output)
+        if output.group == "output":
+            return str(self.description["outputs"][output.part])
         kind = self.description["joints"].get(output.part, {}).get("coordinate") or "angle"
         return output.quantity.unit_for(kind if output.group in ("motion", "effort") else "angle")
 

@@ -107,8 +107,8 @@ def shortfall(
 
 
 def forces(solution: Solution) -> list[str]:
-    """The full names of a solution's efforts, reactions and section forces that equilibrium determines."""
-    wanted = (output for output in solution.quantities() if output.group in ("effort", "reaction", "section"))
+    """The full names of a solution's efforts, reactions, section forces and own outputs that equilibrium determines."""
+    wanted = (output for output in solution.quantities() if output.group in ("effort", "reaction", "section", "output"))
     return [str(output) for output in wanted if solution.determined(output)]
 
 

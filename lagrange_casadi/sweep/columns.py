@@ -98,7 +98,7 @@ class Harvest:
             found += self._peak(name)
         for name in engine.efforts:
             output = Output.of(name)
-            unit, words = output.unit(self.mechanism.joints), output.quantity.attributes
+            unit, words = output.unit(self.mechanism), output.quantity.attributes
             mean, rms = f"mean over time: {words['long_name']}", f"root of the mean square over time: {words['long_name']}"
             found.append(Column(f"mean:{name}", unit, words | {"long_name": mean} | self._open(name)))
             found.append(Column(f"rms:{name}", unit, {"long_name": rms} | self._open(name)))
@@ -111,7 +111,7 @@ class Harvest:
         for name in self._series:
             output = Output.of(name)
             words = output.quantity.attributes | self._open(name)
-            found.append(Column(f"history:{name}", output.unit(self.mechanism.joints), words, ("t",), (self.t.size,)))
+            found.append(Column(f"history:{name}", output.unit(self.mechanism), words, ("t",), (self.t.size,)))
         if self.keep == "histories" and self.xi.size:
             found += [self._along(f"history:section:{link}:{force}", "", ("t", "xi")) for link in self._links for force in FORCES]
         return tuple(found)
@@ -200,7 +200,7 @@ class Harvest:
     def _peak(self, name: str) -> list[Column]:
         """The columns of one quantity of the engine's."""
         output, open_ = Output.of(name), self._open(name)
-        unit, words = output.unit(self.mechanism.joints), output.quantity.attributes
+        unit, words = output.unit(self.mechanism), output.quantity.attributes
         what = words["long_name"]
         if output.quantity is RESULTANT:
             name = f"{name}:resultant"

@@ -1,0 +1,70 @@
+"""What a declaration is given, looked at: parts of the mechanism's own, expressions of its own symbols, names that are free."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..errors import DeclarationError
+from .expressions import scalar
+from .names import Part, check_free
+from .parts import Body, Expression, Joint, Link, Point
+
+if TYPE_CHECKING:
+    from .mechanism import Mechanism
+
+
+@dataclass(frozen=True, eq=False)
+class Ownership:
+    """What belongs to a mechanism. Methods return what they were given, and raise :class:`.DeclarationError` for anything else."""
+
+    mechanism: Mechanism
+
+    def point(self, what: str, place: Body | Point) -> Point:
+        """A point of a body: of a link its base, of any other its origin."""
+        point = place.base if isinstance(place, Link) else Point(place, 0.0, 0.0) if isinstance(place, Body) else place
+        if not isinstance(point, Point):
+            raise DeclarationError(f"{what}: expected a link, a point mass, the ground or a point of one, got {place!r}")
+        if self.mechanism.bodies.get(point.body.name) is not point.body:
+            raise DeclarationError(f"{what}: '{point.body.name}' is of another mechanism than '{self.mechanism.name}'")
+        what = f"{what}: place on '{point.body.name}'"
+        return Point(point.body, self.expression(what, point.x), self.expression(what, point.y), point.end)
+
+    def joint(self, joint: Joint) -> Joint:
+        """A joint."""
+        joints = self.mechanism.joints
+        if not isinstance(joint, Joint) or joints.get(joint.name) is not joint:
+            raise DeclarationError(
+                f"expected a joint of mechanism '{self.mechanism.name}', got {joint!r}; joints: {', '.join(joints)}"
+            )
+        return joint
+
+    def moving_joint(self, joint: Joint) -> Joint:
+        """A joint that has a coordinate."""
+        if self.joint(joint).coordinate is None:
+            raise DeclarationError(f"joint '{joint.name}' has no coordinate")
+        return joint
+
+    def expression(self, what: str, value: Expression, *, moving: bool = False, found: bool = False) -> Expression:
+        """A finite float, or an SX scalar in parameters; where ``moving`` in time and state too; where ``found`` in results too."""
+        mechanism = self.mechanism
+        own = [parameter.symbol for parameter in mechanism.parameters.values()]
+        own += [mechanism.time, *mechanism.measures.symbols] if moving else []
+        own += [*mechanism.measures.accelerations, *(asked.symbol for asked in mechanism.asked)] if found else []
+        allowed = "parameter, time, coordinate or rate" if moving else "parameter"
+        allowed = f"{allowed.replace(' or rate', ', rate')} or result" if found else allowed
+        return scalar(what, value, own, f"{allowed} of mechanism '{mechanism.name}'")
+
+    def free(self, kind: str, name: str, table: Mapping[str, Part]) -> None:
+        """Raise for a name that is taken, and where nothing can be added any more."""
+        m = self.mechanism
+        self.open(f"add {kind} '{name}'")
+        # Files know joints, loads, constraints and rows by their names alone, beside those of links.
+        acting: tuple[Mapping[str, Part], ...] = (m.joints, m.loads, m.constraints, m.rows)
+        check_free(kind, name, m.name, (m.bodies, *acting) if any(table is other for other in acting) else (table,))
+
+    def open(self, what: str) -> None:
+        """Raise where nothing can be changed any more."""
+        if self.mechanism.frozen:
+            raise DeclarationError(f"cannot {what}: mechanism '{self.mechanism.name}' is frozen, a scene has been made of it")

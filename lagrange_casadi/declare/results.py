@@ -1,0 +1,128 @@
+"""Symbols by which a user's own outputs see what is found: accelerations, and forces. Loads and constraints cannot see them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import casadi as ca
+
+from ..errors import DeclarationError, UnknownNameError
+from ..quantities import FORCES, Output
+from .density import Density
+from .limits import no_sections
+from .parts import Body, Constraint, Expression, Joint, Link, Load, Point, Row
+
+if TYPE_CHECKING:
+    from .mechanism import Mechanism
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """A result that an output is made of, and the symbol that stands for it; of a section force the ratio xi/l."""
+
+    output: Output
+    symbol: Any
+    ratio: Expression | None = None
+
+    @property
+    def wanted(self) -> str:
+        """What is to be wanted for it."""
+        return "effort" if self.output.group == "effort" else f"{self.output.group}:{self.output.part}"
+
+
+@dataclass(frozen=True, eq=False)
+class OwnOutput:
+    """An output of the user's own: an expression of time, parameters, measures and results, and its unit."""
+
+    name: str
+    expression: Any
+    unit: str
+    made_of: tuple[Asked, ...]
+
+
+class Force(NamedTuple):
+    """The symbols of a force in ground axes [N], and of its moment [N m], which is 0 where there is none."""
+
+    fx: Any
+    fy: Any
+    mz: Any
+
+
+class SectionForces(NamedTuple):
+    """The symbols of the forces at a section: axial and shear force [N], bending moment [N m]."""
+
+    axial: Any
+    shear: Any
+    bending: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """What :meth:`.Mechanism.output` may be made of beside what loads see: symbols of accelerations and forces, in SI units.
+
+    Methods raise :class:`.DeclarationError` for a part of another mechanism, or one that has no such result.
+    """
+
+    mechanism: Mechanism
+
+    def acceleration(self, of: Joint | Body | Point) -> Any:
+        """The symbol of the acceleration of a joint's coordinate; or those of a point's, in ground axes [m/s^2]."""
+        measures, own = self.mechanism.measures, self.mechanism.own
+        if isinstance(of, Joint):
+            return measures.joint(own.moving_joint(of)).accelerations[0]
+        x, y = measures.point(own.point("acceleration", of)).accelerations
+        return x, y
+
+    def effort(self, joint: Joint) -> Any:
+        """The symbol of the effort of the drive at a joint, along its coordinate."""
+        return self._ask(Output("effort", self.mechanism.own.moving_joint(joint).name))
+
+    def reaction(self, joint: Joint) -> Force:
+        """The symbols of a joint's reaction: what its parent does to its child, without the drive's effort."""
+        joint = self.mechanism.own.joint(joint)
+        return self._force("reaction", joint.name, moment=joint.holds_direction)
+
+    def load(self, load: Load) -> Force:
+        """The symbols of what a load does to the body of its first point."""
+        return self._force("load", self._own("load", load, self.mechanism.loads.values()), moment=True)
+
+    def multiplier(self, of: Constraint | Row) -> Any:
+        """The symbol of the multiplier of a constraint or a non-holonomic constraint."""
+        own = (*self.mechanism.constraints.values(), *self.mechanism.rows.values())
+        return self._ask(Output("multiplier", self._own("constraint", of, own)))
+
+    def section(self, link: Link, ratio: Expression) -> SectionForces:
+        """The symbols of the forces at a section of a link, at a ratio xi/l from 0 to 1; at a station, on its tip's side.
+
+        The ratio is a number, or an expression of parameters.
+        """
+        mechanism = self.mechanism
+        body = mechanism.own.point("section", link).body
+        if not isinstance(body, Link) or not isinstance(body.mass, Density):
+            raise DeclarationError(f"section: {no_sections(body.name, link=isinstance(body, Link), links=mechanism.links)}")
+        ratio = mechanism.own.expression(f"section of '{body.name}': ratio", ratio)
+        if not isinstance(ratio, ca.SX) and not 0.0 <= ratio <= 1.0:
+            raise DeclarationError(f"section of '{body.name}': expected a ratio xi/l from 0 to 1, got {ratio:g}")
+        return SectionForces(*(self._ask(Output("section", body.name, member), ratio) for member in FORCES))
+
+    def _force(self, group: str, part: str, *, moment: bool) -> Force:
+        fx, fy = (self._ask(Output(group, part, member)) for member in ("fx", "fy"))
+        return Force(fx, fy, self._ask(Output(group, part, "mz")) if moment else 0.0)
+
+    def _ask(self, output: Output, ratio: Expression | None = None) -> Any:
+        asked = self.mechanism.asked
+        for one in asked:
+            same = one.ratio is ratio or (isinstance(ratio, float) and isinstance(one.ratio, float) and one.ratio == ratio)
+            if one.output == output and same:
+                return one.symbol
+        asked.append(Asked(output, ca.SX.sym(str(output)), ratio))
+        return asked[-1].symbol
+
+    def _own(self, kind: str, part: Any, own: Iterable[Any]) -> str:
+        parts = list(own)
+        if not any(part is one for one in parts):
+            name = getattr(part, "name", part)
+            raise UnknownNameError(f"{kind} of mechanism '{self.mechanism.name}'", str(name), [one.name for one in parts])
+        return str(part.name)
