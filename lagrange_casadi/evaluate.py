@@ -105,7 +105,7 @@ def evaluate(
     left_open += undetermined(graph, out, p, rung)
     within = phases(graph, out, times, p) if certificate else {}
     outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
-    description = describe(scene.mechanism, values, scene.motion, scene.weights)
+    description = describe(scene.mechanism, values, scene.laws, scene.weights)
     ordered = in_order(outputs, description)
     solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open)
     solution = replace(solution, tolerance=tolerance(solution))
@@ -135,7 +135,7 @@ def _announce(graph: SceneGraph, count: int, rung: Rung, threads: int) -> None:
 def checked_times(scene: Scene, t: EvenPoints | None) -> EvenPoints:
     """A grid of instants, or the scene's own, in numbers. Raises :class:`DeclarationError` where samples of a motion end before."""
     start, stop, count = checked("t", scene.t if t is None else t)
-    for joint, law in scene.motion.items():
+    for joint, law in scene.laws.items():
         low, high = law.span
         if start < low or stop > high:
             raise DeclarationError(
@@ -148,7 +148,7 @@ def checked_times(scene: Scene, t: EvenPoints | None) -> EvenPoints:
 @functools.lru_cache(maxsize=64)
 def checked_laws(scene: Scene, span: tuple[float, float], p: tuple[float, ...]) -> None:
     """Raise :class:`DeclarationError` for a motion whose rate jumps within a span of time, for values of the parameters."""
-    refuse_kinked(scene.motion, scene.mechanism.symbols, p, span)
+    refuse_kinked(scene.laws, scene.mechanism.symbols, p, span)
 
 
 def outputs_of(graph: SceneGraph, out: Array) -> dict[Output, Array]:

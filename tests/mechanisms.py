@@ -341,7 +341,7 @@ PATTERNS = {
 }
 
 
-def five_bar(drives=None, wanted=("all",), **keywords):
+def five_bar(drives=None, wanted=("all",), path=False, **keywords):
     """Two cranks and two rods that meet at a tool, which is pushed; a weight hangs beside a station of a rod."""
     m = Mechanism("five_bar")
     heavier = m.parameter("heavier", 2.0)
@@ -354,6 +354,8 @@ def five_bar(drives=None, wanted=("all",), **keywords):
     m.revolute("P", b.tip, c.tip)
     m.weld("hung", b.at(0.2, 0.05), m.point_mass("weight", 0.4))
     m.force("cut", c.tip, x=-20.0, y=5.0)
+    if path:
+        m.path("tool", b.tip)
     motion = {"O": polynomial(2.0, 0.5, -0.2), "C": polynomial(1.0, -0.3, 0.4)}
     drives = drives(heavier) if callable(drives) else drives
     return Scene(m, motion, wanted, drives=drives, **({"posture": {"b": 1.0, "c": 2.0}, "t": (0, 1, 41)} | keywords))

@@ -44,7 +44,7 @@ def info(target: Path, want: tuple[str, ...]) -> None:
 def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
     mechanism = scene.mechanism
     graph = derive(scene, want or None)
-    _describe_mechanism(describe(mechanism, mechanism.values(), scene.motion, scene.weights))
+    _describe_mechanism(describe(mechanism, mechanism.values(), scene.laws, scene.weights))
     for what, (start, stop, count) in (("t [s]", scene.t), ("xi/l", scene.xi)):
         click.echo(f"{what}: {start:g} to {stop:g}, {count} points")
     click.echo(f"outputs: {', '.join(outputs(mechanism))}")

@@ -74,7 +74,7 @@ def describe(
     found = _described(mechanism, values, driven, lambda _: next(numbers))
     if mechanism.outputs:
         found["outputs"] = {name: own.unit for name, own in mechanism.outputs.items()}
-    return found if drives is None else found | {"drives": list(drives)}
+    return found if drives is None else found | {"drives": list(drives), "moved": len(driven) - len(mechanism.rows)}
 
 
 @functools.lru_cache(maxsize=32)

@@ -33,6 +33,7 @@ from .parts import (
     Link,
     Load,
     Parameter,
+    Path,
     Point,
     PointMass,
     RigidMass,
@@ -67,6 +68,7 @@ class Mechanism:
     constraints: dict[str, Constraint] = field(default_factory=dict, init=False)
     rows: dict[str, Row] = field(default_factory=dict, init=False)
     outputs: dict[str, OwnOutput] = field(default_factory=dict, init=False)
+    paths: dict[str, Path] = field(default_factory=dict, init=False)
     gravity: tuple[Expression, Expression] = field(default=(0.0, -9.81), init=False)
     frozen: bool = field(default=False, init=False)
     time: Any = field(default_factory=lambda: ca.SX.sym("t"), init=False)
@@ -298,6 +300,18 @@ class Mechanism:
         made_of = tuple(asked for asked in self.asked if ca.depends_on(expression, asked.symbol))
         self.outputs[name] = OwnOutput(name, expression, unit, made_of)
         return self.outputs[name]
+
+    def path(self, name: str, point: Body | Point) -> Path:
+        """Declare a point whose motion a scene may give; outputs NAME_x, NAME_vx, NAME_ax, and of y, are its motion in SI units."""
+        self.own.free("path", name, self.paths)
+        path = Path(name, self.own.point(f"path '{name}'", point))
+        if path.point.body is self.ground:
+            raise DeclarationError(f"path '{name}': a point of the ground does not move; name a point of a link or a point mass")
+        for kind, unit, of in (("", "m", self.place), ("v", "m/s", self.velocity), ("a", "m/s^2", self.results.acceleration)):
+            for axis, symbol in zip("xy", of(path.point), strict=True):
+                self.output(f"{name}_{kind}{axis}", symbol, unit=unit)
+        self.paths[name] = path
+        return path
 
     def coordinate(self, joint: Joint) -> Any:
         """The symbol of a joint's coordinate, for loads and constraints; an angle counts turns from the start of the scene on."""

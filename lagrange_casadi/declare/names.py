@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from ..errors import DeclarationError
 from .expressions import check_name
-from .parts import Body, Constraint, Force, Ground, Joint, Link, Load, Parameter, PointMass, Row, Spring, Torque
+from .parts import Body, Constraint, Force, Ground, Joint, Link, Load, Parameter, Path, PointMass, Row, Spring, Torque
 from .results import OwnOutput
 
 _WORDS: dict[type[object], str] = {
@@ -17,13 +17,14 @@ _WORDS: dict[type[object], str] = {
     Link: "a link",
     OwnOutput: "an output",
     Parameter: "a parameter",
+    Path: "a path",
     PointMass: "a point mass",
     Row: "a non-holonomic constraint",
     Spring: "a load",
     Torque: "a load",
 }
 
-Part = Parameter | Body | Joint | Load | Constraint | Row | OwnOutput
+Part = Parameter | Body | Joint | Load | Constraint | Row | OwnOutput | Path
 
 
 def check_free(kind: str, name: str, mechanism: str, others: Iterable[Mapping[str, Part]]) -> None:

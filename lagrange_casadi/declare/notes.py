@@ -19,9 +19,10 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description) -
 
     As far as efforts, the motion of the joint, or the sections of the link, are among the outputs.
     """
-    drives, moved = drives_of(description), drives_of({**description, "drives": None})
-    if len(drives) > len(moved) and Output("effort", drives[0]) in outputs:
-        told = f"{len(drives)} drives ({', '.join(drives)}) make {len(moved)} motion{'s' if len(moved) > 1 else ''}"
+    drives = drives_of(description)
+    moved = description.get("moved", len(drives))
+    if len(drives) > moved and Output("effort", drives[0]) in outputs:
+        told = f"{len(drives)} drives ({', '.join(drives)}) make {moved} motion{'s' if moved > 1 else ''}"
         yield f"{told}: of all efforts that do, these have the least weighted sum of squares"
     for name, joint in description["joints"].items():
         body = description["bodies"].get(joint["parent"]["body"], {})

@@ -60,8 +60,8 @@ class Ownership:
         """Raise for a name that is taken, and where nothing can be added any more."""
         m = self.mechanism
         self.open(f"add {kind} '{name}'")
-        # Files know joints, loads, constraints and rows by their names alone, beside those of links.
-        acting: tuple[Mapping[str, Part], ...] = (m.joints, m.loads, m.constraints, m.rows)
+        # Files and scenes know joints, loads, constraints, rows and paths by their names alone, beside those of links.
+        acting: tuple[Mapping[str, Part], ...] = (m.joints, m.loads, m.constraints, m.rows, m.paths)
         check_free(kind, name, m.name, (m.bodies, *acting) if any(table is other for other in acting) else (table,))
 
     def open(self, what: str) -> None:

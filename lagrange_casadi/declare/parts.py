@@ -127,6 +127,14 @@ class PointMass(Body):
 
 
 @dataclass(frozen=True, eq=False)
+class Path:
+    """A point of a body whose place, velocity and acceleration are outputs, and whose motion may be given."""
+
+    name: str
+    point: Point
+
+
+@dataclass(frozen=True, eq=False)
 class Joint:
     """A joint between a point of its parent and a point of its child.
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from types import MappingProxyType
 from typing import NoReturn
 
@@ -16,6 +17,7 @@ from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameE
 from ..system.room import require
 from .density import Array, Density
 from .drives import weighed
+from .guiding import guided, laws_of
 from .limits import no_sections
 from .mechanism import Mechanism
 from .motion import Motion
@@ -157,7 +159,8 @@ class Scene:
     mechanism
         The mechanism; it freezes here.
     motion
-        The law of every driven joint, by the joint's name.
+        The law of every driven joint, by the joint's name. Or the laws of x and y of a path's point [m], by the path's name, or of
+        x, y and angle of a link's base and axis, by the link's name; these need ``drives``.
     wanted
         Output names, see :func:`outputs`. Only these are derived, compiled and evaluated.
     t, xi
@@ -177,7 +180,7 @@ class Scene:
     """
 
     mechanism: Mechanism
-    motion: Mapping[str, Motion]
+    motion: Mapping[str, Motion | Sequence[Motion]]
     wanted: Sequence[str] = ("all",)
     t: EvenPoints = (0.0, 1.0, 101)
     xi: EvenPoints = (0.0, 1.0, 101)
@@ -193,18 +196,11 @@ class Scene:
                 raise DeclarationError(f"{what}: expected a mapping by name, got {mapping!r}")
             object.__setattr__(self, what, MappingProxyType(dict(mapping)))
         joints = self.mechanism.joints
-        for name, law in self.motion.items():
-            if name not in joints:
-                raise UnknownNameError("joint in motion", name, joints)
-            if joints[name].coordinate is None:
-                why = (
-                    "a weld does not move"
-                    if joints[name].kind == "weld"
-                    else "a point mass has no direction, so a pin at it has no angle"
-                )
-                raise DeclarationError(f"joint '{name}' cannot be driven: {why}")
-            if not isinstance(law, Motion):
-                raise DeclarationError(f"motion of joint '{name}': expected a law of lagrange_casadi.motion, got {law!r}")
+        guides = [name for name in self.laws if name not in joints]
+        if guides and self.drives is None:
+            raise DeclarationError(
+                f"motion of '{guides[0].partition('.')[0]}': no effort is along it; name the joints that make it by drives=[...]"
+            )
         places = [*self.mechanism.links, *(n for n, j in joints.items() if j.slides)]
         for name, rough in self.posture.items():
             if name not in places:
@@ -228,11 +224,21 @@ class Scene:
             raise ParameterError(f"{error}{told_parameters(self.mechanism, {})}") from None
         self.mechanism.values(self.assembly)
 
+    @cached_property
+    def laws(self) -> Mapping[str, Motion]:
+        """The laws of motion by joint, those of the guides of points and poses too (:mod:`.guiding`)."""
+        return MappingProxyType(laws_of(self.mechanism, self.motion))
+
+    @cached_property
+    def guided(self) -> Mechanism:
+        """The mechanism, with the guides of points and poses whose motion is given."""
+        return guided(self.mechanism, self.motion)
+
     @property
     def needs_drives(self) -> tuple[str, ...]:
         """The joints whose motion needs an effort: those with a motion, but for what non-holonomic constraints replace."""
         replaced = {row.replaces for row in self.mechanism.rows.values()}
-        return tuple(name for name in self.motion if name not in replaced)
+        return tuple(name for name in self.laws if name not in replaced)
 
     @property
     def weights(self) -> Mapping[str, Expression] | None:

@@ -89,11 +89,11 @@ def _kept(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph | AssemblyErr
 def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     mechanism = scene.mechanism
     p = mechanism.symbols
-    tree = span(mechanism, scene.motion)
+    tree = span(scene.guided, scene.laws)
     borne = needed_reactions(mechanism, want.reactions, want.sections)
-    body = assemble(mechanism, tree, scene.motion, borne, pushed(scene.needs_drives, scene.weights), want.own)
+    body = assemble(scene.guided, tree, scene.laws, borne, pushed(scene.needs_drives, scene.weights), want.own)
     driven = tuple(c.joint for c in body.coordinates if c.driven)
-    motion = motion_function({name: scene.motion[name] for name in driven}, p)
+    motion = motion_function({name: scene.laws[name] for name in driven}, p)
     values = list(mechanism.values(scene.assembly).values())
     first = [float(x) for x in ca.DM(motion(scene.t[0], values)[0]).full().ravel()]
     start = Start(float(scene.t[0]), first, values)
@@ -109,7 +109,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     columns |= {Check("turned", name): swing for name, swing in swings.items()}
     loop_angles: dict[Output, dict[Column, int]] = {}
     if want.motion:
-        motions = _motion_columns(body, solved, driven)
+        motions = _motion_columns(mechanism, body, solved, driven)
         angles = [c for c in body.coordinates if c.kind == "angle"]
         loose: dict[Column, Any] = {Output("pose", c.body, "angle"): c.value for c in angles if c.joint in solved.loose}
         counted: dict[Column, Any] = {Check("turns", c.joint): c.value for c in angles if c.joint not in solved.loose}
@@ -174,9 +174,11 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
     return found
 
 
-def _motion_columns(body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]) -> dict[Output, Any]:
+def _motion_columns(
+    mechanism: Mechanism, body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]
+) -> dict[Output, Any]:
     columns: dict[Output, Any] = {}
-    for name, joint in body.mechanism.joints.items():
+    for name, joint in mechanism.joints.items():
         if name in driven:
             i = driven.index(name)
             motion = (solved.driven[i], solved.driven_rate[i], solved.driven_acceleration[i])
@@ -186,7 +188,7 @@ def _motion_columns(body: Multibody, solved: kinematics.Kinematics, driven: Sequ
             continue
         members = (Output("motion", name, member) for member in ("", "rate", "acceleration"))
         columns |= dict(zip(members, motion, strict=True))
-    for part in body.mechanism.moving:
+    for part in mechanism.moving:
         frame = body.frames[part.name]
         x, y = frame.place_of(0.0, 0.0)
         columns |= {Output("pose", part.name, "x"): x, Output("pose", part.name, "y"): y}

@@ -41,7 +41,7 @@ def declaration(scene: Scene, wanted: Wanted) -> str | None:
         scene.posture,
         scene.assembly,
         wanted,
-        list(scene.motion),
+        list(scene.laws),
     ]
     if scene.weights is not None:
         content.append(scene.weights)
@@ -49,7 +49,7 @@ def declaration(scene: Scene, wanted: Wanted) -> str | None:
         _spell(content, words, expressions)
     except _UntoldError:
         return None
-    laws = motion_function(scene.motion, mechanism.symbols)
+    laws = motion_function(scene.laws, mechanism.symbols)
     if any(f.class_name() in _UNTOLD for f in [laws, *laws.find_functions()]):
         return None
     written = ca.densify(ca.vertcat(ca.SX(0, 1), *(ca.vec(ca.densify(e)) for e in expressions)))

@@ -58,7 +58,7 @@ class SceneGraph:
         """The motion once more, what samples give apart from what can be followed in any arithmetic."""
         if self.motion.is_a("SXFunction"):
             return Laws(self.motion, None, tuple(range(len(self.driven))))
-        return Laws.of({name: self.scene.motion[name] for name in self.driven}, self.scene.mechanism.symbols)
+        return Laws.of({name: self.scene.laws[name] for name in self.driven}, self.scene.mechanism.symbols)
 
     def extent(self, p: Array) -> float:
         """The size of the mechanism [m], beside which a gap is large or small, for parameters ``p``."""

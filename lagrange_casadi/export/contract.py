@@ -211,7 +211,7 @@ def _inputs(graph: SceneGraph, precision: Precision, timed: bool) -> dict[str, M
     for joint in graph.driven:
         for member in ("", "rate", "acceleration"):
             output = Output("motion", joint, member)
-            key, unit = str(output), output.unit(graph.scene.mechanism)
+            key, unit = str(output), output.unit(graph.scene.guided)
             add(key, unit, f"{_where(output)}: {_brief(output.quantity.long_name)}", _sign(graph, output))
             if rests and not member:
                 add(f"{REST}{key}", unit, rest.format("it"))
@@ -220,7 +220,7 @@ def _inputs(graph: SceneGraph, precision: Precision, timed: bool) -> dict[str, M
 
 def _sign(graph: SceneGraph, output: Output) -> str:
     if output == Output("motion", output.part):
-        return "counter-clockwise" if graph.scene.mechanism.joints[output.part].coordinate == "angle" else "along the axis"
+        return "counter-clockwise" if graph.scene.guided.joints[output.part].coordinate == "angle" else "along the axis"
     return output.quantity.sign
 
 

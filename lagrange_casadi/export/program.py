@@ -111,7 +111,7 @@ def program(
         "sound": 0 if fixed else functions["sound"].size1_out(0),
         "positive": 0 if fixed else positive,
     }
-    samples = tuple(_samples(graph, joint, p) for joint in graph.driven if graph.scene.motion[joint].spline)
+    samples = tuple(_samples(graph, joint, p) for joint in graph.driven if graph.scene.laws[joint].spline)
     filled, cycle = {name: f for name, f in functions.items() if f.size1_out(0)}, None if read is None else read[1]
     places = {} if read is None else still(graph, tuple(p.tolist()))
     return Program(graph, precision, filled, columns, sizes, graph.laws.order, samples, newton, cycle, places)
@@ -153,7 +153,7 @@ def _changes(value: Any) -> bool:
 
 
 def _samples(graph: SceneGraph, joint: str, p: Array) -> Samples:
-    law = graph.scene.motion[joint]
+    law = graph.scene.laws[joint]
     if not law.knots:
         raise DeclarationError(f"the motion of joint '{joint}' does not tell its knots, which exported C needs")
     number, knots = graph.driven.index(joint), np.array(law.knots)

@@ -21,7 +21,7 @@ _TURN = np.longdouble("6.283185307179586476925286766559005768")
 
 def phases(graph: SceneGraph, out: Array, t: Array, p: Array) -> dict[Output, Array]:
     """The angles of drives from their laws of motion, and of loops from the columns ``out`` (columns, t)."""
-    laws, joints = graph.laws, graph.scene.mechanism.joints
+    laws, joints = graph.laws, graph.scene.guided.joints
     rows = {angle: out[graph.outputs[angle]] for angle in graph.loop_angles}
     driven = [np.longdouble(row) for row in np.atleast_2d(graph.motion(t[None], p)[0].full())]
     if followable(laws.smooth):

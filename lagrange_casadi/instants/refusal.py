@@ -100,7 +100,7 @@ def refusal(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: R
     if not bad.any():
         return None
     i = int(np.argmax(bad))
-    joints = graph.scene.mechanism.joints
+    joints = graph.scene.guided.joints
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
     at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
     at = f"at t = {t[i]:.6g} s{at}"
@@ -161,7 +161,8 @@ def _why(
         return Status.NOT_CONVERGED, f"the loops closed by {graph.newton.joints} did not converge {at}: {cause}"
     for rule in held:
         part, value = str(rule.part), float(evaluated.out[rule.column, i])
-        closed = f"{'joint' if part in graph.scene.mechanism.joints else 'constraint'} '{part}'"
+        m = graph.scene.mechanism
+        closed = f"{'joint' if part in m.joints else 'path' if part in m.paths else 'constraint'} '{part}'"
         drives = f"the drives {part}" if rule.column in graph.checks("hold").values() else ""
         if rule.kind not in ("CLOSURE", "BRANCH"):
             if evaluated.status[i] == SLOW:

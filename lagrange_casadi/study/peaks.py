@@ -118,7 +118,7 @@ def rates(graph: SceneGraph) -> ca.Function:
 
     ``rates(tz, p) -> (out, out_rate)``, where ``tz`` is the time above the iterated coordinates.
     """
-    instant, newton, laws = differentiable(graph.instant), graph.newton, graph.scene.motion
+    instant, newton, laws = differentiable(graph.instant), graph.newton, graph.scene.laws
     tz, p = ca.MX.sym("tz", 1 + instant.size1_in("z")), ca.MX.sym("p", instant.size1_in("p"))
     t, z = tz[0], tz[1:]
     still = ca.DM.zeros(p.numel())
@@ -234,7 +234,7 @@ class _ContinuousSolution:
         value, t, xi, instants = peaks.value.copy(), peaks.t.copy(), peaks.xi.copy(), self.solution.t
         reach = _NEAR * (instants[-1] - instants[0]) / (instants.size - 1)
         some = np.flatnonzero(np.isfinite(value) & ~np.isin(t, instants)).tolist()
-        if not some or any(law.spline and not law.knots for law in self.graph.scene.motion.values()):
+        if not some or any(law.spline and not law.knots for law in self.graph.scene.laws.values()):
             return value, t, xi
         chosen, first = [names[k] for k in some], t[some]
         before, now = first, np.clip(first + reach / 2, instants[0], instants[-1])

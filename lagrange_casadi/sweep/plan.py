@@ -199,7 +199,7 @@ class Plan:
     @property
     def description(self) -> Description:
         """The mechanism, the swept parameters at their defaults."""
-        return describe(self.scene.mechanism, self.values, self.scene.motion, self.scene.weights)
+        return describe(self.scene.mechanism, self.values, self.scene.laws, self.scene.weights)
 
     @cached_property
     def identity(self) -> dict[str, Any]:
