@@ -26,6 +26,10 @@ def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
     values = m.values(parameters)
     graph = derive(scene)
     found, drives = columns_at(graph, t, values)
+    if any(joint not in m.joints for joint in drives):
+        # What is guided moves as the joints that drive it.
+        ends = ("", "_rate", "_acceleration")
+        drives = {joint: tuple(found[f"motion:{joint}{end}"] for end in ends) for joint in [*scene.drives][: len(drives)]}
     beside = {"pushed": scene.drives and list(scene.drives)} | beside
     solved = oracle_of(m, values, **beside).solve(drives, postures(m, found, drives, nudge, rough))
     size = max((abs(x) for forces in solved.reactions.values() for x in forces), default=0.0) or 1.0
@@ -73,7 +77,8 @@ def postures(m, found, drives, nudge, rough=()):
         for b in m.moving
     }
     # Where a drive from the ground counts turns, so must the oracle's guess.
-    turned = {m.joints[j].child.body.name: drive[0] for j, drive in drives.items() if m.joints[j].parent.body is m.ground}
+    from_ground = [joint for joint in drives if joint in m.joints and m.joints[joint].parent.body is m.ground]
+    turned = {m.joints[joint].child.body.name: drives[joint][0] for joint in from_ground}
     turned = {body: angle for body, angle in turned.items() if f"pose:{body}:angle" in found} | dict(rough)
     return {body: (x, y, turned.get(body, angle)) for body, (x, y, angle) in at.items()}
 

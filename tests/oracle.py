@@ -132,8 +132,8 @@ class Oracle:
     loads: Sequence[Callable] = ()
     extras: Sequence[Extra] = ()
     unaided: Sequence[str] = ()
-    pushed: Sequence[str] | None = None
     arithmetic: Double | Digits = DOUBLE
+    pushed: Sequence[str] | None = None
 
     def solve(self, drives: dict[str, tuple[float, float, float]], guess: dict[str, tuple[float, float, float]]) -> Result:
         """The instant at which the driven joints have the given (coordinate, rate, acceleration), from a rough posture."""

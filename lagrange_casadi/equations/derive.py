@@ -19,7 +19,7 @@ from ..system import cache
 from . import kinematics
 from .assembly import assemble
 from .checks import Check, Column
-from .drives import pushed
+from .drives import closure, pushed
 from .fingerprint import fingerprint
 from .kinematics import Start
 from .mobility import internal_forces, needed_reactions
@@ -139,6 +139,11 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
             weights=scene.weights,
         )
         acting, free = gathered(forces.columns, forces.free, mechanism.links.values(), body.coordinates), forces.free
+        # Beside the start of the motion, for a drive through a gear moves little of what it drives, and holds it all the same.
+        for check in [check for check in acting if isinstance(check, Check) and check.kind == "hold"]:
+            there = ca.Function("start", inputs, [acting[check]])
+            at_start = (start.t, *motion(start.t, values), solved.newton.guess if solved.newton else [], values)
+            acting[check] = closure(acting[check], float(there(*at_start)))
     acting |= own_outputs(body, solved, columns | acting)
     columns |= _settled(acting, free)
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))

@@ -7,6 +7,7 @@ w tau^2 (weighted least norm): tau = W^-1/2 x, with x of the least length that s
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,18 +17,20 @@ import casadi as ca
 from .linear import LinearSystem
 from .multibody import column
 
+_ROUNDING = 1e-24
+"""A ``hold`` below it is the square of a rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class Efforts:
-    """Symbols of efforts and their values; ``closure`` is zero where the drives cannot make the motion, at most one.
+    """Symbols of efforts and their values; ``hold`` is zero where the drives cannot make the motion, else positive.
 
-    It is the square of a sine, as that of a loop is (:mod:`.loops`): how far the drives are from depending on each other, times
-    how much they move.
+    It is the square of how much of a motion moves the drives, and of how far they are from depending on each other.
     """
 
     symbols: Any
     values: Any
-    closure: Any
+    hold: Any
 
 
 def pushed(moved: Sequence[str], drives: Mapping[str, Any] | None) -> tuple[str, ...]:
@@ -51,7 +54,13 @@ def solve_efforts(
     system = LinearSystem.of(ca.diag(lighter) @ effect)
     values = lighter * system.solve_transposed(-rest, ca.SX.zeros(system.free))
     moved = ca.diag(column(1 / ca.SX(units[name]) for name in efforts)) @ effect @ ca.diag(column(units[name] for name in needs))
-    closure = system.volume * system.volume
+    hold = system.volume * system.volume
     for j in range(len(needs)):
-        closure *= ca.sumsqr(moved[:, j]) / (1 + ca.sumsqr(moved[:, j]))
-    return Efforts(symbols, values, closure)
+        hold *= ca.sumsqr(moved[:, j])
+    return Efforts(symbols, values, hold)
+
+
+def closure(hold: Any, usual: float) -> Any:
+    """A ``hold`` as loops tell how far they are from a dead centre, from 0 to 1: beside what it is where the motion starts."""
+    beside = usual if _ROUNDING < usual < math.inf else 1.0
+    return hold / (hold + beside)

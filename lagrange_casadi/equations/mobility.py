@@ -90,7 +90,7 @@ def internal_forces(
         drives = {name: multibody.efforts.get(name, drives.get(name)) for name in weights}
         values = ca.substitute(values, efforts.symbols, efforts.values)
         unknowns, values = ca.vertcat(unknowns, efforts.symbols), ca.vertcat(values, efforts.values)
-        held = {Check("hold", ", ".join(weights)): efforts.closure}
+        held = {Check("hold", ", ".join(weights)): efforts.hold}
     starts = itertools.accumulate((rates.numel() for rates in multibody.mobilities.values()), initial=0)
     by_joint = dict(zip(multibody.mobilities, ca.vertsplit(across, [*starts]), strict=True))
     joints = multibody.mechanism.joints
