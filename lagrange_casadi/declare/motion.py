@@ -15,6 +15,7 @@ import casadi as ca
 
 from ..errors import DeclarationError, one_line
 from .curves import rows
+from .ends import beyond_ends
 from .expressions import scalar
 from .kinks import Span, refuse_kinks
 from .parts import Expression
@@ -102,6 +103,19 @@ def refuse_kinked(laws: Mapping[str, Motion], parameters: Any, values: Sequence[
     for joint, law in laws.items():
         if not law.spline:
             refuse_kinks(f"the motion of joint '{joint}'", ca.SX(_scalar(joint, law, t, parameters)), t, parameters, values, span)
+
+
+def ends_function(laws: Mapping[str, Motion], parameters: Any) -> Any | None:
+    """The CasADi function ``beyond(t, p)``: how far what the laws put into curves is beyond their ends, a row a joint of the laws.
+
+    Below zero where it is between them; None where no law has a curve with ends.
+    """
+    t = ca.SX.sym("t")
+    found = [None if law.spline else beyond_ends(_scalar(joint, law, t, parameters)) for joint, law in laws.items()]
+    if all(far is None for far in found):
+        return None
+    rows = [ca.SX(-1.0) if far is None else far for far in found]
+    return ca.Function("beyond", [t, parameters], [ca.densify(ca.vertcat(*rows))], ["t", "p"], ["beyond"], {"cse": True})
 
 
 def jerk_function(laws: Mapping[str, Motion], parameters: Any) -> Any:

@@ -42,6 +42,7 @@ class Status(enum.IntEnum):
     UNCERTIFIED = 13
     TURNED = 14
     PEAK_NOT_TOLD = 15
+    BEYOND_ENDS = 16
 
     @property
     def meaning(self) -> str:
@@ -66,6 +67,7 @@ _MEANINGS = {
     Status.UNCERTIFIED: "the design was checked in full, and fails its certificate: others may be wrong as well",
     Status.TURNED: "an angle that a load sees with its turns might be a turn further",
     Status.PEAK_NOT_TOLD: "a peak cannot be told: too much may hide between the instants; more instants may help",
+    Status.BEYOND_ENDS: "what is put into a curve is beyond its ends",
 }
 
 
@@ -115,7 +117,7 @@ def broken(rule: Rule, out: Array, extent: float) -> npt.NDArray[np.bool_]:
         return np.asarray(~(column > rule.limit))
     if rule.kind == "GAP":
         return np.asarray(~(np.abs(column) <= rule.limit * extent))
-    if rule.kind == "MISFIT":
+    if rule.kind in ("MISFIT", "BEYOND"):
         return np.asarray(~(column <= rule.limit))
     if rule.kind == "ROW":
         # Where all stands still, what rounding leaves of rates violates nothing.
@@ -155,6 +157,10 @@ def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str |
 def _why(
     graph: SceneGraph, table: Table, held: Sequence[Rule], i: int, at: str, passed: Sequence[str], extent: float
 ) -> tuple[Status, str]:
+    for rule in held:
+        if rule.kind == "BEYOND" and broken(rule, table.out, extent)[i]:
+            far = f"by {float(table.out[rule.column, i]):.3g} of what is between them"
+            return Status.BEYOND_ENDS, f"the {rule.part}: what is put into its curve is beyond the curve's ends {at}, {far}"
     if table.status[i] == NOT_CONVERGED:
         assert graph.newton is not None
         cause = "their links do not reach, or the instant before is too far off"
