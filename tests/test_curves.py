@@ -14,7 +14,7 @@ from mechanisms import cam, cam_lift, sampled_cam
 
 from lagrange_casadi import Mechanism, Scene, curve, density, derive, evaluate, motion, refine, table
 from lagrange_casadi.designs.engine import DesignEngine
-from lagrange_casadi.errors import AssemblyError, DeclarationError
+from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.judge.reference import reference
@@ -270,15 +270,47 @@ def test_an_argument_beyond_the_ends_is_refused_by_name():
     scene = beyond()
     assert evaluate(scene, parameters={"swing": 0.6}).certified  # just at the ends
     for backend in ("vm", "c", "lanes"):
-        with pytest.raises(
-            AssemblyError, match=r"load 'stop': .* beyond the curve's ends at t = 0\.15 s, where J ="
-        ):
+        with pytest.raises(AssemblyError, match=r"load 'stop': .* beyond the curve's ends at t = 0\.15 s, where J ="):
             evaluate(scene, parameters={"swing": 0.75}, backend=backend)
         designs = DesignEngine.of(scene, rung=Rung(backend))
         p = np.array([[0.5, 0.5], [0.5, 0.75], [0.5, 0.6]])
         assert designs.evaluate(p).status.tolist() == [Status.OK, Status.BEYOND_ENDS, Status.OK]
     # What does not need the load does not ask for it.
     assert evaluate(scene, wanted=["motion"], parameters={"swing": 0.75}).certified
+
+
+def test_a_part_beyond_the_ends_is_refused_by_name():
+    """A length by a curve over a parameter, as of a series of parts."""
+    m = Mechanism("series")
+    size = m.parameter("size", 2.0)
+    arm = m.link("arm", length=curve([1, 2, 3, 4], [0.2, 0.3, 0.5, 0.9])(size), mass=1.0)
+    m.revolute("J", m.ground, arm)
+    scene = Scene(m, {"J": motion.polynomial(0.0, 1.0)}, t=(0, 1, 11))
+    assert evaluate(scene, parameters={"size": 4.0}).description["bodies"]["arm"]["length"] == pytest.approx(0.9, rel=1e-14)
+    with pytest.raises(ParameterError, match="link 'arm': what is put into its curve is beyond the curve's ends"):
+        evaluate(scene, parameters={"size": 4.1})
+    for backend in ("vm", "lanes"):
+        found = DesignEngine.of(scene, rung=Rung(backend)).evaluate(np.array([[3.0], [0.9], [4.0]]))
+        assert found.status.tolist() == [Status.OK, Status.IMPOSSIBLE, Status.OK]
+
+
+def test_an_open_loop_is_told_before_its_curve():
+    """Where its links do not reach, there is nothing to put into a curve."""
+    m = Mechanism("reaching")
+    crank, rod = m.link("crank", length=m.parameter("r", 0.1, "m"), mass=1.0), m.link("rod", length=0.2, mass=1.0)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    ram = m.point_mass("ram", 1.0)
+    m.revolute("B", rod.tip, ram)
+    guide = m.prismatic("guide", m.ground, ram, axis=(1, 0))
+    m.force("push", ram, x=curve([0.05, 0.1, 0.2, 0.31], [1.0, 2.0, 4.0, 3.0])(m.coordinate(guide)))
+    scene = Scene(m, {"O": motion.polynomial(0.0, 6.0)}, t=(0, 1, 101), posture={"rod": 0.0})
+    assert evaluate(scene).certified
+    with pytest.raises(AssemblyError, match="cannot be closed"):
+        evaluate(scene, parameters={"r": 0.25}, t=(0.2, 1, 81))
+    for backend in ("vm", "lanes"):
+        found = DesignEngine.of(scene, rung=Rung(backend)).evaluate(np.array([[0.1], [0.12], [0.25]]))
+        assert found.status.tolist()[:2] == [Status.OK, Status.BEYOND_ENDS]
 
 
 def test_a_motion_beyond_the_ends_is_refused_by_name():

@@ -23,8 +23,11 @@ Kind = Literal["cell", "entry"]
 
 _PREFIX = "lagrange_casadi"
 _NAME = re.compile(rf"{_PREFIX}_(cell|entry)(_ends)?_[0-9a-f]{{16}}")
-_BITS = 80
+_BITS = 64
 """Entries are kept as whole numbers of so many bits: what is smaller beside the largest is zero."""
+
+_LEAST = -1022
+"""No number of all digits is smaller than this power of two."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,12 +59,12 @@ def cell(breaks: Sequence[float], x: Any, *, ends: bool) -> Any:
 def entries(numbers: Sequence[float], number: Any) -> Any:
     """The entry of a table of finite numbers that an expression numbers; its derivative is zero.
 
-    It is to 80 binary digits of the largest one.
+    It is to 64 binary digits of the largest one.
     """
     largest = max(map(abs, numbers))
     if all(entry == numbers[0] for entry in numbers):
         return ca.SX(numbers[0])
-    scale = math.ldexp(1.0, math.frexp(largest)[1] - _BITS)
+    scale = math.ldexp(1.0, max(math.frexp(largest)[1] - _BITS, _LEAST))
     whole = _function("entry", tuple(float(round(entry / scale)) for entry in numbers))(number)
     # Rounding changes no whole number, and has no derivative: CasADi would differentiate a call by calls of further functions.
     return ca.ceil(whole) * scale

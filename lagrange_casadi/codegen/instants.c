@@ -162,12 +162,13 @@ static int designs_why(const designs_now* now, casadi_int i) {
   designs_real x, limit;
   int k;
   for (k = 0; k < DESIGNS_CHECKS; ++k) {
-    if (designs_kind[k] == DESIGNS_IS_BEYOND && !(designs_row(now, DESIGNS_CHECKED + k)[i] <= designs_limit[k])) return DESIGNS_BEYOND_ENDS;
+    if (designs_kind[k] == DESIGNS_IS_BEYOND && designs_row(now, DESIGNS_CHECKED + k)[i] > designs_limit[k]) return DESIGNS_BEYOND_ENDS;
   }
   if (now->status[i] == DESIGNS_NOT_CONVERGED) return DESIGNS_NOT_CONVERGED;
   for (k = 0; k < DESIGNS_CHECKS; ++k) {
     x = designs_row(now, DESIGNS_CHECKED + k)[i];
     limit = designs_limit[k];
+    if (designs_kind[k] == DESIGNS_IS_BEYOND) continue;
     if (designs_kind[k] == DESIGNS_IS_CLOSURE || designs_kind[k] == DESIGNS_IS_BRANCH) {
       if (x < -limit) return designs_kind[k] == DESIGNS_IS_BRANCH ? DESIGNS_JUMPED : DESIGNS_OUT_OF_REACH;
       if (!(x > limit)) return DESIGNS_DEAD_CENTRE;

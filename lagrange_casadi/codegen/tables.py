@@ -82,7 +82,7 @@ def with_tables(text: str, functions: Iterable[ca.Function], *, packs: bool) -> 
 
 def _table(table: Lookup, name: str, real: str) -> str:
     numbers = table.numbers[1:-1] if table.kind == "cell" else table.numbers
-    lines = ",\n    ".join(", ".join(f"{x:.17g}" for x in numbers[k : k + 4]) for k in range(0, numbers.size, 4))
+    lines = ",\n    ".join(", ".join(map(repr, numbers[k : k + 4].tolist())) for k in range(0, numbers.size, 4))
     template = _CELL if table.kind == "cell" else _ENTRY
     return template.format(name=name, real=real, count=numbers.size, numbers=lines)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,7 @@ import numpy as np
 from ..arithmetic.compensated import Precision
 from ..errors import ParameterError
 from .density import Density
+from .ends import BEYOND, beyond_ends
 from .limits import END, margins
 from .lowest import lowest
 from .parts import Expression, Link, PointMass, RigidMass
@@ -76,6 +77,8 @@ def _of_frozen(mechanism: Mechanism, precision: Precision) -> Demands:
 def _of(mechanism: Mechanism, precision: Precision) -> Demands:
     found: list[Demand] = []
     masses: list[Expression] = []
+    for what, expressions in _numbers(mechanism):
+        found += _of_curves(what, expressions)
     for body in mechanism.moving:
         mass, own = _of_body(body, precision)
         masses.append(mass)
@@ -89,6 +92,37 @@ def _of(mechanism: Mechanism, precision: Precision) -> Demands:
         for point in load.points:
             found += _of_station(f"load '{load.name}'", point, precision)
     return Demands(mechanism.symbols, tuple(found))
+
+
+def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
+    """The expressions in parameters of which parts are made, and what they are of."""
+    for body in mechanism.moving:
+        matter = body.mass
+        made = (
+            [c for cell in matter.cells for c in cell]
+            if isinstance(matter, Density)
+            else [matter.mass, *matter.centre, matter.inertia]
+            if isinstance(matter, RigidMass)
+            else [matter]
+        )
+        link = isinstance(body, Link)
+        yield f"{'link' if link else 'point mass'} '{body.name}'", [*([body.length] if isinstance(body, Link) else []), *made]
+    for joint in mechanism.joints.values():
+        places = [number for point in (joint.parent, joint.child) for number in (point.x, point.y)]
+        yield f"joint '{joint.name}'", [*places, *joint.axis, joint.angle]
+    for load in mechanism.loads.values():
+        yield f"load '{load.name}'", [number for point in load.points for number in (point.x, point.y)]
+    yield "gravity", [*mechanism.gravity]
+
+
+def _of_curves(what: str, expressions: list[Expression]) -> list[Demand]:
+    """That what parameters put into curves is between the curves' ends."""
+    symbolic = [expression for expression in expressions if isinstance(expression, ca.SX)]
+    far = beyond_ends(ca.vertcat(*symbolic)) if symbolic else None
+    if far is None:
+        return []
+    slack = BEYOND["double"]
+    return [Demand(slack - far, False, lambda _: f"{what}: what is put into its curve is beyond the curve's ends")]
 
 
 def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, list[Demand]]:

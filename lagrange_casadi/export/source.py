@@ -329,6 +329,9 @@ class Source:
         for rule in rules(graph, self.contract.precision, self.program.newton):
             k, limit = self.program.columns.index(graph.columns[rule.column]), number(rule.limit)
             beside = f"{limit}*model->matter[0]"
+            if rule.kind == "BEYOND":
+                yield f"if (y[{k}] > {limit}) return {P}_BEYOND_ENDS;"
+                continue
             if closed and rule.kind not in ("CLOSURE", "BRANCH"):
                 yield f"if (closed != {P}_OK) return closed;"
                 closed = False
@@ -342,8 +345,6 @@ class Source:
                 yield f"if (!(y[{k}] <= {beside if rule.kind == 'OPEN_MOMENT' else limit})) return {P}_UNDETERMINED;"
             elif rule.kind == "TURNED":
                 yield f"if (!({fabs}(y[{k}]) <= {limit})) return {P}_TURNED;"
-            elif rule.kind == "BEYOND":
-                yield f"if (!(y[{k}] <= {limit})) return {P}_BEYOND_ENDS;"
             elif rule.kind == "MISFIT":
                 yield f"if (y[{k}] > {limit}) return {P}_INCONSISTENT;"
             elif rule.kind == "ROW":

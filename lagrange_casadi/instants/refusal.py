@@ -117,8 +117,11 @@ def broken(rule: Rule, out: Array, extent: float) -> npt.NDArray[np.bool_]:
         return np.asarray(~(column > rule.limit))
     if rule.kind == "GAP":
         return np.asarray(~(np.abs(column) <= rule.limit * extent))
-    if rule.kind in ("MISFIT", "BEYOND"):
+    if rule.kind == "MISFIT":
         return np.asarray(~(column <= rule.limit))
+    if rule.kind == "BEYOND":
+        # Where a loop is open it is no number, and the loop says why.
+        return np.asarray(column > rule.limit)
     if rule.kind == "ROW":
         # Where all stands still, what rounding leaves of rates violates nothing.
         return np.asarray(~(np.abs(column) <= rule.limit * float(np.fmax.reduce(out[rule.beside], initial=0.0))))
@@ -165,7 +168,7 @@ def _why(
         assert graph.newton is not None
         cause = "their links do not reach, or the instant before is too far off"
         return Status.NOT_CONVERGED, f"the loops closed by {graph.newton.joints} did not converge {at}: {cause}"
-    for rule in held:
+    for rule in (rule for rule in held if rule.kind != "BEYOND"):
         part, value = str(rule.part), float(table.out[rule.column, i])
         closed = f"{'joint' if part in graph.scene.mechanism.joints else 'constraint'} '{part}'"
         if rule.kind not in ("CLOSURE", "BRANCH"):

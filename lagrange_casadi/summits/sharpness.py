@@ -43,11 +43,13 @@ class Kind(enum.IntEnum):
     """A steep change within some number of zero, and nothing beyond."""
     POWER = 7
     """An exponent."""
+    KNOT = 8
+    """A kink, at most, where it comes to one of some numbers."""
 
 
 @dataclass(frozen=True)
 class Watch:
-    """A watched argument; ``at`` are the numbers at which it switches, or the one beyond which it changes nothing."""
+    """A watched argument; ``at`` are the numbers at which it switches or has knots, or the one beyond which it changes nothing."""
 
     kind: Kind
     at: tuple[float, ...] = ()
@@ -221,7 +223,7 @@ def _watched(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Kind, An
         if x.is_constant() or x.is_symbolic() or x.op() not in (ca.OP_SQRT, ca.OP_INV):
             yield Kind.SWITCH, y, (0.0,)
     elif operation == ca.OP_CALL:
-        yield Kind.SWITCH, x, tuple(float(number) for number in ca.vertsplit(y))
+        yield Kind.KNOT, x, tuple(float(number) for number in ca.vertsplit(y))
     elif operation in (ca.OP_FLOOR, ca.OP_CEIL):
         if not is_entry(x):
             yield Kind.STEP, x, ()
