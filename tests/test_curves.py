@@ -117,7 +117,7 @@ def test_a_curve_of_numbers_is_numbers():
     assert repr(found) == "<Curve of 4 points, from 0 to 3>"
     with pytest.raises(DeclarationError, match=r"curve: 3\.5 is beyond its ends, 0 and 3"):
         found(3.5)
-    with pytest.raises(DeclarationError, match=r"expected a scalar casadi\.SX expression or numbers"):
+    with pytest.raises(DeclarationError, match=r"expected a scalar casadi\.SX expression or finite numbers"):
         found(ca.SX.sym("v", 2))
 
 

@@ -14,11 +14,12 @@ from typing import Any
 import casadi as ca
 
 from ..errors import DeclarationError, one_line
-from .curves import rows
+from .curves import curve, rows
 from .ends import beyond_ends
 from .expressions import scalar
 from .kinks import Span, refuse_kinks
 from .parts import Expression
+from .scaled import Scaled
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,13 +68,25 @@ def expression(law: Callable[[Any], Any]) -> Motion:
     return Motion(law)
 
 
-def samples(times: Sequence[float], values: Sequence[float]) -> Motion:
+def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion:
     """A C2 cubic spline through samples, not-a-knot at its ends: ``values`` [rad or m] at ``times`` [s].
 
-    It is defined between the first and the last time only.
+    Parameters may scale and shift all values alike, and all times: ``samples(times, ratio * angles)``. It is defined between the
+    first and the last time only.
 
-    Raises :class:`DeclarationError` for fewer than four samples, for times that do not increase, or for what is not finite.
+    Raises :class:`DeclarationError` for fewer than four samples, for times that do not increase, for what is not finite, and for
+    parameters that change some values otherwise than others.
     """
+    at, to = Scaled.of("motion samples: times", times), Scaled.of("motion samples: values", values)
+    if at.scale is not None or to.scale is not None:
+        through = curve(*rows("motion samples", at.numbers, to.numbers, 4))
+
+        def graph(time: Any) -> Any:
+            value = through(time if at.scale is None else (time - at.shift) / at.scale)
+            return value if to.scale is None else to.shift + to.scale * value
+
+        return Motion(graph)
+    times, values = at.numbers, to.numbers
     t, v = rows("motion samples", times, values, 4)
     spline = ca.interpolant("spline", "bspline", [t], v)
     return Motion(lambda time: spline(time), spline=True, span=(t[0], t[-1]), knots=tuple(t))
