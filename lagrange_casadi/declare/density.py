@@ -33,6 +33,11 @@ class Density:
     cells: tuple[tuple[Any, ...], ...]
     per_length: bool
 
+    @property
+    def even(self) -> bool:
+        """Whether it is one constant."""
+        return len(self.cells) == len(self.cells[0]) == 1
+
     def ends(self, length: Any) -> tuple[Any, Any, Any]:
         """Masses at the base and at the tip, and a moment of inertia, that together move just as the link does.
 

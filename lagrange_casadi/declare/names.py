@@ -6,13 +6,14 @@ from collections.abc import Iterable, Mapping
 
 from ..errors import DeclarationError
 from .expressions import check_name
-from .parts import Body, Constraint, Force, Ground, Joint, Link, Load, Parameter, PointMass, Row, Spring, Torque
+from .parts import Body, Constraint, Force, Ground, Joint, LineLoad, Link, Load, Parameter, PointMass, Row, Spring, Torque
 
 _WORDS: dict[type[object], str] = {
     Constraint: "a constraint",
     Force: "a load",
     Ground: "the ground",
     Joint: "a joint",
+    LineLoad: "a load",
     Link: "a link",
     Parameter: "a parameter",
     PointMass: "a point mass",

@@ -18,7 +18,7 @@ from .density import Density
 from .ends import BEYOND, beyond_ends
 from .limits import END, margins
 from .lowest import lowest
-from .parts import Expression, Link, PointMass, RigidMass
+from .parts import Expression, LineLoad, Link, PointMass, RigidMass
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
@@ -89,6 +89,9 @@ def _of(mechanism: Mechanism, precision: Precision) -> Demands:
         for point in (joint.parent, joint.child):
             found += _of_station(f"joint '{joint.name}'", point, precision)
     for load in mechanism.loads.values():
+        if isinstance(load, LineLoad):
+            found.append(_carrying(load))
+            continue
         for point in load.points:
             found += _of_station(f"load '{load.name}'", point, precision)
     return Demands(mechanism.symbols, tuple(found))
@@ -125,6 +128,12 @@ def _of_curves(what: str, expressions: list[Expression]) -> list[Demand]:
     return [Demand(slack - far, False, lambda _: f"{what}: what is put into its curve is beyond the curve's ends")]
 
 
+def _carrying(load: LineLoad) -> Demand:
+    """A load along a link is told in units of the link's matter."""
+    what = f"load '{load.name}': a line load needs a link with mass, for it is told by that"
+    return Demand(load.matter, True, lambda n: f"{what}; '{load.link.name}' has {n(load.matter):.17g} kg/m")
+
+
 def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, list[Demand]]:
     """The mass of a body, and its demands."""
     what = f"link '{body.name}'" if isinstance(body, Link) else f"point mass '{body.name}'"
@@ -147,7 +156,7 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
 
 def _of_density(what: str, density: Density, length: Expression, precision: Precision) -> list[Demand]:
     """The lowest density of each cell, beside what the sum of its terms rounds [kg or kg/m]; not finite where a term is not."""
-    if len(density.cells) == len(density.cells[0]) == 1:
+    if density.even:
         mass = density.cells[0][0] * (length if density.per_length else 1.0)
         return [Demand(mass, False, lambda n: f"{what}: mass must not be negative, got {n(mass):.17g} kg")]
     spans = zip(density.breaks, density.breaks[1:], density.cells, strict=False)
