@@ -11,10 +11,11 @@ from balance import assert_balanced
 from hypothesis import given
 from hypothesis import strategies as st
 from mechanisms import cam, cam_lift, sampled_cam
+from splines import by_hand
 
-from lagrange_casadi import Mechanism, Scene, curve, density, derive, evaluate, motion, refine, table
+from lagrange_casadi import Mechanism, Scene, curve, density, derive, evaluate, export, motion, refine, table
 from lagrange_casadi.designs.engine import DesignEngine
-from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError
+from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, SizeError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.judge.reference import reference
@@ -30,36 +31,6 @@ def points(draw, periodic):
     x = draw(st.floats(-100.0, 100.0)) + np.concatenate([[0.0], np.cumsum(steps)])
     y = draw(st.lists(st.floats(-1e3, 1e3), min_size=x.size, max_size=x.size))
     return x, np.array([*y[:-1], y[0]] if periodic else y)
-
-
-def by_hand(x, y, periodic):
-    """Value, slope and second derivative of the same spline, from its slopes at the points, by a full matrix."""
-    n, h = x.size, np.diff(x)
-    matrix, right = np.zeros((n, n)), np.zeros(n)
-    rise = np.diff(y) / h
-    for i in range(1, n - 1):
-        matrix[i, i - 1 : i + 2] = h[i], 2 * (h[i - 1] + h[i]), h[i - 1]
-        right[i] = 3 * (h[i] * rise[i - 1] + h[i - 1] * rise[i])
-    if periodic:
-        matrix[0, [0, 1, n - 2]] = 2 * (h[-1] + h[0]), h[-1], h[0]
-        right[0] = 3 * (h[0] * rise[-1] + h[-1] * rise[0])
-        matrix[-1, [0, -1]] = 1, -1
-    else:
-        # The third derivatives of the first two pieces are one, and those of the last two.
-        for row, i, j in ((0, 0, 1), (n - 1, n - 3, n - 2)):
-            for k, sign in ((i, 1), (j, -1)):
-                matrix[row, [k, k + 1]] += sign / h[k] ** 2
-                right[row] += sign * 2 * rise[k] / h[k] ** 2
-    slopes = np.linalg.solve(matrix, right)
-
-    def at(place):
-        place = (place - x[0]) % (x[-1] - x[0]) + x[0] if periodic else place
-        i = min(max(int(np.searchsorted(x, place, side="right")) - 1, 0), n - 2)
-        u, a, b = place - x[i], slopes[i], slopes[i + 1]
-        c, d = (3 * rise[i] - 2 * a - b) / h[i], (a + b - 2 * rise[i]) / h[i] ** 2
-        return y[i] + u * (a + u * (c + u * d)), a + u * (2 * c + 3 * u * d), 2 * c + 6 * u * d
-
-    return at
 
 
 @pytest.mark.parametrize("periodic", [False, True])
@@ -391,3 +362,9 @@ def test_a_table_in_a_constraint_names_the_curve():
     x = m.coordinate(m.prismatic("X", m.ground, m.point_mass("p", 1.0), axis=(1, 0)))
     with pytest.raises(DeclarationError, match=r"in place of a table, a curve\(x, y\)"):
         m.constraint("cam", table(x, [0, 1, 2], [0, 1, 0]) - m.time)
+
+
+def test_exported_c_tells_how_large_its_curves_are(tmp_path):
+    with pytest.raises(SizeError, match=r"what all curves look up takes .* bytes of constants, and the limit is 1000"):
+        export(sampled_cam(), tmp_path / "small", largest=1000)
+    assert export(sampled_cam(), tmp_path / "enough").prefix == "cam"

@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import DeclarationError
 
 _DIGITS = 40
-_HALVINGS = 100
+_HALVINGS = 50
 
 Cell = tuple[float, float, float, float]
 
@@ -47,21 +47,23 @@ def smoothed(x: Sequence[float], y: Sequence[float], distance: float, *, periodi
     # Scaled, so that the search for a weight is the same in all units.
     h, size = h / h.mean(), float(np.ptp(to)) or 1.0
     rows, columns = (h.size, to.size) if periodic else (h.size - 1, to.size)
-    second, mass = np.zeros((rows, columns)), np.zeros((rows, rows))
+    second: dict[tuple[int, int], float] = {}
+    mass: dict[tuple[int, int], float] = {}
     for row in range(rows):
         before, after = (h[row - 1], h[row]) if periodic else (h[row], h[row + 1])
         places = [(row + k) % columns for k in ((-1, 0, 1) if periodic else (0, 1, 2))]
-        second[row, places] += [1 / before, -1 / before - 1 / after, 1 / after]
-        mass[row, row] += (before + after) / 3
-        for k, width in ((-1, before), (1, after)):
-            if periodic or 0 <= row + k < rows:
-                mass[row, (row + k) % rows] += width / 6
-    Q, R, values = ca.sparsify(ca.DM(second)), ca.sparsify(ca.DM(mass)), ca.DM(to / size)
+        weights = (1 / before, -1 / before - 1 / after, 1 / after)
+        second |= {(row, place): weight for place, weight in zip(places, weights, strict=True)}
+        mass[row, row] = (before + after) / 3
+        beside = {(row, (row + k) % rows): width / 6 for k, width in ((-1, before), (1, after)) if periodic or 0 <= row + k < rows}
+        mass |= beside
+    Q, R, values = _sparse(second, rows, columns), _sparse(mass, rows, rows), ca.DM(to / size)
     square, bent = Q @ Q.T, Q @ values
+    solver = ca.Linsol("smoothing", "ldl", (R + square).sparsity())
 
     def off(weight: float) -> np.ndarray:
         """How far the curve is from the points."""
-        return np.asarray((weight * Q.T @ ca.solve(R + weight * square, bent, "ldl")).full().ravel() * size)
+        return np.asarray((weight * Q.T @ solver.solve(R + weight * square, bent)).full().ravel() * size)
 
     line = float(np.sqrt(np.mean((to - to.mean()) ** 2))) if periodic else _off_line(at, to)
     if not distance < line:
@@ -76,6 +78,11 @@ def smoothed(x: Sequence[float], y: Sequence[float], distance: float, *, periodi
         low, high = (low, middle) if np.sqrt(np.mean(off(10.0**middle) ** 2)) > distance else (middle, high)
     found = to - off(10.0**low)
     return [float(value) for value in ([*found, found[0]] if periodic else found)]
+
+
+def _sparse(entries: dict[tuple[int, int], float], rows: int, columns: int) -> ca.DM:
+    places = list(zip(*entries, strict=True))
+    return ca.DM.triplet(list(places[0]), list(places[1]), ca.DM(list(entries.values())), rows, columns)
 
 
 def _off_line(at: np.ndarray, to: np.ndarray) -> float:
