@@ -8,7 +8,7 @@ import numpy as np
 import oracle
 import pytest
 from balance import assert_balanced
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mechanisms import cam, cam_lift, sampled_cam
 from splines import by_hand
@@ -34,6 +34,7 @@ def points(draw, periodic):
 
 
 @pytest.mark.parametrize("periodic", [False, True])
+@settings(deadline=None)
 @given(data=st.data())
 def test_pieces_pass_through_the_points_and_join(periodic, data):
     x, y = data.draw(points(periodic))

@@ -26,8 +26,8 @@ _NAME = re.compile(rf"{_PREFIX}_(cell|entry)(_ends)?_[0-9a-f]{{16}}")
 _BITS = 64
 """Entries are kept as whole numbers of so many bits: what is smaller beside the largest is zero."""
 
-_LEAST = -1022
-"""No number of all digits is smaller than this power of two."""
+_LEAST = -1074
+"""No number is smaller than this power of two."""
 
 
 @dataclass(frozen=True, eq=False)

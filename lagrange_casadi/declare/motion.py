@@ -6,6 +6,7 @@ automatic differentiation.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -124,10 +125,10 @@ def ends_function(laws: Mapping[str, Motion], parameters: Any) -> Any | None:
     Below zero where it is between them; None where no law has a curve with ends.
     """
     t = ca.SX.sym("t")
-    found = [None if law.spline else beyond_ends(_scalar(joint, law, t, parameters)) for joint, law in laws.items()]
-    if all(far is None for far in found):
+    found = [[] if law.spline else beyond_ends(_scalar(joint, law, t, parameters)) for joint, law in laws.items()]
+    if not any(found):
         return None
-    rows = [ca.SX(-1.0) if far is None else far for far in found]
+    rows = [functools.reduce(ca.fmax, far, ca.SX(-1.0)) for far in found]
     return ca.Function("beyond", [t, parameters], [ca.densify(ca.vertcat(*rows))], ["t", "p"], ["beyond"], {"cse": True})
 
 

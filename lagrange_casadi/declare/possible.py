@@ -121,11 +121,9 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
 def _of_curves(what: str, expressions: list[Expression]) -> list[Demand]:
     """That what parameters put into curves is between the curves' ends."""
     symbolic = [expression for expression in expressions if isinstance(expression, ca.SX)]
-    far = beyond_ends(ca.vertcat(*symbolic)) if symbolic else None
-    if far is None:
-        return []
-    slack = BEYOND["double"]
-    return [Demand(slack - far, False, lambda _: f"{what}: what is put into its curve is beyond the curve's ends")]
+    found = beyond_ends(ca.vertcat(*symbolic)) if symbolic else []
+    told = f"{what}: what is put into its curve is beyond the curve's ends"
+    return [Demand(BEYOND["double"] - far, False, lambda _: told) for far in found]
 
 
 def _carrying(load: LineLoad) -> Demand:

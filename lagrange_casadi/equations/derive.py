@@ -174,8 +174,11 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
 def _beyond(body: Multibody, seeing: Mapping[str, Any]) -> dict[Column, Any]:
     """How far what is put into curves with ends is beyond them, by the constraint, load or row that does it."""
     found = {f"constraint '{loop.name}'": loop.gap for loop in body.loop_equations if loop.joint is None}
-    far = {name: beyond_ends(expression) for name, expression in (found | dict(seeing)).items()}
-    return {Check("beyond", name): value for name, value in far.items() if value is not None}
+    columns: dict[Column, Any] = {}
+    for name, expression in (found | dict(seeing)).items():
+        far = enumerate(beyond_ends(expression), 1)
+        columns |= {Check("beyond", name if k == 1 else f"{name}, curve {k}"): value for k, value in far}
+    return columns
 
 
 def _motion_columns(body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]) -> dict[Output, Any]:

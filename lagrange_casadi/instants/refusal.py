@@ -14,6 +14,7 @@ from ..arithmetic.compensated import DTYPES, Precision
 from ..codegen.designs import INSIDE, ROUNDS
 from ..codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW
 from ..declare.density import Array
+from ..declare.ends import share_beyond
 from ..equations.kinematics import passes_dead_centre, where
 from ..equations.scene_graph import SceneGraph
 from ..equations.turns import LEAP
@@ -162,7 +163,7 @@ def _why(
 ) -> tuple[Status, str]:
     for rule in held:
         if rule.kind == "BEYOND" and broken(rule, table.out, extent)[i]:
-            far = f"by {float(table.out[rule.column, i]):.3g} of what is between them"
+            far = f"by {share_beyond(float(table.out[rule.column, i])):.3g} of what is between them"
             return Status.BEYOND_ENDS, f"the {rule.part}: what is put into its curve is beyond the curve's ends {at}, {far}"
     if table.status[i] == NOT_CONVERGED:
         assert graph.newton is not None
