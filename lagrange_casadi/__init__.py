@@ -5,7 +5,7 @@ from .system import interrupts, standard_streams  # noqa: F401 - before all that
 # isort: split
 from . import density, figures, motion
 from .case import Case, load_case
-from .declare.curves import table
+from .declare.curves import Curve, curve, table
 from .declare.mechanism import Mechanism
 from .declare.scene import Scene
 from .equations.derive import derive
@@ -21,6 +21,7 @@ from .version import __version__
 
 __all__ = [
     "Case",
+    "Curve",
     "LagrangeCasadiError",
     "LagrangeSystem",
     "Mechanism",
@@ -31,6 +32,7 @@ __all__ = [
     "__version__",
     "best",
     "check",
+    "curve",
     "density",
     "derive",
     "evaluate",

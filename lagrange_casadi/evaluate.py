@@ -13,7 +13,8 @@ import numpy as np
 from .arithmetic.compensated import Precision
 from .declare.density import Array
 from .declare.description import describe
-from .declare.motion import refuse_kinked
+from .declare.ends import BEYOND
+from .declare.motion import ends_function, refuse_kinked
 from .declare.scene import EvenPoints, Scene, checked, checked_ratios, points
 from .equations.checks import Check
 from .equations.derive import assembled, derive
@@ -36,6 +37,7 @@ from .system.room import MOST_THREADS, cores, in_words, require
 _BESIDE, _CHECKED = 8, 2
 """Rows beside the outputs, and how many times both are in memory while they are checked."""
 
+_LOOKED_AT = 4001
 _LONG = 60.0
 """Seconds of which nothing need be said."""
 
@@ -147,8 +149,22 @@ def checked_times(scene: Scene, t: EvenPoints | None) -> EvenPoints:
 
 @functools.lru_cache(maxsize=64)
 def checked_laws(scene: Scene, span: tuple[float, float], p: tuple[float, ...]) -> None:
-    """Raise :class:`DeclarationError` for a motion whose rate jumps within a span of time, for values of the parameters."""
+    """Raise :class:`DeclarationError` for a motion whose rate jumps within a span of time, for values of the parameters.
+
+    Also where it puts into a curve what is beyond the curve's ends.
+    """
     refuse_kinked(scene.laws, scene.mechanism.symbols, p, span)
+    ends = ends_function(scene.laws, scene.mechanism.symbols)
+    if ends is None:
+        return
+    t = np.linspace(*span, _LOOKED_AT)
+    beyond = np.argwhere(~(ends(t[None], list(p)).full() <= BEYOND["double"]).T)
+    if beyond.size:
+        at, joint = beyond[0]
+        raise DeclarationError(
+            f"the motion of joint '{list(scene.laws)[joint]}': what is put into its curve is beyond the curve's ends at "
+            f"t = {t[at]:.6g} s"
+        )
 
 
 def outputs_of(graph: SceneGraph, out: Array) -> dict[Output, Array]:

@@ -7,7 +7,7 @@ import math
 import casadi as ca
 import numpy as np
 
-from lagrange_casadi import Mechanism, Scene
+from lagrange_casadi import Mechanism, Scene, curve
 from lagrange_casadi.declare.motion import harmonic, polynomial, samples
 
 MOTION = polynomial(0.2, 3.0, 4.0)
@@ -231,6 +231,32 @@ def spline_arm():
     m = Mechanism("arm")
     m.revolute("J", m.ground, m.link("a", length=1, mass=1))
     return Scene(m, {"J": samples([0, 1, 2, 3], [0, 1, 4, 2])}, t=(0, 3, 4))
+
+
+def cam_lift(angle):
+    """A closed form for :func:`cam`: the lift [m] at an angle of the cam, of CasADi's or NumPy's numbers."""
+    return 0.004 * (1 - np.cos(angle)) + 0.0007 * np.sin(3 * angle)
+
+
+def cam(lift, motion=None, **keywords):
+    """A cam lifts a rod that is guided upright, against a spring that stiffens by a curve and a side force."""
+    m = Mechanism("cam")
+    base = m.parameter("base", 0.03, "m", low=0.0)
+    disc, rod = m.link("disc", length=0.03, mass=0.6), m.link("rod", length=0.1, mass=0.2)
+    main = m.revolute("main", m.ground, disc)
+    guide = m.prismatic("guide", m.ground, rod, axis=(0, 1), angle=math.pi / 2)
+    rise = m.coordinate(guide) - base
+    m.constraint("contact", rise - lift(m.coordinate(main)))
+    spring = curve([-0.002, 0.0, 0.004, 0.008, 0.012], [-150.0, -200.0, -320.0, -470.0, -700.0])
+    m.force("spring", rod.tip, x=15.0, y=spring(rise))
+    keywords = {"posture": {"rod": 1.5}, "t": (0.0, 0.4, 161)} | keywords
+    return Scene(m, {"main": motion or polynomial(0.3, 40.0, 5.0)}, **keywords)
+
+
+def sampled_cam(count=73, **keywords):
+    """The same, its lift by a curve through samples over the turn."""
+    angles = np.linspace(0.0, 2 * math.pi, count)
+    return cam(curve(angles, cam_lift(angles), periodic=True), **keywords)
 
 
 def bracket(reach=0.9):

@@ -79,6 +79,9 @@ def _amount(d: Draft, size: float) -> Formula:
         names = d.measured("place", d.spot(d.choose(*d.bodies)))
         low = d.between(-0.6, 0.2)
         places, values = [low, low + 0.237, low + 0.551], [d.between(-1, 1) for _ in range(3)]
+        if values[0] > 0.0:
+            places, values = [*places, low + 0.8], [*values, values[0]]
+            return d.formula(f"{value} * curve({places}, {values}, periodic=True)({d.choose(*names)})", names)
         return d.formula(f"{value} * table({d.choose(*names)}, {places}, {values})", names)
     if kind == "parameter" and d.parametric:
         number = d.number(float(value), 0.5)

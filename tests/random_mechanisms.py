@@ -20,7 +20,7 @@ from random_patterns import PATTERNS
 
 _HEAD = """import casadi as ca
 from casadi import cos, sin, sqrt
-from lagrange_casadi import Mechanism, Scene, density, evaluate, motion, table
+from lagrange_casadi import Mechanism, Scene, curve, density, evaluate, motion, table
 """
 SPACING = 0.4
 """Of the samples of a motion [s]."""

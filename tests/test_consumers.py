@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from exported import CONSUMERS, FEW, RATIOS, by_c99, compare, expected, exported, instants, run, solve, values
-from mechanisms import DRAG_LINK, bracket, slider_crank, spline_arm, sprung, truss_platform
+from mechanisms import DRAG_LINK, bracket, sampled_cam, slider_crank, spline_arm, sprung, truss_platform
 
 from lagrange_casadi import export, load_case
 
@@ -18,6 +18,7 @@ SCENES |= {
     "spline_arm": spline_arm,
     "sprung": lambda: sprung("AC", **DRAG_LINK),
     "bracket": bracket,
+    "cam": sampled_cam,
 }
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from compiled import EVALUATED, HARNESS, cc, compilers, present, told
-from mechanisms import slider_crank, spline_arm, truss_platform
+from mechanisms import sampled_cam, slider_crank, spline_arm, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, export, load_case, motion
 
@@ -19,7 +19,7 @@ ARITHMETIC = [
     {"table": 64},
     {"table": 64, "precision": "single"},
 ]
-SCENES = {"slider_crank": slider_crank, "spline_arm": spline_arm, "truss_platform": truss_platform}
+SCENES = {"cam": sampled_cam, "slider_crank": slider_crank, "spline_arm": spline_arm, "truss_platform": truss_platform}
 CASES = sorted(path.parent for path in (Path(__file__).parents[1] / "cases").glob("*/case.py"))
 
 

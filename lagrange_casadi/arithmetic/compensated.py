@@ -114,6 +114,7 @@ class Pairs:
             ca.OP_FMAX: lambda x, y: self._either(self._below(x, y), y, x),
             ca.OP_IF_ELSE_ZERO: lambda where, x: _choose(where.value, x),
             ca.OP_ASSIGN: lambda x: x,
+            ca.OP_CALL: lambda lookup, x: Pair(lookup.function(x.value)),
         }
         return {code: _rounded(code) for code in _UNARY + _BINARY} | rules
 

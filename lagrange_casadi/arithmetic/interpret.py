@@ -16,24 +16,29 @@ import casadi as ca
 import numpy as np
 
 from ..errors import DeclarationError
+from .lookups import Lookup, lookup
 
 
 @dataclass(frozen=True)
 class Step:
     """An instruction: what it does (one of CasADi's ``OP_`` codes), the places it reads, the place it writes, and its number.
 
-    Of an input or output the places are those of argument and nonzero.
+    Of an input or output the places are those of argument and nonzero. Of a call there is the table that it looks up, if it does.
     """
 
     operation: int
     arguments: tuple[int, ...]
     results: tuple[int, ...]
     constant: float = 0.0
+    looked_up: Lookup | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Arithmetic:
-    """``constant`` makes a number of a double; ``operations`` are functions of one or two numbers by CasADi's ``OP_`` code."""
+    """``constant`` makes a number of a double; ``operations`` are functions of one or two numbers by CasADi's ``OP_`` code.
+
+    That of ``OP_CALL`` takes a :class:`.Lookup` and a number.
+    """
 
     constant: Callable[[float], Any]
     operations: Mapping[int, Callable[..., Any]]
@@ -44,19 +49,23 @@ def steps(function: Any) -> tuple[Step, ...]:
     """The instructions of an SX function. Raises :class:`DeclarationError` for a function of another kind."""
     if not function.is_a("SXFunction"):
         raise DeclarationError(f"function '{function.name()}' cannot be followed: it is not written in scalars (casadi.SX)")
-    found = []
+    found: list[Step] = []
+    written: Any = None
     for k in range(function.n_instructions()):
         operation = function.instruction_id(k)
+        if operation == ca.OP_CALL:
+            written = function.instructions_sx() if written is None else written
+        looked_up = lookup(written[k].which_function()) if operation == ca.OP_CALL else None
         number = function.instruction_constant(k) if operation == ca.OP_CONST else 0.0
         places = (tuple(function.instruction_input(k)), tuple(function.instruction_output(k)))
-        found.append(Step(operation, *places, number))
+        found.append(Step(operation, *places, number, looked_up))
     return tuple(found)
 
 
 @functools.lru_cache(maxsize=64)
 def followable(function: Any) -> bool:
-    """Whether a function is written in scalars, calls no other, and does nothing that is unknown here."""
-    return bool(function.is_a("SXFunction")) and all(step.operation in _KNOWN for step in steps(function))
+    """Whether a function is written in scalars, calls nothing but tables, and does nothing that is unknown here."""
+    return bool(function.is_a("SXFunction")) and all(step.operation in _KNOWN or step.looked_up for step in steps(function))
 
 
 def interpret(function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithmetic) -> list[list[Any]]:
@@ -75,7 +84,9 @@ def interpret(function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithm
             outputs[step.results[0]][step.results[1]] = work[step.arguments[0]]
         else:
             rule = arithmetic.operations.get(step.operation)
-            if rule is None:
+            if rule is not None and step.looked_up is not None:
+                rule = functools.partial(rule, step.looked_up)
+            elif rule is None or step.operation == ca.OP_CALL:
                 what = "calls another one" if step.operation == ca.OP_CALL else f"takes {_name(step.operation)}, unknown here"
                 raise DeclarationError(f"function '{function.name()}' cannot be followed: it {what}")
             work[step.results[0]] = rule(*(work[place] for place in step.arguments))
@@ -88,7 +99,7 @@ def _name(operation: int) -> str:
 
 def numpy_arithmetic() -> Arithmetic:
     """NumPy's arithmetic on doubles and arrays of them."""
-    known = _ROUNDED | _FUNCTIONS | _EXACT
+    known = _ROUNDED | _FUNCTIONS | _EXACT | {ca.OP_CALL: lambda lookup, x: lookup.at(x)}
     return Arithmetic(np.float64, known | {code: _truth(function) for code, function in _TRUTHS.items()})
 
 

@@ -69,6 +69,7 @@ static designs_real designs_floor(designs_real x) { return x - x == 0 ? (designs
 /* How many kinks one of the watched has in a step, 2 for more; or DESIGNS_MANY where it may do anything. Unless it may have a kink
    itself there, as bent tells, one that bends little beside how far it goes stays between its ends. */
 #define DESIGNS_MANY 100
+#define DESIGNS_NUMBERED(kind) ((kind) == DESIGNS_IS_SWITCH || (kind) == DESIGNS_IS_KNOT)
 static int designs_kinks(const designs_real* row, casadi_int i, casadi_int n, int kind, const designs_real* at, int count, double step,
                          int bent) {
   const designs_real a = row[i], b = row[i + 1], least = a < b ? a : b, most = a < b ? b : a;
@@ -102,10 +103,14 @@ static int designs_kinks(const designs_real* row, casadi_int i, casadi_int n, in
     for (j = 0; j < n; ++j) if (row[j] - row[j] == 0 || row[j] != row[j]) return DESIGNS_MANY;
     return 0;
   }
-  if (kind == DESIGNS_IS_SWITCH) {
+  if (DESIGNS_NUMBERED(kind)) {
     for (k = 0; k < count; ++k) {
-      if ((a > at[k]) != (b > at[k])) kinks += kinks < 2;
-      else if (a > at[k] && b > at[k] ? low < at[k] : high > at[k]) return DESIGNS_MANY;
+      if ((a > at[k]) != (b > at[k])) {
+        kinks += kinks < 2;
+      } else if (a > at[k] && b > at[k] ? low < at[k] : high > at[k]) {
+        if (kind == DESIGNS_IS_SWITCH) return DESIGNS_MANY;
+        kinks += kinks < 2;
+      }
     }
     return kinks;
   }

@@ -22,6 +22,7 @@ from ..errors import SizeError
 from .calls import Call
 from .split import split
 from .stages import Stages, plain
+from .tables import with_tables
 
 EVALUATE, FOLLOW = "lagrange_casadi_evaluate", "lagrange_casadi_follow"
 NEWTON_STEPS = 50
@@ -64,10 +65,11 @@ _START = f"""\
 #define LANES 1
 #define LAGRANGE_CASADI_C
 #ifdef LANES_SINGLE
-#define lanes_pack float
+#define lanes_real float
 #else
-#define lanes_pack double
+#define lanes_real double
 #endif
+#define lanes_pack lanes_real
 #define lanes_choose(where, a) ((where) ? (a) : 0)
 #define lanes_sign(x) ((x) < 0 ? -1 : (x) > 0 ? 1 : (x))
 #endif
@@ -345,7 +347,8 @@ def dump(name: str, functions: list[ca.Function]) -> str:
     generator = ca.CodeGenerator(name, {"with_header": False})
     for function in functions:
         generator.add(function)
-    text = re.sub(r"\((a\d+)\?(a\d+):0\)", r"lanes_choose(\1,\2)", str(generator.dump()))
+    text = with_tables(str(generator.dump()), functions, packs=True)
+    text = re.sub(r"\((a\d+)\?(a\d+):0\)", r"lanes_choose(\1,\2)", text)
     text = re.sub(r"if \(res\[(\d+)\]!=0\) ", "", text)
     text = re.sub(r"arg\[(\d+)\]\? (arg\[\1\]\[\d+\]) : 0", r"\2", text)
     text = split(opened(text))

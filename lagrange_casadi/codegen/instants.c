@@ -161,10 +161,14 @@ static designs_real designs_most(const designs_now* now, int check) {
 static int designs_why(const designs_now* now, casadi_int i) {
   designs_real x, limit;
   int k;
+  for (k = 0; k < DESIGNS_CHECKS; ++k) {
+    if (designs_kind[k] == DESIGNS_IS_BEYOND && designs_row(now, DESIGNS_CHECKED + k)[i] > designs_limit[k]) return DESIGNS_BEYOND_ENDS;
+  }
   if (now->status[i] == DESIGNS_NOT_CONVERGED) return DESIGNS_NOT_CONVERGED;
   for (k = 0; k < DESIGNS_CHECKS; ++k) {
     x = designs_row(now, DESIGNS_CHECKED + k)[i];
     limit = designs_limit[k];
+    if (designs_kind[k] == DESIGNS_IS_BEYOND) continue;
     if (designs_kind[k] == DESIGNS_IS_CLOSURE || designs_kind[k] == DESIGNS_IS_BRANCH) {
       if (x < -limit) return designs_kind[k] == DESIGNS_IS_BRANCH ? DESIGNS_JUMPED : DESIGNS_OUT_OF_REACH;
       if (!(x > limit)) return DESIGNS_DEAD_CENTRE;
@@ -204,7 +208,7 @@ static int designs_refused(const designs_now* now) {
     } else if (designs_kind[k] == DESIGNS_IS_GAP) {
       limit = designs_limit[k]*designs_lane(now->matter, 0);
       for (i = 0; i < now->n; ++i) bad |= !(row[i] <= limit && -row[i] <= limit);
-    } else if (designs_kind[k] == DESIGNS_IS_MISFIT) {
+    } else if (designs_kind[k] == DESIGNS_IS_MISFIT || designs_kind[k] == DESIGNS_IS_BEYOND) {
       for (i = 0; i < now->n; ++i) bad |= !(row[i] <= designs_limit[k]);
     } else if (designs_kind[k] == DESIGNS_IS_ROW) {
       limit = designs_limit[k]*designs_most(now, k + 1);

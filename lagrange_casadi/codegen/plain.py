@@ -10,6 +10,7 @@ import casadi as ca
 from ..arithmetic.compensated import Precision
 from .emit import in_single, opened
 from .split import split
+from .tables import with_tables
 
 _ITEM = re.compile(
     r"^(?:static |CASADI_SYMBOL_EXPORT )?\w+\*? (?P<name>\w+|CASADI_PREFIX\(\w+\))\([^{;]*\) ?\{(?:[^\n]*\}\n|.*?^\}\n)",
@@ -29,7 +30,8 @@ def plain(functions: Mapping[str, ca.Function], precision: Precision) -> str:
     for function in functions.values():
         generator.add(function)
     called = {function.name(): name for name, function in functions.items()}
-    text = re.sub(r"if \(res\[(\d+)\]!=0\) ", "", str(generator.dump()))
+    text = with_tables(str(generator.dump()), functions.values(), packs=False)
+    text = re.sub(r"if \(res\[(\d+)\]!=0\) ", "", text)
     text = split(opened(re.sub(r"arg\[(\d+)\]\? (arg\[\1\]\[\d+\]) : 0", r"\2", text)))
     text = re.sub(r"CASADI_PREFIX\((\w+)\)", r"casadi_\1", text).replace("LAGRANGE_CASADI_PART ", "")
     items = {found["name"]: found.group() for found in _ITEM.finditer(text)}

@@ -22,6 +22,7 @@ import numpy as np
 
 from ..arithmetic.compensated import Pair, Pairs, Precision
 from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic
+from ..arithmetic.lookups import Lookup
 from ..declare.density import Array
 from ..declare.motion import Laws
 from ..equations.scene_graph import SceneGraph
@@ -191,7 +192,11 @@ class _Counting:
     @property
     def arithmetic(self) -> Arithmetic:
         known = numpy_arithmetic().operations
-        return Arithmetic(self.constant, {code: functools.partial(self.apply, code) for code in known})
+        rules: dict[int, Any] = {code: functools.partial(self.apply, code) for code in known}
+        return Arithmetic(self.constant, rules | {ca.OP_CALL: self.look})
+
+    def look(self, lookup: Lookup, value: _Value) -> _Value:
+        return _Value(lookup.function(self.settled(value)))
 
     def constant(self, value: float) -> _Value:
         return _Value(ca.SX(value), self.pairs.turn if value == math.tau else self.pairs.constant(value), fixed=True)

@@ -148,7 +148,7 @@ static int designs_find_sides(designs_now* now, const designs_panel* panel, casa
   if (sides->beside < least) sides->beside = least;
   if (panel->n < DESIGNS_FIT || !panel->kinks[step] || !(panel->t[step + 1] - panel->t[step] > 8*sides->beside)) return 0;
   for (k = 0; k < DESIGNS_WATCHES; ++k) {
-    if (designs_watch[k] == DESIGNS_IS_STEP || designs_watch[k] == DESIGNS_IS_SWITCH) continue;
+    if (designs_watch[k] == DESIGNS_IS_STEP || DESIGNS_NUMBERED(designs_watch[k])) continue;
     j = designs_watch_first[k];
     if (designs_kinks(panel->watched + k*panel->stride + LANES, step, panel->n, designs_watch[k], designs_watch_at + j,
                       designs_watch_first[k + 1] - j, length, 0) == DESIGNS_MANY) return 0;
@@ -156,7 +156,7 @@ static int designs_find_sides(designs_now* now, const designs_panel* panel, casa
   for (kind = 0; kind < 2; ++kind) {
     for (k = 0; k < DESIGNS_WATCHES; ++k) {
       const designs_real* row = panel->watched + k*panel->stride + LANES;
-      if (designs_watch[k] != (kind ? DESIGNS_IS_SWITCH : DESIGNS_IS_STEP)) continue;
+      if (kind ? !DESIGNS_NUMBERED(designs_watch[k]) : designs_watch[k] != DESIGNS_IS_STEP) continue;
       low = row[step] < row[step + 1] ? row[step] : row[step + 1];
       high = row[step] < row[step + 1] ? row[step + 1] : row[step];
       if (!(high - low <= DESIGNS_LARGEST) || (!kind && designs_floor(high) != designs_floor(low) + 1)) continue;

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 import casadi as ca
@@ -16,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import DeclarationError
-from .curves import rows
+from .curves import Curve, rows
 
 Array = npt.NDArray[np.float64]
 
@@ -32,6 +33,11 @@ class Density:
     breaks: tuple[float, ...]
     cells: tuple[tuple[Any, ...], ...]
     per_length: bool
+
+    @property
+    def even(self) -> bool:
+        """Whether it is one constant."""
+        return len(self.cells) == len(self.cells[0]) == 1
 
     def ends(self, length: Any) -> tuple[Any, Any, Any]:
         """Masses at the base and at the tip, and a moment of inertia, that together move just as the link does.
@@ -127,6 +133,25 @@ def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
         slope = (v[i + 1] - v[i]) / (u[i + 1] - u[i])
         cells.append((v[i] - slope * u[i], slope))
     return Density(tuple(u), tuple(cells), per_length=True)
+
+
+def along(curve: Curve) -> Density:
+    """A smooth :func:`.curve` through values [kg/m] over the ratio xi/l, from 0 to 1.
+
+    Raises :class:`DeclarationError` for what is no curve, or does not reach from 0 to 1. A density that is negative between the
+    values is refused where it is used.
+    """
+    if not isinstance(curve, Curve):
+        raise DeclarationError(f"density along: expected a curve of lagrange_casadi.curve, got {curve!r}")
+    if curve.periodic or (curve.low, curve.high) != (0.0, 1.0):
+        raise DeclarationError(f"density along: the curve must reach from 0 to 1, and not go round, got {curve!r}")
+    cells = []
+    for start, cell in zip(curve.starts, curve.cells, strict=True):
+        # In powers of the ratio, not of what is beyond the start; by fractions, for these terms nearly cancel.
+        about = Fraction(start)
+        powers = [sum(Fraction(c) * math.comb(j, k) * (-about) ** (j - k) for j, c in enumerate(cell) if j >= k) for k in range(4)]
+        cells.append(tuple(float(power) for power in powers))
+    return Density((*curve.starts, 1.0), tuple(cells), per_length=True)
 
 
 def _differences(high: Any, low: Any, count: int) -> list[Any]:

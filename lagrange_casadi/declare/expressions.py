@@ -36,6 +36,13 @@ def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str) -> Expre
         foreign = [f"'{symbol}'" for symbol in ca.symvar(value) if symbol.element_hash() not in known]
         if foreign:
             raise DeclarationError(f"{what} depends on {', '.join(foreign)}, not a {allowed}")
+        if not (value.is_constant() or value.is_symbolic()):
+            called = ca.Function("expression", ca.symvar(value), [value]).find_functions()
+            if any(function.class_name().endswith("Interpolant") for function in called):
+                raise DeclarationError(
+                    f"{what} calls casadi.interpolant, whose C runs in doubles only, and one instant at a time; expected "
+                    "lagrange_casadi.curve(x, y)(ARGUMENT), smooth, or where corners may be table(ARGUMENT, x, y)"
+                )
         return value
     try:
         number = float(value)

@@ -63,7 +63,7 @@ def refuse_kinks(what: str, expression: Any, moving: Any, fixed: Any, values: Se
     if found is not None:
         raise DeclarationError(
             f"{what}: {found}: rates would jump there, and accelerations would miss that; expected a curve whose slope does not "
-            "jump, of CasADi's functions: in place of a table, a polynomial or a Fourier sum"
+            "jump, of CasADi's functions: in place of a table, a curve(x, y), a polynomial or a Fourier sum"
         )
 
 

@@ -15,11 +15,12 @@ from typing import Any, cast
 import casadi as ca
 
 from ..errors import DeclarationError
-from . import density as densities
 from .density import Density
 from .expressions import check_line, check_name, unit_vector
 from .kinks import refuse_kinks
 from .limits import check_connected, parameter_values
+from .line_loads import Spread, line_load
+from .matter import matter_of
 from .measures import Measures
 from .ownership import Ownership
 from .parts import (
@@ -30,13 +31,13 @@ from .parts import (
     Ground,
     Joint,
     JointKind,
+    LineLoad,
     Link,
     Load,
     Parameter,
     Path,
     Point,
     PointMass,
-    RigidMass,
     Row,
     Spring,
     Torque,
@@ -139,20 +140,7 @@ class Mechanism:
         """
         self.own.free("link", name, self.bodies)
         what = f"link '{name}'"
-        if (mass is None) == (density is None):
-            raise DeclarationError(f"{what}: give its mass, or a density")
-        if (centre is None) != (inertia is None) or (centre is not None and mass is None):
-            raise DeclarationError(f"{what}: centre and inertia go together, and with a mass")
-        if density is not None:
-            if not isinstance(density, Density):
-                raise DeclarationError(f"{what}: expected a density of lagrange_casadi.density, got {density!r}")
-            cells = tuple(tuple(self.own.expression(f"{what}: density", c) for c in cell) for cell in density.cells)
-            matter: Density | RigidMass = Density(density.breaks, cells, density.per_length)
-        elif centre is not None:
-            x, y = (self.own.expression(f"{what}: centre", c) for c in centre)
-            matter = RigidMass(self.own.expression(f"{what}: mass", mass), (x, y), self.own.expression(f"{what}: inertia", inertia))
-        else:
-            matter = densities.uniform(self.own.expression(f"{what}: mass", mass))
+        matter = matter_of(what, mass, density, centre, inertia, self.own.expression)
         link = Link(name, self.own.expression(f"{what}: length", length), matter)
         self.bodies[name] = link
         return link
@@ -260,6 +248,15 @@ class Mechanism:
             if not end.body.oriented:
                 raise DeclarationError(f"load '{name}': point mass '{end.body.name}' bears no torque")
         load = Torque(name, ends[0], self._load(name, value), ends[1])
+        self.loads[name] = load
+        return load
+
+    def line_load(self, name: str, link: Link, *, x: Spread = 0.0, y: Spread = 0.0, turning: bool = False) -> LineLoad:
+        """Apply a load [N/m] along a link of even mass: one value, or one at its base and one at its tip, linear between.
+
+        In ground axes, or in the link's own where ``turning``: see :class:`.LineLoad`.
+        """
+        load = line_load(name, self._load_point(name, link).body, x, y, turning, lambda value: self._load(name, value))
         self.loads[name] = load
         return load
 

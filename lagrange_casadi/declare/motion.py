@@ -6,6 +6,7 @@ automatic differentiation.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,10 +15,12 @@ from typing import Any
 import casadi as ca
 
 from ..errors import DeclarationError, one_line
-from .curves import rows
+from .curves import curve, rows
+from .ends import beyond_ends
 from .expressions import scalar
 from .kinks import Span, refuse_kinks
 from .parts import Expression
+from .scaled import Scaled
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,13 +69,25 @@ def expression(law: Callable[[Any], Any]) -> Motion:
     return Motion(law)
 
 
-def samples(times: Sequence[float], values: Sequence[float]) -> Motion:
+def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion:
     """A C2 cubic spline through samples, not-a-knot at its ends: ``values`` [rad or m] at ``times`` [s].
 
-    It is defined between the first and the last time only.
+    Parameters may scale and shift all values alike, and all times: ``samples(times, ratio * angles)``. It is defined between the
+    first and the last time only.
 
-    Raises :class:`DeclarationError` for fewer than four samples, for times that do not increase, or for what is not finite.
+    Raises :class:`DeclarationError` for fewer than four samples, for times that do not increase, for what is not finite, and for
+    parameters that change some values otherwise than others.
     """
+    at, to = Scaled.of("motion samples: times", times), Scaled.of("motion samples: values", values)
+    if at.scale is not None or to.scale is not None:
+        through = curve(*rows("motion samples", at.numbers, to.numbers, 4))
+
+        def graph(time: Any) -> Any:
+            value = through(time if at.scale is None else (time - at.shift) / at.scale)
+            return value if to.scale is None else to.shift + to.scale * value
+
+        return Motion(graph)
+    times, values = at.numbers, to.numbers
     t, v = rows("motion samples", times, values, 4)
     spline = ca.interpolant("spline", "bspline", [t], v)
     return Motion(lambda time: spline(time), spline=True, span=(t[0], t[-1]), knots=tuple(t))
@@ -102,6 +117,19 @@ def refuse_kinked(laws: Mapping[str, Motion], parameters: Any, values: Sequence[
     for joint, law in laws.items():
         if not law.spline:
             refuse_kinks(f"the motion of joint '{joint}'", ca.SX(_scalar(joint, law, t, parameters)), t, parameters, values, span)
+
+
+def ends_function(laws: Mapping[str, Motion], parameters: Any) -> Any | None:
+    """The CasADi function ``beyond(t, p)``: how far what the laws put into curves is beyond their ends, a row a joint of the laws.
+
+    Below zero where it is between them; None where no law has a curve with ends.
+    """
+    t = ca.SX.sym("t")
+    found = [[] if law.spline else beyond_ends(_scalar(joint, law, t, parameters)) for joint, law in laws.items()]
+    if not any(found):
+        return None
+    rows = [functools.reduce(ca.fmax, far, ca.SX(-1.0)) for far in found]
+    return ca.Function("beyond", [t, parameters], [ca.densify(ca.vertcat(*rows))], ["t", "p"], ["beyond"], {"cse": True})
 
 
 def jerk_function(laws: Mapping[str, Motion], parameters: Any) -> Any:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from ..errors import DeclarationError
 from .expressions import check_name
-from .parts import Body, Constraint, Force, Ground, Joint, Link, Load, Parameter, Path, PointMass, Row, Spring, Torque
+from .parts import Body, Constraint, Force, Ground, Joint, LineLoad, Link, Load, Parameter, Path, PointMass, Row, Spring, Torque
 from .results import OwnOutput
 
 _WORDS: dict[type[object], str] = {
@@ -14,6 +14,7 @@ _WORDS: dict[type[object], str] = {
     Force: "a load",
     Ground: "the ground",
     Joint: "a joint",
+    LineLoad: "a load",
     Link: "a link",
     OwnOutput: "an output",
     Parameter: "a parameter",

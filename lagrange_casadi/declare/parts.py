@@ -225,7 +225,33 @@ class Spring:
         return (self.first, self.second)
 
 
-Load = Force | Torque | Spring
+@dataclass(frozen=True, eq=False)
+class LineLoad:
+    """A load [N/m] along the whole axis of a link, linear from its base to its tip: ``x`` and ``y`` there and there.
+
+    In ground axes, or where ``turning`` in the link's own.
+    """
+
+    name: str
+    link: Link
+    x: tuple[Expression, Expression]
+    y: tuple[Expression, Expression]
+    turning: bool
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Where its resultant is told: the middle of the link."""
+        return (self.link.at(self.link.length / 2),)
+
+    @property
+    def matter(self) -> Expression:
+        """The mass of the link per length [kg/m], which is the same all along it."""
+        assert isinstance(self.link.mass, Density)
+        mass = self.link.mass.cells[0][0]
+        return mass if self.link.mass.per_length else mass / self.link.length
+
+
+Load = Force | Torque | Spring | LineLoad
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -15,9 +15,10 @@ import numpy as np
 from ..arithmetic.compensated import Precision
 from ..errors import ParameterError
 from .density import Density
+from .ends import BEYOND, beyond_ends
 from .limits import END, margins
 from .lowest import lowest
-from .parts import Expression, Link, PointMass, RigidMass
+from .parts import Expression, LineLoad, Link, PointMass, RigidMass
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
@@ -76,6 +77,8 @@ def _of_frozen(mechanism: Mechanism, precision: Precision) -> Demands:
 def _of(mechanism: Mechanism, precision: Precision) -> Demands:
     found: list[Demand] = []
     masses: list[Expression] = []
+    for what, expressions in _numbers(mechanism):
+        found += _of_curves(what, expressions)
     for body in mechanism.moving:
         mass, own = _of_body(body, precision)
         masses.append(mass)
@@ -86,9 +89,47 @@ def _of(mechanism: Mechanism, precision: Precision) -> Demands:
         for point in (joint.parent, joint.child):
             found += _of_station(f"joint '{joint.name}'", point, precision)
     for load in mechanism.loads.values():
+        if isinstance(load, LineLoad):
+            found.append(_carrying(load))
+            continue
         for point in load.points:
             found += _of_station(f"load '{load.name}'", point, precision)
     return Demands(mechanism.symbols, tuple(found))
+
+
+def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
+    """The expressions in parameters of which parts are made, and what they are of."""
+    for body in mechanism.moving:
+        matter = body.mass
+        made = (
+            [c for cell in matter.cells for c in cell]
+            if isinstance(matter, Density)
+            else [matter.mass, *matter.centre, matter.inertia]
+            if isinstance(matter, RigidMass)
+            else [matter]
+        )
+        link = isinstance(body, Link)
+        yield f"{'link' if link else 'point mass'} '{body.name}'", [*([body.length] if isinstance(body, Link) else []), *made]
+    for joint in mechanism.joints.values():
+        places = [number for point in (joint.parent, joint.child) for number in (point.x, point.y)]
+        yield f"joint '{joint.name}'", [*places, *joint.axis, joint.angle]
+    for load in mechanism.loads.values():
+        yield f"load '{load.name}'", [number for point in load.points for number in (point.x, point.y)]
+    yield "gravity", [*mechanism.gravity]
+
+
+def _of_curves(what: str, expressions: list[Expression]) -> list[Demand]:
+    """That what parameters put into curves is between the curves' ends."""
+    symbolic = [expression for expression in expressions if isinstance(expression, ca.SX)]
+    found = beyond_ends(ca.vertcat(*symbolic)) if symbolic else []
+    told = f"{what}: what is put into its curve is beyond the curve's ends"
+    return [Demand(BEYOND["double"] - far, False, lambda _: told) for far in found]
+
+
+def _carrying(load: LineLoad) -> Demand:
+    """A load along a link is told in units of the link's matter."""
+    what = f"load '{load.name}': a line load needs a link with mass, for it is told by that"
+    return Demand(load.matter, True, lambda n: f"{what}; '{load.link.name}' has {n(load.matter):.17g} kg/m")
 
 
 def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, list[Demand]]:
@@ -113,7 +154,7 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
 
 def _of_density(what: str, density: Density, length: Expression, precision: Precision) -> list[Demand]:
     """The lowest density of each cell, beside what the sum of its terms rounds [kg or kg/m]; not finite where a term is not."""
-    if len(density.cells) == len(density.cells[0]) == 1:
+    if density.even:
         mass = density.cells[0][0] * (length if density.per_length else 1.0)
         return [Demand(mass, False, lambda n: f"{what}: mass must not be negative, got {n(mass):.17g} kg")]
     spans = zip(density.breaks, density.breaks[1:], density.cells, strict=False)

@@ -19,6 +19,8 @@ import numpy.typing as npt
 from .. import codegen
 from ..codegen.stages import Stages
 from ..declare.density import Array
+from ..declare.ends import BEYOND
+from ..declare.motion import ends_function
 from ..declare.scene import EvenPoints, Scene, points
 from ..equations.derive import derive
 from ..equations.scene_graph import SceneGraph
@@ -27,6 +29,7 @@ from ..evaluate import checked_laws, checked_times, outputs_of
 from ..instants.backends import compiled, provenance
 from ..instants.cost import seconds
 from ..instants.determinacy import determinate, undetermined
+from ..instants.refusal import Status
 from ..instants.rung import Rung
 from ..instants.section_law import made_of
 from ..instants.solution import Provenance
@@ -187,6 +190,7 @@ class DesignEngine:
             self.library.evaluate(p, results, threads or cores())
         else:
             self._interpret(p, found)
+        self._refuse_motions(p, found)
         if len(self._shown) < q:
             found = replace(found, **{name: getattr(found, name)[:, self._shown] for name in ("value", "t", "xi")})
         if columns is None:
@@ -196,6 +200,18 @@ class DesignEngine:
                 out[[self.graph.outputs[output] for output in undetermined(self.graph, out, row, self.rung)]] = np.nan
             series = outputs_of(self.graph, np.moveaxis(columns, 1, 0))
         return replace(found, series=np.stack([series[output] for output in self.outputs], axis=1))
+
+    def _refuse_motions(self, p: Array, found: Outcome) -> None:
+        """Take the result from designs whose motion puts into a curve what is beyond its ends."""
+        ends = ends_function(self.scene.laws, self.scene.mechanism.symbols)
+        if ends is None:
+            return
+        far = [k for k, row in enumerate(p) if not (ends(self.t[None], row).full() <= BEYOND["double"]).all()]
+        far = [k for k in far if np.isfinite(p[k]).all()]
+        found.status[far] = Status.BEYOND_ENDS
+        for array in (found.value, found.t, found.xi, found.mean, found.rms, found.series):
+            if array is not None:
+                array[far] = np.nan
 
     @cached_property
     def _shown(self) -> list[int]:

@@ -10,7 +10,7 @@ import casadi as ca
 
 from ..declare.density import Density
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Force, Joint, Link, Load, Point, PointMass, RigidMass, Spring, Torque
+from ..declare.parts import Force, Joint, LineLoad, Link, Load, Point, PointMass, RigidMass, Spring, Torque
 from ..geometry.planar import Frame, Pair, Rotation, Velocities, closing_gaps, gap_motion, reaction, slide
 from .multibody import (
     Applied,
@@ -273,6 +273,8 @@ def _apply(load: Load, resting: _Builder) -> list[Applied]:
         value = at(load.value)
         ends = ((load.point, value), (load.against, -value))
         return [Applied(load.name, point, ca.SX(0), ca.SX(0), couple) for point, couple in ends]
+    if isinstance(load, LineLoad):
+        return [_along(load, resting)]
     assert isinstance(load, Spring)
     first, second = (resting.frames[point.body.name] for point in (load.first, load.second))
     (ax, ay), (bx, by) = first.place_of(load.first.x, load.first.y), second.place_of(load.second.x, load.second.y)
@@ -287,6 +289,17 @@ def _apply(load: Load, resting: _Builder) -> list[Applied]:
         Applied(load.name, load.first, ca.SX(fx), ca.SX(fy), ca.SX(0)),
         Applied(load.name, load.second, ca.SX(-fx), ca.SX(-fy), ca.SX(0)),
     ]
+
+
+def _along(load: LineLoad, resting: _Builder) -> Applied:
+    """A load along a link: what it is at the ends, and its resultant at the middle of the link."""
+    rotation, length = resting.frames[load.link.name].rotation, load.link.length
+    (x0, x1), (y0, y1) = ((resting.at_state(value) for value in values) for values in (load.x, load.y))
+    ends = ((x0, y0), (x1, y1))
+    base, tip = ends if load.turning else (rotation.resolve(*end) for end in ends)
+    x, y = (x0 + x1) * (length / 2), (y0 + y1) * (length / 2)
+    fx, fy = rotation.apply(x, y) if load.turning else (x, y)
+    return Applied(load.name, load.points[0], fx, fy, (tip[1] - base[1]) * (length * length / 12), (base, tip))
 
 
 def _hold(resting: _Builder, name: str, expression: Any, of: LoopEquations | RowGraph) -> Iterator[Applied]:

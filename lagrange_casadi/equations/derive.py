@@ -10,6 +10,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..declare.ends import beyond_ends
 from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted, told_parameters
@@ -101,7 +102,8 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     times = (float(scene.t[0]), float(scene.t[1]))
     solved, swings = count_turns(body, solved, motion, times, start, _seeing(body, want))
 
-    columns: dict[Column, Any] = {Check("closure", name): closure for name, closure in solved.closures.items()}
+    columns = _beyond(body, _seeing(body, want))
+    columns |= {Check("closure", name): closure for name, closure in solved.closures.items()}
     columns |= {Check("gap", name): gap for name, gap in solved.gaps.items()}
     columns |= {Check("misfit", name): misfit for name, misfit in solved.misfits.items()}
     for graph in body.rows:
@@ -174,9 +176,22 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
     found = {f"row '{graph.row.name}'": ca.vertcat(graph.residual, graph.size) for graph in body.rows}
     found |= {f"output '{name}'": expression for name, expression in body.own.items()}
     for part in parts:
-        name = f"{'load' if part.source in body.mechanism.loads else 'row'} '{part.source}'"
+        kind = (
+            "load" if part.source in body.mechanism.loads else "constraint" if part.source in body.mechanism.constraints else "row"
+        )
+        name = f"{kind} '{part.source}'"
         found[name] = ca.vertcat(found.get(name, ca.SX(0, 1)), part.fx, part.fy, part.mz)
     return found
+
+
+def _beyond(body: Multibody, seeing: Mapping[str, Any]) -> dict[Column, Any]:
+    """How far what is put into curves with ends is beyond them, by the constraint, load or row that does it."""
+    found = {f"constraint '{loop.name}'": loop.gap for loop in body.loop_equations if loop.joint is None}
+    columns: dict[Column, Any] = {}
+    for name, expression in (found | dict(seeing)).items():
+        far = enumerate(beyond_ends(expression), 1)
+        columns |= {Check("beyond", name if k == 1 else f"{name}, curve {k}"): value for k, value in far}
+    return columns
 
 
 def _motion_columns(

@@ -26,7 +26,7 @@ import casadi as ca
 from ..declare.density import Density
 from ..declare.limits import at_end
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Joint, Link, Point
+from ..declare.parts import Joint, LineLoad, Link, Point
 from ..geometry.planar import Frame, Velocities, reaction, slide
 from ..quantities import LAW, STATION, Output
 from .checks import Check, Column
@@ -135,7 +135,16 @@ def _section_law(multibody: Multibody, name: str, borne: Any, drives: Any) -> di
         assert isinstance(link.mass, Density)
         _, first, inertia = link.mass.ends(link.length)
         f0 = -(f1 * first + f2 * (first * link.length + inertia / link.length))
-    law = (n0, -slopes[0, 0], -slopes[0, 1], f0, f1, f2, m0)
+    n1, n2 = -slopes[0, 0], -slopes[0, 1]
+    for part in multibody.applied:
+        if part.spread is not None and part.point.body is link:
+            # Mass lies evenly there, so that a load that is linear along the link goes by it as weight does.
+            load = multibody.mechanism.loads[part.source]
+            assert isinstance(load, LineLoad)
+            (n_base, f_base), (n_tip, f_tip) = part.spread
+            n1, n2 = n1 + n_base / load.matter, n2 + (n_tip - n_base) / (load.matter * link.length)
+            f1, f2 = f1 + f_base / load.matter, f2 + (f_tip - f_base) / (load.matter * link.length)
+    law = (n0, n1, n2, f0, f1, f2, m0)
     return {Output("law", name, member): value for member, value in zip(LAW, law, strict=True)} | stations
 
 
@@ -215,7 +224,7 @@ def _loads_on(multibody: Multibody, link: Link, borne: Any, drives: Any) -> Iter
     m = multibody.mechanism
     acting = {*m.joints, *m.loads, *m.constraints, *m.rows}
     for part in (*multibody.applied, *multibody.held):
-        if part.point.body is link and not _at_base(part.point):
+        if part.point.body is link and part.spread is None and not _at_base(part.point):
             x = None if part.point.end == "tip" else at_end(part.point)
             name = part.source
             while seen.setdefault(part.source, 0) and name in acting:

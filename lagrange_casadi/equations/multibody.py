@@ -16,7 +16,7 @@ import casadi as ca
 
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Joint, Point, Row
-from ..geometry.planar import Frame, Velocities, slide, slide_motion
+from ..geometry.planar import Frame, Pair, Velocities, slide, slide_motion
 from .lagrange import LagrangeSystem
 from .tree import Tree
 
@@ -78,7 +78,8 @@ class LoopEquations:
 class Applied:
     """What a load, or the multiplier of a constraint or row, does at a point of a body, as expressions of the state.
 
-    Force in ground axes [N] and couple [N m]; ``source`` names the load, constraint or row.
+    Force in ground axes [N] and couple [N m]; ``source`` names the load, constraint or row. Of what is ``spread`` along a link they
+    are the resultant; ``spread`` is then along its axis and across at the base, and the same at the tip [N/m].
     """
 
     source: str
@@ -86,6 +87,7 @@ class Applied:
     fx: Any
     fy: Any
     mz: Any
+    spread: tuple[Pair, Pair] | None = None
 
 
 @dataclass(frozen=True, eq=False)

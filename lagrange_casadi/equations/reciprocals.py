@@ -73,6 +73,8 @@ def _replayed(function: Any, made: Callable[[int, int, list[Any]], Any]) -> Any:
             work[results[0]] = ca.SX(step.constant)
         elif operation == ca.OP_INPUT:
             work[results[0]] = inputs[arguments[0]].nz[arguments[1]]
+        elif step.looked_up is not None:
+            work[results[0]] = step.looked_up.function(work[arguments[0]])
         else:
             work[results[0]] = made(k, operation, [work[a] for a in arguments])
     names = [function.name_in(i) for i in range(function.n_in())]

@@ -243,8 +243,9 @@ class _Part:
     number: float | None = None
 
 
-def _combined(code: int, *parts: _Part) -> _Part:
+def _combined(code: int, *operands: Any) -> _Part:
     """What an operation, one of CasADi's ``OP_`` codes, makes of parts."""
+    parts: list[_Part] = [operand for operand in operands if isinstance(operand, _Part)]
     first, last = parts[0], parts[-1]
     if code in (ca.OP_ADD, ca.OP_SUB):
         return _Part(first.slope + (last.slope if code == ca.OP_ADD else -last.slope))

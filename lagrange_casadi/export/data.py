@@ -8,6 +8,7 @@ from importlib import resources
 
 import numpy as np
 
+from ..arithmetic.lookups import lookup
 from ..declare.density import Array
 from ..errors import SizeError
 from .program import Format, Program, Samples, literal
@@ -23,6 +24,9 @@ def table_bytes(program: Program) -> dict[str, int]:
     for sample in program.samples:
         more = 2 if program.precision == "single" else 1
         found[f"the motion of joint '{sample.joint}'"] = size * (sample.knots.size * more + sample.pieces.size + len(sample.pieces))
+    called = {inner.name(): lookup(inner) for function in program.functions.values() for inner in function.find_functions()}
+    if curves := sum(table.numbers.size for table in called.values() if table is not None):
+        found["what all curves look up"] = size * curves
     if program.cycle is not None:
         found["the table of the cycle"] = program.cycle.coefficients.size * size
     return found

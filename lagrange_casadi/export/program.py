@@ -15,6 +15,7 @@ from ..codegen.emit import hoisted, newton_rule
 from ..codegen.plain import plain
 from ..codegen.stages import controlled
 from ..declare.density import Array, Density
+from ..declare.motion import ends_function
 from ..declare.possible import demands
 from ..equations.checks import Check, Column
 from ..equations.gaps import extent
@@ -93,6 +94,9 @@ def program(
         # They were checked when they were fixed.
         del functions["sound"]
         functions = {name: _fixed(function, p) for name, function in functions.items()}
+    ends = ends_function({joint: graph.scene.laws[joint] for joint in graph.driven}, symbols)
+    if ends is not None:
+        functions["beyond"] = _fixed(ends, p) if fixed else ends
     functions["instant"] = instant
     if stages.loops is not None:
         functions["loops"] = stages.loops

@@ -11,6 +11,7 @@ import casadi as ca
 
 from ..codegen.emit import newton_rule
 from ..declare.density import Density
+from ..declare.ends import BEYOND
 from ..instants.rules import rules
 from ..quantities import LAW, PLACE_FIRST, Output
 from ..version import __version__
@@ -218,6 +219,9 @@ class Source:
             yield "casadi_real* res[3];"
         for k, _ in enumerate(self.program.samples):
             yield f"casadi_real sample_{k}[4];"
+        ends = self.program.functions.get("beyond")
+        if ends is not None:
+            yield f"casadi_real far[{ends.size1_out(0)}];"
         yield "if (model->seal != SEAL) {"
         yield from _spoiled(c, f"{P}_NOT_PREPARED")
         yield "}"
@@ -238,6 +242,13 @@ class Source:
             yield "res[1] = rate;"
             yield "res[2] = acceleration;"
             yield "law(arg, res);"
+        if ends is not None:
+            limit = self._number(BEYOND[self.contract.precision])
+            yield "res[0] = far;"
+            yield "beyond(arg, res);"
+            yield f"if ({' || '.join(f'!(far[{k}] <= {limit})' for k in range(ends.size1_out(0)))}) {{"
+            yield from _spoiled(c, f"{P}_BAD_TIME")
+            yield "}"
         for k, _ in enumerate(self.program.samples):
             yield f"sample_of_{k}(time, {'time_rest' if rests else '0'}, sample_{k});"
         if c.timed:
@@ -318,6 +329,9 @@ class Source:
         for rule in rules(graph, self.contract.precision, self.program.newton):
             k, limit = self.program.columns.index(graph.columns[rule.column]), number(rule.limit)
             beside = f"{limit}*model->matter[0]"
+            if rule.kind == "BEYOND":
+                yield f"if (y[{k}] > {limit}) return {P}_BEYOND_ENDS;"
+                continue
             if closed and rule.kind not in ("CLOSURE", "BRANCH"):
                 yield f"if (closed != {P}_OK) return closed;"
                 closed = False

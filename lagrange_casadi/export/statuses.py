@@ -14,6 +14,7 @@ SHARED = {
     "NOT_CLOSED": (Status.NOT_CLOSED,),
     "NOT_FINITE": (Status.NOT_FINITE,),
     "TURNED": (Status.TURNED,),
+    "BEYOND_ENDS": (Status.BEYOND_ENDS,),
 }
 """What is said in the words of :class:`.Status`."""
 
@@ -22,7 +23,7 @@ _OWN = {
     "NOT_PREPARED": "the model was not prepared",
     "BAD_PARAMETER": "a parameter is not finite, or out of its range, or leaves a link without length or with a negative mass",
     "BAD_INPUT": "an input is not finite",
-    "BAD_TIME": "the time is not finite, or outside the samples of the motion",
+    "BAD_TIME": "the time is not finite, or outside the samples or beyond the curves of the motion",
     "BAD_RATIO": "a ratio xi/l is outside 0 to 1",
     "NO_LINK": "there is no such link",
     "UNDETERMINED": "equilibrium does not determine all outputs: the mechanism has more constraints than it needs",
@@ -31,6 +32,7 @@ _OWN = {
 _ORDER = (
     *("OK", "NOT_PREPARED", "BAD_PARAMETER", "BAD_INPUT", "BAD_TIME", "BAD_RATIO", "NO_LINK", "NOT_ASSEMBLED", "DEAD_CENTRE"),
     *("NOT_CONVERGED", "JUMPED", "SLOW", "INCONSISTENT", "NOT_CLOSED", "UNDETERMINED", "NOT_FINITE", "TURNED"),
+    "BEYOND_ENDS",
 )
 
 STATUSES = {name: _OWN.get(name) or ", or ".join(status.meaning for status in SHARED[name]) for name in _ORDER}

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
-from ..equations.checks import Check, Column
+from ..equations.checks import FRACTIONS, Check, Column
 from ..equations.kinematics import describe_coordinate, passes_dead_centre, where
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
@@ -303,7 +303,7 @@ def _sizes(graph: SceneGraph, peaks: Array) -> Array:
     alike = np.stack((peaks[0], peaks[1], *[np.maximum(peaks[2], peaks[3])] * 2))
     largest = {kind: alike[:, [k == kind for k in kinds]].max(axis=-1) for kind in set(kinds)}
     sizes: Array = np.array([largest[kind] for kind in kinds]).reshape(len(kinds), 4).T
-    sizes[0, [*graph.checks("gap").values(), *graph.checks("misfit").values()]] = 1.0
+    sizes[0, [k for kind in FRACTIONS for k in graph.checks(kind).values()]] = 1.0
     return sizes
 
 

@@ -14,6 +14,7 @@ from ..arithmetic.compensated import DTYPES, Precision
 from ..codegen.designs import INSIDE, ROUNDS
 from ..codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW
 from ..declare.density import Array
+from ..declare.ends import share_beyond
 from ..equations.kinematics import passes_dead_centre, where
 from ..equations.scene_graph import SceneGraph
 from ..equations.turns import LEAP
@@ -42,6 +43,7 @@ class Status(enum.IntEnum):
     UNCERTIFIED = 13
     TURNED = 14
     PEAK_NOT_TOLD = 15
+    BEYOND_ENDS = 16
 
     @property
     def meaning(self) -> str:
@@ -66,6 +68,7 @@ _MEANINGS = {
     Status.UNCERTIFIED: "the design was checked in full, and fails its certificate: others may be wrong as well",
     Status.TURNED: "an angle that a load sees with its turns might be a turn further",
     Status.PEAK_NOT_TOLD: "a peak cannot be told: too much may hide between the instants; more instants may help",
+    Status.BEYOND_ENDS: "what is put into a curve is beyond its ends",
 }
 
 
@@ -117,6 +120,9 @@ def broken(rule: Rule, out: Array, extent: float) -> npt.NDArray[np.bool_]:
         return np.asarray(~(np.abs(column) <= rule.limit * extent))
     if rule.kind == "MISFIT":
         return np.asarray(~(column <= rule.limit))
+    if rule.kind == "BEYOND":
+        # Where a loop is open it is no number, and the loop says why.
+        return np.asarray(column > rule.limit)
     if rule.kind == "ROW":
         # Where all stands still, what rounding leaves of rates violates nothing.
         return np.asarray(~(np.abs(column) <= rule.limit * float(np.fmax.reduce(out[rule.beside], initial=0.0))))
@@ -155,11 +161,15 @@ def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str |
 def _why(
     graph: SceneGraph, evaluated: Evaluated, held: Sequence[Rule], i: int, at: str, passed: Sequence[Rule], extent: float
 ) -> tuple[Status, str]:
+    for rule in held:
+        if rule.kind == "BEYOND" and broken(rule, evaluated.out, extent)[i]:
+            far = f"by {share_beyond(float(evaluated.out[rule.column, i])):.3g} of what is between them"
+            return Status.BEYOND_ENDS, f"the {rule.part}: what is put into its curve is beyond the curve's ends {at}, {far}"
     if evaluated.status[i] == NOT_CONVERGED:
         assert graph.newton is not None
         cause = "their links do not reach, or the instant before is too far off"
         return Status.NOT_CONVERGED, f"the loops closed by {graph.newton.joints} did not converge {at}: {cause}"
-    for rule in held:
+    for rule in (rule for rule in held if rule.kind != "BEYOND"):
         part, value = str(rule.part), float(evaluated.out[rule.column, i])
         m = graph.scene.mechanism
         closed = f"{'joint' if part in m.joints else 'path' if part in m.paths else 'constraint'} '{part}'"

@@ -14,6 +14,7 @@ from typing import Literal, TypeAlias
 
 from ..arithmetic.compensated import ROUNDING, Precision
 from ..codegen.emit import NEWTON_LOST
+from ..declare.ends import BEYOND
 from ..equations.checks import Check
 from ..equations.scene_graph import SceneGraph
 from ..equations.turns import REACH
@@ -29,7 +30,7 @@ _COUNTED = 1e-3
 _DEAD = 64.0
 """Roundings below which a closure says nothing but that it is zero."""
 
-Kind: TypeAlias = Literal["CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "TURNED", "OPEN", "OPEN_MOMENT"]
+Kind: TypeAlias = Literal["BEYOND", "CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "TURNED", "OPEN", "OPEN_MOMENT"]
 
 
 @dataclass(frozen=True)
@@ -38,8 +39,9 @@ class Rule:
 
     A ``CLOSURE``, of a loop or of what drives hold, must be above its limit, and above its opposite unless links do not reach; so
     must a ``BRANCH``, whose loop iteration follows. ``GAP`` and ``TURNED`` must be within it by size, a ``GAP`` times the
-    mechanism's extent. A ``MISFIT`` must not be above it, nor a ``ROW`` by size, times the column ``beside``, which is the size of
-    its terms. What is ``OPEN`` must not be above it, an ``OPEN_MOMENT`` times the extent: else the output ``part`` is not
+    mechanism's extent. A ``MISFIT`` and what is ``BEYOND`` the ends of a curve must not be above it, nor a ``ROW`` by size, times
+    the column ``beside``, which is the size of its terms. What is ``OPEN`` must not be above it, an ``OPEN_MOMENT`` times the
+    extent: else the output ``part`` is not
     determined.
     """
 
@@ -61,6 +63,8 @@ def rules(graph: SceneGraph, precision: Precision, newton: int | None) -> tuple[
         if isinstance(part, Output):
             moment = part.unit(graph.scene.mechanism) == MOMENT
             found.append(Rule("OPEN_MOMENT" if moment else "OPEN", k, part, open_limit(precision, newton)))
+        elif check.kind == "beyond":
+            found.append(Rule("BEYOND", k, part, BEYOND[precision]))
         elif check.kind == "closure":
             found.append(Rule("BRANCH" if graph.follows(part) else "CLOSURE", k, part, dead_centre(graph, precision, part)))
         elif check.kind == "hold":

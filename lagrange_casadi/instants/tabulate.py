@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
+from ..equations.checks import FRACTIONS
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
 from ..quantities import Output
@@ -97,7 +98,7 @@ def _table(cycle: Cycle, values: Array, between: Array, kept: npt.NDArray[np.boo
         gaps[place] -= np.convolve(spline, _HALFWAY, "valid")
     peaks = np.max([_reach(part, rate, acceleration).max(axis=-1) for part in (values, between)], axis=0)
     peaks += np.abs(cycle.drift) * cycle.period
-    peaks[[*graph.checks("gap").values(), *graph.checks("misfit").values()]] = 1.0
+    peaks[[k for kind in FRACTIONS for k in graph.checks(kind).values()]] = 1.0
     # The rate's square and the acceleration have one unit: where there is but one, the other still rounds.
     turning = max(rate**2, acceleration)
     rounding = np.array([1.0, math.sqrt(turning), turning, turning]) @ cycle.rounding

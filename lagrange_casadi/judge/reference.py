@@ -74,6 +74,7 @@ def _operations(mp: Any) -> dict[int, Any]:
         ca.OP_FABS: abs,
         ca.OP_SIGN: mp.sign,
         ca.OP_NOT: lambda x: zero if x else one,
+        ca.OP_CALL: lambda lookup, x: mp.mpf(float(lookup.at(float(x)))),
     }
     names = "sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp log log1p expm1 erf sqrt floor ceil"
     binary = {

@@ -32,6 +32,9 @@ NEGLIGIBLE = 40.0
 """By how much an exponent is below the largest where the power is nothing beside that."""
 
 
+_NUMBERED = (Kind.SWITCH, Kind.KNOT)
+
+
 def highest(y: Array) -> Array:
     """An upper bound of curves in every step, (..., n - 1), of their values (..., n) at five or more times.
 
@@ -85,13 +88,14 @@ def passed(rows: Array, watches: Sequence[Watch], step: int, length: float) -> I
     Nothing where something else may hide there. Whole numbers come first, for where they are passed others jump.
     """
     none = np.zeros(rows.shape[1] - 1, bool)
-    others = [(row, watch) for row, watch in zip(rows, watches, strict=True) if watch.kind not in (Kind.STEP, Kind.SWITCH)]
+    others = [(row, watch) for row, watch in zip(rows, watches, strict=True) if watch.kind not in (Kind.STEP, *_NUMBERED)]
     if any(_unresolved(row, watch, length, none)[0][step] for row, watch in others):
         return
-    for kind in (Kind.STEP, Kind.SWITCH):
+    for kinds in ((Kind.STEP,), _NUMBERED):
         for k, watch in enumerate(watches):
             low, high = sorted(rows[k, step : step + 2].tolist())
-            if watch.kind is not kind or not math.isfinite(high - low):
+            kind = watch.kind
+            if kind not in kinds or not math.isfinite(high - low):
                 continue
             whole = (math.floor(high),) if math.floor(high) == math.floor(low) + 1 else ()
             yield from (
@@ -124,12 +128,16 @@ def _unresolved(row: Array, watch: Watch, step: float, bent: Flags) -> tuple[Fla
             return np.zeros(none.size, bool), (crossed | (nearest < 0.0)).astype(np.intp)
         beyond = (np.isinf(a) | np.isinf(b)) & ~np.isinf(row).all()
         return beyond | crossed | (nearest < DIP * np.minimum(np.abs(a), np.abs(b))), none
-    if kind is Kind.SWITCH:
+    if kind in _NUMBERED:
         twice, crossed = np.zeros(none.size, bool), none
         for at in watch.at:
             over, under = (a > at) != (b > at), (a > at) & (b > at)
             crossed = crossed + over
-            twice |= ~over & np.where(under, low < at, high > at)
+            touched = ~over & np.where(under, low < at, high > at)
+            if kind is Kind.KNOT:
+                crossed = crossed + touched
+            else:
+                twice |= touched
         return twice, crossed
     if kind is Kind.STEP:
         first, last = np.floor(a), np.floor(b)

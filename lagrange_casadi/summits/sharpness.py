@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import followable, steps
+from ..arithmetic.lookups import is_entry
 from ..declare.density import Array
 from ..equations.checks import Check
 from ..equations.scene_graph import SceneGraph
@@ -42,11 +43,13 @@ class Kind(enum.IntEnum):
     """A steep change within some number of zero, and nothing beyond."""
     POWER = 7
     """An exponent."""
+    KNOT = 8
+    """A kink, at most, where it comes to one of some numbers."""
 
 
 @dataclass(frozen=True)
 class Watch:
-    """A watched argument; ``at`` are the numbers at which it switches, or the one beyond which it changes nothing."""
+    """A watched argument; ``at`` are the numbers at which it switches or has knots, or the one beyond which it changes nothing."""
 
     kind: Kind
     at: tuple[float, ...] = ()
@@ -183,6 +186,11 @@ def _operations(function: Any, inputs: Sequence[Any]) -> Iterator[tuple[int, lis
             found = ca.SX(step.constant)
         elif step.operation == ca.OP_INPUT:
             found = inputs[step.arguments[0]].nz[step.arguments[1]]
+        elif step.looked_up is not None:
+            operands = [work[place] for place in step.arguments]
+            if step.looked_up.kind == "cell":
+                yield ca.OP_CALL, [*operands, ca.SX(step.looked_up.numbers[1:-1])]
+            found = step.looked_up.function(*operands)
         else:
             operands = [work[place] for place in step.arguments]
             yield step.operation, operands
@@ -214,8 +222,11 @@ def _watched(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Kind, An
         # That of a root or a reciprocal keeps a sign through a division or a reflection, and makes no jump.
         if x.is_constant() or x.is_symbolic() or x.op() not in (ca.OP_SQRT, ca.OP_INV):
             yield Kind.SWITCH, y, (0.0,)
+    elif operation == ca.OP_CALL:
+        yield Kind.KNOT, x, tuple(float(number) for number in ca.vertsplit(y))
     elif operation in (ca.OP_FLOOR, ca.OP_CEIL):
-        yield Kind.STEP, x, ()
+        if not is_entry(x):
+            yield Kind.STEP, x, ()
     elif operation in (ca.OP_FMOD, ca.OP_REMAINDER):
         yield Kind.STEP, x / y + (0.5 if operation == ca.OP_REMAINDER else 0.0), ()
         yield Kind.POLE, y, ()

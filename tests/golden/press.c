@@ -485,7 +485,7 @@ const char* press_message(press_status status) {
   case PRESS_BAD_INPUT:
     return "an input is not finite";
   case PRESS_BAD_TIME:
-    return "the time is not finite, or outside the samples of the motion";
+    return "the time is not finite, or outside the samples or beyond the curves of the motion";
   case PRESS_BAD_RATIO:
     return "a ratio xi/l is outside 0 to 1";
   case PRESS_NO_LINK:
@@ -510,6 +510,8 @@ const char* press_message(press_status status) {
     return "a result is not finite: the mechanism is singular, or its numbers overflow";
   case PRESS_TURNED:
     return "an angle that a load sees with its turns might be a turn further";
+  case PRESS_BEYOND_ENDS:
+    return "what is put into a curve is beyond its ends";
   }
   return "no status of this mechanism";
 }

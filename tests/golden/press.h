@@ -47,7 +47,7 @@ typedef enum {
   PRESS_NOT_PREPARED = 1 /* the model was not prepared */,
   PRESS_BAD_PARAMETER = 2 /* a parameter is not finite, or out of its range, or leaves a link without length or with a negative mass */,
   PRESS_BAD_INPUT = 3 /* an input is not finite */,
-  PRESS_BAD_TIME = 4 /* the time is not finite, or outside the samples of the motion */,
+  PRESS_BAD_TIME = 4 /* the time is not finite, or outside the samples or beyond the curves of the motion */,
   PRESS_BAD_RATIO = 5 /* a ratio xi/l is outside 0 to 1 */,
   PRESS_NO_LINK = 6 /* there is no such link */,
   PRESS_NOT_ASSEMBLED = 7 /* a loop cannot be closed: its links do not reach */,
@@ -59,7 +59,8 @@ typedef enum {
   PRESS_NOT_CLOSED = 13 /* what was found for a loop does not satisfy its equations */,
   PRESS_UNDETERMINED = 14 /* equilibrium does not determine all outputs: the mechanism has more constraints than it needs */,
   PRESS_NOT_FINITE = 15 /* a result is not finite: the mechanism is singular, or its numbers overflow */,
-  PRESS_TURNED = 16 /* an angle that a load sees with its turns might be a turn further */
+  PRESS_TURNED = 16 /* an angle that a load sees with its turns might be a turn further */,
+  PRESS_BEYOND_ENDS = 17 /* what is put into a curve is beyond its ends */
 } press_status;
 
 /* Numbers that may change without generating anything again. */

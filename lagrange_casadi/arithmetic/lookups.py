@@ -1,0 +1,97 @@
+"""Tables of numbers within graphs of scalars: in which of many cells a number lies, and what a table has for that cell.
+
+A graph calls a table as a function of one number. CasADi's own machine evaluates it; whoever follows a graph (:mod:`.interpret`) or
+writes it as C finds the numbers in the function, by :func:`lookup`. So a graph does not grow with its tables.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[Any]
+Kind = Literal["cell", "entry"]
+
+_PREFIX = "lagrange_casadi"
+_NAME = re.compile(rf"{_PREFIX}_(cell|entry)(_ends)?_[0-9a-f]{{16}}")
+_BITS = 64
+"""Entries are kept as whole numbers of so many bits: what is smaller beside the largest is zero."""
+
+_LEAST = -1074
+"""No number is smaller than this power of two."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lookup:
+    """What a function looks up: the number of the ``cell`` between neighbours of rising ``numbers``, or the ``entry`` of a number.
+
+    A break belongs to the cell after it; beyond the ends the first and the last cell go on. Of a cell ``ends`` tells whether a
+    number may be beyond them, which is for others to refuse.
+    """
+
+    kind: Kind
+    numbers: Array
+    function: Any
+    ends: bool = False
+
+    def at(self, x: Any) -> Any:
+        """What is looked up for real numbers ``x`` of any shape; of complex ones the real part counts."""
+        x = np.real(x)
+        if self.kind == "cell":
+            return np.searchsorted(self.numbers[1:-1], x, side="right").astype(float)
+        return self.numbers[np.asarray(x, int)]
+
+
+def cell(breaks: Sequence[float], x: Any, *, ends: bool) -> Any:
+    """The number of the cell in which an expression lies, as a scalar expression; of three breaks or more."""
+    return _function("cell", tuple(map(float, breaks)), ends)(x)
+
+
+def entries(numbers: Sequence[float], number: Any) -> Any:
+    """The entry of a table of finite numbers that an expression numbers; its derivative is zero.
+
+    It is to 64 binary digits of the largest one.
+    """
+    largest = max(map(abs, numbers))
+    if all(entry == numbers[0] for entry in numbers):
+        return ca.SX(numbers[0])
+    scale = math.ldexp(1.0, max(math.frexp(largest)[1] - _BITS, _LEAST))
+    whole = _function("entry", tuple(float(round(entry / scale)) for entry in numbers))(number)
+    # Rounding changes no whole number, and has no derivative: CasADi would differentiate a call by calls of further functions.
+    return ca.ceil(whole) * scale
+
+
+def is_entry(x: Any) -> bool:
+    """Whether a scalar expression is what a table has for a cell, as a whole number."""
+    if not x.is_output():
+        return False
+    found = lookup(x.dep(0).which_function())
+    return found is not None and found.kind == "entry"
+
+
+@functools.lru_cache(maxsize=256)
+def lookup(function: Any) -> Lookup | None:
+    """What a function looks up; None for any other function."""
+    found = _NAME.fullmatch(function.name())
+    if found is None or not function.is_a("MXFunction"):
+        return None
+    kind: Kind = "cell" if found[1] == "cell" else "entry"
+    constants = [k for k in range(function.n_instructions()) if function.instruction_id(k) == ca.OP_CONST]
+    return Lookup(kind, function.instruction_MX(constants[0]).to_DM().full().ravel(), function, ends=bool(found[2]))
+
+
+@functools.lru_cache(maxsize=256)
+def _function(kind: Kind, numbers: tuple[float, ...], ends: bool = False) -> Any:
+    digest = hashlib.sha256(" ".join(number.hex() for number in numbers).encode()).hexdigest()[:16]
+    x, table = ca.MX.sym("x"), ca.DM(numbers)
+    found = ca.low(table, x, {"lookup_mode": "binary"}) if kind == "cell" else ca.MX(table)[x]
+    return ca.Function(f"{_PREFIX}_{kind}{'_ends' if ends else ''}_{digest}", [x], [found], {"never_inline": True})

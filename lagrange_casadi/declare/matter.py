@@ -1,0 +1,36 @@
+"""How the mass of a link is told: even, by a density, or by mass, centre and inertia."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ..errors import DeclarationError
+from .density import Density, uniform
+from .parts import Expression, RigidMass
+
+
+def matter_of(
+    what: str,
+    mass: Expression,
+    density: Density | None,
+    centre: tuple[Expression, Expression] | None,
+    inertia: Expression,
+    checked: Callable[[str, Expression], Expression],
+) -> Density | RigidMass:
+    """The mass of a link by one of the three ways; ``checked`` takes what is said of an expression, and the expression.
+
+    Raises :class:`DeclarationError` for none of the ways, or more than one.
+    """
+    if (mass is None) == (density is None):
+        raise DeclarationError(f"{what}: give its mass, or a density")
+    if (centre is None) != (inertia is None) or (centre is not None and mass is None):
+        raise DeclarationError(f"{what}: centre and inertia go together, and with a mass")
+    if density is not None:
+        if not isinstance(density, Density):
+            raise DeclarationError(f"{what}: expected a density of lagrange_casadi.density, got {density!r}")
+        cells = tuple(tuple(checked(f"{what}: density", c) for c in cell) for cell in density.cells)
+        return Density(density.breaks, cells, density.per_length)
+    if centre is not None:
+        x, y = (checked(f"{what}: centre", c) for c in centre)
+        return RigidMass(checked(f"{what}: mass", mass), (x, y), checked(f"{what}: inertia", inertia))
+    return uniform(checked(f"{what}: mass", mass))
