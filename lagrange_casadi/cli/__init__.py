@@ -23,6 +23,7 @@ from .cases import cases
 from .check import check
 from .export import export
 from .info import info
+from .new import new
 from .plot import plot
 from .run import run
 from .sweep import sweep
@@ -52,7 +53,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (run, sweep, best, table, trade, export, plot, info, check, cases, cache)
+_COMMANDS = (run, sweep, best, table, trade, export, plot, info, check, cases, new, cache)
 
 
 @click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
