@@ -36,6 +36,28 @@ def test_a_graph_holds_what_is_wanted(wanted, expected):
     assert groups(derive(slider_crank(), wanted)) == expected
 
 
+@pytest.mark.parametrize(
+    ("wanted", "same"),
+    [
+        (["section"], ["section:crank", "section:rod"]),
+        (["reaction", "effort"], ["effort", "reaction:O", "reaction:A", "reaction:B", "reaction:guide"]),
+        (["section", "section:rod"], ["section:rod", "section:crank"]),
+    ],
+)
+def test_a_kind_is_all_of_that_kind(wanted, same):
+    scene = slider_crank()
+    assert derive(scene, wanted).names == derive(scene, same).names
+
+
+def test_a_kind_of_which_there_is_none_is_refused():
+    with pytest.raises(
+        DeclarationError, match="output 'load': mechanism 'slider_crank' has none; valid: all, effort, motion, reac"
+    ):
+        derive(slider_crank(), ["effort", "load"])
+    with pytest.raises(UnknownNameError, match=r"unknown output 'sections' \(did you mean 'section'\?\)"):
+        derive(slider_crank(), ["sections"])
+
+
 def test_what_is_not_wanted_costs_nothing():
     """The effort alone is a graph without a mobility: as many instructions whether or not the links could be cut."""
     scene = four_bar()

@@ -34,7 +34,12 @@ from .report import peak_line
 )
 @click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
 @click.option("--xi", type=even_points, metavar=EVEN_POINTS, help="Section ratios xi/l, within 0 and 1; default: the case's.")
-@click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
+@click.option(
+    "--want",
+    multiple=True,
+    metavar="OUTPUT",
+    help="effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; repeatable.",
+)
 @rung
 @click.option("--threads", type=click.IntRange(1, MOST_THREADS), metavar="N", help="Threads; default: one a core.")
 @click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>.h5 here.")

@@ -22,6 +22,7 @@ from .motion import Motion
 EvenPoints = tuple[float, float, int]
 """Evenly spaced: start, stop and count; both ends are included."""
 
+_KINDS = ("reaction", "multiplier", "load", "section")
 _TOLD = 8
 _MADE_FROM = 3
 """How many arrays points are, with what they are made from."""
@@ -100,23 +101,27 @@ class Wanted:
 
     @classmethod
     def of(cls, mechanism: Mechanism, names: Sequence[str]) -> Wanted:
-        """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``, ``load:NAME``, ``section:LINK``, ``all``."""
-        choices = outputs(mechanism)
+        """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``, ``load:NAME``, ``section:LINK``, ``all``.
+
+        A kind alone, as ``section``, is all that the mechanism has of it.
+        """
+        every = outputs(mechanism)
+        choices = [*every, *kinds(mechanism)]
         if isinstance(names, str) or not all(isinstance(name, str) for name in names):
             raise DeclarationError(f"wanted: expected a list of output names, got {names!r}; valid: {', '.join(choices)}")
         for name in names:
             if name not in choices:
                 _refuse_output(mechanism, name)
                 raise UnknownNameError("output", name, choices)
-        chosen = set(choices if "all" in names else names)
+        chosen = set(every if "all" in names else names)
         if not chosen:
             raise DeclarationError(f"no output wanted; valid: {', '.join(choices)}")
 
         def parts(kind: str) -> tuple[str, ...]:
-            return tuple(name.partition(":")[2] for name in choices if name in chosen and name.startswith(f"{kind}:"))
+            own = (name for name in every if name.startswith(f"{kind}:") and chosen & {kind, name})
+            return tuple(name.partition(":")[2] for name in own)
 
-        kinds = ("reaction", "multiplier", "load", "section")
-        return cls("effort" in chosen, "motion" in chosen, *(parts(kind) for kind in kinds))
+        return cls("effort" in chosen, "motion" in chosen, *map(parts, _KINDS))
 
     @property
     def forces(self) -> bool:
@@ -133,8 +138,15 @@ def outputs(mechanism: Mechanism) -> list[str]:
     return ["all", "effort", "motion", *reactions, *multipliers, *loads, *sections]
 
 
+def kinds(mechanism: Mechanism) -> list[str]:
+    """The kinds of output of which a mechanism has any beside the efforts and the motion: each can be wanted as a whole."""
+    return [kind for kind in _KINDS if any(name.startswith(f"{kind}:") for name in outputs(mechanism))]
+
+
 def _refuse_output(mechanism: Mechanism, name: str) -> None:
     kind, _, part = name.partition(":")
+    if name in _KINDS:
+        raise DeclarationError(f"output '{name}': mechanism '{mechanism.name}' has none; valid: {', '.join(outputs(mechanism))}")
     if kind == "section" and part in mechanism.bodies:
         why = no_sections(part, link=part in mechanism.links, links=mechanism.links)
         raise DeclarationError(f"output '{name}': {why}")
@@ -151,7 +163,8 @@ class Scene:
     motion
         The law of every driven joint, by the joint's name.
     wanted
-        Output names, see :func:`outputs`. Only these are derived, compiled and evaluated.
+        Output names, see :func:`outputs`, or kinds, as ``section`` for those of all links. Only these are derived, compiled and
+        evaluated.
     t, xi
         Grids of time [s] and of the ratio xi/l: start, stop, count.
     posture

@@ -30,6 +30,9 @@ from .substitution import Expressions, Numbers
 _LARGEST_STEP = 0.3
 """Of an angle [rad], or of a slide over the length of all links: a full step from afar may land on another branch."""
 
+_READ = {"angle": 12, "slide": 15}
+"""Decimals of what is said of a coordinate [rad or m]."""
+
 NEAR = 0.3
 """Sines of the transmission angle below which a loop may pass a dead centre."""
 
@@ -349,7 +352,8 @@ def passes_dead_centre(closure: Array, *, ends: bool = False) -> npt.NDArray[np.
 
 
 def describe_coordinate(joint: str, kind: str, value: float) -> str:
-    """A coordinate's value for a reader."""
+    """A coordinate's value for a reader, to whom what is zero but for rounding is 0."""
+    value = round(value, _READ[kind]) + 0.0
     return f"{joint} = {value:.6g} rad ({math.degrees(value):.6g} deg)" if kind == "angle" else f"{joint} = {value:.6g} m"
 
 
