@@ -47,8 +47,6 @@ def test_info_shows_the_whole_scene(here, capsys):
         "  prismatic joint way: ground (0, 0.2) - hub (0, 0), along (0, 1) of ground, at 1.5708 rad (90 deg), driven",
         "  gravity: (0, -9.81) m/s^2",
         "freedoms: 3, driven at O, way, turn",
-        "  drive O: (0.5+(0.25*sin((12.5664*t)))) of the time t; from 0.5 rad (28.6479 deg) to 0.5 rad (28.6479 deg), within 0.25 rad "
-        "(14.3239 deg) and 0.75 rad (42.9718 deg)",
         "  drive way: a spline through 5 samples from 0 to 1 s; from 0 m to 0.5 m",
         "load push: force on block, x = (-(k*O)) N, y = 2.5 N, in ground axes",
         "load wind: force on rod, x = 1 N, y = 0 N, in the axes of rod",
