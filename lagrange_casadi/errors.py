@@ -72,6 +72,10 @@ class PickleError(LagrangeCasadiError, PicklingError):
     """What cannot be sent to another process; the message says what can be sent instead."""
 
 
+class AngleError(DeclarationError, ValueError):
+    """What is no angle: neither a finite number [rad] nor a text such as ``350 deg``."""
+
+
 class MobilityError(DeclarationError):
     """The number of drives does not fit the mechanism's degrees of freedom."""
 

@@ -39,7 +39,7 @@ def export(
     case: Path,
     out: Path,
     name: str | None,
-    settings: Sequence[tuple[str, float]],
+    settings: Sequence[tuple[str, float | str]],
     want: Sequence[str],
     precision: Precision,
     newton: int | None,

@@ -53,7 +53,7 @@ from .rows import rows_of, write_csv
 @click.option("--no-certificate", is_flag=True, help="Do not check the solution.")
 def run(
     case: Path,
-    settings: Sequence[tuple[str, float]],
+    settings: Sequence[tuple[str, float | str]],
     t: EvenPoints | None,
     xi: EvenPoints | None,
     want: Sequence[str],

@@ -37,7 +37,7 @@ from .options import EVEN_POINTS, even_points, parameters, setting
 @click.option("--figure", type=click.Path(path_type=Path), help="The picture; default: <case>_trade.png here.")
 def trade(
     case: Path,
-    settings: Sequence[tuple[str, float]],
+    settings: Sequence[tuple[str, float | str]],
     t: EvenPoints | None,
     want: Sequence[str],
     accuracy: float | None,

@@ -9,7 +9,8 @@ from typing import Any
 
 import casadi as ca
 
-from ..errors import DeclarationError
+from ..errors import AngleError, DeclarationError
+from .angles import angle as read_angle
 from .parts import Expression
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
@@ -44,6 +45,14 @@ def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str) -> Expre
     if not math.isfinite(number):
         raise DeclarationError(f"{what} must be finite, got {number}")
     return number
+
+
+def typed(what: str, angle: Expression) -> Expression:
+    """An angle [rad]: a text as a number, anything else as it is. Raises :class:`DeclarationError` for a text of none."""
+    try:
+        return read_angle(angle) if isinstance(angle, str) else angle
+    except AngleError as error:
+        raise DeclarationError(f"{what}: angle: {error}") from None
 
 
 def unit_vector(what: str, axis: Any, component: Callable[[Any], Expression]) -> tuple[Expression, Expression]:

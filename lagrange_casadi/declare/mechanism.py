@@ -17,7 +17,7 @@ import casadi as ca
 from ..errors import DeclarationError
 from . import density as densities
 from .density import Density
-from .expressions import check_line, check_name, scalar, unit_vector
+from .expressions import check_line, check_name, scalar, typed, unit_vector
 from .kinks import refuse_kinks
 from .limits import check_connected, parameter_values
 from .measures import Measures
@@ -176,7 +176,7 @@ class Mechanism:
         return self._joint(name, "slot", parent, child, axis)
 
     def weld(self, name: str, parent: Body | Point, child: Body | Point, *, angle: Expression = 0.0) -> Joint:
-        """Fix a point of ``child`` to a point of ``parent``, its direction at ``angle`` [rad] from the parent's."""
+        """Fix a point of ``child`` to a point of ``parent``, its direction at ``angle`` [rad, or as text ``"90 deg"``]."""
         return self._joint(name, "weld", parent, child, angle=angle)
 
     def gear(self, name: str, first: Joint, second: Joint, *, ratio: Expression, offset: Expression = 0.0) -> Constraint:
@@ -274,7 +274,7 @@ class Mechanism:
         """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint, whose angle counts turns."""
         if self._own_joint(joint).coordinate != "angle":
             raise DeclarationError(f"load '{name}': joint '{joint.name}' has no angle for a torsion spring")
-        stretch, rate = self.coordinate(joint) - angle, self.rate(joint)
+        stretch, rate = self.coordinate(joint) - typed(f"load '{name}'", angle), self.rate(joint)
         return self.torque(name, joint.child, -(stiffness * stretch) - damping * rate, against=joint.parent)
 
     def coordinate(self, joint: Joint) -> Any:
@@ -352,7 +352,7 @@ class Mechanism:
                 f"{'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
             )
         unit = (1.0, 0.0) if axis is None else unit_vector(what, axis, lambda a: self._expression(f"{what}: axis", a))
-        joint = Joint(name, kind, start, end, unit, self._expression(f"{what}: angle", angle))
+        joint = Joint(name, kind, start, end, unit, self._expression(f"{what}: angle", typed(what, angle)))
         self.joints[name] = joint
         return joint
 

@@ -7,13 +7,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from types import MappingProxyType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError
+from ..errors import AngleError, DeclarationError, ParameterError, PickleError, UnknownNameError
 from ..system.room import require
+from .angles import angle
 from .density import Array, Density
 from .limits import no_sections
 from .mechanism import Mechanism
@@ -23,6 +24,9 @@ EvenPoints = tuple[float, float, int]
 """Evenly spaced: start, stop and count; both ends are included."""
 
 _KINDS = ("reaction", "multiplier", "load", "section")
+_TURNS = 4.0 * math.pi
+"""The largest direction of a posture [rad]: what is beyond was meant in degrees."""
+
 _TOLD = 8
 _MADE_FROM = 3
 """How many arrays points are, with what they are made from."""
@@ -78,6 +82,23 @@ def told_parameters(mechanism: Mechanism, values: Mapping[str, float]) -> str:
     if len(listed) > _TOLD:
         listed = [*listed[:_TOLD], f"{len(listed) - _TOLD} more"]
     return f"; with the {'' if values else 'default '}parameters {', '.join(listed)}" if listed else ""
+
+
+def _rough(name: str, value: object, turns: bool) -> float:
+    """What a posture says of a direction [rad] or a place [m]. Raises :class:`DeclarationError`."""
+    if not turns:
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+            raise DeclarationError(f"posture of '{name}': expected a place along its line, a finite number [m], got {value!r}")
+        return float(value)
+    try:
+        found = angle(value)
+    except AngleError as error:
+        raise DeclarationError(f"posture of '{name}': {error}") from None
+    if abs(found) > _TURNS:
+        degrees = f"{math.degrees(found):.6g} deg, more than two turns"
+        told = f"; '{value:g} deg' is {value:g} degrees" if isinstance(value, (int, float)) else ""
+        raise DeclarationError(f"posture of '{name}': {found:.6g} rad is {degrees}{told}")
+    return found
 
 
 def checked_ratios(even: EvenPoints) -> EvenPoints:
@@ -168,8 +189,8 @@ class Scene:
     t, xi
         Grids of time [s] and of the ratio xi/l: start, stop, count.
     posture
-        Rough directions of links [rad] and places of slides [m] at the first instant, to choose between the ways in which a loop
-        can be assembled.
+        Rough directions of links [rad, or text as ``"350 deg"``] and places of slides [m] at the first instant, to choose between
+        the ways in which a loop can be assembled.
     assembly
         Values of parameters with which loops are first assembled, in place of the defaults. The way to assemble is chosen there.
 
@@ -182,7 +203,7 @@ class Scene:
     wanted: Sequence[str] = ("all",)
     t: EvenPoints = (0.0, 1.0, 101)
     xi: EvenPoints = (0.0, 1.0, 101)
-    posture: Mapping[str, float] = field(default_factory=dict)
+    posture: Mapping[str, Any] = field(default_factory=dict)
     assembly: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -206,11 +227,11 @@ class Scene:
             if not isinstance(law, Motion):
                 raise DeclarationError(f"motion of joint '{name}': expected a law of lagrange_casadi.motion, got {law!r}")
         places = [*self.mechanism.links, *(n for n, j in joints.items() if j.slides)]
-        for name, rough in self.posture.items():
+        for name in self.posture:
             if name not in places:
                 raise UnknownNameError("link or sliding joint in posture", name, places)
-            if not isinstance(rough, (int, float)) or not math.isfinite(rough):
-                raise DeclarationError(f"posture of '{name}': expected a finite number, got {rough!r}")
+        rough = {name: _rough(name, value, name in self.mechanism.links) for name, value in self.posture.items()}
+        object.__setattr__(self, "posture", MappingProxyType(rough))
         for row in self.mechanism.rows.values():
             if row.replaces not in self.motion:
                 raise DeclarationError(
