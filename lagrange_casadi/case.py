@@ -17,9 +17,10 @@ from types import ModuleType
 from typing import Any
 
 from . import case_modules
+from .declare.expressions import told
 from .declare.scene import Scene
 from .draw.figures import Spec
-from .errors import CaseError, LagrangeCasadiError, one_line
+from .errors import CaseError, LagrangeCasadiError
 from .shipped_cases import shipped_cases
 
 
@@ -102,4 +103,4 @@ def _guard(given: Path, file: Path, action: Any) -> Any:
         if isinstance(error, SyntaxError):
             lines = [error.lineno]
         where = f", line {lines[-1]}" if lines and lines[-1] else ""
-        raise CaseError(f"case {given}{where}: {type(error).__name__}: {one_line(error)}") from error
+        raise CaseError(f"case {given}{where}: {told(error)}") from error

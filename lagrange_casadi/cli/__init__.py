@@ -30,8 +30,17 @@ from .sweep import sweep
 from .table import table
 from .trade import trade
 
-_OPTIONS = {"resume=True": "--resume", "force=True": "--force", "many=True": "--yes"}
+_OPTIONS = {
+    "resume=True": "--resume",
+    "force=True": "--force",
+    "many=True": "--yes",
+    "which `load` reads": "which the commands info, plot and check read",
+    "which `Sweep.open` reads": "which the commands table, best, info, plot and check read",
+}
 """What errors call in Python's words, in the command line's."""
+
+_NUMPY = r"\s*casadi: a numpy function was called"
+"""How a note of CasADi begins that fills the screen: what NumPy makes of symbols is what it should be."""
 
 
 _MOMENT, _WAITS = 0.01, 50
@@ -68,6 +77,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ["MPLBACKEND"] = "agg"
     with warnings.catch_warnings():
         warnings.simplefilter("always", UserWarning)
+        warnings.filterwarnings("ignore", _NUMPY, FutureWarning)
         warnings.showwarning = lambda message, *_args, **_kwargs: _say(f"note: {message}")
         try:
             result = program.main(arguments, prog_name="lagrange-casadi", standalone_mode=False)

@@ -19,7 +19,7 @@ def peak_line(solution: Solution, peak: Peak) -> str:
     if peak.least is not None:
         found = f"{peak.least:.6g} {peak.unit} was found at {where}"
         return f"  {peak.name:<28}{'not told':>13} too much hides between the instants, more may help; {found}"
-    return f"  {peak.name:<28}{peak.value:>13.6g}{off} {peak.unit:<4} at {where}"
+    return f"  {peak.name:<28}{peak.value + 0.0:>13.6g}{off} {peak.unit:<4} at {where}"
 
 
 def peak_lines(solution: Solution, refined: Sequence[Peak] = ()) -> Iterator[str]:
@@ -40,8 +40,9 @@ def statistics_lines(solution: Solution) -> Iterator[str]:
     for output in _told(solution):
         if solution.determined(output):
             found = solution.statistics(output)
-            mean, rms = (f"{'':>13}" if value is None else f"{value:>13.6g}" for value in (found.mean, found.rms))
-            yield f"  {found.name:<28}{found.smallest.value:>13.6g} {found.largest.value:>13.6g} {mean} {rms} {found.unit}"
+            ends = " ".join(f"{extreme.value + 0.0:>13.6g}" for extreme in (found.smallest, found.largest))
+            mean, rms = (f"{'':>13}" if value is None else f"{value + 0.0:>13.6g}" for value in (found.mean, found.rms))
+            yield f"  {found.name:<28}{ends} {mean} {rms} {found.unit}"
 
 
 def _told(solution: Solution) -> Iterator[Output]:

@@ -26,6 +26,7 @@ from ..system.room import MOST_THREADS
 from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
 from .options import EVEN_POINTS, even_points, parameters, rung, setting
+from .replaced import figures_in, replaced_lines
 from .report import peak_lines, statistics_lines
 from .rows import rows_of, write_csv
 
@@ -101,10 +102,14 @@ def run(
         threads=threads,
         certificate=not no_certificate,
     )
+    usual = Path(f"{loaded.name}_figures") if out == Path(f"{loaded.name}.h5") else None
+    place = folder or usual
+    replaced, before, drawn = out.exists(), figures_in(place), set[str]()
     with filling(folder) if folder else nullcontext() as draft:
         if folder and draft:
             draw_with_progress(solution, loaded.figures, draft)
             check_free(draft, folder)
+            drawn = figures_in(draft)
         save(solution, out, dump_specs(loaded.figures))
     if csv:
         write_csv([TIME, *(heads := columns(solution))], rows_of([solution.t, *heads.values()]), csv)
@@ -119,6 +124,8 @@ def run(
         say(f"note: {note}")
     if not no_certificate:
         say(summary(solution.certificate))
+    for line in replaced_lines(out, replaced, place, before if replaced else before & drawn, drawn):
+        say(line)
     say(f"wrote {out}" + (f" and the figures in {folder}/" if folder else "") + (f", and {csv}" if csv else ""))
     if solution.failed:
         raise CertificateError(f"{failure(solution)}; {out} is marked as not certified")

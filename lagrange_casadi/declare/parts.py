@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from ..errors import ParameterError
+from ..system.numerals import readable
 from .angles import angle
 from .density import Density
 
@@ -56,8 +57,8 @@ class Parameter:
             return f"parameter '{self.name}' must be a finite number, got {number}"
         if not self.low <= number <= self.high:
             return (
-                f"parameter '{self.name}' = {number:.17g}{'' if self.unit == '1' else ' ' + self.unit} is out of its range "
-                f"[{self.low:.17g}, {self.high:.17g}]"
+                f"parameter '{self.name}' = {readable(number, self.low, self.high)}{'' if self.unit == '1' else ' ' + self.unit} "
+                f"is out of its range [{readable(self.low, number)}, {readable(self.high, number)}]"
             )
         return ""
 
