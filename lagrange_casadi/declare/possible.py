@@ -152,7 +152,15 @@ def _surely_positive(mass: Expression) -> bool:
 
 def _of_station(what: str, point: Any, precision: Precision) -> list[Demand]:
     def refusal(number: Evaluator) -> str:
-        x, length = number(point.x), number(point.body.length)
-        return f"{what}: station {readable(x, 0.0, length)} m is outside link '{point.body.name}', 0 to {readable(length, x)} m"
+        x, length, link = number(point.x), number(point.body.length), point.body.name
+        there = f"station {readable(x, 0.0, length)} m is outside link '{link}', 0 to {readable(length, x)} m"
+        end, beyond, turned = ("", -x, ", angle='180 deg'") if x < 0.0 else (".tip", x - length, "")
+        if not math.isfinite(beyond):
+            return f"{what}: {there}"
+        tail = f"tail = m.link('{link}_tail', length={readable(beyond)}, mass=0.0)"
+        weld = f"m.weld('{link}_end', m.links['{link}']{end}, tail{turned})"
+        return (
+            f"{what}: {there}; what lies beyond an end is a link of its own: {tail}; {weld}; and tail.tip in place of the station"
+        )
 
     return [Demand(margin, False, refusal) for margin in margins(point, precision)]
