@@ -143,7 +143,7 @@ def test_a_link_known_by_its_inertia_has_no_section():
         ({"motion": {"X": polynomial(0)}}, "unknown joint in motion 'X'; valid: O, A, B, guide"),
         ({"motion": {"B": polynomial(0)}}, "joint 'B' cannot be driven"),
         ({"motion": {"O": 3.0}}, "motion of joint 'O': expected a law"),
-        ({"posture": {"stick": 1.0}}, "unknown link or sliding joint in posture 'stick'; valid: crank, rod, guide"),
+        ({"posture": {"stick": 1.0}}, "unknown link or joint in posture 'stick'; valid: crank, rod, O, A, guide"),
         ({"t": (0, 1, 0)}, "t: COUNT must be a whole number of at least 1, got 0"),
         ({"t": (0, 1, 1)}, "t: COUNT must be 2 or more to reach from 0 to 1, got 1"),
         ({"xi": (0, 1, 1)}, "xi: COUNT must be 2 or more to reach from 0 to 1, got 1"),

@@ -14,13 +14,14 @@ from typing import Any
 
 import click
 
-from ..errors import LagrangeCasadiError, UnknownNameError, one_line
+from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_line
 from ..system.interrupts import SENTENCE, STATUS, interrupts
 from ..version import __version__
 from .best import best
 from .cache import cache
 from .cases import cases
 from .check import check
+from .drawing import drawn_ways
 from .export import export
 from .info import info
 from .new import new
@@ -81,6 +82,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         warnings.showwarning = lambda message, *_args, **_kwargs: _say(f"note: {message}")
         try:
             result = program.main(arguments, prog_name="lagrange-casadi", standalone_mode=False)
+        except PostureError as error:
+            return _fail(f"{error}{drawn_ways(error)}", error.exit_status)
         except LagrangeCasadiError as error:
             return _fail(str(error), error.exit_status)
         except click.exceptions.NoArgsIsHelpError as error:

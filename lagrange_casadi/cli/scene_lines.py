@@ -27,8 +27,8 @@ def scene_lines(scene: Scene) -> Iterator[str]:
     yield from (f"constraint {name}: 0 = {_short(constraint.phi)}" for name, constraint in mechanism.constraints.items())
     for name, row in mechanism.rows.items():
         yield f"non-holonomic constraint {name}: 0 = {_short(row.expression)}; it moves joint {row.replaces}, without an effort"
-    angles = mechanism.links
-    postures = (describe_coordinate(name, "angle" if name in angles else "slide", rough) for name, rough in scene.posture.items())
+    slides = [name for name, joint in mechanism.joints.items() if joint.slides]
+    postures = (describe_coordinate(name, "slide" if name in slides else "angle", rough) for name, rough in scene.posture.items())
     yield f"posture: {', '.join(postures) or 'none'}"
     if scene.assembly:
         yield f"assembled first with: {', '.join(f'{name} = {value:g}' for name, value in scene.assembly.items())}"

@@ -189,8 +189,8 @@ class Scene:
     t, xi
         Grids of time [s] and of the ratio xi/l: start, stop, count.
     posture
-        Rough directions of links [rad, or text as ``"350 deg"``] and places of slides [m] at the first instant, to choose between
-        the ways in which a loop can be assembled.
+        Rough directions of links and coordinates of joints at the first instant [rad, or text as ``"350 deg"``; m], by name, to
+        choose between the ways in which a loop can be assembled.
     assembly
         Values of parameters with which loops are first assembled, in place of the defaults. The way to assemble is chosen there.
 
@@ -226,11 +226,12 @@ class Scene:
                 raise DeclarationError(f"joint '{name}' cannot be driven: {why}")
             if not isinstance(law, Motion):
                 raise DeclarationError(f"motion of joint '{name}': expected a law of lagrange_casadi.motion, got {law!r}")
-        places = [*self.mechanism.links, *(n for n, j in joints.items() if j.slides)]
+        places = [*self.mechanism.links, *(n for n, j in joints.items() if j.coordinate)]
         for name in self.posture:
             if name not in places:
-                raise UnknownNameError("link or sliding joint in posture", name, places)
-        rough = {name: _rough(name, value, name in self.mechanism.links) for name, value in self.posture.items()}
+                raise UnknownNameError("link or joint in posture", name, places)
+        slides = [name for name, joint in joints.items() if joint.slides]
+        rough = {name: _rough(name, value, name not in slides) for name, value in self.posture.items()}
         object.__setattr__(self, "posture", MappingProxyType(rough))
         for row in self.mechanism.rows.values():
             if row.replaces not in self.motion:
