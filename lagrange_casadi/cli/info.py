@@ -108,10 +108,10 @@ def _describe_mechanism(description: Description) -> None:
         size = "point mass" if body["length"] is None else f"link of {body['length']:g} m,"
         click.echo(f"  {size} {name}: {body['mass']:g} kg".replace("  point mass", "  point mass"))
     for name, joint in description["joints"].items():
-        ends = " - ".join(f"{p['body']} ({p['x']:g}, {p['y']:g})" for p in (joint["parent"], joint["child"]))
+        ends = " - ".join(f"{p['body']} ({p['x'] + 0.0:g}, {p['y'] + 0.0:g})" for p in (joint["parent"], joint["child"]))
         along = ""
         if joint["kind"] in ("prismatic", "slot"):
-            along = f", along ({joint['axis'][0]:g}, {joint['axis'][1]:g}) of {joint['parent']['body']}"
+            along = f", along ({joint['axis'][0] + 0.0:g}, {joint['axis'][1] + 0.0:g}) of {joint['parent']['body']}"
         turned = f", at {joint['angle']:g} rad ({math.degrees(joint['angle']):g} deg)" if joint["angle"] else ""
         click.echo(f"  {joint['kind']} joint {name}: {ends}{along}{turned}{', driven' if joint['driven'] else ''}")
-    click.echo("  gravity: ({:g}, {:g}) m/s^2".format(*description["gravity"]))
+    click.echo("  gravity: ({:g}, {:g}) m/s^2".format(*(component + 0.0 for component in description["gravity"])))
