@@ -33,6 +33,11 @@ def test_a_sine_over_its_turn():
     assert found.rms == pytest.approx(math.sqrt(3.0), rel=1e-15)
     assert (found.smallest.value, found.smallest.t) == (pytest.approx(-1.0), 0.75)
     assert (found.largest.value, found.largest.t, found.largest.xi) == (pytest.approx(3.0), 0.25, None)
+    assert found.peak == found.largest
+    assert (
+        Statistics.over("x", "N", t, np.cos(math.pi * t) - 0.5).peak
+        == Statistics.over("x", "N", t, np.cos(math.pi * t) - 0.5).smallest
+    )
 
 
 @given(st.lists(st.floats(1e-3, 1e3), min_size=1, max_size=30), st.floats(-10, 10), st.floats(-10, 10))
@@ -69,7 +74,9 @@ def test_section_forces_are_never_beyond_their_smallest_and_largest(case):
             assert told.smallest.value <= grid.min() + 1e-13 * size
             assert told.largest.value >= grid.max() - 1e-13 * size
             assert np.ptp(grid) >= 0.99 * (told.largest.value - told.smallest.value)
-            assert size == abs(found.peak(f"section:{link}:{force}").value)
+            peak = found.peak(f"section:{link}:{force}")
+            assert (told.peak.value, told.peak.t, told.peak.xi) == (peak.value, peak.t, peak.xi)
+            assert size == abs(peak.value)
             assert (told.mean, told.rms) == (None, None)
             for extreme in (told.smallest, told.largest):
                 i = int(np.flatnonzero(found.t == extreme.t)[0])

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from ..instants.solution import Peak, Solution
+from ..instants.statistics import Statistics
 from ..quantities import RESULTANT, Output
 
 _GROUPS = ("effort", "reaction", "section")
@@ -22,27 +23,25 @@ def peak_line(solution: Solution, peak: Peak) -> str:
     return f"  {peak.name:<28}{peak.value + 0.0:>13.6g}{off} {peak.unit:<4} at {where}"
 
 
-def peak_lines(solution: Solution, refined: Sequence[Peak] = ()) -> Iterator[str]:
-    """The peaks of all efforts, reactions with their resultants, and section forces; or, where they are, the refined ones."""
+def report_lines(solution: Solution, refined: Sequence[Peak] = ()) -> Iterator[str]:
+    """All efforts, reactions with their resultants, and section forces: the peaks, or the refined ones, then means and ends."""
     peaks = {peak.name: peak for peak in refined}
-    for output in _told(solution):
-        name = str(output)
-        if not solution.determined(output):
-            yield f"  {name:<28}{'open':>13} {'':<4} equilibrium does not determine it: the mechanism is over-constrained"
+    told = [(output, solution.statistics(output) if solution.determined(output) else None) for output in _told(solution)]
+    for output, found in told:
+        if found is None:
+            yield f"  {output!s:<28}{'open':>13} {'':<4} equilibrium does not determine it: the mechanism is over-constrained"
             continue
-        yield peak_line(solution, peaks.get(name) or solution.peak(name))
-
-
-def statistics_lines(solution: Solution) -> Iterator[str]:
-    """The smallest and the largest value, mean and rms of the same over the instants, below a head."""
+        own = found.peak
+        yield peak_line(solution, peaks.get(found.name) or Peak(found.name, own.value, found.unit, own.t, own.xi))
     span = f"over {solution.t[-1] - solution.t[0]:.5g} s" if solution.t.size > 1 else "at the one instant"
     yield f"{span:<30}{'smallest':>13} {'largest':>13} {'mean':>13} {'rms':>13}"
-    for output in _told(solution):
-        if solution.determined(output):
-            found = solution.statistics(output)
-            ends = " ".join(f"{extreme.value + 0.0:>13.6g}" for extreme in (found.smallest, found.largest))
-            mean, rms = (f"{'':>13}" if value is None else f"{value + 0.0:>13.6g}" for value in (found.mean, found.rms))
-            yield f"  {found.name:<28}{ends} {mean} {rms} {found.unit}"
+    yield from (_statistics_line(found) for _, found in told if found)
+
+
+def _statistics_line(found: Statistics) -> str:
+    ends = " ".join(f"{extreme.value + 0.0:>13.6g}" for extreme in (found.smallest, found.largest))
+    means = " ".join(f"{'':>13}" if value is None else f"{value + 0.0:>13.6g}" for value in (found.mean, found.rms))
+    return f"  {found.name:<28}{ends} {means} {found.unit}"
 
 
 def _told(solution: Solution) -> Iterator[Output]:

@@ -27,7 +27,7 @@ from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
 from .options import EVEN_POINTS, even_points, parameters, rung, setting
 from .replaced import figures_in, replaced_lines
-from .report import peak_lines, statistics_lines
+from .report import report_lines
 from .rows import rows_of, write_csv
 
 
@@ -118,7 +118,7 @@ def run(
     backend_used = solution.provenance.backend
     say(f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {backend_used}; {what}:")
     names = [*forces(solution), *resultants(solution)]
-    for line in (*peak_lines(solution, refine(loaded.scene, solution, names) if refine_peaks else ()), *statistics_lines(solution)):
+    for line in report_lines(solution, refine(loaded.scene, solution, names) if refine_peaks else ()):
         say(line)
     for note in solution.notes:
         say(f"note: {note}")

@@ -310,10 +310,10 @@ class Solution:
         return Peak(str(name), float(values[i]), self.unit(name), float(self.t[i]), None if places is None else float(places[i]))
 
     def statistics(self, name: str | Output) -> Statistics:
-        """Mean, root of the mean square, smallest and largest value of a quantity over the instants."""
+        """Mean, root of the mean square, smallest and largest value, and the peak, of a quantity over the instants."""
         output = self._output(name)
         if output.group == "section":
-            return Statistics.along(str(output), self.unit(output), self.t, *self._of_section(output).law.ends(output.member))
+            return Statistics.along(str(output), self.unit(output), self.t, *self._of_section(output).law.reached(output.member))
         return Statistics.over(str(output), self.unit(output), self.t, self.array(output))
 
     def to_xarray(self) -> xarray.Dataset:

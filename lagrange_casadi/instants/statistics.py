@@ -22,8 +22,9 @@ class Extreme:
 class Statistics:
     """A quantity over the time of a solution, in ``unit``: means by trapezia, and the smallest and largest value of the instants.
 
-    ``smallest`` and ``largest`` are by sign: -5 is smaller than 3. Along a link they are exact, whatever the grid of xi. ``mean``
-    and ``rms``, the root of the mean square, are None of a section force: they differ from ratio to ratio.
+    ``smallest`` and ``largest`` are by sign: -5 is smaller than 3. ``peak`` is largest in size. Along a link they are exact,
+    whatever the grid of xi. ``mean`` and ``rms``, the root of the mean square, are None of a section force: they differ from ratio
+    to ratio.
     """
 
     name: str
@@ -32,20 +33,24 @@ class Statistics:
     rms: float | None
     smallest: Extreme
     largest: Extreme
+    peak: Extreme
 
     @classmethod
     def over(cls, name: str, unit: str, t: Array, values: Array) -> Statistics:
         """Those of values (t,) at increasing times."""
         weights = _weights(t)
-        low, high = int(np.argmin(values)), int(np.argmax(values))
-        ends = (Extreme(float(values[i]), float(t[i])) for i in (low, high))
+        chosen = (np.argmin(values), np.argmax(values), np.argmax(np.abs(values)))
+        ends = (Extreme(float(values[i]), float(t[i])) for i in map(int, chosen))
         return cls(name, unit, float(values @ weights), float(np.sqrt(values**2 @ weights)), *ends)
 
     @classmethod
     def along(cls, name: str, unit: str, t: Array, places: Array, values: Array) -> Statistics:
-        """Those of a section force, from where along the link it is smallest and largest, and what it is there, each (2, t)."""
-        chosen = enumerate((int(np.argmin(values[0])), int(np.argmax(values[1]))))
-        ends = (Extreme(float(values[k, i]), float(t[i]), float(places[k, i])) for k, i in chosen)
+        """Those of a section force, from where along the link it is smallest, largest, and largest in size, and what it is there.
+
+        Places and values are (3, t).
+        """
+        chosen = (np.argmin(values[0]), np.argmax(values[1]), np.argmax(np.abs(values[2])))
+        ends = (Extreme(float(values[k, i]), float(t[i]), float(places[k, i])) for k, i in enumerate(map(int, chosen)))
         return cls(name, unit, None, None, *ends)
 
 
