@@ -107,12 +107,24 @@ def test_parameters_that_are_angles_may_be_told_in_degrees():
     scene = pendulum()
     told, plain = (evaluate(scene, parameters={"tilt": value}).effort("O") for value in ("30 deg", math.radians(30)))
     np.testing.assert_array_equal(told, plain)
+    first = Scene(scene.mechanism, scene.motion, t=scene.t, assembly={"tilt": "30 deg"})
+    assert first.assembly == {"tilt": math.radians(30)}
     with pytest.raises(ParameterError, match=r"parameter 'l' must be a number \[m\], got '30 deg'"):
         evaluate(scene, parameters={"l": "30 deg"})
     with pytest.raises(ParameterError, match=r"parameter 'tilt' must be a number \[rad\], or a text such as '30 deg', got 'steep'"):
         evaluate(scene, parameters={"tilt": "steep"})
     with pytest.raises(ParameterError, match=r"parameter 'tilt' = 1\.57\d* rad is out of its range \[0, 1\]"):
         evaluate(scene, parameters={"tilt": "90 deg"})
+
+
+def test_parameters_are_declared_in_degrees():
+    m = Mechanism("m")
+    m.parameter("tilt", "30 deg", "rad", low="-10 deg", high="90 deg")
+    tilt = m.parameters["tilt"]
+    assert (tilt.default, tilt.low, tilt.high) == (math.radians(30), math.radians(-10), math.radians(90))
+    with pytest.raises(DeclarationError, match=r"parameter 'lean': angle: expected a finite number \[rad\]"):
+        m.parameter("lean", "much", "rad")
+    assert list(m.parameters) == ["tilt"]
 
 
 def test_welds_and_slides_take_degrees():

@@ -102,10 +102,10 @@ class Mechanism:
         """Declare a parameter from ``low`` to ``high``, and return its ``casadi.SX`` symbol to build lengths and places from."""
         self._add("parameter", name, self.parameters)
         check_line(f"parameter '{name}': its unit", unit)
+        default, low, high = (typed(f"parameter '{name}'", x) if unit == "rad" else x for x in (default, low, high))
         parameter = Parameter(name, float(default), unit, float(low), float(high), ca.SX.sym(name))
         parameter.check(parameter.default)
-        self.parameters[name] = parameter
-        return parameter.symbol
+        return self.parameters.setdefault(name, parameter).symbol
 
     def link(
         self,

@@ -246,7 +246,8 @@ class Scene:
             self.mechanism.values()
         except ParameterError as error:
             raise ParameterError(f"{error}{told_parameters(self.mechanism, {})}") from None
-        self.mechanism.values(self.assembly)
+        numbers = self.mechanism.values(self.assembly)
+        object.__setattr__(self, "assembly", MappingProxyType({name: numbers[name] for name in self.assembly}))
 
     def __repr__(self) -> str:
         start, stop, count = self.t
