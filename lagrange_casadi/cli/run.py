@@ -71,7 +71,7 @@ def run(
     refine_peaks: bool,
     no_certificate: bool,
 ) -> None:
-    """Evaluate CASE, a folder with a case.py or a Python file, and write an HDF5 file and figures."""
+    """Evaluate CASE, a folder with a case.py, a Python file, or one that cases lists, and write an HDF5 file and figures."""
     if figures and no_figures:
         raise click.UsageError("--figures and --no-figures exclude each other")
     if out and out.suffix not in (".h5", ".hdf5"):

@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, cast
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -101,25 +101,24 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start, *, i
     Raises :class:`MobilityError` where drives and degrees of freedom do not match, :class:`PostureError` for a posture that
     leaves branches open, :class:`AssemblyError` where the mechanism cannot be assembled at the start.
     """
-    blocks = solving_order(multibody, _Solver(multibody, dict(posture), start, iterate).beginning())
-    tried, waiting = 0, [cast("tuple[int, ...]", ())]
-    while True:
-        ways = waiting.pop()
-        solver = _Solver(multibody, dict(posture), start, iterate, ways)
+    solver = _Solver(multibody, dict(posture), start, iterate)
+    blocks = solving_order(multibody, solver.beginning())
+    waiting: list[tuple[int, ...]] = []
+    for tried in range(_WAYS):
         try:
             for block in blocks:
                 solver.close(block)
+            break
         except AssemblyError:
             # A loop whose way is open may have to be closed in the other one: the last such loop first.
-            taken = ways + (0,) * (len(solver.undecided.ways) - len(ways))
-            waiting += [(*taken[:k], 1) for k in range(len(ways), len(taken))]
-            tried += 1
-            if not waiting or tried > _WAYS:
+            taken = solver.ways + (0,) * (len(solver.undecided.ways) - len(solver.ways))
+            waiting += [(*taken[:k], 1) for k in range(len(solver.ways), len(taken))]
+            if not waiting or tried == _WAYS - 1:
                 raise
-            continue
-        if solver.undecided:
-            raise solver.undecided.refusal(multibody)
-        return solver.finish(blocks)
+            solver = _Solver(multibody, dict(posture), start, iterate, waiting.pop())
+    if solver.undecided:
+        raise solver.undecided.refusal(multibody)
+    return solver.finish(blocks)
 
 
 class _Solver:
