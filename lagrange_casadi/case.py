@@ -1,5 +1,7 @@
 """Cases: a folder with a ``case.py``, or a Python file, whose function ``scene()`` returns a :class:`.Scene`.
 
+One that comes with the package is known by its name alone.
+
 A case may also have ``figures()``, which returns how it wants to be drawn, see :mod:`.figures`, and modules of its own beside its
 file.
 """
@@ -15,9 +17,11 @@ from types import ModuleType
 from typing import Any
 
 from . import case_modules
+from .declare.expressions import told
 from .declare.scene import Scene
 from .draw.figures import Spec
-from .errors import CaseError, LagrangeCasadiError, one_line
+from .errors import CaseError, LagrangeCasadiError
+from .shipped_cases import shipped_cases
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,16 +46,12 @@ class Case:
 
 
 def load_case(path: str | os.PathLike[str]) -> Case:
-    """Load a case's folder or Python file. Raises :class:`CaseError`; an error of a declaration passes as it is."""
+    """Load a case's folder or Python file, or by its name one that comes with the package; what is here has precedence.
+
+    Raises :class:`CaseError`; an error of a declaration passes as it is.
+    """
     given = Path(path)
-    try:
-        file = given / "case.py" if given.is_dir() else given
-        there = file.is_file()
-    except OSError as error:
-        raise CaseError(f"case {given}: {error.strerror}") from None
-    if not there:
-        expected = "a folder with a case.py, or a Python file"
-        raise CaseError(f"case {given}: {'has no case.py' if given.is_dir() else 'no such file'}; expected {expected}")
+    file = _file(given)
     if file.suffix != ".py":
         raise CaseError(f"case {given}: expected a folder with a case.py, or a Python file ending in .py")
     file = file.resolve()
@@ -63,6 +63,25 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     if not isinstance(figures, (list, tuple)) or not all(isinstance(spec, Spec) for spec in figures):
         raise CaseError(f"case {given}: figures() must return a list of specs of lagrange_casadi.figures, got {figures!r}")
     return Case(file, scene, tuple(figures))
+
+
+def _file(given: Path) -> Path:
+    """The file of a case."""
+    try:
+        file = given / "case.py" if given.is_dir() else given
+        there = file.is_file()
+    except OSError as error:
+        raise CaseError(f"case {given}: {error.strerror}") from None
+    if there:
+        return file
+    expected = "expected a folder with a case.py, or a Python file"
+    if file != given:
+        raise CaseError(f"case {given}: has no case.py; {expected}")
+    shipped = shipped_cases()
+    if str(given) in shipped:
+        return shipped[str(given)] / "case.py"
+    names = f", or one that comes with the package: {', '.join(shipped)}" if shipped else ""
+    raise CaseError(f"case {given}: no such file; {expected}{names}")
 
 
 def _call(given: Path, file: Path, module: ModuleType, name: str) -> Any:
@@ -84,4 +103,4 @@ def _guard(given: Path, file: Path, action: Any) -> Any:
         if isinstance(error, SyntaxError):
             lines = [error.lineno]
         where = f", line {lines[-1]}" if lines and lines[-1] else ""
-        raise CaseError(f"case {given}{where}: {type(error).__name__}: {one_line(error)}") from error
+        raise CaseError(f"case {given}{where}: {told(error)}") from error

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 import errno
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pickle import PicklingError
 
 _LONG = 300
@@ -70,6 +70,27 @@ class ParameterError(LagrangeCasadiError):
 
 class PickleError(LagrangeCasadiError, PicklingError):
     """What cannot be sent to another process; the message says what can be sent instead."""
+
+
+class AngleError(DeclarationError, ValueError):
+    """What is no angle: neither a finite number [rad] nor a text such as ``350 deg``."""
+
+
+class PostureError(DeclarationError):
+    """A posture that leaves open how loops are assembled.
+
+    ``ways`` are the two of each loop that may be closed in two ways, as entries of a posture; ``lacking`` tells whether others need
+    rough values to be iterated from. ``scene`` is what it was tried with, where that is known.
+    """
+
+    def __init__(self, message: str, ways: Sequence[tuple[Mapping[str, float], Mapping[str, float]]] = (), lacking: bool = False):
+        super().__init__(message)
+        self.ways, self.lacking = tuple(ways), lacking
+        self.scene: object = None
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Sent to another process, it goes without its scene, which lives in this one."""
+        return type(self), (str(self), self.ways, self.lacking)
 
 
 class MobilityError(DeclarationError):

@@ -62,7 +62,8 @@ def evaluate(
     Parameters
     ----------
     parameters
-        Values that replace defaults, by name. Nothing is derived or compiled again for them where the defaults can be assembled.
+        Values that replace defaults, by name; of a parameter in rad a text such as ``"30 deg"`` too. Nothing is derived or compiled
+        again for them where the defaults can be assembled.
     t, xi
         Start, stop and count of the instants [s] and of the section ratios xi/l.
     wanted

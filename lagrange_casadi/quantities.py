@@ -95,8 +95,8 @@ QUANTITIES = (
     Quantity("station", "station", ("t",), "1", "place of the station, ratio xi/l"),
 )  # fmt: skip
 
-RESULTANT = Quantity("reaction", "", ("t",), FORCE, "resultant of the joint's reaction")
-"""The size of a reaction's force: a peak of designs, and no series of its own."""
+RESULTANT = Quantity("reaction", "resultant", ("t",), FORCE, "resultant of the joint's reaction")
+"""The size of a reaction's force: it follows from the reaction, and is no series of its own."""
 
 _BY_KEY = {(q.group, q.member): q for q in (*QUANTITIES, RESULTANT)}
 LAW = tuple(q.member for q in QUANTITIES if q.group == "law")
@@ -125,8 +125,8 @@ class Declared(Protocol):
 class Output:
     """One output of a mechanism: what it is of its ``part``.
 
-    ``group`` and ``member`` are those of its :class:`Quantity`. Without a ``member`` a reaction is the size
-    of the force. The certificate is of no ``part``. ``station`` names what acts on a link at a station.
+    ``group`` and ``member`` are those of its :class:`Quantity`. The certificate is of no ``part``. ``station`` names what acts on a
+    link at a station.
     """
 
     group: str
@@ -167,6 +167,13 @@ class Output:
     def quantity(self) -> Quantity:
         """Its row of the table. Raises ``KeyError`` where there is none."""
         return _BY_KEY[self.group, self.member]
+
+    @property
+    def components(self) -> tuple[Output, ...]:
+        """Of what it is the size: the outputs of a resultant, else itself."""
+        if self.group != RESULTANT.group or self.member != RESULTANT.member:
+            return (self,)
+        return Output(self.group, self.part, "fx"), Output(self.group, self.part, "fy")
 
     @property
     def along(self) -> bool:

@@ -61,8 +61,8 @@ def assert_refined(scene, designs, outcome, row, p, tolerance=1e-11, noise=1e-12
     for joint in {name.split(":")[1] for name in names if name.startswith("reaction:")}:
         reaction = solution.reaction(joint)
         size = np.hypot(reaction.fx, reaction.fy)
-        assert found[f"reaction:{joint}"][0] >= size.max() * (1 - 1e-14)
-        assert found[f"reaction:{joint}"][0] <= size.max() * 1.2 or math.isinf(found[f"reaction:{joint}"][0])
+        assert found[f"reaction:{joint}:resultant"][0] >= size.max() * (1 - 1e-14)
+        assert found[f"reaction:{joint}:resultant"][0] <= size.max() * 1.2 or math.isinf(found[f"reaction:{joint}:resultant"][0])
 
 
 def loaded(mechanism, parts):

@@ -26,7 +26,14 @@ SIZE = 420
 class Formula:
     """Numbers that tell the design and the column apart; some have no result. ``pause`` [s] a design."""
 
-    quantities = ("effort:O", "reaction:A", "reaction:A:fx", "section:rod:axial", "section:rod:shear", "section:rod:bending")
+    quantities = (
+        "effort:O",
+        "reaction:A:resultant",
+        "reaction:A:fx",
+        "section:rod:axial",
+        "section:rod:shear",
+        "section:rod:bending",
+    )
     efforts = ("effort:O",)
     undetermined = doubtful = ()
     cost, room = 1 / 15, 0

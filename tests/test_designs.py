@@ -161,7 +161,7 @@ def test_what_is_not_determined_is_left_out():
     scene = parallelogram(pendulum=True)
     designs = DesignEngine.of(scene, rung=Rung("c"))
     assert not [name for name in designs.quantities if name.startswith(("reaction:A", "section:bar", "section:b:axial"))]
-    assert {"effort:hang", "reaction:hang", "section:bob:bending", "section:b:bending"} <= set(designs.quantities)
+    assert {"effort:hang", "reaction:hang:resultant", "section:bob:bending", "section:b:bending"} <= set(designs.quantities)
     outcome = designs.evaluate(np.zeros((1, 0)))
     assert np.isfinite(outcome.value).all()
     solution = evaluate(scene, backend="c", certificate=False)
@@ -191,7 +191,7 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
 def test_names_and_units_go_together():
     designs = DesignEngine.of(slider_crank(), ["reaction:guide", "effort", "section:rod"])
     assert designs.quantities == (
-        *("effort:O", "reaction:guide", "reaction:guide:fx", "reaction:guide:fy"),
+        *("effort:O", "reaction:guide:resultant", "reaction:guide:fx", "reaction:guide:fy"),
         *("section:rod:axial", "section:rod:shear", "section:rod:bending"),
     )
     assert designs.units == ("N m", "N", "N", "N", "N", "N", "N m")

@@ -31,6 +31,38 @@ def test_time_plot_of_sections(solution):
     np.testing.assert_allclose(half[:, 1], solution.section("rod").axial[:, 50], rtol=1e-12)
 
 
+def test_each_unit_has_axes_of_its_own(solution):
+    """A torque and forces share no scale: two panels over one time, each named by its own quantities."""
+    names = ("effort:O", "reaction:guide:fy", "reaction:guide:resultant", "motion:O")
+    figure = TimePlot("both", names, "both", note="a note").draw(solution)
+    assert [axes.get_ylabel() for axes in figure.axes] == [
+        "effort of the drive [N m]",
+        "reaction of the joint, resultant of the joint's reaction [N]",
+        "coordinate of the joint [rad]",
+    ]
+    lines = [[line.get_ydata() for line in axes.get_lines() if len(line.get_ydata()) > 2] for axes in figure.axes]
+    assert [len(panel) for panel in lines] == [1, 2, 1]
+    np.testing.assert_array_equal(lines[0][0], solution.effort("O"))
+    np.testing.assert_array_equal(lines[1][1], solution.reaction("guide").resultant)
+    assert [axes.get_title() for axes in figure.axes] == ["both", "", ""]
+    assert [axes.get_xlabel() for axes in figure.axes] == ["", "", "t [s]"]
+    assert figure.get_supxlabel() == "a note"
+    assert len(TimePlot("one", ("reaction:guide:fx", "reaction:guide:fy")).draw(solution).axes) == 1
+
+
+def test_resultants_are_drawn_where_their_reactions_are(solution, slider_crank, tmp_path):
+    spec = TimePlot("size", ("reaction:guide:resultant",))
+    assert [path.name for _, path in figures.draw(solution, [spec], tmp_path) if path] == ["size.png"]
+    without = evaluate(slider_crank.scene, wanted=["effort"], t=(0, 0.08, 21))
+    assert [path for _, path in figures.draw(without, [spec], tmp_path)] == [None]
+
+
+def test_sections_of_two_links_are_told_apart(solution):
+    figure = TimePlot("two", ("section:rod:axial", "section:crank:axial"), xi=(0.5,)).draw(solution)
+    texts = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert texts == [r"rod axial, $\xi/l$ = 0.5", r"crank axial, $\xi/l$ = 0.5"]
+
+
 def test_span_plot_takes_the_nearest_instant(solution):
     figure = SpanPlot("bending", "section:rod:bending", 0.03004, "bending").draw(solution)
     np.testing.assert_array_equal(curves(figure)[0][:, 1], solution.section("rod").bending[300])

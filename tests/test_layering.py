@@ -36,6 +36,7 @@ ORDER = (
     "motion",
     "figures",
     "peaks",
+    "shipped_cases",
     "case_modules",
     "case",
     "sweep",

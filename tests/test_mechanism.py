@@ -82,7 +82,7 @@ def test_a_mechanism_freezes_in_a_scene(m):
         (
             {"l": math.nan, "m2": "big"},
             ParameterError,
-            "parameter 'l' must be a finite number, got nan; parameter 'm2' must be a number, got 'big'$",
+            r"parameter 'l' must be a finite number, got nan; parameter 'm2' must be a number \[kg\], got 'big'$",
         ),
         ({"l": math.nan}, ParameterError, "parameter 'l' must be a finite number"),
         ({"l": math.inf}, ParameterError, "parameter 'l' must be a finite number"),

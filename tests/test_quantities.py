@@ -39,7 +39,7 @@ def test_the_table_is_complete():
     assert all(q.long_name and q.unit for q in QUANTITIES)
 
 
-@pytest.mark.parametrize("name", ["torsion:rod", "section:rod:torsion", "reaction:O:fz"])
+@pytest.mark.parametrize("name", ["torsion:rod", "section:rod:torsion", "reaction:O:fz", "reaction:O"])
 def test_other_names_are_refused(name):
     with pytest.raises(KeyError):
         quantity_of(name)
@@ -58,7 +58,7 @@ def test_other_names_are_refused(name):
         (Output("law", "rod", "n0"), "section:rod:law:n0"),
         (Output("station", "rod", "n", "law"), "section:rod:law:n"),
         (Output("station", "rod", "station", "A"), "section:rod:A:station"),
-        (Output("reaction", "A"), "reaction:A"),
+        (Output("reaction", "A", "resultant"), "reaction:A:resultant"),
         (Output("certificate", "", "balance"), "certificate:balance"),
     ],
 )

@@ -36,6 +36,26 @@ def test_a_graph_holds_what_is_wanted(wanted, expected):
     assert groups(derive(slider_crank(), wanted)) == expected
 
 
+@pytest.mark.parametrize(
+    ("wanted", "same"),
+    [
+        (["section"], ["section:crank", "section:rod"]),
+        (["reaction", "effort"], ["effort", "reaction:O", "reaction:A", "reaction:B", "reaction:guide"]),
+        (["section", "section:rod"], ["section:rod", "section:crank"]),
+    ],
+)
+def test_a_kind_is_all_of_that_kind(wanted, same):
+    scene = slider_crank()
+    assert derive(scene, wanted).names == derive(scene, same).names
+
+
+def test_a_kind_of_which_there_is_none_is_refused():
+    with pytest.raises(DeclarationError, match="output 'load': mechanism 'slider_crank' has none; valid: all, effort, motion"):
+        derive(slider_crank(), ["effort", "load"])
+    with pytest.raises(UnknownNameError, match=r"unknown output 'sections' \(did you mean 'section'\?\)"):
+        derive(slider_crank(), ["sections"])
+
+
 def test_what_is_not_wanted_costs_nothing():
     """The effort alone is a graph without a mobility: as many instructions whether or not the links could be cut."""
     scene = four_bar()
@@ -123,7 +143,7 @@ def test_a_link_known_by_its_inertia_has_no_section():
         ({"motion": {"X": polynomial(0)}}, "unknown joint, path or body in motion 'X'; valid: O, A, B, guide, crank"),
         ({"motion": {"B": polynomial(0)}}, "joint 'B' cannot be driven"),
         ({"motion": {"O": 3.0}}, "motion of joint 'O': expected a law"),
-        ({"posture": {"stick": 1.0}}, "unknown link or sliding joint in posture 'stick'; valid: crank, rod, guide"),
+        ({"posture": {"stick": 1.0}}, "unknown link or joint in posture 'stick'; valid: crank, rod, O, A, guide"),
         ({"t": (0, 1, 0)}, "t: COUNT must be a whole number of at least 1, got 0"),
         ({"t": (0, 1, 1)}, "t: COUNT must be 2 or more to reach from 0 to 1, got 1"),
         ({"xi": (0, 1, 1)}, "xi: COUNT must be 2 or more to reach from 0 to 1, got 1"),

@@ -64,7 +64,7 @@ def test_a_list_is_drawn_over_each_parameter(listed, tmp_path):
 
 def test_many_columns_and_parameters_come_on_pages(monkeypatch, tmp_path):
     engine = sweeps.use(monkeypatch)
-    engine.quantities = tuple(f"reaction:J{k}" for k in range(10))
+    engine.quantities = tuple(f"reaction:J{k}:resultant" for k in range(10))
     grid = sweep(sweeps.scene(), {"l": (0.15, 0.4, 3), "r": [0.05, 0.1]}, out=tmp_path / "x.h5", wanted=["effort"])
     specs = [spec for spec in default_plots(grid) if isinstance(spec, Peaks)]
     assert [(spec.name, len(spec.columns)) for spec in specs] == [("peak_reactions_1", 5), ("peak_reactions_2", 5)]

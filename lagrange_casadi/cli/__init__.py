@@ -14,23 +14,34 @@ from typing import Any
 
 import click
 
-from ..errors import LagrangeCasadiError, UnknownNameError, one_line
+from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_line
 from ..system.interrupts import SENTENCE, STATUS, interrupts
 from ..version import __version__
 from .best import best
 from .cache import cache
 from .cases import cases
 from .check import check
+from .drawing import drawn_ways
 from .export import export
 from .info import info
+from .new import new
 from .plot import plot
 from .run import run
 from .sweep import sweep
 from .table import table
 from .trade import trade
 
-_OPTIONS = {"resume=True": "--resume", "force=True": "--force", "many=True": "--yes"}
+_OPTIONS = {
+    "resume=True": "--resume",
+    "force=True": "--force",
+    "many=True": "--yes",
+    "which `load` reads": "which the commands info, plot and check read",
+    "which `Sweep.open` reads": "which the commands table, best, info, plot and check read",
+}
 """What errors call in Python's words, in the command line's."""
+
+_NUMPY = r"\s*casadi: a numpy function was called"
+"""How a note of CasADi begins that fills the screen: what NumPy makes of symbols is what it should be."""
 
 
 _MOMENT, _WAITS = 0.01, 50
@@ -52,7 +63,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (run, sweep, best, table, trade, export, plot, info, check, cases, cache)
+_COMMANDS = (run, sweep, best, table, trade, export, plot, info, check, cases, new, cache)
 
 
 @click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
@@ -67,9 +78,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     os.environ["MPLBACKEND"] = "agg"
     with warnings.catch_warnings():
         warnings.simplefilter("always", UserWarning)
+        warnings.filterwarnings("ignore", _NUMPY, FutureWarning)
         warnings.showwarning = lambda message, *_args, **_kwargs: _say(f"note: {message}")
         try:
             result = program.main(arguments, prog_name="lagrange-casadi", standalone_mode=False)
+        except PostureError as error:
+            return _fail(f"{error}{drawn_ways(error)}", error.exit_status)
         except LagrangeCasadiError as error:
             return _fail(str(error), error.exit_status)
         except click.exceptions.NoArgsIsHelpError as error:

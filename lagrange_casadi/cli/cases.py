@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import ast
 import shutil
-from importlib import metadata
 from pathlib import Path
 
 import click
 
 from ..errors import PathError, StoreError
-
-_IN_A_CLONE = Path(__file__).parents[2] / "cases"
+from ..shipped_cases import shipped_cases
 
 
 @click.command()
 @click.option("--copy", type=click.Path(path_type=Path), metavar="FOLDER", help="Copy all of them into a new folder.")
 def cases(copy: Path | None) -> None:
-    """List the cases that come with the package, or copy them."""
-    found = _found()
+    """List the cases that come with the package, or copy them. Each is run by its name, as in run four_bar."""
+    found = shipped_cases()
+    if not found:
+        raise PathError("the cases were not installed with the package: they are in its repository")
     if copy is None:
         for name, folder in found.items():
             click.echo(f"{name:18} {_sentence(folder / 'case.py')}")
@@ -31,15 +31,6 @@ def cases(copy: Path | None) -> None:
     except OSError as error:
         raise StoreError(f"cannot write {copy}: {error.strerror or error}") from None
     click.echo(f"copied {len(found)} cases: begin with lagrange-casadi run {copy / next(iter(found))}")
-
-
-def _found() -> dict[str, Path]:
-    """The folders of the cases by name: of an installation what its record tells, else those of a clone."""
-    recorded = [Path(str(file.locate())) for file in metadata.files("lagrange_casadi") or () if file.match("cases/*/case.py")]
-    there = [path.parent for path in recorded if path.is_file()] or [path.parent for path in _IN_A_CLONE.glob("*/case.py")]
-    if not there:
-        raise PathError("the cases were not installed with the package: they are in its repository")
-    return {folder.name: folder for folder in sorted(there)}
 
 
 def _sentence(file: Path) -> str:

@@ -1,15 +1,21 @@
-"""Drawing with a progress bar, for the commands that draw."""
+"""Drawing with a progress bar, for the commands that draw; and the ways in which a mechanism can be assembled."""
 
 from __future__ import annotations
 
+import io
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import click
 from tqdm import tqdm
 
+from ..declare.scene import Scene
 from ..draw.figures import Spec, default_figures, draw
+from ..draw.postures import draw_postures
+from ..errors import LagrangeCasadiError, PostureError
 from ..instants.solution import Solution
+from ..system.publish import writing
 
 
 def draw_with_progress(solution: Solution, specs: Sequence[Spec], folder: Path) -> None:
@@ -21,3 +27,18 @@ def draw_with_progress(solution: Solution, specs: Sequence[Spec], folder: Path) 
             skipped.append(spec.name)
     if skipped:
         click.echo(f"note: not drawn, for want of their outputs: {', '.join(skipped)}", err=True)
+
+
+def drawn_ways(error: PostureError) -> str:
+    """Draw the ways in which a loop that is open can be assembled into a file here, and say so; nothing where it cannot be."""
+    scene = error.scene
+    if not isinstance(scene, Scene) or error.lacking:
+        return ""
+    picture = io.BytesIO()
+    path = Path(f"{scene.mechanism.name}_postures.png")
+    with suppress(LagrangeCasadiError):
+        if many := draw_postures(scene, picture):
+            with writing(path) as (file,):
+                file.write(picture.getvalue())
+            return f"; {path} draws {many} that close{'' if many > 1 else 's'}, each with its posture"
+    return ""

@@ -21,7 +21,12 @@ from .options import arithmetic, parameters, setting
 @click.option(
     "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another default; repeatable."
 )
-@click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
+@click.option(
+    "--want",
+    multiple=True,
+    metavar="OUTPUT",
+    help="effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; repeatable.",
+)
 @arithmetic
 @click.option(
     "--largest", type=click.IntRange(0), metavar="BYTES", help="Most bytes of a table; default: 16 MB, in single precision 64 kB."
@@ -34,7 +39,7 @@ def export(
     case: Path,
     out: Path,
     name: str | None,
-    settings: Sequence[tuple[str, float]],
+    settings: Sequence[tuple[str, float | str]],
     want: Sequence[str],
     precision: Precision,
     newton: int | None,

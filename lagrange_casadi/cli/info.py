@@ -11,7 +11,7 @@ import click
 
 from ..case import load_case
 from ..declare.description import Description, describe
-from ..declare.scene import Scene, outputs
+from ..declare.scene import Scene, kinds, outputs
 from ..equations.derive import derive
 from ..instants.solution import Solution
 from ..store import runs as store
@@ -19,13 +19,15 @@ from ..sweep import Sweep, is_sweep
 from ..sweep.axes import counted
 from ..sweep.checking import progress, unfinished
 from .report import peak_line
+from .scene_lines import scene_lines
 
 
 @click.command()
 @click.argument("target", metavar="CASE|FILE.h5|FILE.h5.parts", type=click.Path(path_type=Path))
 @click.option("--want", multiple=True, metavar="OUTPUT", help="Count the instructions of these outputs; default: the case's.")
 def info(target: Path, want: tuple[str, ...]) -> None:
-    """Describe a case (with its instruction count), or a file of a run or a sweep, finished or not."""
+    """Describe a case: its parts, drives, loads, posture, what is wanted, and its instruction count. Or a file of a run or a sweep,
+    finished or not."""
     folder = unfinished(target)
     if folder or target.suffix in (".h5", ".hdf5"):
         if want:
@@ -45,9 +47,12 @@ def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
     mechanism = scene.mechanism
     graph = derive(scene, want or None)
     _describe_mechanism(describe(mechanism, mechanism.values(), scene.laws, scene.weights))
+    for line in scene_lines(scene):
+        click.echo(line)
     for what, (start, stop, count) in (("t [s]", scene.t), ("xi/l", scene.xi)):
         click.echo(f"{what}: {start:g} to {stop:g}, {count} points")
-    click.echo(f"outputs: {', '.join(outputs(mechanism))}")
+    whole = kinds(mechanism)
+    click.echo(f"outputs: {', '.join(outputs(mechanism))}" + (f"; all of a kind: {', '.join(whole)}" if whole else ""))
     click.echo(f"wanted: {', '.join(want or scene.wanted)}")
     loops = [f"{name} ({'iterated' if graph.iterates(name) else 'closed form'})" for name in graph.checks("closure")]
     click.echo(f"loops closed by: {', '.join(loops) or 'none'}")
@@ -103,5 +108,10 @@ def _describe_mechanism(description: Description) -> None:
         size = "point mass" if body["length"] is None else f"link of {body['length']:g} m,"
         click.echo(f"  {size} {name}: {body['mass']:g} kg".replace("  point mass", "  point mass"))
     for name, joint in description["joints"].items():
-        ends = " - ".join(f"{p['body']} ({p['x']:g}, {p['y']:g})" for p in (joint["parent"], joint["child"]))
-        click.echo(f"  {joint['kind']} joint {name}: {ends}{', driven' if joint['driven'] else ''}")
+        ends = " - ".join(f"{p['body']} ({p['x'] + 0.0:g}, {p['y'] + 0.0:g})" for p in (joint["parent"], joint["child"]))
+        along = ""
+        if joint["kind"] in ("prismatic", "slot"):
+            along = f", along ({joint['axis'][0] + 0.0:g}, {joint['axis'][1] + 0.0:g}) of {joint['parent']['body']}"
+        turned = f", at {joint['angle']:g} rad ({math.degrees(joint['angle']):g} deg)" if joint["angle"] else ""
+        click.echo(f"  {joint['kind']} joint {name}: {ends}{along}{turned}{', driven' if joint['driven'] else ''}")
+    click.echo("  gravity: ({:g}, {:g}) m/s^2".format(*(component + 0.0 for component in description["gravity"])))

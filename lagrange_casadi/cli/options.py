@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any, TypeVar
 
 import click
 
 from ..arithmetic.compensated import PRECISIONS
+from ..declare.angles import angle
 from ..declare.scene import EvenPoints
-from ..errors import DeclarationError
+from ..errors import AngleError, DeclarationError
 from ..instants.rung import BACKENDS
 from ..sweep import Axis, Range, Values
 from ..system.numerals import real, whole
@@ -51,28 +53,30 @@ def axis(text: str) -> tuple[str, Axis]:
         raise click.BadParameter(f"{name}: {error}") from None
 
 
-def setting(text: str) -> tuple[str, float]:
-    """NAME=VALUE."""
-    name, equals, number = text.partition("=")
-    try:
-        if not equals:
-            raise ValueError
-        return name.strip(), real(number)
-    except ValueError:
-        raise click.BadParameter(f"expected NAME=VALUE with a number, as in l=0.25, got '{text}'") from None
+def setting(text: str) -> tuple[str, float | str]:
+    """NAME=VALUE; a value with a unit stays a text, for what is set to tell whether it is an angle."""
+    name, equals, value = (word.strip() for word in text.partition("="))
+    with suppress(ValueError):
+        if equals:
+            return name, real(value)
+    with suppress(AngleError):
+        if equals:
+            angle(value)
+            return name, value
+    raise click.BadParameter(f"expected NAME=VALUE with a number, as in l=0.25 or phi=30deg, got '{text}'")
 
 
-def place(text: str) -> tuple[str, float]:
+def place(text: str) -> tuple[str, float | str]:
     """NAME=VALUE, the value finite."""
     name, value = setting(text)
-    if not math.isfinite(value):
+    if isinstance(value, float) and not math.isfinite(value):
         raise click.BadParameter(f"{name}: expected a finite number, got {value}")
     return name, value
 
 
-def parameters(settings: Sequence[tuple[str, float]]) -> dict[str, float]:
+def parameters(settings: Sequence[tuple[str, float | str]]) -> dict[str, Any]:
     """Settings as a mapping. Raises ``click.UsageError`` for a parameter set twice."""
-    found: dict[str, float] = {}
+    found: dict[str, Any] = {}
     for name, value in settings:
         if name in found:
             raise click.UsageError(f"--set: parameter '{name}' is set twice")

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 from tqdm import tqdm
 
+from ..declare.angles import angle
 from ..draw.figures import parse_specs
 from ..errors import NoDesignError
 from ..store.runs import figure_specs, load
@@ -38,7 +39,9 @@ _UNDRAWN = "cannot be drawn"
 @click.option(
     "--against", nargs=2, multiple=True, metavar="COLUMN COLUMN", help="Of a sweep: the front of these two columns or parameters."
 )
-def plot(file: Path, out: Path, over: Sequence[str], at: Sequence[tuple[str, float]], against: Sequence[tuple[str, str]]) -> None:
+def plot(
+    file: Path, out: Path, over: Sequence[str], at: Sequence[tuple[str, float | str]], against: Sequence[tuple[str, str]]
+) -> None:
     """Draw the figures of FILE.h5, as its case wants them, or peaks over parameters where it is a sweep."""
     check_writable(out, folder=True)
     if is_sweep(file):
@@ -46,7 +49,8 @@ def plot(file: Path, out: Path, over: Sequence[str], at: Sequence[tuple[str, flo
         if len(stays) < len(at):
             raise click.UsageError("--at: a parameter stays at one value, got two for " + _twice(at))
         sweep = Sweep.open(file)
-        _draw(sweep, default_plots(sweep, over=over, at=stays, against=against), out)
+        there = {name: _number(sweep, name, value) for name, value in stays.items()}
+        _draw(sweep, default_plots(sweep, over=over, at=there, against=against), out)
     elif over or at or against:
         raise click.UsageError("--over, --at and --against go with a sweep's file")
     else:
@@ -69,6 +73,15 @@ def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
         click.echo(f"note: not drawn: {line}", err=True)
 
 
-def _twice(at: Sequence[tuple[str, float]]) -> str:
+def _number(sweep: Sweep, name: str, value: float | str) -> float:
+    """Where a parameter stays; of an angle it may be told with its unit."""
+    if isinstance(value, str):
+        if (unit := sweep.parameters.get(name)) != "rad":
+            raise click.UsageError(f"--at: parameter '{name}' is in {unit}, got {value}")
+        return angle(value)
+    return value
+
+
+def _twice(at: Sequence[tuple[str, float | str]]) -> str:
     names = [name for name, _ in at]
     return ", ".join(dict.fromkeys(f"'{name}'" for name in names if names.count(name) > 1))

@@ -2,14 +2,60 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator, Sequence
+
 from ..instants.solution import Peak, Solution
+from ..instants.statistics import Statistics
+from ..quantities import RESULTANT, Output
+
+_GROUPS = ("effort", "reaction", "section", "output")
 
 
 def peak_line(solution: Solution, peak: Peak) -> str:
     """A peak with its place, and how far it may be off where that is estimated; of one that is not told, what was found."""
-    off = f" +- {solution.errors[peak.name]:.0e}" if peak.name in solution.errors else ""
+    error = _error(solution, peak.name)
+    off = "" if error is None else f" +- {error:.0e}"
     where = f"t = {peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {peak.xi:.4f}")
     if peak.least is not None:
         found = f"{peak.least:.6g} {peak.unit} was found at {where}"
         return f"  {peak.name:<28}{'not told':>13} too much hides between the instants, more may help; {found}"
-    return f"  {peak.name:<28}{peak.value:>13.6g}{off} {peak.unit:<4} at {where}"
+    return f"  {peak.name:<28}{peak.value + 0.0:>13.6g}{off} {peak.unit:<4} at {where}"
+
+
+def report_lines(solution: Solution, refined: Sequence[Peak] = ()) -> Iterator[str]:
+    """All efforts, reactions with their resultants, and section forces: the peaks, or the refined ones, then means and ends."""
+    peaks = {peak.name: peak for peak in refined}
+    told = [(output, solution.statistics(output) if solution.determined(output) else None) for output in _told(solution)]
+    for output, found in told:
+        if found is None:
+            yield f"  {output!s:<28}{'open':>13} {'':<4} equilibrium does not determine it: the mechanism is over-constrained"
+            continue
+        own = found.peak
+        yield peak_line(solution, peaks.get(found.name) or Peak(found.name, own.value, found.unit, own.t, own.xi))
+    span = f"over {solution.t[-1] - solution.t[0]:.5g} s" if solution.t.size > 1 else "at the one instant"
+    yield f"{span:<30}{'smallest':>13} {'largest':>13} {'mean':>13} {'rms':>13}"
+    yield from (_statistics_line(found) for _, found in told if found)
+
+
+def _statistics_line(found: Statistics) -> str:
+    ends = " ".join(f"{extreme.value + 0.0:>13.6g}" for extreme in (found.smallest, found.largest))
+    means = " ".join(f"{'':>13}" if value is None else f"{value + 0.0:>13.6g}" for value in (found.mean, found.rms))
+    return f"  {found.name:<28}{ends} {means} {found.unit}"
+
+
+def _told(solution: Solution) -> Iterator[Output]:
+    """What is told of a solution: a reaction's resultant after its components."""
+    for output in solution.quantities():
+        if output.group in _GROUPS:
+            yield output
+            resultant = Output("reaction", output.part, RESULTANT.member)
+            if output == resultant.components[-1]:
+                yield resultant
+
+
+def _error(solution: Solution, name: str) -> float | None:
+    """How far a quantity may be off; the size of a force by no more than its components together."""
+    errors = [solution.errors.get(str(component)) for component in Output.of(name).components]
+    told = [error for error in errors if error is not None]
+    return math.hypot(*told) if len(told) == len(errors) else None

@@ -1,19 +1,22 @@
-"""Designs as rows, on a terminal or as CSV."""
+"""Designs or instants as rows, on a terminal or as CSV."""
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from io import TextIOWrapper
 from pathlib import Path
 
 import click
+import numpy as np
 
+from ..declare.density import Array
 from ..sweep import Sweep
 from ..sweep.columns import STATUS
 from ..system.publish import writing
 
 _WIDTH = 10
+_BLOCK = 1024
 
 
 def show(sweep: Sweep, names: Sequence[str], rows: Iterable[tuple[int, Sequence[float]]]) -> int:
@@ -41,6 +44,12 @@ def write_csv(names: Sequence[str], rows: Iterable[Sequence[float]], path: Path)
             count += 1
         text.detach()
     return count
+
+
+def rows_of(columns: Sequence[Array]) -> Iterator[list[float]]:
+    """The rows of columns of one length."""
+    for start in range(0, columns[0].size, _BLOCK):
+        yield from np.column_stack([column[start : start + _BLOCK] for column in columns]).tolist()
 
 
 def _head(sweep: Sweep, name: str) -> str:

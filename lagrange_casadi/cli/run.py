@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 
 import click
@@ -15,16 +16,19 @@ from ..declare.scene import EvenPoints
 from ..draw.figures import dump_specs
 from ..errors import CertificateError
 from ..evaluate import evaluate
+from ..instants.frames import TIME, columns
 from ..instants.rung import Backend
-from ..instants.solution import Peak, Solution
 from ..judge.certificate import failure, summary
 from ..store.runs import check_target, save
-from ..study.peaks import forces, refine
+from ..study.peaks import forces, refine, resultants
 from ..system.publish import check_free, check_writable, filling
 from ..system.room import MOST_THREADS
+from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
 from .options import EVEN_POINTS, even_points, parameters, rung, setting
-from .report import peak_line
+from .replaced import figures_in, replaced_lines
+from .report import report_lines
+from .rows import rows_of, write_csv
 
 
 @click.command()
@@ -34,17 +38,23 @@ from .report import peak_line
 )
 @click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
 @click.option("--xi", type=even_points, metavar=EVEN_POINTS, help="Section ratios xi/l, within 0 and 1; default: the case's.")
-@click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
+@click.option(
+    "--want",
+    multiple=True,
+    metavar="OUTPUT",
+    help="effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; repeatable.",
+)
 @rung
 @click.option("--threads", type=click.IntRange(1, MOST_THREADS), metavar="N", help="Threads; default: one a core.")
 @click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>.h5 here.")
 @click.option("--figures", type=click.Path(path_type=Path), help="The figures' folder; default: <case>_figures here.")
 @click.option("--no-figures", is_flag=True, help="Draw nothing.")
+@click.option("--csv", type=click.Path(path_type=Path), metavar="FILE.csv", help="Write a row for every instant as CSV too.")
 @click.option("--refine-peaks", is_flag=True, help="Seek the reported peaks between the instants too.")
 @click.option("--no-certificate", is_flag=True, help="Do not check the solution.")
 def run(
     case: Path,
-    settings: Sequence[tuple[str, float]],
+    settings: Sequence[tuple[str, float | str]],
     t: EvenPoints | None,
     xi: EvenPoints | None,
     want: Sequence[str],
@@ -57,10 +67,11 @@ def run(
     out: Path | None,
     figures: Path | None,
     no_figures: bool,
+    csv: Path | None,
     refine_peaks: bool,
     no_certificate: bool,
 ) -> None:
-    """Evaluate CASE, a folder with a case.py or a Python file, and write an HDF5 file and figures."""
+    """Evaluate CASE, a folder with a case.py, a Python file, or one that cases lists, and write an HDF5 file and figures."""
     if figures and no_figures:
         raise click.UsageError("--figures and --no-figures exclude each other")
     if out and out.suffix not in (".h5", ".hdf5"):
@@ -73,6 +84,10 @@ def run(
         if os.path.realpath(folder) == os.path.realpath(out):
             raise click.UsageError(f"--figures {folder}: expected another place than the file's")
         check_writable(folder, folder=True)
+    if csv:
+        if os.path.realpath(csv) in [os.path.realpath(other) for other in (out, folder) if other]:
+            raise click.UsageError(f"--csv {csv}: expected another place than the file's and the figures'")
+        check_writable(csv)
     solution = evaluate(
         loaded.scene,
         parameters=parameters(settings),
@@ -87,30 +102,30 @@ def run(
         threads=threads,
         certificate=not no_certificate,
     )
+    usual = Path(f"{loaded.name}_figures") if out == Path(f"{loaded.name}.h5") else None
+    place = folder or usual
+    replaced, before, drawn = out.exists(), figures_in(place), set[str]()
     with filling(folder) if folder else nullcontext() as draft:
         if folder and draft:
             draw_with_progress(solution, loaded.figures, draft)
             check_free(draft, folder)
+            drawn = figures_in(draft)
         save(solution, out, dump_specs(loaded.figures))
-    _report(solution, refine(loaded.scene, solution, forces(solution)) if refine_peaks else None)
+    if csv:
+        write_csv([TIME, *(heads := columns(solution))], rows_of([solution.t, *heads.values()]), csv)
+    say = partial(click.echo, err=csv is not None and is_standard_output(csv))
+    what = "peaks, refined between the instants" if refine_peaks else "peaks"
+    backend_used = solution.provenance.backend
+    say(f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {backend_used}; {what}:")
+    names = [*forces(solution), *resultants(solution)]
+    for line in report_lines(solution, refine(loaded.scene, solution, names) if refine_peaks else ()):
+        say(line)
     for note in solution.notes:
-        click.echo(f"note: {note}")
+        say(f"note: {note}")
     if not no_certificate:
-        click.echo(summary(solution.certificate))
-    click.echo(f"wrote {out}" + (f" and the figures in {folder}/" if folder else ""))
+        say(summary(solution.certificate))
+    for line in replaced_lines(out, replaced, place, before if replaced else before & drawn, drawn):
+        say(line)
+    say(f"wrote {out}" + (f" and the figures in {folder}/" if folder else "") + (f", and {csv}" if csv else ""))
     if solution.failed:
         raise CertificateError(f"{failure(solution)}; {out} is marked as not certified")
-
-
-def _report(solution: Solution, refined: Sequence[Peak] | None) -> None:
-    backend = solution.provenance.backend
-    peaks = {peak.name: peak for peak in refined or ()}
-    what = "peaks" if refined is None else "peaks, refined between the instants"
-    click.echo(f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {backend}; {what}:")
-    for output in solution.quantities():
-        if output.group in ("effort", "reaction", "section", "output"):
-            name = str(output)
-            if not solution.determined(output):
-                click.echo(f"  {name:<28}{'open':>13} {'':<4} equilibrium does not determine it: the mechanism is over-constrained")
-                continue
-            click.echo(peak_line(solution, peaks.get(name) or solution.peak(name)))

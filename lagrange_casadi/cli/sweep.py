@@ -70,7 +70,7 @@ def sweep(
     case: Path,
     axes: Sequence[tuple[str, Axis]],
     designs: Path | None,
-    settings: Sequence[tuple[str, float]],
+    settings: Sequence[tuple[str, float | str]],
     t: EvenPoints | None,
     xi: EvenPoints | None,
     want: Sequence[str],

@@ -26,13 +26,18 @@ from .options import EVEN_POINTS, even_points, parameters, setting
     "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
 )
 @click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
-@click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
+@click.option(
+    "--want",
+    multiple=True,
+    metavar="OUTPUT",
+    help="effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; repeatable.",
+)
 @click.option("--accuracy", type=float, metavar="ERROR", help="Recommend the fastest method within this error of the peak.")
 @click.option("--out", type=click.Path(path_type=Path), help="The numbers, as JSON; default: <case>_trade.json here.")
 @click.option("--figure", type=click.Path(path_type=Path), help="The picture; default: <case>_trade.png here.")
 def trade(
     case: Path,
-    settings: Sequence[tuple[str, float]],
+    settings: Sequence[tuple[str, float | str]],
     t: EvenPoints | None,
     want: Sequence[str],
     accuracy: float | None,

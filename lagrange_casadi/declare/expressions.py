@@ -9,7 +9,8 @@ from typing import Any
 
 import casadi as ca
 
-from ..errors import DeclarationError
+from ..errors import AngleError, DeclarationError, one_line
+from .angles import angle as read_angle
 from .parts import Expression
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
@@ -49,8 +50,28 @@ def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str) -> Expre
     except (TypeError, ValueError):
         raise DeclarationError(f"{what} must be a number or an expression in parameters, got {value!r}") from None
     if not math.isfinite(number):
-        raise DeclarationError(f"{what} must be finite, got {number}")
+        symbols = "; functions of math and float() make nan of a symbol: use CasADi's, as casadi.sin" if math.isnan(number) else ""
+        raise DeclarationError(f"{what} must be finite, got {number}{symbols}")
     return number
+
+
+def told(error: BaseException) -> str:
+    """What an error says, in a line; of a choice that Python cannot make for a symbol, what makes it instead."""
+    text = one_line(error)
+    if "truth value of a CasADi" in text:
+        return (
+            "a symbol is neither true nor false before it has a value: use casadi.if_else(condition, a, b) for 'if', "
+            "casadi.logic_and and logic_or for 'and' and 'or', casadi.fmin and fmax for 'min' and 'max'"
+        )
+    return f"{type(error).__name__}: {text}"
+
+
+def typed(what: str, angle: Expression) -> Expression:
+    """An angle [rad]: a text as a number, anything else as it is. Raises :class:`DeclarationError` for a text of none."""
+    try:
+        return read_angle(angle) if isinstance(angle, str) else angle
+    except AngleError as error:
+        raise DeclarationError(f"{what}: angle: {error}") from None
 
 
 def unit_vector(what: str, axis: Any, component: Callable[[Any], Expression]) -> tuple[Expression, Expression]:

@@ -42,7 +42,7 @@ def parameter_values(parameters: Mapping[str, Parameter], overrides: Mapping[str
         raise UnknownNameError("parameter", unknown, parameters)
     if faults := parameter_faults(parameters, overrides):
         raise ParameterError("; ".join(faults))
-    return {name: float(overrides.get(name, parameter.default)) for name, parameter in parameters.items()}
+    return {name: parameter.number(overrides.get(name, parameter.default)) for name, parameter in parameters.items()}
 
 
 def parameter_faults(parameters: Mapping[str, Parameter], values: Mapping[str, float]) -> list[str]:

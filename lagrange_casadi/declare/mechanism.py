@@ -16,7 +16,7 @@ import casadi as ca
 
 from ..errors import DeclarationError
 from .density import Density
-from .expressions import check_line, check_name, unit_vector
+from .expressions import check_line, check_name, typed, unit_vector
 from .kinks import refuse_kinks
 from .limits import check_connected, parameter_values
 from .line_loads import Spread, line_load
@@ -118,10 +118,10 @@ class Mechanism:
         """Declare a parameter from ``low`` to ``high``, and return its ``casadi.SX`` symbol to build lengths and places from."""
         self.own.free("parameter", name, self.parameters)
         check_line(f"parameter '{name}': its unit", unit)
+        default, low, high = (typed(f"parameter '{name}'", x) if unit == "rad" else x for x in (default, low, high))
         parameter = Parameter(name, float(default), unit, float(low), float(high), ca.SX.sym(name))
         parameter.check(parameter.default)
-        self.parameters[name] = parameter
-        return parameter.symbol
+        return self.parameters.setdefault(name, parameter).symbol
 
     def link(
         self,
@@ -179,7 +179,7 @@ class Mechanism:
         return self._joint(name, "slot", parent, child, axis)
 
     def weld(self, name: str, parent: Body | Point, child: Body | Point, *, angle: Expression = 0.0) -> Joint:
-        """Fix a point of ``child`` to a point of ``parent``, its direction at ``angle`` [rad] from the parent's."""
+        """Fix a point of ``child`` to a point of ``parent``, its direction at ``angle`` [rad, or as text ``"90 deg"``]."""
         return self._joint(name, "weld", parent, child, angle=angle)
 
     def gear(self, name: str, first: Joint, second: Joint, *, ratio: Expression, offset: Expression = 0.0) -> Constraint:
@@ -286,7 +286,7 @@ class Mechanism:
         """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint, whose angle counts turns."""
         if self.own.joint(joint).coordinate != "angle":
             raise DeclarationError(f"load '{name}': joint '{joint.name}' has no angle for a torsion spring")
-        stretch, rate = self.coordinate(joint) - angle, self.rate(joint)
+        stretch, rate = self.coordinate(joint) - typed(f"load '{name}'", angle), self.rate(joint)
         return self.torque(name, joint.child, -(stiffness * stretch) - damping * rate, against=joint.parent)
 
     def output(self, name: str, expression: Any, *, unit: str = "1") -> OwnOutput:
@@ -385,7 +385,7 @@ class Mechanism:
                 f"{'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
             )
         unit = (1.0, 0.0) if axis is None else unit_vector(what, axis, lambda a: self.own.expression(f"{what}: axis", a))
-        joint = Joint(name, kind, start, end, unit, self.own.expression(f"{what}: angle", angle))
+        joint = Joint(name, kind, start, end, unit, self.own.expression(f"{what}: angle", typed(what, angle)))
         self.joints[name] = joint
         return joint
 

@@ -14,10 +14,10 @@ from typing import Any
 
 import casadi as ca
 
-from ..errors import DeclarationError, one_line
+from ..errors import DeclarationError
 from .curves import curve, rows
 from .ends import beyond_ends
-from .expressions import scalar
+from .expressions import scalar, told
 from .kinks import Span, refuse_kinks
 from .parts import Expression
 from .scaled import Scaled
@@ -176,8 +176,7 @@ def _scalar(joint: str, law: Motion, t: Any, parameters: Any) -> Any:
     try:
         value = law.graph(t)
     except Exception as error:
-        reason = f"{type(error).__name__}: {one_line(error)[:200]}"
-        raise DeclarationError(f"the motion of joint '{joint}' is no casadi.SX expression of t: {reason}") from None
+        raise DeclarationError(f"the motion of joint '{joint}' is no casadi.SX expression of t: {told(error)[:240]}") from None
     if isinstance(value, float) and math.isnan(value):
         raise DeclarationError(
             f"the motion of joint '{joint}' is not a number; use CasADi's functions of t, as casadi.sin, not math's"

@@ -35,7 +35,8 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description) -
             continue
         away = np.flatnonzero((ratio < -_EDGE) | (ratio > 1.0 + _EDGE))
         if away.size:
+            low, high = (round(float(end), 9) + 0.0 for end in (ratio.min(), ratio.max()))
             yield (
-                f"joint '{name}' leaves link '{joint['parent']['body']}' at t = {t[away[0]]:.6g} s (xi/l from {ratio.min():.4g} to "
-                f"{ratio.max():.4g}): beyond its ends it loads the link as through a bracket"
+                f"joint '{name}' leaves link '{joint['parent']['body']}' at t = {t[away[0]]:.6g} s (xi/l from {low:.4g} to "
+                f"{high:.4g}): beyond its ends it loads the link as through a bracket"
             )

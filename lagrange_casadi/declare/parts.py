@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from ..errors import ParameterError
+from ..system.numerals import readable
+from .angles import angle
 from .density import Density
 
 Expression = Any
@@ -32,18 +34,31 @@ class Parameter:
         if found := self.fault(value):
             raise ParameterError(found)
 
+    def number(self, value: Any) -> float:
+        """A value as a number; of a parameter in rad it may be a text such as ``"30 deg"``.
+
+        Raises ``TypeError`` or ``ValueError`` for what is none.
+        """
+        try:
+            return float(value)
+        except (TypeError, ValueError):
+            if self.unit != "rad":
+                raise
+            return angle(value)
+
     def fault(self, value: Any) -> str:
         """What is wrong with a value, in words; nothing where it is a finite number within ``[low, high]``."""
         try:
-            number = float(value)
+            number = self.number(value)
         except (TypeError, ValueError):
-            return f"parameter '{self.name}' must be a number, got {value!r}"
+            unit = "" if self.unit == "1" else f" [{self.unit}]" + (", or a text such as '30 deg'" if self.unit == "rad" else "")
+            return f"parameter '{self.name}' must be a number{unit}, got {value!r}"
         if not math.isfinite(number):
             return f"parameter '{self.name}' must be a finite number, got {number}"
         if not self.low <= number <= self.high:
             return (
-                f"parameter '{self.name}' = {number:.17g}{'' if self.unit == '1' else ' ' + self.unit} is out of its range "
-                f"[{self.low:.17g}, {self.high:.17g}]"
+                f"parameter '{self.name}' = {readable(number, self.low, self.high)}{'' if self.unit == '1' else ' ' + self.unit} "
+                f"is out of its range [{readable(self.low, number)}, {readable(self.high, number)}]"
             )
         return ""
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..arithmetic.compensated import Precision
 from ..errors import ParameterError
+from ..system.numerals import readable
 from .density import Density
 from .ends import BEYOND, beyond_ends
 from .limits import END, margins
@@ -138,17 +139,17 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
     found: list[Demand] = []
     if isinstance(body, Link):
         length = body.length
-        found.append(Demand(length, True, lambda n: f"{what}: length must be positive, got {n(length):.17g} m"))
+        found.append(Demand(length, True, lambda n: f"{what}: length must be positive, got {readable(n(length))} m"))
         if isinstance(body.mass, Density):
             base, tip, _ = body.mass.ends(length)
             return base + tip, [*found, *_of_density(what, body.mass, length, precision)]
     matter = body.mass
     mass = matter.mass if isinstance(matter, RigidMass) else matter
     assert not isinstance(mass, Density)
-    found.append(Demand(mass, False, lambda n: f"{what}: mass must not be negative, got {n(mass):.17g} kg"))
+    found.append(Demand(mass, False, lambda n: f"{what}: mass must not be negative, got {readable(n(mass))} kg"))
     if isinstance(matter, RigidMass):
         inertia = matter.inertia
-        found.append(Demand(inertia, False, lambda n: f"{what}: inertia must not be negative, got {n(inertia):.17g} kg m^2"))
+        found.append(Demand(inertia, False, lambda n: f"{what}: inertia must not be negative, got {readable(n(inertia))} kg m^2"))
     return mass, found
 
 
@@ -156,7 +157,7 @@ def _of_density(what: str, density: Density, length: Expression, precision: Prec
     """The lowest density of each cell, beside what the sum of its terms rounds [kg or kg/m]; not finite where a term is not."""
     if density.even:
         mass = density.cells[0][0] * (length if density.per_length else 1.0)
-        return [Demand(mass, False, lambda n: f"{what}: mass must not be negative, got {n(mass):.17g} kg")]
+        return [Demand(mass, False, lambda n: f"{what}: mass must not be negative, got {readable(n(mass))} kg")]
     spans = zip(density.breaks, density.breaks[1:], density.cells, strict=False)
     places = [lowest(cell, a, b) for a, b, cell in spans]
     place, value = places[0]
@@ -166,7 +167,7 @@ def _of_density(what: str, density: Density, length: Expression, precision: Prec
 
     def refusal(number: Evaluator) -> str:
         got = number(value) / (1.0 if density.per_length else number(length))
-        return f"{what}: density must not be negative, got {got:.17g} kg/m at xi/l = {number(place):.6g}"
+        return f"{what}: density must not be negative, got {readable(got)} kg/m at xi/l = {number(place):.6g}"
 
     sizes = [sum(ca.fabs(ca.SX(c)) for c in cell) for cell in density.cells]
     return [Demand(own + END[precision] * size, False, refusal) for (_, own), size in zip(places, sizes, strict=True)]
@@ -179,7 +180,7 @@ def _some_mass(name: str, masses: list[Expression]) -> Demand:
         mass = number(total)
         if mass == 0.0:
             return f"mechanism '{name}' is massless: at least one link or point mass needs a mass"
-        return f"mechanism '{name}': its whole mass must be finite and positive, got {mass:.17g} kg"
+        return f"mechanism '{name}': its whole mass must be finite and positive, got {readable(mass)} kg"
 
     return Demand(total, True, refusal)
 
@@ -192,7 +193,15 @@ def _surely_positive(mass: Expression) -> bool:
 
 def _of_station(what: str, point: Any, precision: Precision) -> list[Demand]:
     def refusal(number: Evaluator) -> str:
-        x, length = number(point.x), number(point.body.length)
-        return f"{what}: station {x:.13g} m is outside link '{point.body.name}', 0 to {length:.13g} m"
+        x, length, link = number(point.x), number(point.body.length), point.body.name
+        there = f"station {readable(x, 0.0, length)} m is outside link '{link}', 0 to {readable(length, x)} m"
+        end, beyond, turned = ("", -x, ", angle='180 deg'") if x < 0.0 else (".tip", x - length, "")
+        if not math.isfinite(beyond):
+            return f"{what}: {there}"
+        tail = f"tail = m.link('{link}_tail', length={readable(beyond)}, mass=0.0)"
+        weld = f"m.weld('{link}_end', m.links['{link}']{end}, tail{turned})"
+        return (
+            f"{what}: {there}; what lies beyond an end is a link of its own: {tail}; {weld}; and tail.tip in place of the station"
+        )
 
     return [Demand(margin, False, refusal) for margin in margins(point, precision)]

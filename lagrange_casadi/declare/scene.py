@@ -8,13 +8,14 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from types import MappingProxyType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError
+from ..errors import AngleError, DeclarationError, ParameterError, PickleError, UnknownNameError
 from ..system.room import require
+from .angles import angle
 from .density import Array, Density
 from .drives import weighed
 from .guiding import guided, laws_of
@@ -25,6 +26,10 @@ from .parts import Expression
 
 EvenPoints = tuple[float, float, int]
 """Evenly spaced: start, stop and count; both ends are included."""
+
+_KINDS = ("reaction", "multiplier", "load", "section", "output")
+_TURNS = 4.0 * math.pi
+"""The largest direction of a posture [rad]: what is beyond was meant in degrees."""
 
 _TOLD = 8
 _MADE_FROM = 3
@@ -83,6 +88,23 @@ def told_parameters(mechanism: Mechanism, values: Mapping[str, float]) -> str:
     return f"; with the {'' if values else 'default '}parameters {', '.join(listed)}" if listed else ""
 
 
+def _rough(name: str, value: object, turns: bool) -> float:
+    """What a posture says of a direction [rad] or a place [m]. Raises :class:`DeclarationError`."""
+    if not turns:
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+            raise DeclarationError(f"posture of '{name}': expected a place along its line, a finite number [m], got {value!r}")
+        return float(value)
+    try:
+        found = angle(value)
+    except AngleError as error:
+        raise DeclarationError(f"posture of '{name}': {error}") from None
+    if abs(found) > _TURNS:
+        degrees = f"{math.degrees(found):.6g} deg, more than two turns"
+        told = f"; '{value:g} deg' is {value:g} degrees" if isinstance(value, (int, float)) else ""
+        raise DeclarationError(f"posture of '{name}': {found:.6g} rad is {degrees}{told}")
+    return found
+
+
 def checked_ratios(even: EvenPoints) -> EvenPoints:
     """Even section ratios xi/l in numbers. Raises :class:`DeclarationError` outside [0, 1]."""
     start, stop, count = checked("xi", even)
@@ -106,26 +128,30 @@ class Wanted:
     @classmethod
     def of(cls, mechanism: Mechanism, names: Sequence[str]) -> Wanted:
         """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``, ``load:NAME``, ``section:LINK``,
-        ``output:NAME``, ``all``. What an output of the user's own is made of is wanted with it.
+        ``output:NAME``, ``all``.
+
+        A kind alone, as ``section``, is all that the mechanism has of it. What an output of the user's own is made of is wanted
+        with it.
         """
-        choices = outputs(mechanism)
+        every = outputs(mechanism)
+        choices = [*every, *kinds(mechanism)]
         if isinstance(names, str) or not all(isinstance(name, str) for name in names):
             raise DeclarationError(f"wanted: expected a list of output names, got {names!r}; valid: {', '.join(choices)}")
         for name in names:
             if name not in choices:
                 _refuse_output(mechanism, name)
                 raise UnknownNameError("output", name, choices)
-        chosen = set(choices if "all" in names else names)
-        own = (mechanism.outputs[name.partition(":")[2]] for name in list(chosen) if name.startswith("output:"))
+        chosen = set(every if "all" in names else names)
+        own = (output for name, output in mechanism.outputs.items() if chosen & {"output", f"output:{name}"})
         chosen |= {asked.wanted for output in own for asked in output.made_of}
         if not chosen:
             raise DeclarationError(f"no output wanted; valid: {', '.join(choices)}")
 
         def parts(kind: str) -> tuple[str, ...]:
-            return tuple(name.partition(":")[2] for name in choices if name in chosen and name.startswith(f"{kind}:"))
+            own = (name for name in every if name.startswith(f"{kind}:") and chosen & {kind, name})
+            return tuple(name.partition(":")[2] for name in own)
 
-        kinds = ("reaction", "multiplier", "load", "section", "output")
-        return cls("effort" in chosen, "motion" in chosen, *(parts(kind) for kind in kinds))
+        return cls("effort" in chosen, "motion" in chosen, *map(parts, _KINDS))
 
     @property
     def forces(self) -> bool:
@@ -143,8 +169,15 @@ def outputs(mechanism: Mechanism) -> list[str]:
     return ["all", "effort", "motion", *reactions, *multipliers, *loads, *sections, *own]
 
 
+def kinds(mechanism: Mechanism) -> list[str]:
+    """The kinds of output of which a mechanism has any beside the efforts and the motion: each can be wanted as a whole."""
+    return [kind for kind in _KINDS if any(name.startswith(f"{kind}:") for name in outputs(mechanism))]
+
+
 def _refuse_output(mechanism: Mechanism, name: str) -> None:
     kind, _, part = name.partition(":")
+    if name in _KINDS:
+        raise DeclarationError(f"output '{name}': mechanism '{mechanism.name}' has none; valid: {', '.join(outputs(mechanism))}")
     if kind == "section" and part in mechanism.bodies:
         why = no_sections(part, link=part in mechanism.links, links=mechanism.links)
         raise DeclarationError(f"output '{name}': {why}")
@@ -162,12 +195,13 @@ class Scene:
         The law of every driven joint, by the joint's name. Or the laws of x and y of a path's point [m], by the path's name, or of
         x, y and angle of a link's base and axis, by the link's name; these need ``drives``.
     wanted
-        Output names, see :func:`outputs`. Only these are derived, compiled and evaluated.
+        Output names, see :func:`outputs`, or kinds, as ``section`` for those of all links. Only these are derived, compiled and
+        evaluated.
     t, xi
         Grids of time [s] and of the ratio xi/l: start, stop, count.
     posture
-        Rough directions of links [rad] and places of slides [m] at the first instant, to choose between the ways in which a loop
-        can be assembled.
+        Rough directions of links and coordinates of joints at the first instant [rad, or text as ``"350 deg"``; m], by name, to
+        choose between the ways in which a loop can be assembled.
     assembly
         Values of parameters with which loops are first assembled, in place of the defaults. The way to assemble is chosen there.
     drives
@@ -184,7 +218,7 @@ class Scene:
     wanted: Sequence[str] = ("all",)
     t: EvenPoints = (0.0, 1.0, 101)
     xi: EvenPoints = (0.0, 1.0, 101)
-    posture: Mapping[str, float] = field(default_factory=dict)
+    posture: Mapping[str, Any] = field(default_factory=dict)
     assembly: Mapping[str, float] = field(default_factory=dict)
     drives: Mapping[str, Expression] | Sequence[str] | None = None
 
@@ -201,12 +235,13 @@ class Scene:
             raise DeclarationError(
                 f"motion of '{guides[0].partition('.')[0]}': no effort is along it; name the joints that make it by drives=[...]"
             )
-        places = [*self.mechanism.links, *(n for n, j in joints.items() if j.slides)]
-        for name, rough in self.posture.items():
+        places = [*self.mechanism.links, *(n for n, j in joints.items() if j.coordinate)]
+        for name in self.posture:
             if name not in places:
-                raise UnknownNameError("link or sliding joint in posture", name, places)
-            if not isinstance(rough, (int, float)) or not math.isfinite(rough):
-                raise DeclarationError(f"posture of '{name}': expected a finite number, got {rough!r}")
+                raise UnknownNameError("link or joint in posture", name, places)
+        slides = [name for name, joint in joints.items() if joint.slides]
+        rough = {name: _rough(name, value, name not in slides) for name, value in self.posture.items()}
+        object.__setattr__(self, "posture", MappingProxyType(rough))
         for row in self.mechanism.rows.values():
             if row.replaces not in self.motion:
                 raise DeclarationError(
@@ -222,7 +257,8 @@ class Scene:
             self.mechanism.values()
         except ParameterError as error:
             raise ParameterError(f"{error}{told_parameters(self.mechanism, {})}") from None
-        self.mechanism.values(self.assembly)
+        numbers = self.mechanism.values(self.assembly)
+        object.__setattr__(self, "assembly", MappingProxyType({name: numbers[name] for name in self.assembly}))
 
     @cached_property
     def laws(self) -> Mapping[str, Motion]:

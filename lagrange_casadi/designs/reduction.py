@@ -25,7 +25,7 @@ from ..instants.refusal import Status
 from ..instants.rules import rules
 from ..instants.rung import Rung
 from ..instants.section_law import made_of
-from ..quantities import FORCES, LAW, PLACE_FIRST, Output
+from ..quantities import FORCES, LAW, PLACE_FIRST, RESULTANT, Output
 from ..summits.sharpness import Sharpness
 
 
@@ -68,9 +68,9 @@ class KeptOutputs:
         for output, k in at.items():
             if output.along or output in graph.loop_angles or output in left_open:
                 continue
-            other = Output("reaction", output.part, "fy")
-            if output == Output("reaction", output.part, "fx") and other in at and other not in left_open:
-                chosen[Output("reaction", output.part)] = (k, at[other])
+            size = Output("reaction", output.part, RESULTANT.member)
+            if output == size.components[0] and all(other in at and other not in left_open for other in size.components):
+                chosen[size] = tuple(at[other] for other in size.components)
             chosen[output] = (k,)
         links = [link for link in mechanism.links.values() if Output("law", link.name, "n0") in at]
         links = [link for link in links if not all(made_of(left_open, link.name, force) for force in FORCES)]
@@ -122,9 +122,7 @@ def _made_of(graph: SceneGraph, quantity: Output) -> list[Output]:
     """The outputs that a quantity is made of."""
     if quantity.group == "section":
         return made_of(graph.outputs, quantity.part, quantity.member)
-    if quantity == Output("reaction", quantity.part):
-        return [Output("reaction", quantity.part, member) for member in ("fx", "fy")]
-    return [quantity]
+    return list(quantity.components)
 
 
 def _checks(graph: SceneGraph, rung: Rung) -> list[tuple[int, str, float]]:

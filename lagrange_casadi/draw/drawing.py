@@ -19,12 +19,7 @@ def draw_mechanism(solution: Solution, count: int) -> Figure:
     """The mechanism at ``count`` instants, with the paths that its joints take over the whole time."""
     from matplotlib.figure import Figure
 
-    paths = {name: _place(solution, joint["child"]) for name, joint in solution.description["joints"].items()}
-    ends = {name: _ends(solution, name) for name, body in solution.description["bodies"].items() if body["length"]}
-    x = np.concatenate([p[0] for p in paths.values()] + [e[k] for e in ends.values() for k in (0, 2)])
-    y = np.concatenate([p[1] for p in paths.values()] + [e[k] for e in ends.values() for k in (1, 3)])
-    size = max(float(np.ptp(x)), float(np.ptp(y))) or 1.0
-    box = (x.min() - 0.12 * size, x.max() + 0.12 * size, y.min() - 0.12 * size, y.max() + 0.12 * size)
+    paths, box, size = _extent(solution)
     columns = min(count, 2)
     rows = -(-count // columns)
     aspect = (box[3] - box[2]) / (box[1] - box[0])
@@ -45,6 +40,26 @@ def draw_mechanism(solution: Solution, count: int) -> Figure:
     names = axes[0, 0].get_legend_handles_labels()
     figure.legend(*names, loc="outside lower center", ncols=min(6, max(1, len(names[1]))), frameon=False, fontsize=9)
     return figure
+
+
+def draw_into(axes: Any, solution: Solution) -> None:
+    """The mechanism at its first instant, into axes of a figure."""
+    paths, box, size = _extent(solution)
+    _draw_instant(axes, solution, 0, paths, size)
+    axes.set(xlim=box[:2], ylim=box[2:], aspect="equal", xlabel="x [m]", ylabel="y [m]")
+    axes.grid(True, color="0.93")
+    axes.legend(frameon=False, fontsize=8)
+
+
+def _extent(solution: Solution) -> tuple[dict[str, tuple[Array, Array]], tuple[float, float, float, float], float]:
+    """The paths of joints by name, the box that holds all, and its larger side [m]."""
+    paths = {name: _place(solution, joint["child"]) for name, joint in solution.description["joints"].items()}
+    ends = {name: _ends(solution, name) for name, body in solution.description["bodies"].items() if body["length"]}
+    x = np.concatenate([p[0] for p in paths.values()] + [e[k] for e in ends.values() for k in (0, 2)])
+    y = np.concatenate([p[1] for p in paths.values()] + [e[k] for e in ends.values() for k in (1, 3)])
+    size = max(float(np.ptp(x)), float(np.ptp(y))) or 1.0
+    box = (x.min() - 0.12 * size, x.max() + 0.12 * size, y.min() - 0.12 * size, y.max() + 0.12 * size)
+    return paths, box, size
 
 
 def _draw_instant(axes: Any, solution: Solution, i: int, paths: Any, size: float) -> None:

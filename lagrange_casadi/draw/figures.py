@@ -29,7 +29,7 @@ _PIXELS = 1600
 
 @dataclass(frozen=True)
 class TimePlot:
-    """Quantities over time; of a section force, one curve for each ratio in ``xi``.
+    """Quantities over time, those of each unit on axes of their own; of a section force, one curve for each ratio in ``xi``.
 
     ``factor`` multiplies what is drawn: -1 turns the package's sign into another convention, which ``note`` then names.
     """
@@ -48,18 +48,28 @@ class TimePlot:
 
     def draw(self, solution: Solution) -> Figure:
         """The figure."""
-        figure, axes = _figure()
+        units: dict[str, list[str]] = {}
         for name in self.quantities:
-            output = Output.of(name)
-            label = name.partition(":")[2].replace(":", " ") if len(self.quantities) > 1 else None
-            if output.group != "section":
-                axes.plot(solution.t, self.factor * solution.outputs[output], label=label)
-                continue
-            values = solution.section(output.part).law.on_grid(output.member, np.array(self.xi))
-            for xi, curve in zip(self.xi, values.T, strict=True):
-                axes.plot(solution.t, self.factor * curve, label=rf"$\xi/l$ = {xi:g}")
-        _finish(figure, axes, solution, self.quantities[0], self.title, self.note, "t [s]")
+            units.setdefault(solution.unit(name), []).append(name)
+        figure, panels = _figure(len(units))
+        for axes, names in zip(panels, units.values(), strict=True):
+            for name in names:
+                self._draw(axes, solution, name)
+            first, last = axes is panels[0], axes is panels[-1]
+            title = (self.title or self.quantities[0]) if first else ""
+            _finish(figure, axes, solution, names, title, self.note if last else "", "t [s]" if last else "")
         return figure
+
+    def _draw(self, axes: Any, solution: Solution, name: str) -> None:
+        output = Output.of(name)
+        label = name.partition(":")[2].replace(":", " ") if len(self.quantities) > 1 else None
+        if output.group != "section":
+            axes.plot(solution.t, self.factor * solution.array(output), label=label)
+            return
+        values = solution.section(output.part).law.on_grid(output.member, np.array(self.xi))
+        for xi, curve in zip(self.xi, values.T, strict=True):
+            of = f"{label}, " if label else ""
+            axes.plot(solution.t, self.factor * curve, label=rf"{of}$\xi/l$ = {xi:g}")
 
 
 @dataclass(frozen=True)
@@ -80,13 +90,13 @@ class SpanPlot:
 
     def draw(self, solution: Solution) -> Figure:
         """The figure."""
-        figure, axes = _figure()
+        figure, (axes,) = _figure()
         i = int(np.argmin(np.abs(solution.t - self.t)))
         output = Output.of(self.quantity)
         values = solution.section(output.part).law.during(slice(i, i + 1)).on_grid(output.member, solution.xi)
         axes.plot(solution.xi, self.factor * values[0])
         title = f"{self.title}, t = {solution.t[i]:.4g} s" if self.title else f"t = {solution.t[i]:.4g} s"
-        _finish(figure, axes, solution, self.quantity, title, self.note, r"$\xi/l$")
+        _finish(figure, axes, solution, [self.quantity], title, self.note, r"$\xi/l$")
         return figure
 
 
@@ -222,21 +232,24 @@ def _has(solution: Solution, spec: Spec) -> bool:
     if isinstance(spec, MechanismDrawing):
         return all(Output("pose", body, "x") in solution.outputs for body in solution.description["bodies"])
     names = set(solution.names())
-    return all(name in names for name in spec.needs())
+    return all(str(component) in names for name in spec.needs() for component in Output.of(name).components)
 
 
-def _figure() -> tuple[Figure, Any]:
+def _figure(panels: int = 1) -> tuple[Figure, list[Any]]:
+    """A figure, and its axes, one above the other."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.0, 4.2), layout="constrained")
-    return figure, figure.subplots()
+    figure = Figure(figsize=(7.0, 4.2 if panels == 1 else 2.8 * panels + 0.6), layout="constrained")
+    return figure, list(figure.subplots(panels, 1, sharex=True, squeeze=False).flat)
 
 
-def _finish(figure: Figure, axes: Any, solution: Solution, name: str, title: str, note: str, along: str) -> None:
+def _finish(figure: Figure, axes: Any, solution: Solution, names: Sequence[str], title: str, note: str, along: str) -> None:
     axes.set_xlabel(along)
-    words = quantity_of(name).long_name.partition(":")[0]
-    axes.set_ylabel(f"{words.partition(',')[0] if len(axes.get_lines()) > 1 else words} [{solution.unit(name)}]")
-    axes.set_title(title or name, fontsize=11)
+    words = [quantity_of(name).long_name.partition(":")[0] for name in names]
+    if len(axes.get_lines()) > 1:
+        words = list(dict.fromkeys(word.partition(",")[0] for word in words))
+    axes.set_ylabel(f"{', '.join(words)} [{solution.unit(names[0])}]")
+    axes.set_title(title, fontsize=11)
     axes.axhline(0.0, color="0.6", linewidth=0.8, zorder=0)
     axes.grid(True, color="0.9")
     axes.margins(x=0.0)

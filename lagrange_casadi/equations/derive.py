@@ -14,7 +14,7 @@ from ..declare.ends import beyond_ends
 from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted, told_parameters
-from ..errors import AssemblyError, MobilityError
+from ..errors import AssemblyError, MobilityError, PostureError
 from ..quantities import ANGLE, Output
 from ..system import cache
 from . import kinematics
@@ -42,7 +42,11 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool =
 
     Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the loops cannot be solved.
     """
-    found = _kept(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted), iterate)
+    try:
+        found = _kept(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted), iterate)
+    except PostureError as error:
+        error.scene = scene
+        raise
     if isinstance(found, SceneGraph):
         return found
     raise type(found)(str(found))

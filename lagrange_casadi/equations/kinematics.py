@@ -19,16 +19,23 @@ import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
-from ..errors import AssemblyError, DeclarationError
+from ..errors import AssemblyError
 from .blocks import Block, solving_order
 from .gaps import left, misfit, reach
 from .linear import LinearSystem
 from .loops import ClosedForm
-from .multibody import Coordinate, Multibody, column, joint_coordinate
+from .multibody import Coordinate, Multibody, column
+from .postures import Undecided, directions, measured, posture_name, turns
 from .substitution import Expressions, Numbers
 
 _LARGEST_STEP = 0.3
 """Of an angle [rad], or of a slide over the length of all links: a full step from afar may land on another branch."""
+
+_WAYS = 32
+"""How many ways to close loops that are open are tried, where the first does not close the others."""
+
+_READ = {"angle": 12, "slide": 15}
+"""Decimals of what is said of a coordinate [rad or m]."""
 
 NEAR = 0.3
 """Sines of the transmission angle below which a loop may pass a dead centre."""
@@ -89,22 +96,38 @@ class Kinematics:
 def solve(multibody: Multibody, posture: Mapping[str, float], start: Start, *, iterate: bool = False) -> Kinematics:
     """Close every loop, on the branch that is nearest to ``posture`` at the start of the motion.
 
-    ``posture`` gives rough directions of links [rad] and places of slides [m], by the link's or the joint's name. With ``iterate``
-    dyads are left to Newton's method too; their closed form gives the guess.
-    Raises :class:`MobilityError` where drives and degrees of freedom do not match, :class:`DeclarationError` for a posture that
-    leaves the branch open, :class:`AssemblyError` where the mechanism cannot be assembled at the start.
+    ``posture`` gives rough directions of links [rad] and coordinates of joints [rad or m], by the link's or the joint's name. With
+    ``iterate`` dyads are left to Newton's method too; their closed form gives the guess.
+    Raises :class:`MobilityError` where drives and degrees of freedom do not match, :class:`PostureError` for a posture that
+    leaves branches open, :class:`AssemblyError` where the mechanism cannot be assembled at the start.
     """
     solver = _Solver(multibody, dict(posture), start, iterate)
     blocks = solving_order(multibody, solver.beginning())
-    for block in blocks:
-        solver.close(block)
+    waiting: list[tuple[int, ...]] = []
+    for tried in range(_WAYS):
+        try:
+            for block in blocks:
+                solver.close(block)
+            break
+        except AssemblyError:
+            # A loop whose way is open may have to be closed in the other one: the last such loop first.
+            taken = solver.ways + (0,) * (len(solver.undecided.ways) - len(solver.ways))
+            waiting += [(*taken[:k], 1) for k in range(len(solver.ways), len(taken))]
+            if not waiting or tried == _WAYS - 1:
+                raise
+            solver = _Solver(multibody, dict(posture), start, iterate, waiting.pop())
+    if solver.undecided:
+        raise solver.undecided.refusal(multibody)
     return solver.finish(blocks)
 
 
 class _Solver:
     """Carries the expressions known so far, and their numbers at the start, while the blocks are closed in order."""
 
-    def __init__(self, multibody: Multibody, posture: dict[str, float], start: Start, iterate: bool) -> None:
+    def __init__(
+        self, multibody: Multibody, posture: dict[str, float], start: Start, iterate: bool, ways: tuple[int, ...] = ()
+    ) -> None:
+        self.ways = ways
         self.iterate = iterate
         self.multibody = multibody
         self.posture = posture
@@ -119,6 +142,7 @@ class _Solver:
         self.closures: dict[str, tuple[Any, bool]] = {}
         self.dyads: dict[Block, Any] = {}
         self.loose: set[str] = set()
+        self.undecided = Undecided()
         self.length = reach(multibody.mechanism)
         self.found = Expressions()
         self.numbers = Numbers()
@@ -134,7 +158,7 @@ class _Solver:
     def beginning(self) -> dict[str, Any]:
         """What the count of freedoms needs: the rough posture, drives included, and the inputs with their values at the start."""
         mechanism = self.multibody.mechanism
-        told = {c: self.posture[_posture_name(c)] for c in self.multibody.coordinates if _posture_name(c) in self.posture}
+        told = self._rough([c for c in self.multibody.coordinates if not c.driven], needed=False)
         told |= dict(zip(self.known, self.start.driven, strict=True))
         return {
             "posture": told,
@@ -149,9 +173,14 @@ class _Solver:
     def close(self, block: Block) -> None:
         """Solve a block for its variables."""
         form = block.form
+        if form is not None and self.undecided.lacking:
+            return  # it hangs on what cannot be placed
         if form is None:
-            if block.unknown:
-                self._iterate(block, self._told(block))
+            rough = self._rough(block.unknown)
+            if missing := [c for c in block.unknown if c not in rough]:
+                self.undecided.note_lacking(block, missing)
+            elif block.unknown and not self.undecided.lacking:
+                self._iterate(block, rough)
         elif form.branch is None:
             for coordinate, value in zip(block.unknown, form.variables, strict=True):
                 self.numbers.note(coordinate.variables, self.numbers.of(value))
@@ -192,11 +221,13 @@ class _Solver:
         values = {sign: self.numbers.of(ca.substitute(variables, branch, ca.SX(sign))) for sign in (1, -1)}
         distance = {sign: self._distance(block, found) for sign, found in values.items()}
         if abs(distance[1] - distance[-1]) <= 1e-6 * (1.0 + distance[1]):
-            choices = " or ".join(_describe(block.unknown, found) for found in values.values())
-            raise DeclarationError(
-                f"the loop closed by {block.joints} can be assembled in two ways at the start of the motion: {choices}; "
-                f"say which by posture={{'{_posture_name(block.unknown[0])}': ...}}"
-            )
+            # Taken for now, so that the loops after it are looked at too.
+            number = len(self.undecided.ways)
+            signs = (1, -1) if number >= len(self.ways) or not self.ways[number] else (-1, 1)
+            ways = [_numbers(block.unknown, values[sign]) for sign in signs]
+            words = [_describe(way) for way in ways]
+            self.undecided.note_ways(block, ways, words, self.numbers.of(self.length)[0])
+            return signs[0], values[signs[0]]
         nearest = min(distance, key=lambda sign: distance[sign])
         return nearest, values[nearest]
 
@@ -205,36 +236,27 @@ class _Solver:
         (size,) = self.numbers.of(self.length)
         total, placed = 0.0, {*self.known, *block.unknown}
         self.numbers.note(column(c.variables for c in block.unknown), values)
-        for name, (measured, of) in self._told_of.items():
+        for name, (place, of) in self._told_of.items():
             if of & set(block.unknown) and of <= placed:
-                gap = self.numbers.of(measured)[0] - self.posture[name]
-                total += abs(math.remainder(gap, 2.0 * math.pi)) if name in self.multibody.frames else abs(gap) / size
+                gap = self.numbers.of(place)[0] - self.posture[name]
+                total += abs(math.remainder(gap, 2.0 * math.pi)) if turns(self.multibody, name) else abs(gap) / size
         return total
 
     @cached_property
     def _told_of(self) -> dict[str, tuple[Any, set[Coordinate]]]:
-        """What the posture tells of, as expressions, and the coordinates that these are of."""
-        owner = {key: c for c in self.multibody.coordinates for key in c.keys}
-        told: dict[str, tuple[Any, set[Coordinate]]] = {}
-        for name in self.posture:
-            if name in self.multibody.frames:
-                turn = self.multibody.frames[name].rotation
-                measured = ca.SX(ca.atan2(turn.s, turn.c))
-            else:
-                joint = self.multibody.mechanism.joints[name]
-                measured = ca.SX(joint_coordinate(joint, self.multibody.frames, self.multibody.coordinates))
-            of = (owner.get(symbol.element_hash()) for symbol in ca.symvar(measured))
-            told[name] = measured, {c for c in of if c is not None}
-        return told
+        return measured(self.multibody, self.posture)
 
-    def _told(self, block: Block) -> dict[Coordinate, float]:
-        """What the posture says of a block that has no closed form."""
-        missing = [_posture_name(c) for c in block.unknown if _posture_name(c) not in self.posture]
-        if missing:
-            raise DeclarationError(
-                f"the loops closed by {block.joints} have no closed form; give a rough posture of {', '.join(missing)} too"
-            )
-        return {c: self.posture[_posture_name(c)] for c in block.unknown}
+    def _rough(self, coordinates: Sequence[Coordinate], *, needed: bool = True) -> dict[Coordinate, float]:
+        """What the posture says of coordinates, by their own names, or else of angles through joints; some may lack.
+
+        Where it is not ``needed``, joints that hold directions are not looked through, for that takes time.
+        """
+        found = {c: self.posture[posture_name(c)] for c in coordinates if posture_name(c) in self.posture}
+        angles = [c for c in coordinates if c.kind == "angle" and c not in found]
+        if angles and (needed or any(n not in self.multibody.frames and turns(self.multibody, n) for n in self.posture)):
+            told = directions(self.multibody, self.posture, self.numbers, self.known)
+            found |= {c: told[c.body] for c in angles if c.body in told}
+        return found
 
     def _iterate(self, block: Block, guess: Mapping[Coordinate, float]) -> None:
         for coordinate in block.unknown:
@@ -349,12 +371,9 @@ def passes_dead_centre(closure: Array, *, ends: bool = False) -> npt.NDArray[np.
 
 
 def describe_coordinate(joint: str, kind: str, value: float) -> str:
-    """A coordinate's value for a reader."""
+    """A coordinate's value for a reader, to whom what is zero but for rounding is 0."""
+    value = round(value, _READ[kind]) + 0.0
     return f"{joint} = {value:.6g} rad ({math.degrees(value):.6g} deg)" if kind == "angle" else f"{joint} = {value:.6g} m"
-
-
-def _posture_name(coordinate: Coordinate) -> str:
-    return coordinate.body if coordinate.kind == "angle" else coordinate.joint
 
 
 def _numbers(unknown: Sequence[Coordinate], values: Sequence[float]) -> dict[Coordinate, float]:
@@ -366,5 +385,5 @@ def _numbers(unknown: Sequence[Coordinate], values: Sequence[float]) -> dict[Coo
     return found
 
 
-def _describe(unknown: Sequence[Coordinate], values: Sequence[float]) -> str:
-    return " with ".join(describe_coordinate(_posture_name(c), c.kind, x) for c, x in _numbers(unknown, values).items())
+def _describe(way: Mapping[Coordinate, float]) -> str:
+    return " with ".join(describe_coordinate(posture_name(c), c.kind, x) for c, x in way.items())

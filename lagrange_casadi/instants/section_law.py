@@ -184,6 +184,18 @@ class SectionLaw:
         blocks = [self.during(slice(i, i + _BLOCK))._extreme(force) for i in range(0, n, _BLOCK)]
         return np.concatenate([place for place, _ in blocks]), np.concatenate([value for _, value in blocks])
 
+    def reached(self, force: str) -> tuple[Array, Array]:
+        """Where along a link a force is smallest, largest, and largest in size as by :meth:`extreme`, and what it is: (3, t)."""
+        n = self.coefficients["n0"].size
+        blocks = [self.during(slice(i, i + _BLOCK))._reached(force) for i in range(0, n, _BLOCK)]
+        return np.concatenate([place for place, _ in blocks], axis=1), np.concatenate([value for _, value in blocks], axis=1)
+
+    def _reached(self, force: str) -> tuple[Array, Array]:
+        places, values = self.curves(force)
+        columns = np.stack([np.argmin(values, axis=1), np.argmax(values, axis=1), np.argmax(np.abs(values), axis=1)])
+        every = np.arange(len(values))
+        return places[every, columns], values[every, columns]
+
     def _extreme(self, force: str) -> tuple[Array, Array]:
         places, values = self.curves(force)
         best = np.argmax(np.abs(values), axis=1)[:, None]

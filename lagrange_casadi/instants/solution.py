@@ -14,12 +14,15 @@ from ..declare.density import Array
 from ..declare.description import Description, density_of, parts_of
 from ..declare.limits import no_sections
 from ..declare.notes import notes
-from ..errors import DeclarationError, LagrangeCasadiError, UnknownNameError
+from ..errors import DeclarationError, UnknownNameError
 from ..quantities import FORCES, QUANTITIES, Output
 from ..system.room import require
+from .frames import dataset, frame
 from .section_law import Basis, SectionLaw, StationLoad, made_of
+from .statistics import Statistics
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
 
 
@@ -73,6 +76,11 @@ class Reaction:
     fx: Array
     fy: Array
     mz: Array | None
+
+    @property
+    def resultant(self) -> Array:
+        """The size of the force (t,) [N]."""
+        return np.hypot(self.fx, self.fy)
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,7 +265,7 @@ class Solution:
         output = self._output(name)
         if output.group == "section":
             return not made_of(self.left_open, output.part, output.member)
-        return output not in self.left_open
+        return not any(component in self.left_open for component in output.components)
 
     def quantities(self) -> Iterator[Output]:
         """All quantities, the coefficients of the laws left out and the section forces in their place."""
@@ -271,7 +279,7 @@ class Solution:
     def unit(self, name: str | Output) -> str:
         """The unit of a quantity by its full name, as text: ``N m``."""
         output = self._output(name)
-        if output not in self.outputs and output.group != "certificate":
+        if output.group != "certificate" and not self._over_time(output):
             self._of_section(output)
         if output.group == "output":
             return str(self.description["outputs"][output.part])
@@ -279,18 +287,22 @@ class Solution:
         return output.quantity.unit_for(kind if output.group in ("motion", "effort") else "angle")
 
     def array(self, name: str | Output) -> Array:
-        """A quantity by its full name: (t,), or (t, xi) for ``section:LINK:FORCE``."""
+        """A quantity by its full name: (t,), or (t, xi) for ``section:LINK:FORCE``.
+
+        ``reaction:JOINT:resultant`` is the size of the force.
+        """
         output = self._output(name)
-        if output in self.outputs:
-            return self.outputs[output]
+        if self._over_time(output):
+            values = [self.outputs[component] for component in output.components]
+            return values[0] if len(values) == 1 else np.hypot(*values)
         grid: Array = getattr(self._of_section(output), output.member)
         return grid
 
     def extremes(self, name: str | Output) -> tuple[Array, Array | None]:
         """A quantity at every instant, (t,); of a section force the value largest in size along the link, and its ratio xi/l."""
         output = self._output(name)
-        if output in self.outputs:
-            return self.outputs[output], None
+        if self._over_time(output):
+            return self.array(output), None
         places, values = self._of_section(output).law.extreme(output.member)
         return values, places
 
@@ -303,20 +315,26 @@ class Solution:
         i = int(np.argmax(np.abs(values)))
         return Peak(str(name), float(values[i]), self.unit(name), float(self.t[i]), None if places is None else float(places[i]))
 
+    def statistics(self, name: str | Output) -> Statistics:
+        """Mean, root of the mean square, smallest and largest value, and the peak, of a quantity over the instants."""
+        output = self._output(name)
+        if output.group == "section":
+            return Statistics.along(str(output), self.unit(output), self.t, *self._of_section(output).law.reached(output.member))
+        return Statistics.over(str(output), self.unit(output), self.t, self.array(output))
+
     def to_xarray(self) -> xarray.Dataset:
         """All quantities as an ``xarray.Dataset`` over t and xi, with units.
 
         Raises :class:`.LagrangeCasadiError` where xarray is not installed.
         """
-        try:
-            import xarray
-        except ImportError:
-            raise LagrangeCasadiError("to_xarray needs xarray; install it with: pip install xarray") from None
-        data = {
-            str(q): (q.quantity.axes, self.array(q), {"units": self.unit(q)} | q.quantity.attributes) for q in self.quantities()
-        }
-        coordinates = {"t": ("t", self.t, {"units": "s"}), "xi": ("xi", self.xi, {"units": "1", "long_name": "ratio xi/l"})}
-        return xarray.Dataset(data, coordinates, {"case": self.case})
+        return dataset(self)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """All quantities as a ``pandas.DataFrame``, a row an instant, with units in the heads; a section force once for each xi.
+
+        Raises :class:`.LagrangeCasadiError` where pandas is not installed.
+        """
+        return frame(self)
 
     @cached_property
     def _sections(self) -> dict[str, Section]:
@@ -340,6 +358,10 @@ class Solution:
             if output.quantity:
                 return output
         raise UnknownNameError("quantity", str(name), self.names())
+
+    def _over_time(self, output: Output) -> bool:
+        """Whether a quantity is a series that the solution has, or the size of such."""
+        return all(component in self.outputs for component in output.components)
 
     def _of_section(self, output: Output) -> Section:
         """The section that a section force is of."""

@@ -27,7 +27,7 @@ from ..instants.backends import follow
 from ..instants.section_law import SectionLaw, Side
 from ..instants.signals import Quantity, SectionForce, Signals
 from ..instants.solution import Peak, Solution
-from ..quantities import LAW, PLACE_FIRST, Output
+from ..quantities import LAW, PLACE_FIRST, RESULTANT, Output
 from ..summits.search import Peaks
 from ..summits.sharpness import Sharpness
 
@@ -104,6 +104,13 @@ def shortfall(
     missing = [1.0 - peaks[:-1, there] / true[there] for peaks in (sampled, refined)]
     columns = [spread(rows, axis=1) for rows in missing for spread in (np.max, np.median)]
     return [Shortfall(count, *map(float, row)) for count, *row in zip(counts, *columns, strict=True)]
+
+
+def resultants(solution: Solution) -> list[str]:
+    """The full names of the resultants of a solution's reactions that equilibrium determines."""
+    joints = dict.fromkeys(output.part for output in solution.outputs if output.group == "reaction")
+    names = (str(Output("reaction", joint, RESULTANT.member)) for joint in joints)
+    return [name for name in names if solution.determined(name)]
 
 
 def forces(solution: Solution) -> list[str]:
@@ -212,7 +219,7 @@ class _ContinuousSolution:
     def quantity(self, output: Output) -> Quantity:
         """Where a quantity is among the columns."""
         if output.group != "section":
-            return (self.rows[output],)
+            return tuple(self.rows[component] for component in output.components)
         link, law = output.part, self.solution.section(output.part).law
         stations = (tuple(self.rows[Output("station", link, member, load.name)] for member in PLACE_FIRST) for load in law.loads)
         coefficients = tuple(self.rows[Output("law", link, member)] for member in LAW)
@@ -272,6 +279,10 @@ class _ContinuousSolution:
                 sizes = [abs(law.at(force, place[:, None], side)[0, 0]) for side in sides]
                 rate = law.rate(force, law_rate, place[:, None], sides[int(np.argmax(sizes))])[0, 0]
                 found[:, k] = value[0], place[0], np.sign(value[0]) * rate
+            elif len(name.components) > 1:
+                rows = [self.rows[component] for component in name.components]
+                value = np.hypot(*columns[rows, 0])
+                found[:, k] = value, np.nan, columns[rows, 0] @ changes[rows, 0] / (value or 1.0)
             else:
                 value = columns[self.rows[name], 0]
                 if name in self.graph.loop_angles:

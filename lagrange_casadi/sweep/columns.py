@@ -22,7 +22,7 @@ from ..designs.engine import Outcome
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.refusal import Status
 from ..instants.section_law import SectionLaw, StationLoad
-from ..quantities import FORCES, RESULTANT, Output
+from ..quantities import FORCES, Output
 from .chunks import encoded
 from .engine import STATUSES, Engine
 
@@ -202,8 +202,6 @@ class Harvest:
         output, open_ = Output.of(name), self._open(name)
         unit, words = output.unit(self.mechanism), output.quantity.attributes
         what = words["long_name"]
-        if output.quantity is RESULTANT:
-            name = f"{name}:resultant"
         found = [
             Column(f"peak:{name}", unit, words | {"long_name": f"largest in size over time: {what}"} | open_),
             Column(f"peak_t:{name}", "s", {"long_name": f"instant of the peak: {what}"} | open_),

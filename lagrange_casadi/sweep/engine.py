@@ -19,7 +19,7 @@ class Engine(Protocol):
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """Full names of what peaks are found of; ``reaction:JOINT`` is the resultant."""
+        """Full names of what peaks are found of."""
 
     @property
     def efforts(self) -> tuple[str, ...]:

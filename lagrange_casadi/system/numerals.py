@@ -1,4 +1,4 @@
-"""Numbers as people write them: Python's own readers also take 1_0 for 10."""
+"""Numbers as people write and read them: Python's own readers also take 1_0 for 10."""
 
 from __future__ import annotations
 
@@ -11,6 +11,15 @@ def real(text: str) -> float:
 def whole(text: str) -> int:
     """Read a whole number. Raises ``ValueError`` for what is none."""
     return int(_plain(text))
+
+
+def readable(value: float, *others: float) -> str:
+    """A number with as few digits as a reader needs: at least six, and so many that it differs from others that it differs from."""
+    for digits in (6, 9, 12):
+        text = f"{value + 0.0:.{digits}g}"
+        if all(value == other or text != f"{other + 0.0:.{digits}g}" for other in others):
+            return text
+    return f"{value:.17g}"
 
 
 def _plain(text: str) -> str:

@@ -1,0 +1,41 @@
+"""``lagrange-casadi new``: a case of one's own, begun as one that comes with the package."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+from pathlib import Path
+
+import click
+
+from ..errors import PathError, UnknownNameError
+from ..shipped_cases import shipped_cases
+from ..system.publish import filling
+
+_SIMPLE = "four_bar"
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option("--like", default=_SIMPLE, show_default=True, metavar="NAME", help="Begin with this case of those that cases lists.")
+def new(folder: Path, like: str) -> None:
+    """Begin a case of your own in the new FOLDER, as a copy of one that comes with the package, under the folder's name."""
+    found = shipped_cases()
+    if like not in found:
+        raise UnknownNameError("case", like, found)
+    if os.path.lexists(folder):
+        raise PathError(f"{folder} exists: expected a new folder")
+    with filling(folder) as draft:
+        for file in sorted(found[like].iterdir()):
+            if file.is_file() and file.name != "README.md":  # which says what the other one is
+                shutil.copyfile(file, draft / file.name)
+        case = draft / "case.py"
+        case.write_text(_renamed(case.read_text(encoding="utf-8"), like, folder), encoding="utf-8", newline="\n")
+    click.echo(f"wrote {folder / 'case.py'}: change it, then lagrange-casadi run {folder}")
+
+
+def _renamed(text: str, like: str, folder: Path) -> str:
+    """A case's text, its mechanism under the folder's name, as far as that is a name."""
+    name = re.sub(r"[^A-Za-z0-9_]", "_", Path(os.path.abspath(folder)).name)
+    return text.replace(f'Mechanism("{like}")', f'Mechanism("{name}")') if name[:1].isalpha() else text

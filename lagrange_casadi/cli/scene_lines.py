@@ -1,0 +1,78 @@
+"""A scene in lines: what moves it, what acts on it, and how it is assembled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..declare.motion import Motion, motion_function
+from ..declare.parts import Force, LineLoad, Load, Torque
+from ..declare.scene import Scene
+from ..equations.kinematics import describe_coordinate
+
+_LONG, _LOOKS = 200, 1001
+
+
+def scene_lines(scene: Scene) -> Iterator[str]:
+    """Freedoms, drives with their laws, loads, constraints, the posture, each with its expressions."""
+    mechanism = scene.mechanism
+    drives = scene.laws if scene.weights is None else scene.weights
+    yield f"freedoms: {len(scene.laws)}, driven at {', '.join(drives) or 'nothing'}"
+    symbol, word = ca.SX.sym("t"), "drive" if scene.weights is None else "motion"
+    for joint, law in scene.laws.items():
+        yield f"  {word} {joint}: {_law(law, symbol)}; {_course(scene, joint)}"
+    yield from (f"load {name}: {_load(load)}" for name, load in mechanism.loads.items())
+    yield from (f"constraint {name}: 0 = {_short(constraint.phi)}" for name, constraint in mechanism.constraints.items())
+    for name, row in mechanism.rows.items():
+        yield f"non-holonomic constraint {name}: 0 = {_short(row.expression)}; it moves joint {row.replaces}, without an effort"
+    yield from (f"output {name} [{own.unit}]: {_short(own.expression)}" for name, own in mechanism.outputs.items())
+    slides = [name for name, joint in mechanism.joints.items() if joint.slides]
+    postures = (describe_coordinate(name, "slide" if name in slides else "angle", rough) for name, rough in scene.posture.items())
+    yield f"posture: {', '.join(postures) or 'none'}"
+    if scene.assembly:
+        yield f"assembled first with: {', '.join(f'{name} = {value:g}' for name, value in scene.assembly.items())}"
+
+
+def _law(law: Motion, symbol: Any) -> str:
+    if law.spline:
+        many = f"{len(law.knots)} " if law.knots else ""
+        return f"a spline through {many}samples from {law.span[0]:g} to {law.span[1]:g} s"
+    return f"{_short(law.graph(symbol))} of the time t"
+
+
+def _course(scene: Scene, joint: str) -> str:
+    """From where to where a drive goes with the default parameters, and within what."""
+    mechanism, (start, stop, _) = scene.mechanism, scene.t
+    motion = motion_function({joint: scene.laws[joint]}, mechanism.symbols)
+    values = list(mechanism.values(scene.assembly).values())
+    way = motion(ca.DM(np.linspace(start, stop, _LOOKS)).T, ca.repmat(ca.DM(values), 1, _LOOKS))[0].full().ravel()
+    kind = scene.guided.joints[joint].coordinate or "angle"
+    words = f"from {describe_coordinate(joint, kind, way[0])} to {describe_coordinate(joint, kind, way[-1])}"
+    inside = min(way[0], way[-1]) <= way.min() and way.max() <= max(way[0], way[-1])
+    ends = (describe_coordinate(joint, kind, x).partition(" = ")[2] for x in (way.min(), way.max()))
+    return words.replace(f"{joint} = ", "") + ("" if inside else f", within {' and '.join(ends)}")
+
+
+def _load(load: Load) -> str:
+    first = load.points[0].body.name
+    if isinstance(load, Force):
+        axes = f"in the axes of {first}" if load.turning else "in ground axes"
+        return f"force on {first}, x = {_short(load.x)} N, y = {_short(load.y)} N, {axes}"
+    if isinstance(load, LineLoad):
+        axes = f"in the axes of {first}" if load.turning else "in ground axes"
+        along = [" to ".join(dict.fromkeys(_short(end) for end in ends)) for ends in (load.x, load.y)]
+        return f"line load on {first}, x = {along[0]} N/m, y = {along[1]} N/m, {axes}"
+    second = load.points[1].body.name
+    if isinstance(load, Torque):
+        return f"torque on {first} against {second}, {_short(load.value)} N m"
+    words = f"stiffness {_short(load.stiffness)} N/m, free length {_short(load.length)} m, damping {_short(load.damping)} N s/m"
+    return f"spring between {first} and {second}, {words}"
+
+
+def _short(expression: Any) -> str:
+    """An expression in words, cut where it is long."""
+    text = " ".join(str(expression).split()) if isinstance(expression, ca.SX) else f"{expression:g}"
+    return text if len(text) <= _LONG else f"{text[:_LONG]}..."

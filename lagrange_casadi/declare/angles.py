@@ -1,0 +1,30 @@
+"""Angles as people type them."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from ..errors import AngleError
+from ..system.numerals import real
+
+_WRITTEN = re.compile(r"\s*(\S+?)\s*(deg|rad)?\s*")
+
+
+def angle(value: object) -> float:
+    """An angle in rad: a number is one, a text is a number that ``deg`` or ``rad`` may follow, as ``"350 deg"``.
+
+    Raises :class:`.AngleError`, a ``ValueError``, for anything else, and for what is not finite.
+    """
+    found = math.nan
+    if isinstance(value, str):
+        number, unit = match.groups() if (match := _WRITTEN.fullmatch(value)) else ("", None)
+        try:
+            found = math.radians(real(number)) if unit == "deg" else real(number)
+        except ValueError:
+            found = math.nan
+    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+        found = float(value)
+    if not math.isfinite(found):
+        raise AngleError(f"expected a finite number [rad], or a text such as '350 deg' or '1.2 rad', got {value!r}")
+    return found

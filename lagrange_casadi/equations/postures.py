@@ -1,0 +1,127 @@
+"""What a rough posture tells of a mechanism's start, and what it leaves open: all of it at once, in lines to paste."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import casadi as ca
+
+from ..errors import PostureError
+from ..system.numerals import readable
+from .blocks import Block
+from .multibody import Coordinate, Multibody, joint_coordinate
+from .substitution import Numbers
+
+
+def posture_name(coordinate: Coordinate) -> str:
+    """By which name a posture tells a coordinate that is not driven: the link whose direction it is, or the sliding joint."""
+    return coordinate.body if coordinate.kind == "angle" else coordinate.joint
+
+
+def turns(multibody: Multibody, name: str) -> bool:
+    """Whether what a posture tells by a name is an angle."""
+    return name in multibody.frames or multibody.mechanism.joints[name].coordinate == "angle"
+
+
+def measured(multibody: Multibody, names: Collection[str]) -> dict[str, tuple[Any, set[Coordinate]]]:
+    """What a posture tells of by these names, as expressions, and the coordinates that each is of."""
+    owner = {key: c for c in multibody.coordinates for key in c.keys}
+    told: dict[str, tuple[Any, set[Coordinate]]] = {}
+    for name in names:
+        if name in multibody.frames:
+            expression = _direction(multibody, name)
+        else:
+            joint = multibody.mechanism.joints[name]
+            expression = ca.SX(joint_coordinate(joint, multibody.frames, multibody.coordinates))
+        of = (owner.get(symbol.element_hash()) for symbol in ca.symvar(expression))
+        told[name] = expression, {c for c in of if c is not None}
+    return told
+
+
+def directions(
+    multibody: Multibody, posture: Mapping[str, float], numbers: Numbers, known: Collection[Coordinate]
+) -> dict[str, float]:
+    """Rough directions of bodies [rad]: those that are known by now or told, and those that joints carry on from these.
+
+    A joint carries a direction from one of its bodies to the other where it holds it, or where the posture tells its angle.
+    """
+    mechanism, found = multibody.mechanism, {}
+    for name, (direction, of) in measured(multibody, multibody.frames).items():
+        if name in posture:
+            found[name] = posture[name]
+        elif of <= set(known) and mechanism.bodies[name].oriented:
+            found[name] = numbers.of(direction)[0]
+    steps: list[tuple[str, str, float]] = []
+    for joint in mechanism.joints.values():
+        parent, child = (body.name for body in joint.bodies)
+        if joint.holds_direction:
+            steps.append((parent, child, numbers.of(ca.SX(joint.angle))[0]))
+        elif joint.coordinate == "angle" and joint.name in posture:
+            steps.append((parent, child, posture[joint.name]))
+    going = True
+    while going:
+        before = len(found)
+        for parent, child, angle in steps:
+            if parent in found:
+                found.setdefault(child, found[parent] + angle)
+            elif child in found:
+                found[parent] = found[child] - angle
+        going = len(found) > before
+    return found
+
+
+@dataclass(eq=False)
+class Undecided:
+    """What a posture leaves open of loops: the two ways of each that has a closed form, and names that iterated ones need."""
+
+    ways: list[tuple[str, Mapping[str, float], Mapping[str, float]]] = field(default_factory=list)
+    lacking: list[tuple[str, list[tuple[str, bool]]]] = field(default_factory=list)
+    words: list[str] = field(default_factory=list)
+
+    def __bool__(self) -> bool:
+        return bool(self.ways or self.lacking)
+
+    def note_ways(self, block: Block, ways: Sequence[Mapping[Coordinate, float]], words: Sequence[str], length: float) -> None:
+        """Note that a loop can be assembled in two ways; the coordinate that differs most is to tell them apart."""
+        first, second = ways
+
+        def apart(coordinate: Coordinate) -> float:
+            gap = first[coordinate] - second[coordinate]
+            return abs(math.remainder(gap, math.tau)) if coordinate.kind == "angle" else abs(gap) / length
+
+        chosen = max(block.unknown, key=apart)
+        name = posture_name(chosen)
+        self.ways.append((block.joints, {name: first[chosen]}, {name: second[chosen]}))
+        self.words.append(
+            f"the loop closed by {block.joints} can be assembled in two ways at the start of the motion: {' or '.join(words)}"
+        )
+
+    def note_lacking(self, block: Block, missing: Sequence[Coordinate]) -> None:
+        """Note that an iteration needs rough values of coordinates to begin with."""
+        names = [posture_name(c) for c in missing]
+        self.lacking.append((block.joints, [(posture_name(c), c.kind == "angle") for c in missing]))
+        self.words.append(f"the loops closed by {block.joints} have no closed form; give a rough posture of {', '.join(names)} too")
+
+    def refusal(self, multibody: Multibody) -> PostureError:
+        """All of it as an error, with lines to paste."""
+        kinds = {name for _, first, _ in self.ways for name in first if turns(multibody, name)}
+        lines = []
+        for k in (0, 1) if self.ways and len(self.ways) == 1 and not self.lacking else (0,):
+            told = {}
+            for _, *ends in self.ways:
+                for name, value in ends[k].items():
+                    text = readable(math.degrees(value), math.degrees(ends[1 - k][name])) if name in kinds else ""
+                    told[name] = f"'{text} deg'" if text else readable(value, ends[1 - k][name])
+            told |= {name: "'... deg'" if angular else "..." for _, names in self.lacking for name, angular in names}
+            lines.append("posture={" + ", ".join(f"'{name}': {text}" for name, text in told.items()) + "}")
+        say = f"say which by {' or '.join(lines)}" if self.ways else lines[0]
+        after = " or the like: each loop is told as it is with the first way of those before it" if len(self.ways) > 1 else ""
+        return PostureError(f"{'; '.join(self.words)}; {say}{after}", tuple((a, b) for _, a, b in self.ways), bool(self.lacking))
+
+
+def _direction(multibody: Multibody, body: str) -> Any:
+    turn = multibody.frames[body].rotation
+    return ca.SX(ca.atan2(turn.s, turn.c))

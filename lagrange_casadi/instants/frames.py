@@ -1,0 +1,56 @@
+"""A solution in the containers of other libraries, and as rows: an instant each, with units in the head."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..declare.density import Array
+from ..errors import LagrangeCasadiError
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+    from .solution import Solution
+
+TIME = "t [s]"
+"""The head of the instants."""
+
+
+def dataset(solution: Solution) -> xarray.Dataset:
+    """All quantities as an ``xarray.Dataset`` over t and xi. Raises :class:`.LagrangeCasadiError` without xarray."""
+    try:
+        import xarray
+    except ImportError:
+        raise LagrangeCasadiError("to_xarray needs xarray; install it with: pip install xarray") from None
+    data = {
+        str(q): (q.quantity.axes, solution.array(q), {"units": solution.unit(q)} | q.quantity.attributes)
+        for q in solution.quantities()
+    }
+    coordinates = {"t": ("t", solution.t, {"units": "s"}), "xi": ("xi", solution.xi, {"units": "1", "long_name": "ratio xi/l"})}
+    return xarray.Dataset(data, coordinates, {"case": solution.case})
+
+
+def frame(solution: Solution) -> pandas.DataFrame:
+    """All quantities as a ``pandas.DataFrame``, a row an instant. Raises :class:`.LagrangeCasadiError` without pandas."""
+    try:
+        import pandas
+    except ImportError:
+        raise LagrangeCasadiError("to_pandas needs pandas; install it with: pip install pandas") from None
+    return pandas.DataFrame(columns(solution), index=pandas.Index(solution.t, name=TIME))
+
+
+def columns(solution: Solution) -> dict[str, Array]:
+    """All quantities over the instants, (t,), by a head with the unit: ``effort:O [N m]``.
+
+    A section force has a column for each ratio of the solution: ``section:LINK:bending xi/l=0.25 [N m]``.
+    """
+    found: dict[str, Array] = {}
+    for output in solution.quantities():
+        unit, values = solution.unit(output), solution.array(output)
+        ending = "" if unit == "1" else f" [{unit}]"
+        if values.ndim == 1:
+            found[f"{output}{ending}"] = values
+        else:
+            found |= {f"{output} xi/l={xi:.10g}{ending}": column for xi, column in zip(solution.xi, values.T, strict=True)}
+    return found

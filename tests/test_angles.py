@@ -1,0 +1,162 @@
+"""Angles as people type them: wherever one may be typed, and refused where it is none."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mechanisms import four_bar
+
+from lagrange_casadi import Mechanism, Scene, evaluate
+from lagrange_casadi.cli import main
+from lagrange_casadi.declare.angles import angle
+from lagrange_casadi.errors import DeclarationError, ParameterError
+from lagrange_casadi.motion import polynomial
+
+pytestmark = pytest.mark.quick
+
+
+@pytest.mark.parametrize(
+    ("typed", "value"),
+    [
+        (1.2, 1.2),
+        (-2, -2.0),
+        ("1.2", 1.2),
+        ("1.2 rad", 1.2),
+        ("1.2rad", 1.2),
+        ("180 deg", math.pi),
+        ("350deg", math.radians(350)),
+        (" -90  deg ", -math.pi / 2),
+        ("1e2deg", math.radians(100)),
+        (np.float64(0.5), 0.5),
+    ],
+)
+def test_what_is_an_angle(typed, value):
+    assert angle(typed) == value
+
+
+@given(st.floats(-1e6, 1e6))
+def test_degrees_are_degrees(value):
+    assert angle(f"{value!r} deg") == math.radians(value)
+    assert angle(f"{value!r}") == angle(value) == angle(f"{value!r}rad") == value
+
+
+@pytest.mark.parametrize(
+    "typed", ["", "deg", "90 grad", "90 degrees", "1_0 deg", "nan", "inf deg", math.inf, math.nan, None, True, (1,), "1 2 deg", 2j]
+)
+def test_what_is_no_angle(typed):
+    with pytest.raises(ValueError, match=r"^expected a finite number \[rad\], or a text such as '350 deg' or '1\.2 rad', got "):
+        angle(typed)
+    with pytest.raises(DeclarationError):
+        angle(typed)
+
+
+def pendulum(**keywords):
+    m = Mechanism("pendulum")
+    tilt = m.parameter("tilt", 0.5, "rad", low=0.0, high=1.0)
+    l = m.parameter("l", 0.3, "m", low=0.0)
+    arm, hand = m.link("arm", length=l, mass=1.0), m.link("hand", length=0.1, mass=0.5)
+    m.revolute("O", m.ground, arm)
+    m.weld("fist", arm.tip, hand, **keywords or {"angle": tilt})
+    return Scene(m, {"O": polynomial(0, 1.0)}, t=(0, 1, 5))
+
+
+def test_a_posture_may_be_told_in_degrees():
+    """The same branch, to the bit: what is kept of it are radians."""
+    plain = four_bar()
+    scene = Scene(plain.mechanism, plain.motion, t=plain.t, posture={"c": "85 deg"})
+    assert dict(scene.posture) == {"c": math.radians(85)}
+    np.testing.assert_array_equal(evaluate(scene).motion("C").value, evaluate(plain).motion("C").value)
+
+
+@pytest.mark.parametrize(
+    ("posture", "says"),
+    [
+        ({"c": 85}, r"posture of 'c': 85 rad is 4870.14 deg, more than two turns; '85 deg' is 85 degrees$"),
+        ({"c": -12.6}, r"posture of 'c': -12.6 rad is -721.927 deg, more than two turns; '-12.6 deg' is"),
+        ({"c": "800 deg"}, r"posture of 'c': 13.9626 rad is 800 deg, more than two turns$"),
+        (
+            {"c": "north"},
+            r"posture of 'c': expected a finite number \[rad\], or a text such as '350 deg' or '1.2 rad', got 'north'",
+        ),
+        ({"c": math.nan}, r"posture of 'c': expected a finite number"),
+    ],
+)
+def test_a_posture_in_degrees_without_the_word_is_refused(posture, says):
+    plain = four_bar()
+    with pytest.raises(DeclarationError, match=says):
+        Scene(plain.mechanism, plain.motion, t=plain.t, posture=posture)
+
+
+def test_two_turns_are_a_posture():
+    plain = four_bar()
+    assert Scene(plain.mechanism, plain.motion, t=plain.t, posture={"c": -4 * math.pi}).posture == {"c": -4 * math.pi}
+
+
+def test_a_slide_is_at_no_angle():
+    m = Mechanism("slide")
+    m.prismatic("guide", m.ground, m.point_mass("block", 1.0), axis=(1, 0))
+    with pytest.raises(
+        DeclarationError, match=r"posture of 'guide': expected a place along its line, a finite number \[m\], got '2 deg'"
+    ):
+        Scene(m, {"guide": polynomial(0, 1)}, posture={"guide": "2 deg"})
+
+
+def test_parameters_that_are_angles_may_be_told_in_degrees():
+    scene = pendulum()
+    told, plain = (evaluate(scene, parameters={"tilt": value}).effort("O") for value in ("30 deg", math.radians(30)))
+    np.testing.assert_array_equal(told, plain)
+    first = Scene(scene.mechanism, scene.motion, t=scene.t, assembly={"tilt": "30 deg"})
+    assert first.assembly == {"tilt": math.radians(30)}
+    with pytest.raises(ParameterError, match=r"parameter 'l' must be a number \[m\], got '30 deg'"):
+        evaluate(scene, parameters={"l": "30 deg"})
+    with pytest.raises(ParameterError, match=r"parameter 'tilt' must be a number \[rad\], or a text such as '30 deg', got 'steep'"):
+        evaluate(scene, parameters={"tilt": "steep"})
+    with pytest.raises(ParameterError, match=r"parameter 'tilt' = 1\.57\d* rad is out of its range \[0, 1\]"):
+        evaluate(scene, parameters={"tilt": "90 deg"})
+
+
+def test_parameters_are_declared_in_degrees():
+    m = Mechanism("m")
+    m.parameter("tilt", "30 deg", "rad", low="-10 deg", high="90 deg")
+    tilt = m.parameters["tilt"]
+    assert (tilt.default, tilt.low, tilt.high) == (math.radians(30), math.radians(-10), math.radians(90))
+    with pytest.raises(DeclarationError, match=r"parameter 'lean': angle: expected a finite number \[rad\]"):
+        m.parameter("lean", "much", "rad")
+    assert list(m.parameters) == ["tilt"]
+
+
+def test_welds_and_slides_take_degrees():
+    told, plain = (evaluate(pendulum(angle=value)).effort("O") for value in ("60 deg", math.radians(60)))
+    np.testing.assert_array_equal(told, plain)
+    with pytest.raises(DeclarationError, match=r"joint 'fist': angle: expected a finite number \[rad\], or a text"):
+        pendulum(angle="sixty")
+
+
+def test_the_command_line_takes_degrees(here, capfd):
+    (here / "case.py").write_text(
+        "from lagrange_casadi import Mechanism, Scene\nfrom lagrange_casadi.motion import polynomial\n"
+        "def scene():\n"
+        "    m = Mechanism('pendulum')\n"
+        "    arm, hand = m.link('arm', length=m.parameter('l', 0.3, 'm'), mass=1.0), m.link('hand', length=0.1, mass=0.5)\n"
+        "    m.revolute('O', m.ground, arm)\n"
+        "    m.weld('fist', arm.tip, hand, angle=m.parameter('tilt', 0.5, 'rad'))\n"
+        "    return Scene(m, {'O': polynomial(0, 1.0)}, t=(0, 1, 5))\n"
+    )
+    for name, value in (("a", "30 deg"), ("b", repr(math.radians(30)))):
+        assert main(["run", "case.py", "--no-figures", "--set", f"tilt={value}", "--out", f"{name}.h5"]) == 0
+    assert (here / "a.h5").read_bytes() == (here / "b.h5").read_bytes()
+    assert main(["run", "case.py", "--set", "l=30deg"]) == 2
+    assert "error: parameter 'l' must be a number [m], got '30deg'" in capfd.readouterr().err
+    assert main(["run", "case.py", "--set", "tilt=30grad"]) == 2
+    assert "expected NAME=VALUE with a number, as in l=0.25 or phi=30deg, got" in capfd.readouterr().err
+    sweep = ["sweep", "case.py", "--grid", "tilt=0:1:3", "--grid", "l=0.2:0.4:3", "--quiet", "--want", "effort", "--out", "s.h5"]
+    assert main(sweep) == 0
+    assert main([*sweep[:4], *sweep[6:-1], "t.h5", "--set", "l=2deg"]) == 2
+    assert main(["plot", "s.h5", "--out", "one", "--over", "l", "--at", f"tilt={0.5}"]) == 0
+    assert main(["plot", "s.h5", "--out", "two", "--over", "l", "--at", "tilt=28.64788975654116deg"]) == 0
+    assert [p.read_bytes() for p in sorted((here / "one").iterdir())] == [p.read_bytes() for p in sorted((here / "two").iterdir())]
+    capfd.readouterr()
+    assert main(["plot", "s.h5", "--out", "three", "--over", "tilt", "--at", "l=2deg"]) == 2
+    assert "--at: parameter 'l' is in m, got 2deg" in capfd.readouterr().err

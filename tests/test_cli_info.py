@@ -1,0 +1,86 @@
+"""The command ``info`` of a case: the whole scene in lines."""
+
+import pytest
+
+from lagrange_casadi.cli import main
+from lagrange_casadi.equations.kinematics import describe_coordinate
+
+pytestmark = pytest.mark.quick
+
+EVERYTHING = """
+import casadi as ca
+from math import pi
+from lagrange_casadi import Mechanism, Scene, motion
+
+def scene():
+    m = Mechanism("everything")
+    k = m.parameter("k", 30.0, "N/m")
+    crank, rod, block = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.4, mass=1.0), m.point_mass("block", 2.0)
+    pendulum = m.link("pendulum", length=0.3, mass=1.0)
+    wheel = m.link("wheel", length=0.1, mass=1.0, centre=(0.0, 0.0), inertia=0.01)
+    hub = m.link("hub", length=0.1, mass=0.1)
+    O = m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, block)
+    m.prismatic("guide", m.ground, block, axis=(1, 0))
+    P = m.revolute("P", m.ground.at(1.0, 0.0), pendulum)
+    way = m.prismatic("way", m.ground.at(0.0, 0.2), hub, axis=(0, 2), angle=pi / 2)
+    turn = m.revolute("turn", hub, wheel)
+    m.gear("mesh", O, P, ratio=-0.5)
+    m.nonholonomic("rolling", m.velocity(hub)[1] + 0.1 * m.rate(turn), replaces=turn)
+    m.force("push", block, x=-k * m.coordinate(O), y=2.5)
+    m.force("wind", rod.at(0.2), x=1.0, turning=True)
+    m.torque("brake", pendulum, -0.1 * m.rate(P), against=crank)
+    m.spring("mount", m.ground.at(0.1, 0.3), rod.at(0.2), stiffness=k, length=0.25, damping=3.0)
+    motions = {"O": motion.harmonic(0.5, 0.25, 2.0), "way": motion.samples([0, 0.2, 0.4, 0.7, 1], [0, 0.1, 0.2, 0.35, 0.5])}
+    motions["turn"] = motion.samples([0, 0.2, 0.4, 0.7, 1], [0, -1, -2, -3.5, -5])
+    return Scene(m, motions, wanted=["effort", "section"], t=(0, 1, 11), posture={"rod": -0.0}, assembly={"k": 20})
+"""
+
+
+def test_info_shows_the_whole_scene(here, capsys):
+    (here / "everything.py").write_text(EVERYTHING)
+    assert main(["info", "everything.py"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    for line in (
+        "  prismatic joint guide: ground (0, 0) - block (0, 0), along (1, 0) of ground",
+        "  prismatic joint way: ground (0, 0.2) - hub (0, 0), along (0, 1) of ground, at 1.5708 rad (90 deg), driven",
+        "  gravity: (0, -9.81) m/s^2",
+        "freedoms: 3, driven at O, way, turn",
+        "  drive way: a spline through 5 samples from 0 to 1 s; from 0 m to 0.5 m",
+        "load push: force on block, x = (-(k*O)) N, y = 2.5 N, in ground axes",
+        "load wind: force on rod, x = 1 N, y = 0 N, in the axes of rod",
+        "load brake: torque on pendulum against crank, (-0.1*P_rate) N m",
+        "load mount: spring between ground and rod, stiffness k N/m, free length 0.25 m, damping 3 N s/m",
+        "constraint mesh: 0 = (P-(-0.5*O))",
+        "non-holonomic constraint rolling: 0 = (hub_y_rate+(0.1*turn_rate)); it moves joint turn, without an effort",
+        "posture: rod = 0 rad (0 deg)",
+        "assembled first with: k = 20",
+        "wanted: effort, section",
+    ):
+        assert line in lines, line
+    assert next(line for line in lines if line.startswith("outputs:")).endswith(
+        "all of a kind: reaction, multiplier, load, section"
+    )
+
+
+def test_long_expressions_are_cut(capsys):
+    assert main(["info", "engine"]) == 0
+    gas = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("load gas:"))
+    assert "... N, in ground axes" in gas
+    assert len(gas) < 300
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "words"),
+    [
+        ("angle", -0.0, "x = 0 rad (0 deg)"),
+        ("angle", -1.2e-16, "x = 0 rad (0 deg)"),
+        ("angle", -0.5235987755982988, "x = -0.523599 rad (-30 deg)"),
+        ("slide", -0.0, "x = 0 m"),
+        ("slide", -3e-17, "x = 0 m"),
+        ("slide", 2.5e-7, "x = 2.5e-07 m"),
+    ],
+)
+def test_nobody_reads_minus_zero(kind, value, words):
+    assert describe_coordinate("x", kind, value) == words

@@ -1,0 +1,165 @@
+"""Postures: by directions or by joints' coordinates, and what they leave open told at once, in lines that work when pasted."""
+
+import ast
+import math
+import pickle
+import re
+from dataclasses import replace
+
+import pytest
+from mechanisms import four_bar
+
+from lagrange_casadi import evaluate, load_case
+from lagrange_casadi.cli import main
+from lagrange_casadi.draw.postures import assemblies
+from lagrange_casadi.errors import AssemblyError, DeclarationError, PostureError, UnknownNameError
+
+pytestmark = pytest.mark.quick
+
+CLOSED = ["four_bar", "six_bar", "andrews_squeezer", "quick_return", "slider_crank", "engine"]
+
+
+def moved(scene, **changes):
+    """The poses of all links at the start, by name; a turn more or less is none."""
+    solution = evaluate(replace(scene, t=(scene.t[0], scene.t[0], 1), wanted=("motion",), **changes), backend="vm")
+    return {name: solution.pose(name) for name in scene.mechanism.links}, solution
+
+
+def same(first, second):
+    return all(
+        abs(first[name].x - second[name].x) < 1e-9
+        and abs(first[name].y - second[name].y) < 1e-9
+        and abs(math.remainder(float(first[name].angle[0] - second[name].angle[0]), math.tau)) < 1e-9
+        for name in first
+    )
+
+
+def pasted(error):
+    """The postures of the lines that an error has."""
+    return [ast.literal_eval(text) for text in re.findall(r"posture=(\{[^}]*\})", str(error))]
+
+
+@pytest.mark.parametrize("joint", ["A", "B", "C"])
+@pytest.mark.parametrize("rocker", [1.5, -1.5])
+def test_a_joints_coordinate_chooses_the_branch(joint, rocker):
+    """Any joint of the loop: on the tree, closing it, at the ground; rough to 20 degrees, and in degrees."""
+    scene = four_bar(rocker=rocker)
+    poses, solution = moved(scene)
+    told = float(solution.motion(joint).value[0])
+    for rough in (told + 0.35, told - 0.35, told + math.tau, f"{math.degrees(told):.1f} deg"):
+        assert same(moved(scene, posture={joint: rough})[0], poses)
+
+
+@pytest.mark.parametrize("case", ["six_bar", "andrews_squeezer", "rrr3", "engine", "quick_return"])
+def test_all_joints_serve_as_well_as_directions(case):
+    """Loops that are iterated get the directions of their links from the joints' coordinates, one after another."""
+    scene = load_case(case).scene
+    poses, solution = moved(scene)
+    joints = {name: joint for name, joint in scene.mechanism.joints.items() if joint.coordinate}
+    posture = {}
+    for k, (name, joint) in enumerate(joints.items()):
+        value = float(solution.motion(name).value[0])
+        posture[name] = value if joint.slides else math.remainder(value, math.tau) + 0.03 * (-1) ** k
+    assert same(moved(scene, posture=posture)[0], poses)
+
+
+@pytest.mark.parametrize("case", CLOSED)
+def test_what_is_open_is_told_at_once_in_lines_to_paste(case):
+    scene = load_case(case).scene
+    with pytest.raises(PostureError) as error:
+        moved(scene, posture={})
+    lines = pasted(error.value)
+    assert lines
+    assert "\n" not in str(error.value)
+    found = [moved(scene, posture=line)[0] for line in lines]
+    assert len(lines) == (2 if len(error.value.ways) == 1 else 1)
+    if len(found) == 2:
+        assert not same(*found)
+
+
+def test_all_loops_are_told_where_the_first_way_of_one_closes_no_other():
+    """Andrews' squeezer closes in one way of its first loop only; all three loops are told for that one."""
+    scene = load_case("andrews_squeezer").scene
+    with pytest.raises(PostureError, match=r"'P3' can be .*'P4' can be .*'P6' can be") as error:
+        moved(scene, posture={})
+    (posture,) = pasted(error.value)
+    assert set(posture) == {"k2", "k4", "k6"}
+    assert evaluate(replace(scene, posture={**posture, "k4": 1.58, "k5": -0.52})).certified
+
+
+def test_what_no_way_closes_cannot_be_assembled():
+    m = load_case("quick_return").scene
+    with pytest.raises(AssemblyError, match="cannot be closed at the start"):
+        evaluate(replace(m, posture={}, assembly={"r": 5.0}), parameters={"r": 5.0})
+
+
+def test_names_that_iterations_need_are_told_at_once():
+    scene = load_case("rrr3").scene
+    says = (
+        r"the loops closed by joint 'foot1', joint 'foot2' have no closed form; give a rough posture of lower0, lower1, lower2, "
+        r"platform too; posture=\{'lower0': '\.\.\. deg', .*'platform': '\.\.\. deg'\}$"
+    )
+    with pytest.raises(PostureError, match=says) as error:
+        evaluate(replace(scene, posture={}))
+    assert (error.value.ways, error.value.lacking) == ((), True)
+
+
+def test_a_part_of_a_posture_leaves_the_rest_open():
+    scene = load_case("six_bar").scene
+    with pytest.raises(PostureError) as error:
+        moved(scene, posture={"rocker": "94 deg"})
+    assert [set(line) for line in pasted(error.value)] == [{"swing"}, {"swing"}]
+    assert "joint 'B'" not in str(error.value)
+
+
+@pytest.mark.parametrize(("case", "many"), [("four_bar", 2), ("six_bar", 4), ("andrews_squeezer", 4), ("quick_return", 2)])
+def test_all_ways_are_there_and_differ(case, many):
+    scene = replace(load_case(case).scene, posture={})
+    found = list(assemblies(scene))
+    assert len(found) == many
+    for entries, solution in found:
+        posture = ast.literal_eval(f"{{{entries}}}")
+        own = {name: solution.pose(name) for name in scene.mechanism.links}
+        assert same(moved(scene, posture=posture)[0], own)
+        others = [other for text, other in found if text != entries]
+        assert not any(same({name: other.pose(name) for name in own}, own) for other in others)
+
+
+@pytest.mark.parametrize("command", [["run", "own"], ["info", "own"], ["export", "own", "--out", "c"], ["trade", "own"]])
+def test_the_command_line_draws_the_ways(here, capfd, command):
+    assert main(["new", "own", "--like", "four_bar"]) == 0
+    text = (here / "own" / "case.py").read_text()
+    (here / "own" / "case.py").write_text(text.replace(', posture={"rocker": 1.5}', ""))
+    capfd.readouterr()
+    assert main(command) == 2
+    err = capfd.readouterr().err
+    assert err.startswith("error: the loop closed by joint 'B' can be assembled in two ways")
+    assert err.endswith("; own_postures.png draws 2 that close, each with its posture\n")
+    assert err.count("\n") == 1
+    assert sorted(path.name for path in here.iterdir()) == ["own", "own_postures.png"]
+    assert (here / "own_postures.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_where_nothing_can_be_drawn_there_is_no_file(here, capfd):
+    assert main(["new", "own", "--like", "rrr3"]) == 0
+    text = (here / "own" / "case.py").read_text()
+    (here / "own" / "case.py").write_text(re.sub(r"posture=\w+", "posture={}", text))
+    capfd.readouterr()
+    assert main(["run", "own"]) == 2
+    assert "draws" not in capfd.readouterr().err
+    assert [path.name for path in here.iterdir()] == ["own"]
+
+
+def test_what_a_posture_may_tell():
+    scene = four_bar()
+    with pytest.raises(UnknownNameError, match="unknown link or joint in posture 'D'; valid: a, b, c, O, A, B, C"):
+        replace(scene, posture={"D": 1.0})
+    with pytest.raises(DeclarationError, match=r"posture of 'B': 90 rad is 5156\.62 deg, more than two turns"):
+        replace(scene, posture={"B": 90})
+
+
+def test_the_error_can_be_sent_to_another_process():
+    with pytest.raises(PostureError) as error:
+        evaluate(replace(four_bar(), posture={}))
+    told = pickle.loads(pickle.dumps(error.value))
+    assert (str(told), told.ways, told.lacking) == (str(error.value), error.value.ways, False)

@@ -1,0 +1,170 @@
+"""Means, smallest and largest values, resultants, and solutions as rows."""
+
+import csv
+import math
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from mechanisms import parallelogram, slider_crank
+
+from lagrange_casadi import LagrangeCasadiError, evaluate, load_case, refine, sweep
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import UnknownNameError
+from lagrange_casadi.instants.statistics import Statistics
+from lagrange_casadi.study.peaks import resultants
+
+pytestmark = pytest.mark.quick
+
+
+@pytest.fixture(scope="module")
+def solution():
+    return evaluate(load_case("slider_crank").scene)
+
+
+def test_a_sine_over_its_turn():
+    """Mean 1, rms sqrt(1 + 2), from -1 to 3; trapezia are exact for a periodic curve."""
+    t = np.linspace(0.0, 1.0, 41)
+    found = Statistics.over("x", "N", t, 1.0 + 2.0 * np.sin(math.tau * t))
+    assert found.mean == pytest.approx(1.0, abs=1e-15)
+    assert found.rms == pytest.approx(math.sqrt(3.0), rel=1e-15)
+    assert (found.smallest.value, found.smallest.t) == (pytest.approx(-1.0), 0.75)
+    assert (found.largest.value, found.largest.t, found.largest.xi) == (pytest.approx(3.0), 0.25, None)
+    assert found.peak == found.largest
+    assert (
+        Statistics.over("x", "N", t, np.cos(math.pi * t) - 0.5).peak
+        == Statistics.over("x", "N", t, np.cos(math.pi * t) - 0.5).smallest
+    )
+
+
+@given(st.lists(st.floats(1e-3, 1e3), min_size=1, max_size=30), st.floats(-10, 10), st.floats(-10, 10))
+def test_instants_need_not_be_even(steps, start, slope):
+    """The mean of a straight line is its value in the middle, wherever the instants are."""
+    t = np.concatenate([[0.0], np.cumsum(steps)])
+    found = Statistics.over("x", "1", t, start + slope * t)
+    assert found.mean == pytest.approx(start + slope * t[-1] / 2, rel=1e-9, abs=1e-9 * (10 + abs(slope) * t[-1]))
+
+
+def test_one_instant_is_its_own_mean():
+    found = Statistics.over("x", "N", np.array([2.0]), np.array([-3.0]))
+    assert (found.mean, found.rms, found.smallest, found.largest.t) == (-3.0, 3.0, found.largest, 2.0)
+
+
+def test_means_are_those_of_a_sweep(here, solution):
+    case = load_case("slider_crank")
+    swept = sweep(case, {"l": [0.2]}, wanted=["effort"], out=here / "x.h5")
+    found = solution.statistics("effort:O")
+    assert swept["mean:effort:O"][0] == pytest.approx(found.mean, abs=1e-13 * found.largest.value)
+    assert swept["rms:effort:O"][0] == pytest.approx(found.rms, rel=1e-13)
+
+
+@pytest.mark.parametrize("case", ["slider_crank", "quick_return", "engine"])
+def test_section_forces_are_never_beyond_their_smallest_and_largest(case):
+    """Also beside a pin that slides along its link, on either side of it; and the places have these values."""
+    found = evaluate(load_case(case).scene, wanted=["section"])
+    for link in found.links_with_sections:
+        law = found.section(link).law
+        for force in ("axial", "shear", "bending"):
+            told = found.statistics(f"section:{link}:{force}")
+            grid = law.on_grid(force, np.linspace(0, 1, 401))
+            size = max(abs(told.smallest.value), abs(told.largest.value))
+            assert told.smallest.value <= grid.min() + 1e-13 * size
+            assert told.largest.value >= grid.max() - 1e-13 * size
+            assert np.ptp(grid) >= 0.99 * (told.largest.value - told.smallest.value)
+            peak = found.peak(f"section:{link}:{force}")
+            assert (told.peak.value, told.peak.t, told.peak.xi) == (peak.value, peak.t, peak.xi)
+            assert size == abs(peak.value)
+            assert (told.mean, told.rms) == (None, None)
+            for extreme in (told.smallest, told.largest):
+                i = int(np.flatnonzero(found.t == extreme.t)[0])
+                sides = [law.during(slice(i, i + 1)).at(force, np.array([[extreme.xi]]), side)[0, 0] for side in ("base", "tip")]
+                assert min(abs(side - extreme.value) for side in sides) <= 1e-12 * size
+
+
+def test_resultants(solution):
+    reaction = solution.reaction("guide")
+    np.testing.assert_array_equal(reaction.resultant, np.hypot(reaction.fx, reaction.fy))
+    np.testing.assert_array_equal(solution.array("reaction:guide:resultant"), reaction.resultant)
+    assert solution.unit("reaction:guide:resultant") == "N"
+    assert solution.peak("reaction:guide:resultant").value == reaction.resultant.max()
+    assert solution.statistics("reaction:guide:resultant").smallest.value == reaction.resultant.min()
+    assert "reaction:guide:resultant" not in list(solution.names())
+    with pytest.raises(UnknownNameError, match="unknown quantity 'reaction:nowhere:resultant'"):
+        solution.peak("reaction:nowhere:resultant")
+    with pytest.raises(UnknownNameError, match="unknown quantity 'reaction:guide:resultant'"):
+        evaluate(slider_crank(), wanted=["effort"]).statistics("reaction:guide:resultant")
+
+
+def test_peaks_of_resultants_between_instants():
+    """From few instants as exact as from many: the peaks of A and B lie within the cycle or at its end."""
+    scene = load_case("slider_crank").scene
+    few, many = (evaluate(scene, t=(0, 0.08, count), wanted=["reaction"]) for count in (41, 40_001))
+    names = resultants(few)
+    assert names == [f"reaction:{joint}:resultant" for joint in ("O", "A", "B", "guide")]
+    for peak in refine(scene, few, names):
+        near = many.peak(peak.name)
+        assert near.value * (1 - 1e-14) <= peak.value <= near.value * (1 + 1e-6)
+        assert peak.t == pytest.approx(near.t, abs=3e-6)
+
+
+def test_what_is_open_has_no_resultant_that_is_told():
+    found = evaluate(parallelogram(pendulum=True))
+    assert not found.determined("reaction:A:resultant")
+    assert "reaction:A:resultant" not in resultants(found)
+    assert np.isnan(found.statistics("reaction:A:resultant").mean)
+    assert found.determined("reaction:hang:resultant")
+
+
+def test_to_pandas(solution):
+    table = replace(solution, xi=np.array([0.0, 0.25])).to_pandas()
+    assert table.index.name == "t [s]"
+    np.testing.assert_array_equal(table.index, solution.t)
+    np.testing.assert_array_equal(table["effort:O [N m]"], solution.effort("O"))
+    assert "motion:O_acceleration [rad/s^2]" in table
+    bending = solution.section("rod").law.on_grid("bending", np.array([0.25]))[:, 0]
+    np.testing.assert_array_equal(table["section:rod:bending xi/l=0.25 [N m]"], bending)
+    assert len(table.columns) == sum(1 for name in solution.names() if not name.startswith("section")) + 2 * 3 * 2
+
+
+def test_without_pandas_it_says_so(solution, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(LagrangeCasadiError, match="to_pandas needs pandas; install it with: pip install pandas"):
+        solution.to_pandas()
+
+
+def test_run_writes_rows(here, capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    arguments = ["--no-figures", "--t", "0:0.08:5", "--xi", "0:1:3", "--want", "effort", "--want", "section:rod"]
+    assert main(["run", "slider_crank", *arguments, "--csv", "rows.csv"]) == 0
+    assert "wrote slider_crank.h5, and rows.csv" in capsys.readouterr().out
+    with open("rows.csv", newline="") as file:
+        head, *rows = csv.reader(file)
+    assert head[:2] == ["t [s]", "effort:O [N m]"]
+    assert head[-1] == "section:rod:bending xi/l=1 [N m]"
+    found = evaluate(load_case("slider_crank").scene, t=(0, 0.08, 5), wanted=["effort"])
+    assert [float(row[0]) for row in rows] == found.t.tolist()
+    assert [float(row[1]) for row in rows] == found.effort("O").tolist()
+    assert {len(row) for row in rows} == {len(head)} == {2 + 3 * 3}
+
+
+def test_rows_have_a_place_of_their_own(here, capfd):
+    assert main(["run", "slider_crank", "--no-figures", "--csv", "./slider_crank.h5"]) == 2
+    assert "--csv slider_crank.h5: expected another place than the file's" in capfd.readouterr().err
+    assert main(["run", "slider_crank", "--csv", "nowhere/rows.csv"]) == 2
+    assert not list(here.iterdir())
+
+
+def test_run_tells_resultants_and_statistics(here, capsys):
+    assert main(["run", "slider_crank", "--no-figures"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert any(line.startswith("  reaction:guide:resultant          35.7198 +- ") for line in lines)
+    head = next(k for k, line in enumerate(lines) if line.startswith("over 0.08 s"))
+    assert lines[head].split()[3:] == ["smallest", "largest", "mean", "rms"]
+    assert lines[head + 1].split() == ["effort:O", "-8.15166", "8.31361", "3.63742e-05", "4.65909", "N", "m"]
+    assert "  section:rod:bending             -0.896639      0.941724                             N m" in lines
+    assert main(["run", "slider_crank", "--no-figures", "--t", "0:0.08:21", "--refine-peaks"]) == 0
+    refined = capsys.readouterr().out
+    assert "  reaction:guide:resultant          35.7199 +- " in refined
