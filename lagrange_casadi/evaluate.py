@@ -13,8 +13,9 @@ import numpy as np
 from .arithmetic.compensated import Precision
 from .declare.density import Array
 from .declare.description import describe
+from .declare.even_points import EvenPoints, checked, points
 from .declare.motion import refuse_kinked
-from .declare.scene import EvenPoints, Scene, checked, checked_ratios, points
+from .declare.scene import Scene, checked_ratios
 from .equations.checks import Check
 from .equations.derive import assembled, derive
 from .equations.scene_graph import SceneGraph

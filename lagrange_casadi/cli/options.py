@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import click
 
 from ..arithmetic.compensated import PRECISIONS
-from ..declare.scene import EvenPoints
+from ..declare.even_points import EvenPoints
 from ..errors import DeclarationError
 from ..instants.rung import BACKENDS
 from ..sweep import Axis, Range, Values

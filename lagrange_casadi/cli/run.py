@@ -11,7 +11,7 @@ import click
 
 from ..arithmetic.compensated import Precision
 from ..case import load_case
-from ..declare.scene import EvenPoints
+from ..declare.even_points import EvenPoints
 from ..draw.figures import dump_specs
 from ..errors import CertificateError
 from ..evaluate import evaluate

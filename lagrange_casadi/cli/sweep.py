@@ -10,7 +10,7 @@ import click
 
 from ..arithmetic.compensated import Precision
 from ..case import load_case
-from ..declare.scene import EvenPoints
+from ..declare.even_points import EvenPoints
 from ..errors import CertificateError
 from ..instants.refusal import Status
 from ..instants.rung import Backend

@@ -10,7 +10,7 @@ import click
 from tqdm import tqdm
 
 from ..case import load_case
-from ..declare.scene import EvenPoints
+from ..declare.even_points import EvenPoints
 from ..draw.trade_plot import PICTURES, draw_trade
 from ..errors import DeclarationError
 from ..instants.rung import Rung

@@ -19,7 +19,8 @@ import numpy.typing as npt
 from .. import codegen
 from ..codegen.stages import Stages
 from ..declare.density import Array
-from ..declare.scene import EvenPoints, Scene, points
+from ..declare.even_points import EvenPoints, points
+from ..declare.scene import Scene
 from ..equations.derive import derive
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError

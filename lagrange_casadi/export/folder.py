@@ -13,8 +13,9 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.compensated import Precision
+from ..declare.even_points import points
 from ..declare.expressions import check_line
-from ..declare.scene import Scene, points
+from ..declare.scene import Scene
 from ..equations.derive import assembled, derive
 from ..equations.fingerprint import declaration
 from ..equations.scene_graph import SceneGraph

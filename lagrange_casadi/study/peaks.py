@@ -16,8 +16,9 @@ import numpy as np
 
 from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array
+from ..declare.even_points import checked
 from ..declare.motion import jerk_function
-from ..declare.scene import Scene, checked
+from ..declare.scene import Scene
 from ..equations.derive import assembled, derive
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph

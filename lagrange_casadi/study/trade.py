@@ -17,7 +17,8 @@ import numpy as np
 
 from ..codegen import find_compiler
 from ..declare.density import Array
-from ..declare.scene import EvenPoints, Scene, checked, points
+from ..declare.even_points import EvenPoints, checked, points
+from ..declare.scene import Scene
 from ..equations.derive import assembled, derive
 from ..equations.scene_graph import SceneGraph
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError

@@ -16,7 +16,8 @@ import numpy as np
 from ..declare.density import Array
 from ..declare.description import SHAPE as DESCRIPTION
 from ..declare.description import Description, describe
-from ..declare.scene import EvenPoints, Scene, Wanted, checked, checked_ratios, outputs, points
+from ..declare.even_points import EvenPoints, checked, points
+from ..declare.scene import Scene, Wanted, checked_ratios, outputs
 from ..designs.engine import DesignEngine
 from ..equations.derive import derive
 from ..equations.fingerprint import fingerprint, sources

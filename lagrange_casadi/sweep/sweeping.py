@@ -12,7 +12,8 @@ from typing import Any
 
 from ..arithmetic.compensated import Precision
 from ..case import Case
-from ..declare.scene import EvenPoints, Scene
+from ..declare.even_points import EvenPoints
+from ..declare.scene import Scene
 from ..errors import DeclarationError
 from ..instants.rung import Backend, Rung
 from ..system.room import MOST_THREADS
