@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from lagrange_casadi import Mechanism, Scene
-from lagrange_casadi.declare.motion import harmonic, polynomial, samples
+from lagrange_casadi.declare.motion import expression, harmonic, polynomial, samples
 
 MOTION = polynomial(0.2, 3.0, 4.0)
 
@@ -339,3 +339,21 @@ PATTERNS = {
     "chain_prismatic": lambda: chain(("revolute", False), ("prismatic", False), ("revolute", False)),
     "chain_prismatic_reversed": lambda: chain(("revolute", False), ("prismatic", True), ("revolute", True)),
 }
+
+
+def press(law=polynomial, wanted=("all",), **keywords):
+    """A press whose speed is a parameter: ``law(0, w)`` gives the crank's motion, ``t`` and ``over`` may be functions of it."""
+    m = Mechanism("press")
+    rpm, length = m.parameter("rpm", 600.0, "1/min"), m.parameter("l", 0.5, "m", low=0.0)
+    crank, rod, ram = m.link("crank", length=0.1, mass=1.2), m.link("rod", length=length, mass=2.0), m.point_mass("ram", 15.0)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, ram)
+    m.prismatic("guide", m.ground, ram, axis=(0, 1))
+    asked = {name: keywords.pop(name)(rpm) for name in ("t", "over") if callable(keywords.get(name))}
+    return Scene(m, {"O": law(0, rpm * math.tau / 60)}, wanted, posture={"rod": 1.5}, **asked, **keywords)
+
+
+def uneven(_, w):
+    """A crank's motion at the mean speed w that is uneven by a fifth."""
+    return expression(lambda t: w * t + 0.2 * ca.sin(w * t))

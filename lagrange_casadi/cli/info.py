@@ -18,7 +18,7 @@ from ..store import runs as store
 from ..sweep import Sweep, is_sweep
 from ..sweep.axes import counted
 from ..sweep.checking import progress, unfinished
-from .report import peak_line
+from .report import asked_line, peak_line
 
 
 @click.command()
@@ -45,8 +45,9 @@ def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
     mechanism = scene.mechanism
     graph = derive(scene, want or None)
     _describe_mechanism(describe(mechanism, mechanism.values(), scene.motion))
-    for what, (start, stop, count) in (("t [s]", scene.t), ("xi/l", scene.xi)):
-        click.echo(f"{what}: {start:g} to {stop:g}, {count} points")
+    timing, joints = scene.timing(), mechanism.joints
+    click.echo(asked_line(timing.words(mechanism.symbols), bool(timing.joint) and joints[timing.joint].slides))
+    click.echo(f"xi/l: {scene.xi[0]:g} to {scene.xi[1]:g}, {scene.xi[2]} points")
     click.echo(f"outputs: {', '.join(outputs(mechanism))}")
     click.echo(f"wanted: {', '.join(want or scene.wanted)}")
     loops = [f"{name} ({'iterated' if graph.iterates(name) else 'closed form'})" for name in graph.checks("closure")]
@@ -59,6 +60,9 @@ def _describe_file(solution: Solution) -> None:
     _describe_mechanism(solution.description)
     provenance = solution.provenance
     click.echo(f"t [s]: {solution.t[0]:g} to {solution.t[-1]:g}, {solution.t.size} points")
+    if solution.over:
+        first, last = (solution.over.drawn(solution.over.values[k]) for k in (0, -1))
+        click.echo(f"in equal steps of {solution.over.label}: {first:.6g} to {last:.6g}")
     click.echo(f"xi/l: {solution.xi[0]:g} to {solution.xi[-1]:g}, {solution.xi.size} points")
     click.echo(f"backend: {provenance.backend}, {provenance.precision} {provenance.compiler} {provenance.flags}".rstrip())
     click.echo(f"rung: {provenance.rung}")

@@ -12,6 +12,7 @@ import click
 from ..arithmetic.compensated import Precision
 from ..case import load_case
 from ..declare.even_points import EvenPoints
+from ..declare.times import Over
 from ..draw.figures import dump_specs
 from ..errors import CertificateError
 from ..evaluate import evaluate
@@ -24,6 +25,7 @@ from ..system.publish import check_free, check_writable, filling
 from ..system.room import MOST_THREADS
 from .drawing import draw_with_progress
 from .options import EVEN_POINTS, even_points, parameters, rung, setting
+from .options import over as by_drive
 from .report import peak_line
 
 
@@ -33,6 +35,7 @@ from .report import peak_line
     "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
 )
 @click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@by_drive
 @click.option("--xi", type=even_points, metavar=EVEN_POINTS, help="Section ratios xi/l, within 0 and 1; default: the case's.")
 @click.option("--want", multiple=True, metavar="OUTPUT", help="effort, reaction:JOINT, section:LINK, motion or all; repeatable.")
 @rung
@@ -46,6 +49,7 @@ def run(
     case: Path,
     settings: Sequence[tuple[str, float]],
     t: EvenPoints | None,
+    over: Over | None,
     xi: EvenPoints | None,
     want: Sequence[str],
     backend: Backend,
@@ -77,6 +81,7 @@ def run(
         loaded.scene,
         parameters=parameters(settings),
         t=t,
+        over=over,
         xi=xi,
         wanted=want or None,
         backend=backend,

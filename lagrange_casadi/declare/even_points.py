@@ -21,6 +21,9 @@ _MADE_FROM = 3
 _EXACT = 2**53
 """Up to which doubles hold all whole numbers, so that a quotient of two is rounded once."""
 
+_UNEVEN = 1e-9
+"""Of a step: what is off by less is off by rounding."""
+
 
 def checked(what: str, even: EvenPoints) -> EvenPoints:
     """Even points in numbers. Raises :class:`DeclarationError` for a count below 1, ends that are not finite, fall, or are one."""
@@ -60,3 +63,12 @@ def points(even: EvenPoints, numbers: npt.NDArray[np.int64] | None = None) -> Ar
         return np.asarray((base + by * numbers) / whole)
     values = numbers * ((stop - start) / max(count - 1, 1)) + start
     return np.asarray(np.where(numbers == count - 1, float(stop), values))
+
+
+def are_even(values: Array) -> bool:
+    """Whether values are equal steps, but for rounding."""
+    if values.size < 3:
+        return True
+    gaps = np.abs(values - np.linspace(values[0], values[-1], values.size))
+    step = abs(values[-1] - values[0]) / (values.size - 1)
+    return bool(gaps.max() <= _UNEVEN * step + 4.0 * np.spacing(np.abs(values).max()))

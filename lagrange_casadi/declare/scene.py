@@ -5,26 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 from typing import NoReturn
 
 from ..errors import DeclarationError, ParameterError, PickleError, UnknownNameError
 from .density import Density
 from .even_points import EvenPoints, checked
-from .limits import no_sections
+from .limits import no_sections, told_parameters
 from .mechanism import Mechanism
 from .motion import Motion
-
-_TOLD = 8
-
-
-def told_parameters(mechanism: Mechanism, values: Mapping[str, float]) -> str:
-    """With which parameters something was found, to end a message with: the defaults, or others; nothing where there are none."""
-    told = values or {name: parameter.default for name, parameter in mechanism.parameters.items()}
-    listed = [f"{name} = {value:.6g}" for name, value in told.items()]
-    if len(listed) > _TOLD:
-        listed = [*listed[:_TOLD], f"{len(listed) - _TOLD} more"]
-    return f"; with the {'' if values else 'default '}parameters {', '.join(listed)}" if listed else ""
+from .times import Instants, Over, Times, Timing, instants_of, span_of
 
 
 def checked_ratios(even: EvenPoints) -> EvenPoints:
@@ -101,7 +92,12 @@ class Scene:
     wanted
         Output names, see :func:`outputs`. Only these are derived, compiled and evaluated.
     t, xi
-        Grids of time [s] and of the ratio xi/l: start, stop, count.
+        Grids of time [s] and of the ratio xi/l: start, stop, count. Those of time may be expressions of parameters.
+    over
+        Instants in equal steps of a driven coordinate, in place of ``t``: the joint's name, start, stop [rad, or text such as
+        ``"720 deg"``; or m] and count; start and stop may be expressions of parameters, and are in the order of time. The times
+        follow from the joint's motion, which must not turn back on the way. Where the motion's rate depends on time, the stretch
+        counts that goes through the start of ``t``.
     posture
         Rough directions of links [rad] and places of slides [m] at the first instant, to choose between the ways in which a loop
         can be assembled.
@@ -115,10 +111,11 @@ class Scene:
     mechanism: Mechanism
     motion: Mapping[str, Motion]
     wanted: Sequence[str] = ("all",)
-    t: EvenPoints = (0.0, 1.0, 101)
+    t: Times = (0.0, 1.0, 101)
     xi: EvenPoints = (0.0, 1.0, 101)
     posture: Mapping[str, float] = field(default_factory=dict)
     assembly: Mapping[str, float] = field(default_factory=dict)
+    over: Over | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.mechanism, Mechanism):
@@ -153,19 +150,41 @@ class Scene:
                 )
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)
-        checked("t", self.t)
         checked_ratios(self.xi)
+        timing = self.timing()
         try:
             self.mechanism.values()
         except ParameterError as error:
             raise ParameterError(f"{error}{told_parameters(self.mechanism, {})}") from None
         self.mechanism.values(self.assembly)
+        if not timing.shared:
+            self.span  # noqa: B018 - it refuses what has no instants
 
     def __repr__(self) -> str:
-        start, stop, count = self.t
+        start, stop = self.t[:2]
         motion = ", ".join(self.motion) or "nothing"
         wanted = ", ".join(self.wanted)
-        return f"<Scene of {self.mechanism.name}: drives {motion}, wants {wanted}, {count} instants from {start} to {stop} s>"
+        asked = f"from {start} to {stop} s" if self.over is None else f"over {self.over[0]} from {self.over[1]} to {self.over[2]}"
+        return f"<Scene of {self.mechanism.name}: drives {motion}, wants {wanted}, {self.timing().count} instants {asked}>"
+
+    def timing(self, t: Times | None = None, over: Over | None = None) -> Timing:
+        """How its instants are asked for, or others: ``t`` or ``over`` in place of its own.
+
+        Raises :class:`.DeclarationError` where both are given, and for what cannot be.
+        """
+        if t is not None and over is not None:
+            raise DeclarationError("t and over exclude each other: instants are in equal steps of time, or of a driven coordinate")
+        asked = self.over if t is None and over is None else over
+        return Timing.of(self.mechanism, self.motion, self.t if t is None else t, asked)
+
+    @cached_property
+    def span(self) -> tuple[float, float]:
+        """Its own first and last instant [s], with the parameters with which it is assembled."""
+        return span_of(self.mechanism, self.motion, self.timing(), self.mechanism.values(self.assembly))
+
+    def instants(self, timing: Timing, values: Mapping[str, float]) -> Instants:
+        """Instants for values of all parameters. Raises :class:`.DeclarationError` where there are none."""
+        return instants_of(self.mechanism, self.motion, timing, values)
 
     def __reduce__(self) -> NoReturn:
         """Raise :class:`PickleError`."""

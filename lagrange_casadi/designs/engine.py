@@ -19,12 +19,12 @@ import numpy.typing as npt
 from .. import codegen
 from ..codegen.stages import Stages
 from ..declare.density import Array
-from ..declare.even_points import EvenPoints, points
+from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene
 from ..equations.derive import derive
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
-from ..evaluate import checked_laws, checked_times, outputs_of
+from ..evaluate import checked_laws, checked_span, outputs_of
 from ..instants.backends import compiled, provenance
 from ..instants.cost import seconds
 from ..instants.determinacy import determinate, undetermined
@@ -88,9 +88,10 @@ class DesignEngine:
         if rung.table is not None:
             raise DeclarationError("designs are not read from a table: each would need a table of its own")
         graph = derive(scene, wanted, iterate=rung.newton is not None)
-        instants = points(checked_times(scene, t))
-        checked_laws(scene, (float(instants[0]), float(instants[-1])), tuple(scene.mechanism.values().values()))
-        p = np.array(list(scene.mechanism.values().values()))
+        timing, values = scene.timing(t), scene.mechanism.values()
+        checked_laws(scene, checked_span(scene, timing, values), tuple(values.values()))
+        instants = scene.instants(timing, values).t
+        p = np.array(list(values.values()))
         _, left_open = determinate(graph, instants, p)
         kept = KeptOutputs.of(graph, rung, left_open)
         require("the instants of a design", (kept.reduction.rows, instants.size))

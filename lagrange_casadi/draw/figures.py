@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ..declare.density import Array
 from ..errors import DeclarationError, StoreError, UnknownNameError, one_line
-from ..instants.solution import Solution
+from ..instants.solution import Peak, Solution
 from ..quantities import FORCES, Output, quantity_of
 from ..store.untrusted import parsed
 
@@ -52,12 +53,12 @@ class TimePlot:
             output = Output.of(name)
             label = name.partition(":")[2].replace(":", " ") if len(self.quantities) > 1 else None
             if output.group != "section":
-                axes.plot(solution.t, self.factor * solution.outputs[output], label=label)
+                axes.plot(_along(solution)[0], self.factor * solution.outputs[output], label=label)
                 continue
             values = solution.section(output.part).law.on_grid(output.member, np.array(self.xi))
             for xi, curve in zip(self.xi, values.T, strict=True):
-                axes.plot(solution.t, self.factor * curve, label=rf"$\xi/l$ = {xi:g}")
-        _finish(figure, axes, solution, self.quantities[0], self.title, self.note, "t [s]")
+                axes.plot(_along(solution)[0], self.factor * curve, label=rf"$\xi/l$ = {xi:g}")
+        _finish(figure, axes, solution, self.quantities[0], self.title, self.note, _along(solution)[1])
         return figure
 
 
@@ -107,21 +108,25 @@ class SectionMaps:
 
         figure = Figure(figsize=(8.0, 8.4), layout="constrained")
         instants, ratios = (slice(None, None, 1 + size // _PIXELS) for size in (solution.t.size, solution.xi.size))
-        law, t, xi = solution.section(self.link).law.during(instants), solution.t[instants], solution.xi[ratios]
+        law, xi = solution.section(self.link).law.during(instants), solution.xi[ratios]
+        places, along = _along(solution)
         basis = law.basis(xi)
         for axes, force, name in zip(figure.subplots(3, 1, sharex=True), FORCES, self.needs(), strict=True):
             values, peak = law.on_grid(force, basis), solution.peak(name)
             bound = abs(peak.value) or 1.0
-            picture = axes.pcolormesh(t, xi, values.T, cmap="RdBu_r", vmin=-bound, vmax=bound, shading="nearest", rasterized=True)
-            axes.plot(peak.t, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
+            picture = axes.pcolormesh(
+                places[instants], xi, values.T, cmap="RdBu_r", vmin=-bound, vmax=bound, shading="nearest", rasterized=True
+            )
+            x, at = _place_of(peak, solution)
+            axes.plot(x, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
             axes.set_title(
-                f"{quantity_of(name).long_name}: peak {peak.value:.4g} {peak.unit} at t = {peak.t:.4g} s, "
+                f"{quantity_of(name).long_name}: peak {peak.value:.4g} {peak.unit} at {at}, "
                 rf"$\xi/l$ = {peak.xi:.3f}",
                 fontsize=10,
             )
             axes.set_ylabel(r"$\xi/l$")
             figure.colorbar(picture, ax=axes, label=f"{quantity_of(name).long_name} [{peak.unit}]")
-        axes.set_xlabel("t [s]")
+        axes.set_xlabel(along)
         figure.suptitle(f"{solution.case}: section forces of {self.link}, as the tip's side acts on the base's", fontsize=11)
         return figure
 
@@ -222,6 +227,20 @@ def _has(solution: Solution, spec: Spec) -> bool:
         return all(Output("pose", body, "x") in solution.outputs for body in solution.description["bodies"])
     names = set(solution.names())
     return all(name in names for name in spec.needs())
+
+
+def _along(solution: Solution) -> tuple[Array, str]:
+    """What instants are drawn over: their times, or the coordinate by which they were asked for, an angle in degrees."""
+    if solution.over is None:
+        return solution.t, "t [s]"
+    return solution.over.drawn(solution.over.values), solution.over.label
+
+
+def _place_of(peak: Peak, solution: Solution) -> tuple[float, str]:
+    """Where a peak is drawn on such an axis, and the same in words."""
+    if solution.over is None or peak.over is None:
+        return peak.t, f"t = {peak.t:.4g} s"
+    return float(solution.over.drawn(peak.over)), solution.over.shown(peak.over)
 
 
 def _figure() -> tuple[Figure, Any]:
