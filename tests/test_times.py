@@ -115,7 +115,7 @@ def test_what_is_asked_for_can_be_sent_and_compared():
     assert scene.timing(t=(0, 1, 9)) == Timing(0.0, 1.0, 9)
     assert scene.timing(t=(0, 1, 9)).words(scene.mechanism.symbols) == [0.0, 1.0, 9]
     start, stop, *rest = timing.words(scene.mechanism.symbols)
-    assert (start, rest) == (0.0, [9, "O"])
+    assert (start, rest) == (0.0, [9, "O", 0.0])
     assert stop.startswith("(rpm/50) #")
 
 

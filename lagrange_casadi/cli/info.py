@@ -18,6 +18,7 @@ from ..store import runs as store
 from ..sweep import Sweep, is_sweep
 from ..sweep.axes import counted
 from ..sweep.checking import progress, unfinished
+from ..sweep.instant_axis import in_words
 from .report import asked_line, peak_line
 
 
@@ -46,7 +47,7 @@ def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
     graph = derive(scene, want or None)
     _describe_mechanism(describe(mechanism, mechanism.values(), scene.motion))
     timing, joints = scene.timing(), mechanism.joints
-    click.echo(asked_line(timing.words(mechanism.symbols), bool(timing.joint) and joints[timing.joint].slides))
+    click.echo(asked_line(timing.words(mechanism.symbols)[:4], bool(timing.joint) and joints[timing.joint].slides))
     click.echo(f"xi/l: {scene.xi[0]:g} to {scene.xi[1]:g}, {scene.xi[2]} points")
     click.echo(f"outputs: {', '.join(outputs(mechanism))}")
     click.echo(f"wanted: {', '.join(want or scene.wanted)}")
@@ -78,8 +79,8 @@ def _describe_sweep(identity: Mapping[str, Any]) -> None:
     _describe_mechanism(identity["mechanism"])
     for name, words in identity["grid"].items():
         click.echo(f"swept {name}: {words}")
-    (start, stop, count), xi = identity["t"], identity["xi"]
-    click.echo(f"t [s]: {start:g} to {stop:g}, {count} points")
+    asked, xi = identity["t"][:4], identity["xi"]
+    click.echo(asked_line(asked, len(asked) > 3 and identity["mechanism"]["joints"][asked[3]]["coordinate"] == "slide"))
     if xi:
         click.echo(f"xi/l: {xi[0]:g} to {xi[1]:g}, {xi[2]} points")
     click.echo(f"backend: {identity['backend']}, {identity['precision']} {identity['compiler']} {identity['flags']}".rstrip())
@@ -94,7 +95,7 @@ def _describe_whole(sweep: Sweep) -> None:
             click.echo(f"{counted(count)}: {sweep.statuses[status][1]}")
     click.echo("columns:")
     for kept in sweep.columns.values():
-        axes = f" over {', '.join(kept.axes)}" if kept.axes else ""
+        axes = f" over {in_words(kept.axes)}" if kept.axes else ""
         click.echo(f"  {kept.name:<36} {kept.unit:<4} {kept.long_name}{axes}")
 
 

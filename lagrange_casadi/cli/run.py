@@ -8,9 +8,11 @@ from contextlib import nullcontext
 from pathlib import Path
 
 import click
+import numpy as np
 
 from ..arithmetic.compensated import Precision
 from ..case import load_case
+from ..declare import turned
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
 from ..draw.figures import dump_specs
@@ -98,8 +100,10 @@ def run(
             check_free(draft, folder)
         save(solution, out, dump_specs(loaded.figures))
     _report(solution, refine(loaded.scene, solution, forces(solution)) if refine_peaks else None)
-    for note in solution.notes:
-        click.echo(f"note: {note}")
+    told = np.array([[parameter["value"] for parameter in solution.description["parameters"].values()]])
+    for note in (*solution.notes, turned.note(loaded.scene, loaded.scene.timing(t, over), told)):
+        if note:
+            click.echo(f"note: {note}")
     if not no_certificate:
         click.echo(summary(solution.certificate))
     click.echo(f"wrote {out}" + (f" and the figures in {folder}/" if folder else ""))

@@ -71,11 +71,12 @@ class Way:
 class Reaching:
     """A law of motion to be inverted: ``law(t, p) -> (d, rate, acceleration)``, defined within ``span`` [s].
 
-    ``steady`` tells that its rate does not depend on time.
+    ``steady`` tells that its rate does not depend on time, ``varies`` that the law depends on parameters.
     """
 
     law: Any
     steady: bool
+    varies: bool
     span: tuple[float, float]
 
     @classmethod
@@ -83,9 +84,10 @@ class Reaching:
         """The law of a drive over the parameters' symbols. Raises :class:`.DeclarationError` for one that is no expression."""
         law = motion_function({"over": motion}, symbols)
         if motion.spline:
-            return cls(law, False, motion.span)
+            return cls(law, False, False, motion.span)
         t, p = law.sx_in()
-        return cls(law, not ca.depends_on(law(t, p)[1], t), motion.span)
+        d, rate, _ = law(t, p)
+        return cls(law, not ca.depends_on(rate, t), bool(p.numel()) and bool(ca.depends_on(d, p)), motion.span)
 
     def at(self, t: Array, p: Array) -> tuple[Array, Array, Array]:
         """Coordinate, rate and acceleration at times (n, k) for parameters (n, parameters), each (n, k)."""

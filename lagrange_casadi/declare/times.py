@@ -88,9 +88,11 @@ class Timing:
         return start, stop, around
 
     def words(self, symbols: Any) -> list[Any]:
-        """The same for JSON: start, stop, count, and the joint where there is one; expressions as text that tells them apart."""
-        told = [_text(bound, symbols) if isinstance(bound, str) else bound for bound in (self.start, self.stop)]
-        return [*told, self.count, self.joint] if self.joint else [*told, self.count]
+        """The same for JSON: start, stop, count, and where there is one the joint and around; expressions as text that tells them
+        apart."""
+        bounds = (self.start, self.stop, self.around)
+        start, stop, around = (_text(bound, symbols) if isinstance(bound, str) else bound for bound in bounds)
+        return [start, stop, self.count, self.joint, around] if self.joint else [start, stop, self.count]
 
 
 @dataclass(frozen=True, eq=False)

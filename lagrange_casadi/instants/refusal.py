@@ -42,6 +42,7 @@ class Status(enum.IntEnum):
     UNCERTIFIED = 13
     TURNED = 14
     PEAK_NOT_TOLD = 15
+    NO_INSTANTS = 16
 
     @property
     def meaning(self) -> str:
@@ -66,6 +67,7 @@ _MEANINGS = {
     Status.UNCERTIFIED: "the design was checked in full, and fails its certificate: others may be wrong as well",
     Status.TURNED: "an angle that a load sees with its turns might be a turn further",
     Status.PEAK_NOT_TOLD: "a peak cannot be told: too much may hide between the instants; more instants may help",
+    Status.NO_INSTANTS: "its instants cannot be: the motion does not go where they are asked for, or they end before they start",
 }
 
 
