@@ -86,7 +86,7 @@ def test_what_all_designs_have_in_common_is_made_once():
     scene = slider_crank(["effort"], over=("O", 0, TURN, 31))
     designs = DesignEngine.of(scene)
     assert designs.times.common
-    assert designs.times.asked(np.zeros((5, 5))).shape == (1, 31)
+    assert designs.times.of(np.zeros((5, 5)))[1].shape == (1, 31)
     np.testing.assert_array_equal(designs.t, evaluate(scene).t)
     varied = press(over=lambda rpm: ("O", 0, rpm / 100, 5))
     assert not DesignEngine.of(varied, ["effort"]).times.common

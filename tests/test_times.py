@@ -13,7 +13,7 @@ from mechanisms import driven_slider, press, slider_crank, uneven
 
 from lagrange_casadi import Scene, check, evaluate, load, motion, refine, save
 from lagrange_casadi.declare.times import Timing
-from lagrange_casadi.draw.figures import MechanismDrawing, SectionMaps, TimePlot
+from lagrange_casadi.draw.figures import MechanismDrawing, SectionMaps, SpanPlot, TimePlot
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.study.peaks import shortfall
 
@@ -235,6 +235,13 @@ def test_check_holds_the_drives_coordinate_to_the_motion(kept, spoil, says):
     assert says in check(path)
 
 
+def test_check_allows_for_the_digits_of_times_far_from_zero(tmp_path):
+    """After a million seconds a double of time is 1e-10 s, in which this crank turns by 6e-9 rad."""
+    scene = press(lambda _, w: motion.expression(lambda t: w * (t - 1e6)), over=("O", 0, TURN, 9))
+    save(evaluate(scene), tmp_path / "x.h5")
+    assert check(tmp_path / "x.h5") == []
+
+
 def test_figures_are_over_the_drives_angle_in_degrees(kept):
     solution, _ = kept
     axes = TimePlot("effort", ("effort:O",)).draw(solution).axes[0]
@@ -244,6 +251,7 @@ def test_figures_are_over_the_drives_angle_in_degrees(kept):
     assert "at O = " in maps.axes[0].get_title()
     peak = solution.peak("section:rod:axial")
     np.testing.assert_array_equal(maps.axes[0].get_lines()[0].get_xdata(), [math.degrees(peak.over)])
+    assert SpanPlot("span", "section:rod:axial", peak.t).draw(solution).axes[0].get_title().endswith(" deg")
     drawing = MechanismDrawing(count=2).draw(solution)
     assert drawing.axes[1].get_title().endswith(", O = 180 deg")
 

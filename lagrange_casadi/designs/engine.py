@@ -229,11 +229,10 @@ class DesignEngine:
 
     def _fill(self, p: Array, found: Outcome, threads: int) -> None:
         """Evaluate designs: peaks between instants in equal steps of time; histories at the instants that were asked for."""
-        even = self.times.even(p)
-        asked = even if found.series is None else self.times.asked(p)
+        even, asked = self.times.of(p, asked=found.series is not None)
         if found.times is not None:
             found.times[:] = asked
-        together = found.series is not None and (asked is even or np.array_equal(asked, even, equal_nan=True))
+        together = found.series is not None and asked is even
         self._evaluate(p, even, found if together else replace(found, series=None), threads)
         if found.series is None or together:
             return
@@ -281,7 +280,7 @@ class DesignEngine:
         """What fails of one design that has a result, (parameters,), looked at with all its outputs: see :mod:`.witness`."""
         series = self.evaluate(p[None], threads=1, histories=True).series
         assert series is not None
-        return failures(self.scene, p, self.times.asked(p[None])[0], self.rung, self.outputs, series[0])
+        return failures(self.scene, p, self.times.of(p[None])[1][0], self.rung, self.outputs, series[0])
 
     def _interpret(self, p: Array, t: Array, found: Outcome) -> None:
         kept = (found.value, found.t, found.xi, found.mean, found.rms)

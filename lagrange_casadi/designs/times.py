@@ -41,32 +41,34 @@ class DesignTimes:
         asked = self.scene.instants(self.timing, self.scene.mechanism.values()).t
         return asked, asked if are_even(asked) else np.linspace(asked[0], asked[-1], asked.size)
 
-    def asked(self, p: Array) -> Array:
-        """The instants of designs ``p`` (n, parameters), (n, t), one row where all have the same; NaN of those that have none."""
-        if self.common:
-            return self.default[0][None]
-        start, stop, around = self.timing.bounds(p)
-        if self.law is None or self.law.steady:
-            return self.even(p)
-        way = self.law.way(start, stop, p, around)
-        found = self.law.times(way, self._steps(start, stop), p)
-        found[~np.isfinite(self.even(p)[:, 0])] = np.nan
-        return found
+    def of(self, p: Array, *, asked: bool = True) -> tuple[Array, Array]:
+        """The instants of designs ``p`` (n, parameters), (n, t), one row where all have the same; NaN of those that have none.
 
-    def even(self, p: Array) -> Array:
-        """As many in equal steps of time from the first to the last, between which peaks are sought."""
+        First as many as are asked for in equal steps of time, between which peaks are sought; then those that are asked for
+        themselves, the same array where they are no others, or are not wanted (``asked``).
+        """
         if self.common:
-            return self.default[1][None]
+            instants, even = (row[None] for row in self.default)
+            return even, instants if asked and self.default[0] is not self.default[1] else even
         start, stop, around = self.timing.bounds(p)
-        if self.law is not None:
-            way = self.law.way(start, stop, p, around)
-            start, stop = way.first, way.last
-        lone = self.timing.count == 1
+        if self.law is None:
+            even = self._steps(*self._possible(start, stop))
+            return even, even
+        way = self.law.way(start, stop, p, around)
+        even = self._steps(*self._possible(way.first, way.last))
+        if self.law.steady or not asked:
+            return even, even
+        found = self.law.times(way, self._steps(start, stop), p)
+        found[np.isnan(even[:, 0])] = np.nan
+        return even, found
+
+    def _possible(self, start: Array, stop: Array) -> tuple[Array, Array]:
+        """The first and last instants; NaN where they are none, or samples of a motion end before."""
         with np.errstate(invalid="ignore"):
-            there = np.isfinite(start) & np.isfinite(stop) & ((stop == start) if lone else (stop > start))
+            there = np.isfinite(stop - start) & ((stop == start) if self.timing.count == 1 else (stop > start))
             for law in self.scene.motion.values():
                 there &= (start >= law.span[0]) & (stop <= law.span[1])
-        return np.where(there[:, None], self._steps(start, stop), np.nan)
+        return np.where(there, start, np.nan), np.where(there, stop, np.nan)
 
     def at_drive(self, t: Array, p: Array) -> Array:
         """The drive's coordinates at times (n, q) of designs (n, parameters)."""

@@ -85,7 +85,8 @@ class SpanPlot:
         output = Output.of(self.quantity)
         values = solution.section(output.part).law.during(slice(i, i + 1)).on_grid(output.member, solution.xi)
         axes.plot(solution.xi, self.factor * values[0])
-        title = f"{self.title}, t = {solution.t[i]:.4g} s" if self.title else f"t = {solution.t[i]:.4g} s"
+        at = f"t = {solution.t[i]:.4g} s" + (f", {solution.over.shown(solution.over.values[i])}" if solution.over else "")
+        title = f"{self.title}, {at}" if self.title else at
         _finish(figure, axes, solution, self.quantity, title, self.note, r"$\xi/l$")
         return figure
 

@@ -238,7 +238,7 @@ def _assembly(
             try:
                 tried = dataclasses.replace(scene, assembly={**values, **row})
                 derive(tried, wanted, iterate=iterate)
-            except (AssemblyError, MobilityError, ParameterError):
+            except (AssemblyError, DeclarationError, ParameterError):
                 continue
             return tuple(tried.assembly.items())
         raise
