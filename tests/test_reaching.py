@@ -20,7 +20,7 @@ TURN = math.tau
 def reached(law, start, stop, speeds=(10.0,), around=0.0, count=181):
     """The way of a law with the parameter w, and the times of equal steps along it."""
     law, p = Reaching.of(law, ca.vertcat(W)), np.array(speeds, float)[:, None]
-    way = law.way(*(np.full(len(p), float(x)) for x in (start, stop)), p, np.full(len(p), float(around)))
+    way = law.way(*(np.full(len(p), float(x)) for x in (start, stop)), p, np.full(len(p), float(around)), looks=65)
     coordinates = np.tile(np.linspace(start, stop, count), (len(p), 1))
     return law, way, coordinates, law.times(way, coordinates, p)
 

@@ -112,7 +112,7 @@ class Reaching:
     def _many(self) -> Any:
         return self.law.map(_MANY)
 
-    def way(self, start: Array, stop: Array, p: Array, around: Array, looks: int = 65) -> Way:
+    def way(self, start: Array, stop: Array, p: Array, around: Array, *, looks: int) -> Way:
         """When the motion goes from ``start`` to ``stop``, (n,), all the way in one direction.
 
         ``p`` is (n, parameters). A law that is not steady is followed from the times ``around`` (n,) [s], or from where it is

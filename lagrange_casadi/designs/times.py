@@ -13,6 +13,9 @@ from ..declare.reaching import Reaching
 from ..declare.scene import Scene
 from ..declare.times import Timing, reaching
 
+_LOOKS = 65
+"""At so many times at least is a motion looked at, whether it turns back."""
+
 
 @dataclass(frozen=True, eq=False)
 class DesignTimes:
@@ -54,7 +57,7 @@ class DesignTimes:
         if self.law is None:
             even = self._steps(*self._possible(start, stop))
             return even, even
-        way = self.law.way(start, stop, p, around)
+        way = self.law.way(start, stop, p, around, looks=max(_LOOKS, self.timing.count))
         even = self._steps(*self._possible(way.first, way.last))
         if self.law.steady or not asked:
             return even, even
