@@ -60,7 +60,7 @@ def test_means_are_over_the_time_of_a_whole_turn(law):
         fine = evaluate(scene, t=(0, 60 / rpm, 20001), parameters={"rpm": rpm, "l": length})
         effort = fine.effort("O")
         for found, values in ((outcome.mean[row, 0], effort), (outcome.rms[row, 0] ** 2, effort**2)):
-            mean = np.trapezoid(values, fine.t) / (fine.t[-1] - fine.t[0])
+            mean = (values[1:] + values[:-1]).mean() / 2
             assert found == pytest.approx(mean, abs=1e-6 * np.abs(values).max())
 
 

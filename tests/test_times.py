@@ -11,7 +11,7 @@ import xarray
 from forging import edit
 from mechanisms import driven_slider, press, slider_crank, uneven
 
-from lagrange_casadi import Scene, check, evaluate, load, motion, refine, save
+from lagrange_casadi import Mechanism, Scene, check, evaluate, load, motion, refine, save
 from lagrange_casadi.declare.times import Timing
 from lagrange_casadi.draw.figures import MechanismDrawing, SectionMaps, SpanPlot, TimePlot
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
@@ -55,6 +55,21 @@ def test_instants_over_a_drive_are_equal_steps_of_it(law, rpm):
     assert found.certified
     slow = evaluate(scene, parameters={"rpm": 30.0})
     np.testing.assert_allclose(found.pose("ram").y, slow.pose("ram").y, rtol=1e-14)
+
+
+@pytest.mark.parametrize("rpm", [30.0, 900.0])
+def test_efforts_over_a_drive_are_those_of_a_textbook(rpm):
+    """A rod of 0.5 kg and 0.4 m about its end: I a + m g l/2 cos(angle), at the angles and times that were asked for."""
+    m = Mechanism("fan")
+    speed = m.parameter("rpm", 600.0, "1/min")
+    m.revolute("O", m.ground, m.link("blade", length=0.4, mass=0.5))
+    scene = Scene(m, {"O": uneven(0, speed * TURN / 60)}, over=("O", "-90 deg", "630 deg", 145))
+    found, w = evaluate(scene, parameters={"rpm": rpm}), rpm * TURN / 60
+    angle = np.radians(np.linspace(-90, 630, 145))
+    inertia, weight = 0.5 * 0.4**2 / 3, 0.5 * 9.81 * 0.2
+    expected = -0.2 * w**2 * np.sin(w * found.t) * inertia + weight * np.cos(angle)
+    np.testing.assert_allclose(found.effort("O"), expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+    np.testing.assert_allclose(w * found.t + 0.2 * np.sin(w * found.t), angle, rtol=0, atol=1e-14 * 11)
 
 
 @pytest.mark.parametrize("law", [motion.polynomial, uneven])
