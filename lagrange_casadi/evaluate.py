@@ -14,8 +14,10 @@ from .arithmetic.compensated import Precision
 from .declare.density import Array
 from .declare.description import describe
 from .declare.ends import BEYOND
+from .declare.even_points import EvenPoints, points
 from .declare.motion import ends_function, refuse_kinked
-from .declare.scene import EvenPoints, Scene, checked, checked_ratios, points
+from .declare.scene import Scene, checked_ratios
+from .declare.times import Over, Times, Timing, span_of
 from .equations.checks import Check
 from .equations.derive import assembled, derive
 from .equations.scene_graph import SceneGraph
@@ -46,7 +48,8 @@ def evaluate(
     scene: Scene,
     *,
     parameters: Mapping[str, float] | None = None,
-    t: EvenPoints | None = None,
+    t: Times | None = None,
+    over: Over | None = None,
     xi: EvenPoints | None = None,
     wanted: Sequence[str] | None = None,
     backend: Backend = "auto",
@@ -66,6 +69,8 @@ def evaluate(
         again for them where the defaults can be assembled.
     t, xi
         Start, stop and count of the instants [s] and of the section ratios xi/l.
+    over
+        Instants in equal steps of a driven coordinate, in place of ``t``: see :class:`.Scene`.
     wanted
         Output names.
     backend, precision, newton, table, flags
@@ -91,13 +96,15 @@ def evaluate(
         raise DeclarationError(f"threads: expected a whole number from 1 to {MOST_THREADS}, got {threads!r}")
     rung = Rung(backend, precision, newton, table, flags)
     values = scene.mechanism.values(parameters)
-    start, stop, count = checked_times(scene, t)
-    checked_laws(scene, (start, stop), tuple(values.values()))
+    timing = scene.timing(t, over)
+    span = checked_span(scene, timing, values)
+    checked_laws(scene, span, tuple(values.values()))
     ratios = checked_ratios(scene.xi if xi is None else xi)
     graph = derive(assembled(scene, values, wanted, iterate=newton is not None), wanted, iterate=newton is not None)
-    require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, count))
-    _announce(graph, count, rung, threads or cores())
-    times, places = points((start, stop, count)), points(ratios)
+    require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, timing.count))
+    _announce(graph, timing.count, rung, threads or cores())
+    instants, places = scene.instants(timing, values), points(ratios)
+    times = instants.t
     p = np.array(list(values.values()))
     left_open: tuple[Output, ...] = ()
     if table is not None:
@@ -110,7 +117,7 @@ def evaluate(
     outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
     description = describe(scene.mechanism, values, scene.laws, scene.weights)
     ordered = in_order(outputs, description)
-    solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open)
+    solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open, over=instants.over)
     solution = replace(solution, tolerance=tolerance(solution))
     if not certificate:
         return solution
@@ -135,9 +142,9 @@ def _announce(graph: SceneGraph, count: int, rung: Rung, threads: int) -> None:
         warnings.warn(f"{many} instants{each} take about {in_words(takes)}", stacklevel=3)
 
 
-def checked_times(scene: Scene, t: EvenPoints | None) -> EvenPoints:
-    """A grid of instants, or the scene's own, in numbers. Raises :class:`DeclarationError` where samples of a motion end before."""
-    start, stop, count = checked("t", scene.t if t is None else t)
+def checked_span(scene: Scene, timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:
+    """The first and the last of instants [s]. Raises :class:`DeclarationError` where there are none, or samples of a motion end."""
+    start, stop = span_of(scene.mechanism, scene.laws, timing, values)
     for joint, law in scene.laws.items():
         low, high = law.span
         if start < low or stop > high:
@@ -145,7 +152,7 @@ def checked_times(scene: Scene, t: EvenPoints | None) -> EvenPoints:
                 f"the samples of the motion of joint '{joint}' cover t from {low:g} to {high:g} s, but t from "
                 f"{start:g} to {stop:g} s is asked for"
             )
-    return start, stop, count
+    return start, stop
 
 
 @functools.lru_cache(maxsize=64)

@@ -15,7 +15,7 @@ from truth import true_errors, truth
 
 from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING
-from lagrange_casadi.declare.scene import points
+from lagrange_casadi.declare.even_points import points
 from lagrange_casadi.errors import AssemblyError
 from lagrange_casadi.quantities import quantity_of
 

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from lagrange_casadi import Mechanism, Scene, curve
-from lagrange_casadi.declare.motion import harmonic, polynomial, samples
+from lagrange_casadi.declare.motion import expression, harmonic, polynomial, samples
 
 MOTION = polynomial(0.2, 3.0, 4.0)
 
@@ -367,21 +367,19 @@ PATTERNS = {
 }
 
 
-def five_bar(drives=None, wanted=("all",), path=False, **keywords):
-    """Two cranks and two rods that meet at a tool, which is pushed; a weight hangs beside a station of a rod."""
-    m = Mechanism("five_bar")
-    heavier = m.parameter("heavier", 2.0)
-    a, b = m.link("a", length=0.3, mass=1.0), m.link("b", length=0.5, mass=1.5)
-    c, d = m.link("c", length=0.5, mass=1.2), m.link("d", length=0.3, mass=0.8)
-    m.revolute("O", m.ground.at(-0.1, 0), a)
-    m.revolute("C", m.ground.at(0.2, 0), d)
-    m.revolute("A", a.tip, b)
-    m.revolute("D", d.tip, c)
-    m.revolute("P", b.tip, c.tip)
-    m.weld("hung", b.at(0.2, 0.05), m.point_mass("weight", 0.4))
-    m.force("cut", c.tip, x=-20.0, y=5.0)
-    if path:
-        m.path("tool", b.tip)
-    motion = {"O": polynomial(2.0, 0.5, -0.2), "C": polynomial(1.0, -0.3, 0.4)}
-    drives = drives(heavier) if callable(drives) else drives
-    return Scene(m, motion, wanted, drives=drives, **({"posture": {"b": 1.0, "c": 2.0}, "t": (0, 1, 41)} | keywords))
+def press(law=polynomial, wanted=("all",), **keywords):
+    """A press whose speed is a parameter: ``law(0, w)`` gives the crank's motion, ``t`` and ``over`` may be functions of it."""
+    m = Mechanism("press")
+    rpm, length = m.parameter("rpm", 600.0, "1/min"), m.parameter("l", 0.5, "m", low=0.0)
+    crank, rod, ram = m.link("crank", length=0.1, mass=1.2), m.link("rod", length=length, mass=2.0), m.point_mass("ram", 15.0)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, ram)
+    m.prismatic("guide", m.ground, ram, axis=(0, 1))
+    asked = {name: keywords.pop(name)(rpm) for name in ("t", "over") if callable(keywords.get(name))}
+    return Scene(m, {"O": law(0, rpm * math.tau / 60)}, wanted, posture={"rod": 1.5}, **asked, **keywords)
+
+
+def uneven(_, w):
+    """A crank's motion at the mean speed w that is uneven by a fifth."""
+    return expression(lambda t: w * t + 0.2 * ca.sin(w * t))

@@ -12,7 +12,7 @@ from mechanisms import slider_crank
 
 from lagrange_casadi import evaluate, sweep
 from lagrange_casadi.cli import main
-from lagrange_casadi.declare.scene import points
+from lagrange_casadi.declare.even_points import points
 from lagrange_casadi.errors import DeclarationError, SizeError
 from lagrange_casadi.sweep import plan, workers
 from lagrange_casadi.system import room

@@ -69,8 +69,9 @@ def test_the_order_of_results_does_not_matter(backend):
     q, e = len(engine.quantities), len(engine.efforts)
     names = {"history": None, "rms": np.full((1, e), np.nan), "xi": np.full((1, q), np.nan), "value": np.full((1, q), np.nan)}
     names |= {"mean": np.full((1, e), np.nan), "status": np.full(1, -1, np.int8), "peak_t": np.full((1, q), np.nan)}
-    engine.library.evaluate(p, names)
+    engine.library.evaluate(engine.t[None], np.zeros((1, 0), bool), p, names)
     for name, own in (("status", "status"), ("value", "value"), ("peak_t", "t"), ("xi", "xi"), ("mean", "mean"), ("rms", "rms")):
         assert names[name].tobytes() == getattr(expected, own).tobytes()
+    found = {name: array for name, array in names.items() if name != "history"}
     with pytest.raises(TypeError, match="without history"):
-        engine.library.evaluate(p, {name: array for name, array in names.items() if name != "history"})
+        engine.library.evaluate(engine.t[None], np.zeros((1, 0), bool), p, found)

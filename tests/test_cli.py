@@ -13,6 +13,7 @@ import time
 from pathlib import Path
 
 import h5py
+import numpy as np
 import pytest
 from forging import forging
 
@@ -68,6 +69,17 @@ def test_run_takes_options(here):
         assert h["section/rod/bending"].shape == (5, 3)
         assert h.attrs["backend"] == "vm"
         assert '"l": 0.25' in h.attrs["parameters"]
+
+
+@pytest.mark.quick
+def test_run_goes_over_a_drive(here, capsys):
+    """Angles in degrees where they are typed and where they are shown."""
+    assert main(["run", str(CASE), "--over", "O = 0:360deg:37", "--want", "effort", "--out", "x.h5", "--no-figures"]) == 0
+    assert re.search(r"effort:O .* N m  at O = 30 deg, t = 0\.00666", capsys.readouterr().out)
+    with h5py.File("x.h5") as h:
+        np.testing.assert_allclose(h["over"], math.tau * np.arange(37) / 36, rtol=1e-15)
+    assert main(["info", "x.h5"]) == 0
+    assert "in equal steps of O [deg]: 0 to 360" in capsys.readouterr().out
 
 
 def test_run_replaces_an_older_file(here):
@@ -193,6 +205,15 @@ def scene():
         (["run", "CASE", "--t", "0:1:0"], 2, "t: COUNT must be a whole number of at least 1, got 0"),
         (["run", "CASE", "--t", "0:1"], 2, "expected START:STOP:COUNT, as in 0:0.08:801, got '0:1'"),
         (["run", "CASE", "--t", "1:0:5"], 2, "t: STOP must be after START"),
+        (["run", "CASE", "--over", "O=0:1"], 2, "expected JOINT=START:STOP:COUNT, as in O=0:720deg:721, got 'O=0:1'"),
+        (["run", "CASE", "--over", "A=0:1:5"], 2, "unknown driven joint in over 'A'; valid: O"),
+        (
+            ["run", "CASE", "--over", "O=0:1turn:5"],
+            2,
+            "expected a finite number [rad], or a text such as '350 deg' or '1.2 rad', got '1turn'",
+        ),
+        (["run", "CASE", "--over", "O=0:1:5", "--t", "0:1:5"], 2, "t and over exclude each other"),
+        (["run", "CASE", "--over", "O=1:0:5"], 2, "the motion of joint 'O' goes the other way than from 1 rad"),
         (["run", "CASE", "--xi", "0:2:5"], 2, "ratios xi/l must lie in [0, 1]"),
         (["run", "CASE", "--backend", "gpu"], 2, "'gpu' is not one of 'auto', 'lanes', 'c', 'vm'"),
         (["run", "CASE", "--out", "nowhere/x.h5"], 2, "cannot write nowhere/x.h5: folder nowhere does not exist"),

@@ -99,7 +99,8 @@ def bare(designs, p):
     n, q, e = len(p), len(designs.quantities), len(designs.efforts)
     shapes = {"value": q, "peak_t": q, "xi": q, "mean": e, "rms": e}
     results = {"status": np.full(n, -1, np.int8)} | {name: np.full((n, many), np.nan) for name, many in shapes.items()}
-    designs.library.evaluate(p, {**results, "history": np.full((n, len(designs.graph.columns), designs.t.size), np.nan)})
+    history = np.full((n, len(designs.graph.columns), designs.t.size), np.nan)
+    designs.library.evaluate(designs.t[None], np.zeros((1, 0), bool), p, {**results, "history": history})
     return results
 
 
@@ -121,7 +122,7 @@ def test_every_value_is_written_or_is_nan(backend):
     assert np.array_equal(np.isfinite(xi), good[:, None] & along)
     # And what held numbers holds NaN after a design without a result.
     results = {name: np.zeros_like(array) for name, array in found.items()}
-    designs.library.evaluate(p, {**results, "history": None})
+    designs.library.evaluate(designs.t[None], np.zeros((1, 0), bool), p, {**results, "history": None})
     assert all(np.isnan(array[2]).all() for name, array in results.items() if name != "status")
 
 

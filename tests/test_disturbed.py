@@ -9,8 +9,8 @@ from mechanisms import truss_platform
 
 from lagrange_casadi import Mechanism, Scene, derive
 from lagrange_casadi.codegen.stages import compensated, plain
+from lagrange_casadi.declare.even_points import points
 from lagrange_casadi.declare.motion import harmonic, polynomial
-from lagrange_casadi.declare.scene import points
 from lagrange_casadi.instants.backends import run
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.judge.disturbed import TRIALS, Instants, effects, openness

@@ -9,9 +9,10 @@ import pytest
 from balance import assert_balanced
 from design_rows import around, assert_refined
 from exported import by_c99, compare, expected, exported, instants, solve
+from five_bars import five_bar
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mechanisms import block, five_bar, four_bar, slider_crank, truss_platform
+from mechanisms import block, four_bar, slider_crank, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, evaluate, motion
 from lagrange_casadi.designs.engine import DesignEngine

@@ -5,7 +5,7 @@ import pytest
 from balance import assert_balanced
 from design_rows import around, assert_refined
 from exported import by_c99, compare, expected, exported, instants, solve
-from mechanisms import five_bar
+from five_bars import five_bar
 
 from lagrange_casadi import Mechanism, Scene, check, evaluate, motion, save
 from lagrange_casadi.designs.engine import DesignEngine

@@ -16,6 +16,7 @@ import pytest
 import sweeps
 
 from lagrange_casadi import Case, load_case
+from lagrange_casadi.declare.times import Timing
 from lagrange_casadi.errors import ClusterError, DeclarationError, StoppedError
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.sweep import cluster, columns, sweep
@@ -321,7 +322,7 @@ def test_a_case_travels_without_its_file(tmp_path):
 def test_a_worker_that_would_give_other_numbers_is_refused(slider_crank):
     """What runs on a worker, here with what another version would have told it."""
     sent = SentCase(str(slider_crank.path), slider_crank.path.read_text())
-    task = Task(("effort",), (0.0, 0.08, 9), None, "peaks", Rung())
+    task = Task(("effort",), Timing(0.0, 0.08, 9), None, "peaks", Rung())
     harvest = task.harvest(slider_crank.scene)
     told = signature(slider_crank.scene, task, harvest.engine.provenance)
     p = np.array([[0.1, 0.2, 0.1, 0.1, 0.1]])
@@ -334,7 +335,7 @@ def test_a_worker_that_would_give_other_numbers_is_refused(slider_crank):
 def test_what_fails_on_a_worker_is_one_line(slider_crank):
     sent = SentCase("/nowhere/case.py", "1 / 0\n")
     with pytest.raises(ClusterError, match=r"a worker failed: case .*, line 1: ZeroDivisionError"):
-        cluster._evaluate(sent, Task(("effort",), (0.0, 0.08, 9), None, "peaks", Rung()), {}, np.zeros((1, 5)), 1)
+        cluster._evaluate(sent, Task(("effort",), Timing(0.0, 0.08, 9), None, "peaks", Rung()), {}, np.zeros((1, 5)), 1)
 
 
 def test_a_cluster_needs_a_case(slider_crank, tmp_path):

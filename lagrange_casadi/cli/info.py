@@ -18,7 +18,8 @@ from ..store import runs as store
 from ..sweep import Sweep, is_sweep
 from ..sweep.axes import counted
 from ..sweep.checking import progress, unfinished
-from .report import peak_line
+from ..sweep.instant_axis import in_words
+from .report import asked_line, peak_line
 from .scene_lines import scene_lines
 
 
@@ -49,8 +50,9 @@ def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
     _describe_mechanism(describe(mechanism, mechanism.values(), scene.laws, scene.weights))
     for line in scene_lines(scene):
         click.echo(line)
-    for what, (start, stop, count) in (("t [s]", scene.t), ("xi/l", scene.xi)):
-        click.echo(f"{what}: {start:g} to {stop:g}, {count} points")
+    timing, joints = scene.timing(), scene.guided.joints
+    click.echo(asked_line(timing.words(mechanism.symbols)[:4], bool(timing.joint) and joints[timing.joint].slides))
+    click.echo(f"xi/l: {scene.xi[0]:g} to {scene.xi[1]:g}, {scene.xi[2]} points")
     whole = kinds(mechanism)
     click.echo(f"outputs: {', '.join(outputs(mechanism))}" + (f"; all of a kind: {', '.join(whole)}" if whole else ""))
     click.echo(f"wanted: {', '.join(want or scene.wanted)}")
@@ -64,6 +66,9 @@ def _describe_file(solution: Solution) -> None:
     _describe_mechanism(solution.description)
     provenance = solution.provenance
     click.echo(f"t [s]: {solution.t[0]:g} to {solution.t[-1]:g}, {solution.t.size} points")
+    if solution.over:
+        first, last = (solution.over.drawn(solution.over.values[k]) for k in (0, -1))
+        click.echo(f"in equal steps of {solution.over.label}: {first:.6g} to {last:.6g}")
     click.echo(f"xi/l: {solution.xi[0]:g} to {solution.xi[-1]:g}, {solution.xi.size} points")
     click.echo(f"backend: {provenance.backend}, {provenance.precision} {provenance.compiler} {provenance.flags}".rstrip())
     click.echo(f"rung: {provenance.rung}")
@@ -79,8 +84,8 @@ def _describe_sweep(identity: Mapping[str, Any]) -> None:
     _describe_mechanism(identity["mechanism"])
     for name, words in identity["grid"].items():
         click.echo(f"swept {name}: {words}")
-    (start, stop, count), xi = identity["t"], identity["xi"]
-    click.echo(f"t [s]: {start:g} to {stop:g}, {count} points")
+    asked, xi = identity["t"][:4], identity["xi"]
+    click.echo(asked_line(asked, len(asked) > 3 and identity["mechanism"]["joints"][asked[3]]["coordinate"] == "slide"))
     if xi:
         click.echo(f"xi/l: {xi[0]:g} to {xi[1]:g}, {xi[2]} points")
     click.echo(f"backend: {identity['backend']}, {identity['precision']} {identity['compiler']} {identity['flags']}".rstrip())
@@ -95,7 +100,7 @@ def _describe_whole(sweep: Sweep) -> None:
             click.echo(f"{counted(count)}: {sweep.statuses[status][1]}")
     click.echo("columns:")
     for kept in sweep.columns.values():
-        axes = f" over {', '.join(kept.axes)}" if kept.axes else ""
+        axes = f" over {in_words(kept.axes)}" if kept.axes else ""
         click.echo(f"  {kept.name:<36} {kept.unit:<4} {kept.long_name}{axes}")
 
 

@@ -12,13 +12,15 @@ import click
 
 from ..arithmetic.compensated import PRECISIONS
 from ..declare.angles import angle
-from ..declare.scene import EvenPoints
+from ..declare.even_points import EvenPoints
+from ..declare.times import Over
 from ..errors import AngleError, DeclarationError
 from ..instants.rung import BACKENDS
 from ..sweep import Axis, Range, Values
 from ..system.numerals import real, whole
 
 EVEN_POINTS = "START:STOP:COUNT"
+OVER = "JOINT=START:STOP:COUNT"
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
 Number = TypeVar("Number", int, float)
@@ -31,6 +33,16 @@ def even_points(text: str) -> EvenPoints:
         return real(start), real(stop), whole(count)
     except ValueError:
         raise click.BadParameter(f"expected START:STOP:COUNT, as in 0:0.08:801, got '{text}'") from None
+
+
+def steps_over(text: str) -> Over:
+    """JOINT=START:STOP:COUNT; whether START and STOP are angles is the joint's affair."""
+    try:
+        joint, steps = (part.strip() for part in text.split("="))
+        start, stop, count = steps.split(":")
+        return joint, start, stop, whole(count)
+    except ValueError:
+        raise click.BadParameter(f"expected {OVER}, as in O=0:720deg:721, got '{text}'") from None
 
 
 def axis(text: str) -> tuple[str, Axis]:
@@ -122,6 +134,14 @@ _NEWTON = click.option(
 )
 _TABLE = click.option("--table", type=table, metavar="NODES|ACCURACY", help="Read outputs from a table over a turn.")
 _FLAGS = click.option("--flags", default="", metavar="FLAGS", help="Further flags of the compiler, as one word.")
+
+over = click.option(
+    "--over",
+    type=steps_over,
+    metavar=OVER,
+    help="Instants in equal steps of a driven joint's coordinate [rad, or as 720deg; m], in place of --t.",
+)
+"""Instants by a drive."""
 
 rung = _together(_BACKEND, _PRECISION, _NEWTON, _TABLE, _FLAGS)
 """The options of a :class:`.Rung`."""

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
 
 from ..instants.solution import Peak, Solution
 from ..instants.statistics import Statistics
@@ -17,6 +20,8 @@ def peak_line(solution: Solution, peak: Peak) -> str:
     error = _error(solution, peak.name)
     off = "" if error is None else f" +- {error:.0e}"
     where = f"t = {peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {peak.xi:.4f}")
+    if peak.over is not None and solution.over:
+        where = f"{solution.over.shown(peak.over)}, {where}"
     if peak.least is not None:
         found = f"{peak.least:.6g} {peak.unit} was found at {where}"
         return f"  {peak.name:<28}{'not told':>13} too much hides between the instants, more may help; {found}"
@@ -32,7 +37,8 @@ def report_lines(solution: Solution, refined: Sequence[Peak] = ()) -> Iterator[s
             yield f"  {output!s:<28}{'open':>13} {'':<4} equilibrium does not determine it: the mechanism is over-constrained"
             continue
         own = found.peak
-        yield peak_line(solution, peaks.get(found.name) or Peak(found.name, own.value, found.unit, own.t, own.xi))
+        over = float(solution.over.values[int(np.argmax(solution.t == own.t))]) if solution.over else None
+        yield peak_line(solution, peaks.get(found.name) or Peak(found.name, own.value, found.unit, own.t, own.xi, over=over))
     span = f"over {solution.t[-1] - solution.t[0]:.5g} s" if solution.t.size > 1 else "at the one instant"
     yield f"{span:<30}{'smallest':>13} {'largest':>13} {'mean':>13} {'rms':>13}"
     yield from (_statistics_line(found) for _, found in told if found)
@@ -59,3 +65,11 @@ def _error(solution: Solution, name: str) -> float | None:
     errors = [solution.errors.get(str(component)) for component in Output.of(name).components]
     told = [error for error in errors if error is not None]
     return math.hypot(*told) if len(told) == len(errors) else None
+
+
+def asked_line(words: Sequence[Any], slides: bool) -> str:
+    """How instants are asked for, from :meth:`.Timing.words`; whether the joint ``slides``, where there is one."""
+    start, stop, count, *joint = words
+    ends = [word.partition(" #")[0] if isinstance(word, str) else f"{word:g}" for word in (start, stop)]
+    what = f"{joint[0]} [{'m' if slides else 'rad'}]" if joint else "t [s]"
+    return f"{what}: {ends[0]} to {ends[1]}, {count} points"

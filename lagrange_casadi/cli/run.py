@@ -9,10 +9,13 @@ from functools import partial
 from pathlib import Path
 
 import click
+import numpy as np
 
 from ..arithmetic.compensated import Precision
 from ..case import load_case
-from ..declare.scene import EvenPoints
+from ..declare import turned
+from ..declare.even_points import EvenPoints
+from ..declare.times import Over
 from ..draw.figures import dump_specs
 from ..errors import CertificateError
 from ..evaluate import evaluate
@@ -26,6 +29,7 @@ from ..system.room import MOST_THREADS
 from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
 from .options import EVEN_POINTS, even_points, parameters, rung, setting
+from .options import over as by_drive
 from .replaced import figures_in, replaced_lines
 from .report import report_lines
 from .rows import rows_of, write_csv
@@ -37,6 +41,7 @@ from .rows import rows_of, write_csv
     "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
 )
 @click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@by_drive
 @click.option("--xi", type=even_points, metavar=EVEN_POINTS, help="Section ratios xi/l, within 0 and 1; default: the case's.")
 @click.option(
     "--want",
@@ -56,6 +61,7 @@ def run(
     case: Path,
     settings: Sequence[tuple[str, float | str]],
     t: EvenPoints | None,
+    over: Over | None,
     xi: EvenPoints | None,
     want: Sequence[str],
     backend: Backend,
@@ -92,6 +98,7 @@ def run(
         loaded.scene,
         parameters=parameters(settings),
         t=t,
+        over=over,
         xi=xi,
         wanted=want or None,
         backend=backend,
@@ -120,8 +127,10 @@ def run(
     names = [*forces(solution), *resultants(solution)]
     for line in report_lines(solution, refine(loaded.scene, solution, names) if refine_peaks else ()):
         say(line)
-    for note in solution.notes:
-        say(f"note: {note}")
+    told = np.array([[parameter["value"] for parameter in solution.description["parameters"].values()]])
+    for note in (*solution.notes, turned.note(loaded.scene, loaded.scene.timing(t, over), told)):
+        if note:
+            say(f"note: {note}")
     if not no_certificate:
         say(summary(solution.certificate))
     for line in replaced_lines(out, replaced, place, before if replaced else before & drawn, drawn):

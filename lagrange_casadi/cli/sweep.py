@@ -10,15 +10,18 @@ import click
 
 from ..arithmetic.compensated import Precision
 from ..case import load_case
-from ..declare.scene import EvenPoints
+from ..declare.even_points import EvenPoints
+from ..declare.times import Over
 from ..errors import CertificateError
 from ..instants.refusal import Status
 from ..instants.rung import Backend
 from ..sweep import KEEPS, Axis, Keep, Sweep, read_designs
 from ..sweep import sweep as carry_out
 from ..sweep.axes import counted, grouped
+from ..sweep.turning import turning_note
 from ..system.room import MOST_THREADS
 from .options import AXIS, EVEN_POINTS, axis, even_points, parameters, setting, untabled_rung
+from .options import over as by_drive
 from .progress import shown
 
 
@@ -42,6 +45,7 @@ from .progress import shown
     help="Give a parameter that is not swept another value; repeatable.",
 )
 @click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@by_drive
 @click.option(
     "--xi", type=even_points, metavar=EVEN_POINTS, help="Keep section forces at these ratios xi/l too, each the largest over time."
 )
@@ -72,6 +76,7 @@ def sweep(
     designs: Path | None,
     settings: Sequence[tuple[str, float | str]],
     t: EvenPoints | None,
+    over: Over | None,
     xi: EvenPoints | None,
     want: Sequence[str],
     keep: Keep,
@@ -104,13 +109,15 @@ def sweep(
     if out and out.suffix not in (".h5", ".hdf5"):
         raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
     loaded = load_case(case)
+    swept = read_designs(designs, loaded.scene.mechanism.parameters) if designs else dict(axes)
     with closing(shown(quiet)) as progress:
         found = carry_out(
             loaded,
-            read_designs(designs, loaded.scene.mechanism.parameters) if designs else dict(axes),
+            swept,
             out=out or Path(f"{loaded.name}_sweep.h5"),
             parameters=parameters(settings),
             t=t,
+            over=over,
             xi=xi,
             wanted=want or None,
             keep=keep,
@@ -126,6 +133,8 @@ def sweep(
             progress=progress,
         )
     _report(found)
+    if note := turning_note(loaded.scene, loaded.scene.timing(t, over), swept, parameters(settings)):
+        click.echo(f"note: {note}")
     click.echo(f"wrote {found.path}" if progress.begun else f"{found.path} was complete already: nothing was done")
     if wrong := found.counts()[Status.UNCERTIFIED]:
         raise CertificateError(

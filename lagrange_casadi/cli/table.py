@@ -14,6 +14,7 @@ from ..sweep import Sweep, chosen
 from ..sweep.axes import counted, grouped
 from ..sweep.best import conditions_in, missed, tally
 from ..sweep.columns import STATUS
+from ..sweep.instant_axis import in_words
 from ..system.publish import check_writable
 from ..system.streams import is_standard_output
 from .rows import show, write_csv
@@ -74,5 +75,5 @@ def _tell_of_others(sweep: Sweep, shown: Sequence[str]) -> None:
             others.setdefault(kept.axes, []).append(kept.name)
     for axes, names in others.items():
         more = f" and {len(names) - _TOLD} more (`lagrange-casadi info {sweep.path}` lists them)" if len(names) > _TOLD else ""
-        over, rows = (f" over {' and '.join(axes)}", f", a row for every {' and '.join(axes)}") if axes else ("", "")
+        over, rows = (f" over {in_words(axes)}", f", a row for every {' and '.join(axes)}") if axes else ("", "")
         click.echo(f"note: --column NAME shows other columns{over}{rows}: {', '.join(names[:_TOLD])}{more}", err=True)

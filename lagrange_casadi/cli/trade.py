@@ -10,7 +10,8 @@ import click
 from tqdm import tqdm
 
 from ..case import load_case
-from ..declare.scene import EvenPoints
+from ..declare.even_points import EvenPoints
+from ..declare.times import Over
 from ..draw.trade_plot import PICTURES, draw_trade
 from ..errors import DeclarationError
 from ..instants.rung import Rung
@@ -18,6 +19,7 @@ from ..study.trade import RUNGS, Trade
 from ..study.trade import trade as measure
 from ..system.publish import check_writable, writing
 from .options import EVEN_POINTS, even_points, parameters, setting
+from .options import over as by_drive
 
 
 @click.command()
@@ -26,6 +28,7 @@ from .options import EVEN_POINTS, even_points, parameters, setting
     "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
 )
 @click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@by_drive
 @click.option(
     "--want",
     multiple=True,
@@ -39,6 +42,7 @@ def trade(
     case: Path,
     settings: Sequence[tuple[str, float | str]],
     t: EvenPoints | None,
+    over: Over | None,
     want: Sequence[str],
     accuracy: float | None,
     out: Path | None,
@@ -59,7 +63,7 @@ def trade(
             bar.set_postfix_str(rung.options)
             bar.update()
 
-        found = measure(loaded.scene, parameters=parameters(settings), t=t, wanted=want or None, progress=progress)
+        found = measure(loaded.scene, parameters=parameters(settings), t=t, over=over, wanted=want or None, progress=progress)
     with writing(out, figure) as (numbers, picture):
         numbers.write(f"{json.dumps(found.as_dict(), indent=1)}\n".encode())
         draw_trade(found, picture, figure.suffix)

@@ -20,6 +20,7 @@ static int designs_one(designs_now* now, const double* p, const double* guess, d
     margin = designs_lane(now->matter + k, 0);
     if (!(margin >= 0 && margin <= DESIGNS_LARGEST) || (k < DESIGNS_POSITIVE && margin == 0)) return DESIGNS_IMPOSSIBLE;
   }
+  if (!(now->t[now->n - 1] >= now->t[0])) return DESIGNS_NO_INSTANTS;
   if (DESIGNS_NZ) {
     for (k = 0; k < DESIGNS_NZ; ++k) z[k] = (designs_real) guess[k];
     designs_split(now->t[0], pair);
@@ -41,7 +42,7 @@ static int designs_one(designs_now* now, const double* p, const double* guess, d
   }
   designs_sample(now, history);
   why = designs_refused(now);
-  if (why != DESIGNS_OK) return why;
+  if (why != DESIGNS_OK || !value) return why;
   if (!designs_peaks(now, value, t, xi)) return DESIGNS_PEAK_NOT_TOLD;
   for (k = 0; k < DESIGNS_EFFORTS; ++k) {
     const int open = value[designs_effort[k]] != value[designs_effort[k]];
@@ -51,43 +52,54 @@ static int designs_one(designs_now* now, const double* p, const double* guess, d
   return DESIGNS_OK;
 }
 
-/* So many designs, rows of parameters p, over n instants t. value, peak_t and xi become rows of quantities, mean and rms of efforts,
-   and history, unless it is NULL, outputs by instants; of a design without a result all is NaN. bent tells after which instants the
-   motion bends more than they show. Of the room there are DESIGNS_ROOM rows of stride values, of which the first is zero, and as many
+/* The instants of a design, as what evaluates them takes them. */
+static void designs_timed(designs_now* now, const double* t) {
+  const casadi_int n = now->n;
+  designs_real moment[DESIGNS_NT];
+  casadi_int i;
+  int k;
+  now->t = t;
+  now->half = n > 1 ? (t[n - 1] - t[0])/(double) (2*(n - 1)) : 1;
+  for (i = 0; i < now->stride; ++i) {
+    designs_split(t[i < n ? i : n - 1], moment);
+    for (k = 0; k < DESIGNS_NT; ++k) now->times[k*now->stride + i] = moment[k];
+  }
+}
+
+/* So many designs, rows of parameters p, over n instants t, those of a design t_apart values beyond those of the one before, or the
+   same. value, peak_t and xi become rows of quantities, mean and rms of efforts, all of them or none where value is NULL; these ask
+   for instants in equal steps. history, unless it is NULL, becomes outputs by instants; of a design without a result all is NaN. bent
+   tells after which instants the motion bends more than they show, its rows are bent_apart values apart. Of the room there are DESIGNS_ROOM rows of stride values, of which the first is zero, and as many
    panels of DESIGNS_STRIDE values a row as may lie within each other; of the status stride integers that are zero, and of hiding
    twice as many. */
 LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_designs_call* call) {
   const casadi_int n = call->n, stride = call->stride;
-  const double *t = call->t, *p = call->p;
+  const double* p = call->p;
   DESIGNS_REAL* room = call->room;
   designs_now now;
-  designs_real moment[DESIGNS_NT];
   casadi_int i, d;
   int k;
   now.n = n;
   now.stride = stride;
-  now.t = t;
   now.times = room;
   now.z = room + DESIGNS_NT*stride;
   now.rows = now.z + DESIGNS_NZ*stride;
   now.inner = now.rows + (DESIGNS_CHECKED + DESIGNS_CHECKS + 1 + DESIGNS_WATCHES)*stride;
   now.status = call->statuses;
-  now.bent = call->bent;
   now.hiding = call->hiding;
-  now.half = n > 1 ? (t[n - 1] - t[0])/(double) (2*(n - 1)) : 1;
-  for (i = 0; i < stride; ++i) {
-    designs_split(t[i < n ? i : n - 1], moment);
-    for (k = 0; k < DESIGNS_NT; ++k) room[k*stride + i] = moment[k];
-  }
   for (d = 0; d < call->designs; ++d) {
-    double *values = call->value + d*DESIGNS_QUANTITIES, *times = call->peak_t + d*DESIGNS_QUANTITIES;
-    double *places = call->xi + d*DESIGNS_QUANTITIES, *means = call->mean + d*DESIGNS_EFFORTS;
-    double *squares = call->rms + d*DESIGNS_EFFORTS, *whole = call->history ? call->history + d*DESIGNS_OUTPUTS*n : 0;
-    const int why = designs_one(&now, p + d*DESIGNS_NP, call->guess, values, times, places, means, squares, whole);
+    double* values = call->value ? call->value + d*DESIGNS_QUANTITIES : 0;
+    double *times = values ? call->peak_t + d*DESIGNS_QUANTITIES : 0, *places = values ? call->xi + d*DESIGNS_QUANTITIES : 0;
+    double *means = values ? call->mean + d*DESIGNS_EFFORTS : 0, *squares = values ? call->rms + d*DESIGNS_EFFORTS : 0;
+    double* whole = call->history ? call->history + d*DESIGNS_OUTPUTS*n : 0;
+    int why;
+    if (d == 0 || call->t_apart) designs_timed(&now, call->t + d*call->t_apart);
+    now.bent = call->bent + d*call->bent_apart;
+    why = designs_one(&now, p + d*DESIGNS_NP, call->guess, values, times, places, means, squares, whole);
     call->status[d] = (signed char) why;
     if (why == DESIGNS_OK) continue;
-    for (k = 0; k < DESIGNS_QUANTITIES; ++k) values[k] = times[k] = places[k] = NAN;
-    for (k = 0; k < DESIGNS_EFFORTS; ++k) means[k] = squares[k] = NAN;
+    for (k = 0; values && k < DESIGNS_QUANTITIES; ++k) values[k] = times[k] = places[k] = NAN;
+    for (k = 0; values && k < DESIGNS_EFFORTS; ++k) means[k] = squares[k] = NAN;
     for (i = 0; whole && i < DESIGNS_OUTPUTS*n; ++i) whole[i] = NAN;
   }
 }

@@ -105,7 +105,7 @@ class Library:
 
 @dataclass(frozen=True, eq=False)
 class DesignsLibrary:
-    """The loaded code of many designs of one scene over instants ``t``. Its calls release the interpreter and allocate nothing.
+    """The loaded code of many designs of one scene over ``count`` instants. Its calls release the interpreter and allocate nothing.
 
     ``share`` is how many designs are worth a thread of their own.
     """
@@ -114,33 +114,49 @@ class DesignsLibrary:
     flags: tuple[str, ...]
     share: int
     reduction: Reduction
-    t: npt.NDArray[np.float64]
+    count: int
     guess: npt.NDArray[np.float64]
-    bent: npt.NDArray[np.bool_]
     precision: Precision
 
-    def evaluate(self, p: npt.NDArray[np.float64], results: Mapping[str, npt.NDArray[Any] | None], threads: int = 1) -> None:
-        """Fill ``results`` for designs ``p``, (n, parameters): arrays by their names in :data:`CALL`, ``history`` may be None.
+    def evaluate(
+        self,
+        t: npt.NDArray[np.float64],
+        bent: npt.NDArray[np.bool_],
+        p: npt.NDArray[np.float64],
+        results: Mapping[str, npt.NDArray[Any] | None],
+        threads: int = 1,
+    ) -> None:
+        """Fill ``results`` for designs ``p``, (n, parameters): arrays by their names in :data:`CALL`.
 
-        The bytes of a row do not depend on other rows, nor on ``threads``.
+        ``t`` are instants (n, t), and ``bent`` (n, t - 1) tells in which steps between them the motion bends more than they show;
+        one row of either serves all designs. ``history`` may be None; or all but that and the status may be None: then no peaks
+        are sought, and instants need not be in equal steps. The bytes of a row do not depend on other rows, nor on ``threads``.
         """
-        n = p.shape[0]
+        n, count = p.shape[0], self.count
         shares = max(1, min(threads, n // self.share))
         size = max(1, min(_LONGEST * self.share, -(-n // (_SPREAD * shares)) if shares > 1 else n))
-        stride = (-(-self.t.size // _LINE) | 1) * _LINE + 2 * _LINE
+        stride = (-(-count // _LINE) | 1) * _LINE + 2 * _LINE
         inner = DEEPEST[self.precision] * self.reduction.inner * STRIDE
-        bent = np.zeros(stride, np.int8)
-        bent[: self.bent.size] = self.bent
+        hidden = np.zeros((len(bent), stride), np.int8)
+        hidden[:, : bent.shape[1]] = bent
+        apart = {"t_apart": count if len(t) > 1 else 0, "bent_apart": stride if len(bent) > 1 else 0}
 
         def run(start: int) -> None:
             room = np.zeros((self.reduction.rows + self.guess.size + 2) * stride + inner + _LINE, DTYPES[self.precision])
             room = room[-room.ctypes.data // room.itemsize % _LINE :]
             status, hiding = np.zeros(stride, np.int32), np.zeros(2 * stride, np.int8)
             rows = {name: None if array is None else array[start : start + size] for name, array in results.items()}
-            arrays = {"t": self.t, "p": p[start : start + size], "guess": self.guess, "bent": bent, "room": room, **rows}
+            own: dict[str, Any] = {"t": t[start:] if len(t) > 1 else t, "bent": hidden[start:] if len(bent) > 1 else hidden}
+            arrays: dict[str, npt.NDArray[Any] | None] = {
+                "p": p[start : start + size],
+                "guess": self.guess,
+                "room": room,
+                **own,
+                **rows,
+            }
             arrays |= {"statuses": status, "hiding": hiding}
             places = {name: None if array is None else array.ctypes.data for name, array in arrays.items()}
-            self.entry(CALL.made(designs=min(size, n - start), n=self.t.size, stride=stride, **places))
+            self.entry(CALL.made(designs=min(size, n - start), n=count, stride=stride, **apart, **places))
 
         starts = range(0, n, size)
         if shares == 1:
@@ -172,18 +188,14 @@ def load_designs(
     compiler: Compiler,
     extra: tuple[str, ...],
     reduction: Reduction,
-    t: npt.NDArray[np.float64],
+    count: int,
     guess: npt.NDArray[np.float64],
-    bent: npt.NDArray[np.bool_],
     precision: Precision,
 ) -> DesignsLibrary:
-    """The same of a file for many designs over instants ``t``, whose iterated loops begin from ``guess``.
-
-    ``bent`` tells in which steps between the instants the motion bends more than they show.
-    """
+    """The same of a file for many designs over ``count`` instants, whose iterated loops begin from ``guess``."""
     entry = _entry(_loaded(source, compiler, extra), compiler, DESIGNS, CALL)
-    share = max(1, _WORTH_A_THREAD // (statements(source) * t.size))
-    return DesignsLibrary(entry, (*compiler.flags(source), *extra), share, reduction, t, guess, bent, precision)
+    share = max(1, _WORTH_A_THREAD // (statements(source) * count))
+    return DesignsLibrary(entry, (*compiler.flags(source), *extra), share, reduction, count, guess, precision)
 
 
 def _loaded(source: str, compiler: Compiler, extra: tuple[str, ...]) -> ctypes.CDLL:

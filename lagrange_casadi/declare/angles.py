@@ -20,7 +20,8 @@ def angle(value: object) -> float:
     if isinstance(value, str):
         number, unit = match.groups() if (match := _WRITTEN.fullmatch(value)) else ("", None)
         try:
-            found = math.radians(real(number)) if unit == "deg" else real(number)
+            # Whole and half turns are the same doubles as multiples of math.pi.
+            found = real(number) / 180.0 * math.pi if unit == "deg" else real(number)
         except ValueError:
             found = math.nan
     elif isinstance(value, (int, float)) and not isinstance(value, bool):

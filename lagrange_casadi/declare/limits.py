@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 
 import casadi as ca
 
@@ -11,8 +12,14 @@ from ..errors import DeclarationError, ParameterError, UnknownNameError
 from .density import Density
 from .parts import Body, Expression, Ground, Joint, Link, Parameter, Point
 
+if TYPE_CHECKING:
+    from .mechanism import Mechanism
+
 END: dict[Precision, float] = {"double": 1e-12, "single": 1e-6}
 """Of a link's length: what misses its end by so little misses it by rounding, and is at it."""
+
+_TOLD = 8
+"""Parameters that a message names."""
 
 
 def check_connected(name: str, ground: Ground, bodies: Iterable[Body], joints: Iterable[Joint]) -> None:
@@ -78,3 +85,12 @@ def no_sections(name: str, *, link: bool, links: Iterable[str]) -> str:
             "so give it a mass alone or a density"
         )
     return f"'{name}' is not a link and has no sections; links: {', '.join(links)}"
+
+
+def told_parameters(mechanism: Mechanism, values: Mapping[str, float]) -> str:
+    """With which parameters something was found, to end a message with: the defaults, or others; nothing where there are none."""
+    told = values or {name: parameter.default for name, parameter in mechanism.parameters.items()}
+    listed = [f"{name} = {value:.6g}" for name, value in told.items()]
+    if len(listed) > _TOLD:
+        listed = [*listed[:_TOLD], f"{len(listed) - _TOLD} more"]
+    return f"; with the {'' if values else 'default '}parameters {', '.join(listed)}" if listed else ""

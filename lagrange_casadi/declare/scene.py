@@ -5,87 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NoReturn
 
-import numpy as np
-import numpy.typing as npt
-
 from ..errors import AngleError, DeclarationError, ParameterError, PickleError, UnknownNameError
-from ..system.room import require
 from .angles import angle
-from .density import Array, Density
+from .density import Density
 from .drives import weighed
+from .even_points import EvenPoints, checked
 from .guiding import guided, laws_of
-from .limits import no_sections
+from .limits import no_sections, told_parameters
 from .mechanism import Mechanism
 from .motion import Motion
 from .parts import Expression
-
-EvenPoints = tuple[float, float, int]
-"""Evenly spaced: start, stop and count; both ends are included."""
+from .times import Instants, Over, Times, Timing, instants_of, span_of
 
 _KINDS = ("reaction", "multiplier", "load", "section", "output")
 _TURNS = 4.0 * math.pi
 """The largest direction of a posture [rad]: what is beyond was meant in degrees."""
-
-_TOLD = 8
-_MADE_FROM = 3
-"""How many arrays points are, with what they are made from."""
-
-_EXACT = 2**53
-"""Up to which doubles hold all whole numbers, so that a quotient of two is rounded once."""
-
-
-def checked(what: str, even: EvenPoints) -> EvenPoints:
-    """Even points in numbers. Raises :class:`DeclarationError` for a count below 1, ends that are not finite, fall, or are one."""
-    try:
-        start, stop, count = float(even[0]), float(even[1]), int(even[2])
-        if len(even) != 3:
-            raise ValueError
-    except (TypeError, ValueError, IndexError, OverflowError):
-        raise DeclarationError(f"{what}: expected (start, stop, count), got {even!r}") from None
-    if count < 1 or count != even[2]:
-        raise DeclarationError(f"{what}: COUNT must be a whole number of at least 1, got {even[2]}")
-    if not (math.isfinite(start) and math.isfinite(stop)):
-        raise DeclarationError(f"{what}: START and STOP must be finite, got {start:g} and {stop:g}")
-    if stop < start or (count > 1 and stop == start):
-        raise DeclarationError(f"{what}: STOP must be after START, got {start:g} and {stop:g}")
-    if count == 1 and stop > start:
-        raise DeclarationError(f"{what}: COUNT must be 2 or more to reach from {start:g} to {stop:g}, got 1")
-    return start, stop, count
-
-
-def points(even: EvenPoints, numbers: npt.NDArray[np.int64] | None = None) -> Array:
-    """All of some even points, or those of given numbers.
-
-    Each is rounded once from what the decimals of the ends say, so that 0.2:0.4:3 has 0.3, not 0.30000000000000004; where
-    these take more than the digits of a double, they are those of ``numpy.linspace``. Raises :class:`SizeError` for more than
-    memory holds.
-    """
-    start, stop, count = even
-    if numbers is None:
-        require(f"the points from {start:g} to {stop:g}", (_MADE_FROM, count))
-    numbers = np.arange(count) if numbers is None else numbers
-    first, last = (Fraction(repr(float(end))) for end in (start, stop))
-    step = (last - first) / max(count - 1, 1)
-    whole = math.lcm(first.denominator, step.denominator)
-    base, by = int(first * whole), int(step * whole)
-    if max(abs(base), abs(int(last * whole)), whole) <= _EXACT:
-        return np.asarray((base + by * numbers) / whole)
-    values = numbers * ((stop - start) / max(count - 1, 1)) + start
-    return np.asarray(np.where(numbers == count - 1, float(stop), values))
-
-
-def told_parameters(mechanism: Mechanism, values: Mapping[str, float]) -> str:
-    """With which parameters something was found, to end a message with: the defaults, or others; nothing where there are none."""
-    told = values or {name: parameter.default for name, parameter in mechanism.parameters.items()}
-    listed = [f"{name} = {value:.6g}" for name, value in told.items()]
-    if len(listed) > _TOLD:
-        listed = [*listed[:_TOLD], f"{len(listed) - _TOLD} more"]
-    return f"; with the {'' if values else 'default '}parameters {', '.join(listed)}" if listed else ""
 
 
 def _rough(name: str, value: object, turns: bool) -> float:
@@ -198,7 +136,12 @@ class Scene:
         Output names, see :func:`outputs`, or kinds, as ``section`` for those of all links. Only these are derived, compiled and
         evaluated.
     t, xi
-        Grids of time [s] and of the ratio xi/l: start, stop, count.
+        Grids of time [s] and of the ratio xi/l: start, stop, count. Those of time may be expressions of parameters.
+    over
+        Instants in equal steps of a driven coordinate, in place of ``t``: the joint's name, start, stop [rad, or text such as
+        ``"720 deg"``; or m] and count; start and stop may be expressions of parameters, and are in the order of time. The times
+        follow from the joint's motion, which must not turn back on the way. Where the motion's rate depends on time, the stretch
+        counts that goes through the start of ``t``.
     posture
         Rough directions of links and coordinates of joints at the first instant [rad, or text as ``"350 deg"``; m], by name, to
         choose between the ways in which a loop can be assembled.
@@ -216,11 +159,12 @@ class Scene:
     mechanism: Mechanism
     motion: Mapping[str, Motion | Sequence[Motion]]
     wanted: Sequence[str] = ("all",)
-    t: EvenPoints = (0.0, 1.0, 101)
+    t: Times = (0.0, 1.0, 101)
     xi: EvenPoints = (0.0, 1.0, 101)
     posture: Mapping[str, Any] = field(default_factory=dict)
     assembly: Mapping[str, float] = field(default_factory=dict)
     drives: Mapping[str, Expression] | Sequence[str] | None = None
+    over: Over | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.mechanism, Mechanism):
@@ -251,14 +195,16 @@ class Scene:
             object.__setattr__(self, "drives", MappingProxyType(weighed(self.mechanism, self.drives, self.needs_drives)))
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)
-        checked("t", self.t)
         checked_ratios(self.xi)
+        timing = self.timing()
         try:
             self.mechanism.values()
         except ParameterError as error:
             raise ParameterError(f"{error}{told_parameters(self.mechanism, {})}") from None
         numbers = self.mechanism.values(self.assembly)
         object.__setattr__(self, "assembly", MappingProxyType({name: numbers[name] for name in self.assembly}))
+        if not timing.shared:
+            self.span  # noqa: B018 - it refuses what has no instants
 
     @cached_property
     def laws(self) -> Mapping[str, Motion]:
@@ -282,10 +228,30 @@ class Scene:
         return self.drives if isinstance(self.drives, Mapping) else None
 
     def __repr__(self) -> str:
-        start, stop, count = self.t
+        start, stop = self.t[:2]
         motion = ", ".join(self.motion) or "nothing"
         wanted = ", ".join(self.wanted)
-        return f"<Scene of {self.mechanism.name}: drives {motion}, wants {wanted}, {count} instants from {start} to {stop} s>"
+        asked = f"from {start} to {stop} s" if self.over is None else f"over {self.over[0]} from {self.over[1]} to {self.over[2]}"
+        return f"<Scene of {self.mechanism.name}: drives {motion}, wants {wanted}, {self.timing().count} instants {asked}>"
+
+    def timing(self, t: Times | None = None, over: Over | None = None) -> Timing:
+        """How its instants are asked for, or others: ``t`` or ``over`` in place of its own.
+
+        Raises :class:`.DeclarationError` where both are given, and for what cannot be.
+        """
+        if t is not None and over is not None:
+            raise DeclarationError("t and over exclude each other: instants are in equal steps of time, or of a driven coordinate")
+        asked = self.over if t is None and over is None else over
+        return Timing.of(self.guided, self.laws, self.t if t is None else t, asked)
+
+    @cached_property
+    def span(self) -> tuple[float, float]:
+        """Its own first and last instant [s], with the parameters with which it is assembled."""
+        return span_of(self.guided, self.laws, self.timing(), self.mechanism.values(self.assembly))
+
+    def instants(self, timing: Timing, values: Mapping[str, float]) -> Instants:
+        """Instants for values of all parameters. Raises :class:`.DeclarationError` where there are none."""
+        return instants_of(self.guided, self.laws, timing, values)
 
     def __reduce__(self) -> NoReturn:
         """Raise :class:`PickleError`."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -21,12 +21,13 @@ from ..codegen.stages import Stages
 from ..declare.density import Array
 from ..declare.ends import BEYOND
 from ..declare.motion import ends_function
-from ..declare.scene import EvenPoints, Scene, points
+from ..declare.scene import Scene
+from ..declare.times import Times, Timing
 from ..equations.derive import derive
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
-from ..evaluate import checked_laws, checked_times, outputs_of
-from ..instants.backends import compiled, provenance
+from ..evaluate import checked_laws, checked_span, outputs_of
+from ..instants.backends import begun, compiled, provenance
 from ..instants.cost import seconds
 from ..instants.determinacy import determinate, undetermined
 from ..instants.refusal import Status
@@ -36,9 +37,13 @@ from ..instants.solution import Provenance
 from ..quantities import Output
 from ..summits.sharpness import bent, with_watched
 from ..system.room import cores, require
-from .interpreted import outcome
+from .interpreted import columns_of, outcome
 from .reduction import KeptOutputs, stages_of
+from .times import DesignTimes
 from .witness import failures
+
+_PIECE = 1 << 22
+"""How many instants of designs that have their own are held at once."""
 
 _LOOKS = 32
 """At about so many more instants is the peak of a quantity sought."""
@@ -50,7 +55,8 @@ class Outcome:
 
     ``status`` (n) is a :class:`.Status`. ``value``, ``t`` and ``xi``, (n, q), are the peak of each quantity with its sign, its time
     [s] and its ratio xi/l, NaN off a link; ``mean`` and ``rms``, (n, e), those of each effort over time. ``series`` (n, columns, t)
-    are whole histories, where they were asked for.
+    are whole histories, where they were asked for, and ``times`` (n, t) their instants [s], where designs may have their own.
+    ``over`` (n, q) is the coordinate of the drive at the peak, where instants are asked for by one.
     """
 
     status: npt.NDArray[np.int8]
@@ -60,6 +66,8 @@ class Outcome:
     mean: Array
     rms: Array
     series: Array | None
+    over: Array | None = None
+    times: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +81,7 @@ class DesignEngine:
 
     scene: Scene
     rung: Rung
-    t: Array
+    times: DesignTimes
     kept: KeptOutputs
     graph: SceneGraph
     stages: Stages
@@ -83,37 +91,43 @@ class DesignEngine:
 
     @classmethod
     def of(
-        cls, scene: Scene, wanted: Sequence[str] | None = None, t: EvenPoints | None = None, rung: Rung | None = None
+        cls,
+        scene: Scene,
+        wanted: Sequence[str] | None = None,
+        t: Times | None = None,
+        rung: Rung | None = None,
+        *,
+        timing: Timing | None = None,
     ) -> DesignEngine:
-        """Derive and compile: ``wanted`` outputs, instants ``t`` and ``rung`` as in :func:`.evaluate`."""
+        """Derive and compile: ``wanted`` outputs, ``t`` and ``rung`` as in :func:`.evaluate`; a ``timing`` in place of ``t``."""
         rung = rung or Rung()
         if rung.table is not None:
             raise DeclarationError("designs are not read from a table: each would need a table of its own")
         graph = derive(scene, wanted, iterate=rung.newton is not None)
-        instants = points(checked_times(scene, t))
-        checked_laws(scene, (float(instants[0]), float(instants[-1])), tuple(scene.mechanism.values().values()))
-        p = np.array(list(scene.mechanism.values().values()))
+        times, values = DesignTimes(scene, timing or scene.timing(t)), scene.mechanism.values()
+        checked_laws(scene, checked_span(scene, times.timing, values), tuple(values.values()))
+        instants, even = times.default
+        p = np.array(list(values.values()))
         _, left_open = determinate(graph, instants, p)
         kept = KeptOutputs.of(graph, rung, left_open)
         require("the instants of a design", (kept.reduction.rows, instants.size))
         watched = with_watched(graph, kept.sharpness)
-        stages = stages_of(watched, rung, instants)
-        guess = np.array(graph.newton.guess if graph.newton else (), float)
+        stages = stages_of(watched, rung, even, alike=times.common)
 
         def build(compiler: codegen.Compiler) -> codegen.DesignsLibrary:
             source = codegen.emit_designs(watched, stages, rung.newton, kept.reduction)
-            hidden = bent(graph, kept.sharpness, instants, p)
+            guess = begun(graph, float(even[0]), p) if times.timing.joint else graph.newton.guess if graph.newton else ()
             return codegen.load_designs(
-                source, compiler, tuple(shlex.split(rung.flags)), kept.reduction, instants, guess, hidden, rung.precision
+                source, compiler, tuple(shlex.split(rung.flags)), kept.reduction, even.size, np.array(guess, float), rung.precision
             )
 
         found = compiled(rung, build)
         if found is None:
-            return cls(scene, rung, instants, kept, graph, stages, None, left_open, provenance("vm", "", "", rung))
+            return cls(scene, rung, times, kept, graph, stages, None, left_open, provenance("vm", "", "", rung))
         compiler, library = found
         backend = "lanes" if compiler.language == "c++" else "c"
         made = provenance(backend, compiler.version, " ".join(library.flags), rung)
-        return cls(scene, rung, instants, kept, graph, stages, library, left_open, made)
+        return cls(scene, rung, times, kept, graph, stages, library, left_open, made)
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -158,14 +172,24 @@ class DesignEngine:
         return tuple(o for o in found if (o.part in self.kept.links if o.along else o not in self.left_open))
 
     @property
+    def t(self) -> Array:
+        """The instants (t,) [s] of the parameters' defaults; those of all designs, where these have them in common."""
+        return self.times.default[0]
+
+    @property
+    def count(self) -> int:
+        """How many instants a design has."""
+        return self.times.timing.count
+
+    @property
     def cost(self) -> float:
         """Seconds that a core takes for a design, within a factor of three or so: counted, not measured, the same everywhere."""
-        return seconds(self.graph, self.t.size + _LOOKS * len(self.quantities), self.rung, interpreted=self.library is None)
+        return seconds(self.graph, self.count + _LOOKS * len(self.quantities), self.rung, interpreted=self.library is None)
 
     @property
     def room(self) -> int:
         """Bytes of memory that a core takes while it evaluates."""
-        return 8 * self.kept.reduction.rows * self.t.size
+        return 8 * self.kept.reduction.rows * self.count
 
     def evaluate(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of designs ``p``, (n, parameters), in the order of :attr:`parameters`; with ``histories``, its series too.
@@ -177,22 +201,21 @@ class DesignEngine:
         if p.ndim != 2 or p.shape[1] != len(self.parameters):
             raise DeclarationError(f"designs: expected an array of shape (n, {len(self.parameters)}), got {p.shape}")
         n, q, e = p.shape[0], len(self.kept.quantities), len(self.efforts)
-        history = (n, len(self.graph.columns), self.t.size)
+        history, own = (n, len(self.graph.columns), self.count), histories and not self.shared
         require("the peaks of the designs", (n, 3 * q + 2 * e))
         if histories:
             require("the histories of the designs", history)
-        columns = np.empty(history) if histories else None
+        columns, times = np.empty(history) if histories else None, np.empty((n, self.count)) if own else None
         peaks, means = (np.empty((3, n, q)), np.empty((2, n, e)))
-        found = Outcome(np.zeros(n, np.int8), peaks[0], peaks[1], peaks[2], means[0], means[1], columns)
-        if self.library is not None:
-            peaks_of = {"value": found.value, "peak_t": found.t, "xi": found.xi}
-            results = {"status": found.status, **peaks_of, "mean": found.mean, "rms": found.rms, "history": found.series}
-            self.library.evaluate(p, results, threads or cores())
-        else:
-            self._interpret(p, found)
-        self._refuse_motions(p, found)
+        found = Outcome(np.zeros(n, np.int8), peaks[0], peaks[1], peaks[2], means[0], means[1], columns, times=times)
+        # What all have in common is not cut: it is made once.
+        size = n if self.times.common else max(1, _PIECE // self.count)
+        for start in range(0, n, max(size, 1)):
+            self._fill(p[start : start + size], _rows(found, slice(start, start + size)), threads or cores())
         if len(self._shown) < q:
             found = replace(found, **{name: getattr(found, name)[:, self._shown] for name in ("value", "t", "xi")})
+        if self.times.law is not None:
+            found = replace(found, over=self.times.at_drive(found.t, p))
         if columns is None:
             return found
         with np.errstate(invalid="ignore"):
@@ -201,13 +224,63 @@ class DesignEngine:
             series = outputs_of(self.graph, np.moveaxis(columns, 1, 0))
         return replace(found, series=np.stack([series[output] for output in self.outputs], axis=1))
 
-    def _refuse_motions(self, p: Array, found: Outcome) -> None:
-        """Take the result from designs whose motion puts into a curve what is beyond its ends."""
+    @property
+    def shared(self) -> bool:
+        """Whether all designs have the same instants, asked for by times."""
+        return self.times.timing.shared
+
+    def _fill(self, p: Array, found: Outcome, threads: int) -> None:
+        """Evaluate designs: peaks between instants in equal steps of time; histories at the instants that were asked for."""
+        even, asked = self.times.of(p, asked=found.series is not None)
+        if found.times is not None:
+            found.times[:] = asked
+        together = found.series is not None and asked is even
+        self._evaluate(p, even, found if together else replace(found, series=None), threads)
+        self._refuse_motions(p, even, found)
+        if found.series is None or together:
+            return
+        others = np.zeros(len(p), np.int8)
+        self._series(p, asked, others, found.series, threads)
+        failed = (found.status == Status.OK) & (others != Status.OK)
+        found.status[failed] = others[failed]
+        for array in (found.value, found.t, found.xi, found.mean, found.rms):
+            array[failed] = np.nan
+        found.series[found.status != Status.OK] = np.nan
+
+    def _evaluate(self, p: Array, t: Array, found: Outcome, threads: int) -> None:
+        if self.library is None:
+            self._interpret(p, t, found)
+            return
+        peaks_of = {"value": found.value, "peak_t": found.t, "xi": found.xi}
+        results = {"status": found.status, **peaks_of, "mean": found.mean, "rms": found.rms, "history": found.series}
+        self.library.evaluate(t, self._bent(p, t), p, results, threads)
+
+    def _series(self, p: Array, t: Array, status: npt.NDArray[np.int8], series: Array, threads: int) -> None:
+        """The columns of designs at any instants, without peaks."""
+        if self.library is not None:
+            results = {"status": status, **dict.fromkeys(("value", "peak_t", "xi", "mean", "rms")), "history": series}
+            self.library.evaluate(t, np.zeros((1, 0), bool), p, results, threads)
+            return
+        for i, row in enumerate(p):
+            status[i], table = columns_of(self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton)
+            series[i] = np.nan if table is None else table.out
+
+    def _bent(self, p: Array, t: Array) -> npt.NDArray[np.bool_]:
+        """In which steps between the instants of each design its motion bends more than they show; one row where none has knots."""
+        if len(t) == 1 or not self.kept.sharpness.knots:
+            # Of the defaults: a row of what is found must not depend on the designs beside it.
+            t, p = t[:1], np.array(list(self.scene.mechanism.values().values()))[None]
+        known = [bent(self.graph, self.kept.sharpness, times, row) for times, row in zip(t, p, strict=True)]
+        return np.array(known) if known else np.zeros((1, 0), bool)
+
+    def _refuse_motions(self, p: Array, t: Array, found: Outcome) -> None:
+        """Take the result from designs whose motion puts into a curve what is beyond its ends at any of their instants."""
         ends = ends_function(self.scene.laws, self.scene.mechanism.symbols)
         if ends is None:
             return
-        far = [k for k, row in enumerate(p) if not (ends(self.t[None], row).full() <= BEYOND["double"]).all()]
-        far = [k for k in far if np.isfinite(p[k]).all()]
+        times = (t[min(k, len(t) - 1)] for k in range(len(p)))
+        farthest = [float(ends(at[None], row).full().max(initial=0.0)) for row, at in zip(p, times, strict=True)]
+        far = [k for k, share in enumerate(farthest) if not share <= BEYOND["double"] and np.isfinite(p[k]).all()]
         found.status[far] = Status.BEYOND_ENDS
         for array in (found.value, found.t, found.xi, found.mean, found.rms, found.series):
             if array is not None:
@@ -223,13 +296,20 @@ class DesignEngine:
         """What fails of one design that has a result, (parameters,), looked at with all its outputs: see :mod:`.witness`."""
         series = self.evaluate(p[None], threads=1, histories=True).series
         assert series is not None
-        return failures(self.scene, p, self.t, self.rung, self.outputs, series[0])
+        return failures(self.scene, p, self.times.of(p[None])[1][0], self.rung, self.outputs, series[0])
 
-    def _interpret(self, p: Array, found: Outcome) -> None:
+    def _interpret(self, p: Array, t: Array, found: Outcome) -> None:
         kept = (found.value, found.t, found.xi, found.mean, found.rms)
         for i, row in enumerate(p):
-            found.status[i], design = outcome(self.graph, self.kept, self.t, row, self.rung.newton)
+            found.status[i], design = outcome(self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton)
             for array, values in zip(kept, (*design.peaks, *design.means) if design else [np.nan] * 5, strict=True):
                 array[i] = values
             if found.series is not None:
                 found.series[i] = design.columns if design else np.nan
+
+
+def _rows(found: Outcome, some: slice) -> Outcome:
+    """Some rows of an outcome, to be filled."""
+    arrays = {entry.name: getattr(found, entry.name) for entry in fields(found)}
+    rows: dict[str, Any] = {name: None if array is None else array[some] for name, array in arrays.items()}
+    return Outcome(**rows)

@@ -29,19 +29,28 @@ class DesignResult:
     columns: Array
 
 
-def outcome(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, DesignResult | None]:
-    """What is kept of a design, or why it has no result."""
+def columns_of(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, Evaluated | None]:
+    """The columns of a design at instants, or why it has no result."""
     if not np.isfinite(p).all():
         return Status.INVALID, None
     reduction = kept.reduction
     margins = reduction.matter(p).full().ravel()[: reduction.margins]
     if not (np.isfinite(margins).all() and (margins >= 0.0).all() and (margins[: reduction.positive] > 0.0).all()):
         return Status.IMPOSSIBLE, None
+    if not t[-1] >= t[0]:
+        return Status.NO_INSTANTS, None
     rung = Rung("vm", newton=newton)
     evaluated, _ = run(graph, t, p, rung)
     why = refusal(graph, evaluated, t, p, rung)
-    if why is not None:
-        return why.status, None
+    return (Status.OK, evaluated) if why is None else (why.status, None)
+
+
+def outcome(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, DesignResult | None]:
+    """What is kept of a design, or why it has no result."""
+    status, evaluated = columns_of(graph, kept, t, p, newton)
+    if evaluated is None:
+        return status, None
+    reduction, rung = kept.reduction, Rung("vm", newton=newton)
     left_open = {graph.doubtful[output] for output in undetermined(graph, evaluated.out, p, rung)}
     doubted = {quantity for check, quantity in reduction.doubts if reduction.checks[check][0] in left_open}
     told = [k for k in range(len(reduction.units)) if k not in doubted]

@@ -29,12 +29,15 @@ from ..quantities import FORCES, LAW, PLACE_FIRST, RESULTANT, Output
 from ..summits.sharpness import Sharpness
 
 
-def stages_of(graph: SceneGraph, rung: Rung, t: Array) -> Stages:
-    """In which arithmetic all designs are evaluated: in pairs where angles count many turns, or may, as parameters set them."""
+def stages_of(graph: SceneGraph, rung: Rung, t: Array, *, alike: bool = True) -> Stages:
+    """In which arithmetic all designs are evaluated: in pairs where angles count many turns, or may, as parameters set them.
+
+    ``alike`` tells that all designs have the instants ``t``.
+    """
     if rung.precision == "single":
         return compensated(graph, "single")
     time, p = graph.laws.smooth.sx_in()
-    if p.numel() and ca.depends_on(ca.vertcat(*graph.laws.smooth(time, p)), p):
+    if not alike or (p.numel() and ca.depends_on(ca.vertcat(*graph.laws.smooth(time, p)), p)):
         try:
             return compensated(graph, "double")
         except DeclarationError:

@@ -29,7 +29,8 @@ def draw_mechanism(solution: Solution, count: int) -> Figure:
     for place, i in zip(axes.flat, chosen, strict=False):
         _draw_instant(place, solution, int(i), paths, size)
         place.set(xlim=box[:2], ylim=box[2:], aspect="equal")
-        place.set_title(f"t = {solution.t[i]:.4g} s", fontsize=10)
+        over = f", {solution.over.shown(solution.over.values[i])}" if solution.over else ""
+        place.set_title(f"t = {solution.t[i]:.4g} s{over}", fontsize=10)
         place.grid(True, color="0.93")
     for place in axes.flat[len(chosen) :]:
         place.set_axis_off()

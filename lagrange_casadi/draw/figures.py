@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ..declare.density import Array
 from ..declare.description import parts_of
 from ..errors import DeclarationError, StoreError, UnknownNameError, one_line
-from ..instants.solution import Solution
+from ..instants.solution import Peak, Solution
 from ..quantities import FORCES, Output, quantity_of
 from ..store.untrusted import parsed
 
@@ -57,19 +58,19 @@ class TimePlot:
                 self._draw(axes, solution, name)
             first, last = axes is panels[0], axes is panels[-1]
             title = (self.title or self.quantities[0]) if first else ""
-            _finish(figure, axes, solution, names, title, self.note if last else "", "t [s]" if last else "")
+            _finish(figure, axes, solution, names, title, self.note if last else "", _along(solution)[1] if last else "")
         return figure
 
     def _draw(self, axes: Any, solution: Solution, name: str) -> None:
         output = Output.of(name)
         label = name.partition(":")[2].replace(":", " ") if len(self.quantities) > 1 else None
         if output.group != "section":
-            axes.plot(solution.t, self.factor * solution.array(output), label=label)
+            axes.plot(_along(solution)[0], self.factor * solution.array(output), label=label)
             return
         values = solution.section(output.part).law.on_grid(output.member, np.array(self.xi))
         for xi, curve in zip(self.xi, values.T, strict=True):
             of = f"{label}, " if label else ""
-            axes.plot(solution.t, self.factor * curve, label=rf"{of}$\xi/l$ = {xi:g}")
+            axes.plot(_along(solution)[0], self.factor * curve, label=rf"{of}$\xi/l$ = {xi:g}")
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,8 @@ class SpanPlot:
         output = Output.of(self.quantity)
         values = solution.section(output.part).law.during(slice(i, i + 1)).on_grid(output.member, solution.xi)
         axes.plot(solution.xi, self.factor * values[0])
-        title = f"{self.title}, t = {solution.t[i]:.4g} s" if self.title else f"t = {solution.t[i]:.4g} s"
+        at = f"t = {solution.t[i]:.4g} s" + (f", {solution.over.shown(solution.over.values[i])}" if solution.over else "")
+        title = f"{self.title}, {at}" if self.title else at
         _finish(figure, axes, solution, [self.quantity], title, self.note, r"$\xi/l$")
         return figure
 
@@ -118,21 +120,25 @@ class SectionMaps:
 
         figure = Figure(figsize=(8.0, 8.4), layout="constrained")
         instants, ratios = (slice(None, None, 1 + size // _PIXELS) for size in (solution.t.size, solution.xi.size))
-        law, t, xi = solution.section(self.link).law.during(instants), solution.t[instants], solution.xi[ratios]
+        law, xi = solution.section(self.link).law.during(instants), solution.xi[ratios]
+        places, along = _along(solution)
         basis = law.basis(xi)
         for axes, force, name in zip(figure.subplots(3, 1, sharex=True), FORCES, self.needs(), strict=True):
             values, peak = law.on_grid(force, basis), solution.peak(name)
             bound = abs(peak.value) or 1.0
-            picture = axes.pcolormesh(t, xi, values.T, cmap="RdBu_r", vmin=-bound, vmax=bound, shading="nearest", rasterized=True)
-            axes.plot(peak.t, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
+            picture = axes.pcolormesh(
+                places[instants], xi, values.T, cmap="RdBu_r", vmin=-bound, vmax=bound, shading="nearest", rasterized=True
+            )
+            x, at = _place_of(peak, solution)
+            axes.plot(x, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
             axes.set_title(
-                f"{quantity_of(name).long_name}: peak {peak.value:.4g} {peak.unit} at t = {peak.t:.4g} s, "
+                f"{quantity_of(name).long_name}: peak {peak.value:.4g} {peak.unit} at {at}, "
                 rf"$\xi/l$ = {peak.xi:.3f}",
                 fontsize=10,
             )
             axes.set_ylabel(r"$\xi/l$")
             figure.colorbar(picture, ax=axes, label=f"{quantity_of(name).long_name} [{peak.unit}]")
-        axes.set_xlabel("t [s]")
+        axes.set_xlabel(along)
         figure.suptitle(f"{solution.case}: section forces of {self.link}, as the tip's side acts on the base's", fontsize=11)
         return figure
 
@@ -233,6 +239,20 @@ def _has(solution: Solution, spec: Spec) -> bool:
         return all(Output("pose", body, "x") in solution.outputs for body in solution.description["bodies"])
     names = set(solution.names())
     return all(str(component) in names for name in spec.needs() for component in Output.of(name).components)
+
+
+def _along(solution: Solution) -> tuple[Array, str]:
+    """What instants are drawn over: their times, or the coordinate by which they were asked for, an angle in degrees."""
+    if solution.over is None:
+        return solution.t, "t [s]"
+    return solution.over.drawn(solution.over.values), solution.over.label
+
+
+def _place_of(peak: Peak, solution: Solution) -> tuple[float, str]:
+    """Where a peak is drawn on such an axis, and the same in words."""
+    if solution.over is None or peak.over is None:
+        return peak.t, f"t = {peak.t:.4g} s"
+    return float(solution.over.drawn(peak.over)), solution.over.shown(peak.over)
 
 
 def _figure(panels: int = 1) -> tuple[Figure, list[Any]]:

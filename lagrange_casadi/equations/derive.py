@@ -11,9 +11,10 @@ from typing import Any
 import casadi as ca
 
 from ..declare.ends import beyond_ends
+from ..declare.limits import told_parameters
 from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
-from ..declare.scene import Scene, Wanted, told_parameters
+from ..declare.scene import Scene, Wanted
 from ..errors import AssemblyError, MobilityError, PostureError
 from ..quantities import ANGLE, Output
 from ..system import cache
@@ -100,11 +101,10 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     driven = tuple(c.joint for c in body.coordinates if c.driven)
     motion = motion_function({name: scene.laws[name] for name in driven}, p)
     values = list(mechanism.values(scene.assembly).values())
-    first = [float(x) for x in ca.DM(motion(scene.t[0], values)[0]).full().ravel()]
-    start = Start(float(scene.t[0]), first, values)
+    first = [float(x) for x in ca.DM(motion(scene.span[0], values)[0]).full().ravel()]
+    start = Start(scene.span[0], first, values)
     solved = kinematics.solve(body, scene.posture, start, iterate=iterate)
-    times = (float(scene.t[0]), float(scene.t[1]))
-    solved, swings = count_turns(body, solved, motion, times, start, _seeing(body, want))
+    solved, swings = count_turns(body, solved, motion, scene.span, start, _seeing(body, want))
 
     columns = _beyond(body, _seeing(body, want))
     columns |= {Check("closure", name): closure for name, closure in solved.closures.items()}

@@ -37,7 +37,7 @@ def declaration(scene: Scene, wanted: Wanted) -> str | None:
         vars(mechanism),
         mechanism.gravity,
         mechanism.symbols,
-        scene.t[:2],
+        scene.span,
         scene.posture,
         scene.assembly,
         wanted,

@@ -14,12 +14,12 @@ import numpy as np
 
 from ..arithmetic.compensated import Precision
 from ..declare.expressions import check_line
-from ..declare.scene import Scene, points
+from ..declare.scene import Scene
 from ..equations.derive import assembled, derive
 from ..equations.fingerprint import declaration
 from ..equations.scene_graph import SceneGraph
 from ..errors import CertificateError, DeclarationError, PathError
-from ..evaluate import checked_times, evaluate
+from ..evaluate import checked_span, evaluate
 from ..instants.determinacy import determinate
 from ..instants.from_table import drive_of, table_of
 from ..instants.rung import Rung
@@ -100,7 +100,8 @@ def export(
         raise DeclarationError(f"export: '{scene.mechanism.name}' has no drive, and C without inputs computes nothing; evaluate it")
     # What rounding alone makes of it: all steps that loops want, and no table.
     enough = None if newton is None else max(newton, _ENOUGH)
-    instants = points(checked_times(scene, None))
+    checked_span(scene, scene.timing(), values)
+    instants = scene.instants(scene.timing(), values).t
     graph, left_open = determinate(graph, instants, p, telling=table is None)
     exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm", newton=enough)
     if exact.failed:

@@ -91,6 +91,11 @@ def run(
     return evaluated, provenance(used, compiler.version, " ".join(library.flags), rung)
 
 
+def begun(graph: SceneGraph, t: float, p: Array) -> tuple[float, ...]:
+    """The iterated coordinates at a time, closed, as the motion leads there from the scene's own start; none without loops."""
+    return _begin(graph, False, t, tuple(p.tolist()))
+
+
 @functools.lru_cache(maxsize=256)
 def _begin(graph: SceneGraph, counted: bool, t: float, p: tuple[float, ...]) -> tuple[float, ...]:
     """The iterated coordinates that the first instant begins from: closed there where steps are ``counted``.
@@ -100,7 +105,7 @@ def _begin(graph: SceneGraph, counted: bool, t: float, p: tuple[float, ...]) -> 
     """
     if graph.newton is None:
         return ()
-    start, stop, count = graph.scene.t
+    (start, stop), count = graph.scene.span, graph.scene.timing().count
     if t == start and not counted:
         return graph.newton.guess
     wanted = max(abs(t - start) / (stop - start) * (count - 1), _FEWEST_STEPS) if stop > start else math.inf

@@ -130,7 +130,7 @@ class Drive:
         moving = ca.vertcat(t, rate, acceleration)
         at_rest = [ca.densify(ca.substitute(row, moving, ca.SX.zeros(3))) for row in rows]
         terms = ca.Function("terms", [d, z, parameters], at_rest, {"cse": True})
-        start, stop = (float(graph.motion(moment, p)[0]) for moment in graph.scene.t[:2])
+        start, stop = (float(graph.motion(moment, p)[0]) for moment in graph.scene.span)
         return cls(graph, p, joint, start, -1 if stop < start else 1, terms)
 
     @property

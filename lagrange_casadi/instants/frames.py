@@ -28,6 +28,8 @@ def dataset(solution: Solution) -> xarray.Dataset:
         for q in solution.quantities()
     }
     coordinates = {"t": ("t", solution.t, {"units": "s"}), "xi": ("xi", solution.xi, {"units": "1", "long_name": "ratio xi/l"})}
+    if solution.over:
+        coordinates["over"] = ("t", solution.over.values, {"units": solution.over.unit, "long_name": solution.over.long_name})
     return xarray.Dataset(data, coordinates, {"case": solution.case})
 
 
@@ -46,6 +48,8 @@ def columns(solution: Solution) -> dict[str, Array]:
     A section force has a column for each ratio of the solution: ``section:LINK:bending xi/l=0.25 [N m]``.
     """
     found: dict[str, Array] = {}
+    if solution.over:
+        found[f"over:{solution.over.joint} [{solution.over.unit}]"] = solution.over.values
     for output in solution.quantities():
         unit, values = solution.unit(output), solution.array(output)
         ending = "" if unit == "1" else f" [{unit}]"

@@ -44,6 +44,7 @@ class Status(enum.IntEnum):
     TURNED = 14
     PEAK_NOT_TOLD = 15
     BEYOND_ENDS = 16
+    NO_INSTANTS = 17
 
     @property
     def meaning(self) -> str:
@@ -69,6 +70,7 @@ _MEANINGS = {
     Status.TURNED: "an angle that a load sees with its turns might be a turn further",
     Status.PEAK_NOT_TOLD: "a peak cannot be told: too much may hide between the instants; more instants may help",
     Status.BEYOND_ENDS: "what is put into a curve is beyond its ends",
+    Status.NO_INSTANTS: "its instants cannot be: the motion does not go where they are asked for, or they end before they start",
 }
 
 

@@ -14,6 +14,7 @@ from ..declare.density import Array
 from ..declare.description import Description, density_of, parts_of
 from ..declare.limits import no_sections
 from ..declare.notes import notes
+from ..declare.times import DriveAxis
 from ..errors import DeclarationError, UnknownNameError
 from ..quantities import FORCES, QUANTITIES, Output
 from ..system.room import require
@@ -43,7 +44,8 @@ class Peak:
     """The value of a quantity that is largest in size, with its sign, in ``unit``, and where it is.
 
     ``t`` is its time [s]; ``xi`` the ratio xi/l of a section force, None of other quantities. ``value`` is NaN where the peak
-    between the instants cannot be told; ``least`` is then the largest size that was found.
+    between the instants cannot be told; ``least`` is then the largest size that was found. ``over`` is the coordinate [rad or m] of
+    the drive by which instants were asked for, None where they were not.
     """
 
     name: str
@@ -52,6 +54,7 @@ class Peak:
     t: float
     xi: float | None = None
     least: float | None = None
+    over: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +167,8 @@ class Solution:
     determine, because the mechanism is over-constrained: their values are NaN. :attr:`series` and :attr:`undetermined` are the same
     by full names. ``certificate`` holds the residuals of :mod:`.certificate`, each (t,), and how near the loops are to a dead
     centre; a residual above ``tolerance`` means that the solution is wrong, not that it is rounded. ``errors`` estimates by
-    :mod:`.accuracy` how far each quantity may be off, over all instants, in its unit.
+    :mod:`.accuracy` how far each quantity may be off, over all instants, in its unit. ``over`` is the coordinate of the drive by
+    which the instants were asked for, or None.
 
     Methods that take a name raise :class:`.UnknownNameError` for one that the solution does not have, and list those it has.
     """
@@ -179,6 +183,7 @@ class Solution:
     certificate: Mapping[str, Array] = field(default_factory=dict)
     errors: Mapping[str, float] = field(default_factory=dict)
     tolerance: float = 0.0
+    over: DriveAxis | None = None
 
     @cached_property
     def series(self) -> Mapping[str, Array]:
@@ -258,7 +263,8 @@ class Solution:
         """The same at some of the instants."""
         outputs = {output: values[instants] for output, values in self.outputs.items()}
         certificate = {name: values[instants] for name, values in self.certificate.items()}
-        return replace(self, t=self.t[instants], outputs=outputs, certificate=certificate)
+        over = self.over and replace(self.over, values=self.over.values[instants])
+        return replace(self, t=self.t[instants], outputs=outputs, certificate=certificate, over=over)
 
     def determined(self, name: str | Output) -> bool:
         """Whether equilibrium determines a quantity, at all instants."""
@@ -313,7 +319,9 @@ class Solution:
         """
         values, places = self.extremes(name)
         i = int(np.argmax(np.abs(values)))
-        return Peak(str(name), float(values[i]), self.unit(name), float(self.t[i]), None if places is None else float(places[i]))
+        xi = None if places is None else float(places[i])
+        over = None if self.over is None else float(self.over.values[i])
+        return Peak(str(name), float(values[i]), self.unit(name), float(self.t[i]), xi, over=over)
 
     def statistics(self, name: str | Output) -> Statistics:
         """Mean, root of the mean square, smallest and largest value, and the peak, of a quantity over the instants."""

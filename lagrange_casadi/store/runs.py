@@ -22,24 +22,33 @@ import numpy as np
 
 from ..declare.density import Array
 from ..declare.description import SHAPE as DESCRIPTION
+from ..declare.description import Description
+from ..declare.even_points import are_even
+from ..declare.times import DriveAxis
 from ..errors import DeclarationError, PathError, StoreError, one_line
 from ..instants.solution import Provenance, Solution, in_order
 from ..judge.certificate import LOOSE, blur, certify
-from ..quantities import CF, CONVENTIONS, FORCES, LAW, Output
+from ..quantities import ANGLE, CF, CONVENTIONS, FORCES, LAW, LENGTH, Output
 from ..system.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
 from ..system.seal import Seen, kind_of, seal, verify
 from .scales import LARGE, Scales
 from .untrusted import check_chunks, check_dataset, check_links, parsed, shown, told_as
 
 SCHEMA = "lagrange-casadi"
-SCHEMA_VERSION = 2
-"""Files of version 1 have no seal; they are still read."""
+SCHEMA_VERSION = 3
+"""Files of version 1 have no seal; those of version 2, which are still written, are not over a drive's coordinate."""
+
+_WITHOUT_OVER = 2
 
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
 _AXES = {"t": ("s", "time"), "xi": ("1", "place along a link, ratio xi/l")}
+_OVER = "over"
 _PROVENANCE = ("backend", "precision", "compiler", "flags", "rung")
 _GRID_TOLERANCE = 1e-12
+_OVER_TOLERANCE = {"double": 1e-12, "single": 1e-6}
+"""Of the largest coordinate: how far a motion's may be from that by which its instants were asked for."""
+
 _KIND = "the file of a run"
 _KNOWN = {SCHEMA: "that of a run, which `load` reads", f"{SCHEMA}-sweep": "that of a sweep, which `Sweep.open` reads"}
 
@@ -125,6 +134,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
         told = map(Output.of, parsed(file.attrs["outputs"], [str]))
         found = [f"{_place(output)}: missing" for output in told if output not in outputs]
         if not found:
+            found += _check_drive_axis(solution)
             found += [finding for output in outputs for finding in _check_dataset(file, solution, output)]
             found += _check_certificate(solution)
     return found
@@ -174,6 +184,23 @@ def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Itera
             yield f"{place}: axis {axis} has no scale /{scale}"
 
 
+def _check_drive_axis(solution: Solution) -> Iterator[str]:
+    """The coordinate by which instants were asked for: finite, in equal steps, and that of the motion, where this is there."""
+    if solution.over is None:
+        return
+    values = solution.over.values
+    if not np.isfinite(values).all() or not are_even(values):
+        yield f"{_OVER}: is not in equal steps"
+    joint = solution.over.joint
+    motion, rate = (solution.outputs.get(Output("motion", joint, member)) for member in ("", "rate"))
+    allowed = _OVER_TOLERANCE.get(solution.provenance.precision, 0.0) * float(np.abs(values).max())
+    if rate is not None:
+        # Times are doubles, and a fast drive far from zero moves on between two of them.
+        allowed += 4.0 * float(np.max(np.abs(rate)) * np.spacing(np.abs(solution.t).max()))
+    if motion is not None and not np.abs(motion - values).max() <= allowed:
+        yield f"{_OVER}: is not the coordinate of joint '{joint}'"
+
+
 def _read_through(dataset: h5py.Dataset, solution: Solution, output: Output) -> tuple[float, bool]:
     """How far a grid is from its law, and whether all values are finite, block by block."""
     gap, finite = 0.0, True
@@ -199,6 +226,8 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
         scale.attrs["units"], scale.attrs["long_name"] = _AXES[axis]
         scale.make_scale(axis)
     scales = Scales(file)
+    if solution.over:
+        _add_drive_axis(file, scales, solution.over)
     for output, values in solution.outputs.items():
         breathe()
         _add(file, scales, solution, output, values)
@@ -210,7 +239,7 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     scales.finish()
     provenance = solution.provenance
     file.attrs["schema"] = SCHEMA
-    file.attrs["schema_version"] = SCHEMA_VERSION
+    file.attrs["schema_version"] = SCHEMA_VERSION if solution.over else _WITHOUT_OVER
     file.attrs["case"] = solution.case
     file.attrs["Conventions"], file.attrs["conventions"] = CF, CONVENTIONS
     file.attrs["mechanism"] = json.dumps(solution.description)
@@ -227,6 +256,14 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
 
 def _add(file: h5py.File, scales: Scales, solution: Solution, output: Output, values: Array) -> None:
     _create(file, scales, solution, output, values.shape)[...] = values
+
+
+def _add_drive_axis(file: h5py.File, scales: Scales, over: DriveAxis) -> None:
+    """The coordinate by which instants were asked for, beside their times: an auxiliary coordinate, as CF calls it."""
+    dataset = file.create_dataset(_OVER, data=over.values, fletcher32=True, fillvalue=np.nan, **LARGE)
+    dataset.attrs["units"], dataset.attrs["long_name"], dataset.attrs["joint"] = over.unit, over.long_name, over.joint
+    scales.attach(dataset, ("t",))
+    file.attrs["coordinates"] = _OVER
 
 
 def _add_grid(file: h5py.File, scales: Scales, solution: Solution, output: Output, breathe: Callable[[], None]) -> None:
@@ -267,7 +304,7 @@ def _read(file: h5py.File) -> Solution:
     errors: dict[str, float] = {}
 
     def visit(place: str, item: Any) -> None:
-        if isinstance(item, h5py.Dataset) and place not in _AXES:
+        if isinstance(item, h5py.Dataset) and place not in (*_AXES, _OVER):
             output = Output.of(place.replace("/", ":"))
             if "error_estimate" in item.attrs:
                 errors[str(output)] = float(item.attrs["error_estimate"])
@@ -281,12 +318,22 @@ def _read(file: h5py.File) -> Solution:
     certificate = {name: _numbers(file["certificate"][name], t.shape) for name in file.get("certificate", ())}
     case = shown(file.attrs["case"])
     ordered, limit = in_order(outputs, description), float(file.attrs["certificate_tolerance"])
-    solution = Solution(case, t, xi, ordered, description, provenance, left_open, certificate, errors, limit)
+    over = _drive_axis(file[_OVER], t.shape, description) if _OVER in file else None
+    solution = Solution(case, t, xi, ordered, description, provenance, left_open, certificate, errors, limit, over)
     for link in solution.links_with_sections:
         law = solution.section(link).law
         if set(law.coefficients) != set(LAW) or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is not whole")
     return solution
+
+
+def _drive_axis(dataset: Any, shape: tuple[int, ...], description: Description) -> DriveAxis:
+    """The coordinate by which instants were asked for. Raises ``ValueError`` for that of a joint which is not driven."""
+    values, joint, unit = _numbers(dataset, shape), shown(dataset.attrs["joint"]), shown(dataset.attrs["units"])
+    told = description["joints"].get(joint, {})
+    if not told.get("driven") or unit != (LENGTH if told["coordinate"] == "slide" else ANGLE):
+        raise ValueError(f"the instants are over '{joint}' in {unit}, which is no drive's coordinate")
+    return DriveAxis(joint, unit, values)
 
 
 def _numbers(dataset: Any, shape: tuple[int, ...] | None = None) -> Array:

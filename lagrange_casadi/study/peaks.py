@@ -9,15 +9,18 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array
-from ..declare.motion import jerk_function
-from ..declare.scene import Scene, checked
+from ..declare.even_points import are_even
+from ..declare.motion import jerk_function, motion_function
+from ..declare.scene import Scene
+from ..declare.times import Over, Times, span_of
 from ..equations.derive import assembled, derive
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
@@ -56,8 +59,10 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
 
     Raises :class:`DeclarationError` where the solution is not of this scene, :class:`UnknownNameError` for a name that is none.
     """
-    chosen = list(solution.names() if names is None else names)
-    return _ContinuousSolution.of(scene, solution).peaks(chosen)
+    sampled = [solution.peak(name) for name in (solution.names() if names is None else names)]
+    found = _ContinuousSolution.of(scene, solution)
+    peaks = (found if are_even(solution.t) else found.in_equal_steps()).peaks(sampled)
+    return peaks if solution.over is None else [found.at_the_drive(peak, solution.over.joint) for peak in peaks]
 
 
 @dataclass(frozen=True)
@@ -75,21 +80,29 @@ class Shortfall:
 
 
 def shortfall(
-    scene: Scene, counts: Sequence[int], names: Iterable[str] | None = None, *, parameters: Mapping[str, float] | None = None
+    scene: Scene,
+    counts: Sequence[int],
+    names: Iterable[str] | None = None,
+    *,
+    parameters: Mapping[str, float] | None = None,
+    t: Times | None = None,
+    over: Over | None = None,
 ) -> list[Shortfall]:
-    """How far peaks fall short where the scene's own span of time is cut into so many instants, a row for each of ``counts``.
+    """How far peaks fall short where a span of time is cut into so many instants, a row for each of ``counts``.
 
+    The span is the scene's own, or that of ``t`` or ``over``, as in :func:`.evaluate`.
     ``names`` are full names of quantities; by default all efforts, reactions and section forces that are wanted and determined.
     Those that are zero but for rounding, grow without bound or are not told are left out. The true peaks are the largest refined
     ones, of all counts and of twice as many instants. Raises :class:`DeclarationError` for no counts or where no quantity is left,
     and what :func:`.evaluate` raises, as for so few instants that loops cannot be followed.
     """
-    start, stop, own = checked("t", scene.t)
+    timing = scene.timing(t, over)
+    start, stop = span_of(scene.guided, scene.laws, timing, scene.mechanism.values(parameters))
     if not counts:
         raise DeclarationError("shortfall: expected at least one number of instants")
     solutions = [
         evaluate(scene, t=(start, stop, count), parameters=parameters, backend="vm", certificate=False)
-        for count in (*counts, 2 * max(*counts, own))
+        for count in (*counts, 2 * max(*counts, timing.count))
     ]
     last = solutions[-1]
     chosen = [name for name in (forces(last) if names is None else names) if last.determined(name)]
@@ -186,14 +199,28 @@ class _ContinuousSolution:
         limits = [_SAME * sizes[unit] + rounding for unit in units]
         return bool(np.all([gap <= limit for gap, limit in zip(gaps, limits, strict=True)], axis=0).any())
 
-    def peaks(self, names: Sequence[str]) -> list[Peak]:
-        """The peaks of quantities over all times."""
+    def in_equal_steps(self) -> _ContinuousSolution:
+        """The same from as many instants in equal steps of time, between which peaks are sought."""
+        scene, solution, t = self.graph.scene, self.solution, self.solution.t
+        told = dict(zip(scene.mechanism.parameters, self.p.tolist(), strict=True))
+        wanted = list(dict.fromkeys(map(_wanted, solution.outputs)))
+        even = (float(t[0]), float(t[-1]), t.size)
+        words: dict[str, Any] = {"parameters": told, "t": even, "wanted": wanted, "backend": "vm", "certificate": False}
+        return _ContinuousSolution.of(scene, evaluate(scene, **words))
+
+    def at_the_drive(self, peak: Peak, joint: str) -> Peak:
+        """A peak with the coordinate of a drive at its time."""
+        scene = self.graph.scene
+        d = motion_function({joint: scene.laws[joint]}, scene.mechanism.symbols)(peak.t, self.p)[0]
+        return replace(peak, over=float(d))
+
+    def peaks(self, sampled: Sequence[Peak]) -> list[Peak]:
+        """The peaks over all times, of quantities whose peaks over some instants are known."""
         solution = self.solution
-        sampled = [solution.peak(name) for name in names]
         found = {Output.of(peak.name): peak for peak in sampled}
         sought = [output for output in found if solution.determined(output)]
         if not sought or solution.t.size == 1:
-            return sampled
+            return list(sampled)
         signals = self.signals(sought)
         units, scales = self.scales(sought)
         searched = signals.peaks(units, scales)

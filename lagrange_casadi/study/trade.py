@@ -17,7 +17,8 @@ import numpy as np
 
 from ..codegen import find_compiler
 from ..declare.density import Array
-from ..declare.scene import EvenPoints, Scene, checked, points
+from ..declare.scene import Scene
+from ..declare.times import Over, Times
 from ..equations.derive import assembled, derive
 from ..equations.scene_graph import SceneGraph
 from ..errors import AccuracyError, AssemblyError, CompilerError, DeclarationError
@@ -115,19 +116,20 @@ def trade(
     scene: Scene,
     *,
     parameters: Mapping[str, float] | None = None,
-    t: EvenPoints | None = None,
+    t: Times | None = None,
+    over: Over | None = None,
     wanted: Sequence[str] | None = None,
     rungs: Sequence[Rung] = RUNGS,
     progress: Callable[[Rung], None] = lambda rung: None,
 ) -> Trade:
-    """Measure every rung on a scene; ``progress`` is told of each before it is taken.
+    """Measure every rung on a scene, ``t`` or ``over`` as in :func:`.evaluate`; ``progress`` is told of each before it is taken.
 
     Raises :class:`LagrangeCasadiError` where mpmath is not installed, :class:`DeclarationError` for graphs that call functions of
     their own, and what :func:`.evaluate` raises where the scene has no result.
     """
     told = scene.mechanism.values(parameters)
     values = np.array(list(told.values()))
-    times = points(checked("t", scene.t if t is None else t))
+    times = scene.instants(scene.timing(t, over), told).t
     scene = assembled(scene, told, wanted)
     graphs = {iterate: derive(scene, wanted, iterate=iterate) for iterate in (False, True)}
     compared = np.unique(np.linspace(0, times.size - 1, min(times.size, COMPARED)).astype(int))
@@ -153,9 +155,9 @@ def trade(
     seconds = _in_turns(works)
     measured = [Measurement(rung, seconds[rung], *found[rung]) for rung in works]
     ordered = tuple(sorted(measured, key=lambda one: one.seconds))
-    sampled = replace(scene, t=scene.t if t is None else t, wanted=scene.wanted if wanted is None else wanted)
+    sampled = replace(scene, wanted=scene.wanted if wanted is None else wanted)
     try:
-        peaks = tuple(shortfall(sampled, COUNTS, parameters=parameters))
+        peaks = tuple(shortfall(sampled, COUNTS, parameters=parameters, t=t, over=over))
     except (AssemblyError, DeclarationError):
         peaks = ()
     return Trade(scene.mechanism.name, INSTANTS, compared.size, ordered, refused, peaks)

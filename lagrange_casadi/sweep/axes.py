@@ -15,9 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
+from ..declare.even_points import points
 from ..declare.limits import parameter_faults
 from ..declare.mechanism import Mechanism
-from ..declare.scene import points
 from ..errors import DeclarationError, ParameterError, UnknownNameError
 
 Numbers = npt.NDArray[np.int64]

@@ -25,6 +25,7 @@ from ..instants.section_law import SectionLaw, StationLoad
 from ..quantities import FORCES, Output
 from .chunks import encoded
 from .engine import STATUSES, Engine
+from .instant_axis import InstantAxis
 
 Keep = Literal["peaks", "laws", "histories"]
 KEEPS: tuple[Keep, ...] = ("peaks", "laws", "histories")
@@ -32,7 +33,10 @@ KEEPS: tuple[Keep, ...] = ("peaks", "laws", "histories")
 STATUS = "status"
 """The one column whose name stands alone: why a design has no result, 0 where it has one."""
 
-KINDS = (STATUS, "peak", "peak_t", "peak_xi", "mean", "rms", "peak_at", "history")
+TIMES = "history:t"
+"""The times of a design's instants, where these are over anything else."""
+
+KINDS = (STATUS, "peak", "peak_t", "peak_over", "peak_xi", "mean", "rms", "peak_at", "history")
 """What columns are of, in the order in which they are listed."""
 
 MISSING = "NaN for designs of which equilibrium leaves it open"
@@ -74,12 +78,12 @@ def check_keep(keep: str) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Harvest:
-    """An engine, and what is kept of its outcomes: ``t`` [s] are the instants, ``xi`` the ratios kept, none where empty."""
+    """An engine, and what is kept of its outcomes: ``axis`` is that of the instants, ``xi`` the ratios kept, none where empty."""
 
     engine: Engine
     mechanism: Mechanism
     keep: Keep
-    t: Array
+    axis: InstantAxis
     xi: Array
 
     def __post_init__(self) -> None:
@@ -92,7 +96,7 @@ class Harvest:
     @cached_property
     def columns(self) -> tuple[Column, ...]:
         """All columns, in the order of :meth:`evaluate`."""
-        engine = self.engine
+        engine, over = self.engine, (self.axis.name,)
         found = [self._status()]
         for name in engine.quantities:
             found += self._peak(name)
@@ -111,15 +115,17 @@ class Harvest:
         for name in self._series:
             output = Output.of(name)
             words = output.quantity.attributes | self._open(name)
-            found.append(Column(f"history:{name}", output.unit(self.mechanism), words, ("t",), (self.t.size,)))
+            found.append(Column(f"history:{name}", output.unit(self.mechanism), words, over, (self.axis.values.size,)))
+        if self._own_times:
+            found.append(Column(TIMES, "s", {"long_name": "time"}, over, (self.axis.values.size,)))
         if self.keep == "histories" and self.xi.size:
-            found += [self._along(f"history:section:{link}:{force}", "", ("t", "xi")) for link in self._links for force in FORCES]
+            found += [self._along(f"history:section:{link}:{force}", "", (*over, "xi")) for link in self._links for force in FORCES]
         return tuple(found)
 
     @property
     def block(self) -> int:
         """How many designs make a block: what a core does in about a second, no more than memory and a reader's chunk allow."""
-        grids = len(FORCES) * len(self._links) * self.t.size * self.xi.size
+        grids = len(FORCES) * len(self._links) * self.axis.values.size * self.xi.size
         seconds = self.engine.cost + grids * _GRID_COST
         return max(1, min(_MOST, int(_SECONDS / seconds), _BYTES // sum(column.width for column in self.columns)))
 
@@ -150,6 +156,9 @@ class Harvest:
         found: list[Any] = [outcome.status.astype(np.int8, copy=False)]
         for k, output in enumerate(self._quantities):
             found += [outcome.value[:, k], outcome.t[:, k]]
+            if self.axis.joint:
+                assert outcome.over is not None
+                found.append(outcome.over[:, k])
             if output.group == "section":
                 found.append(outcome.xi[:, k])
         for k in range(len(self.engine.efforts)):
@@ -160,6 +169,9 @@ class Harvest:
             assert outcome.series is not None
             rows = {name: k for k, name in enumerate(self.engine.columns)}
             found += [outcome.series[:, rows[name]] for name in self._series]
+        if self._own_times:
+            assert outcome.times is not None
+            found.append(np.where((outcome.status == Status.OK)[:, None], outcome.times, np.nan))
         return found + whole
 
     @property
@@ -170,9 +182,14 @@ class Harvest:
     @property
     def _piece(self) -> int:
         """How many designs are evaluated at once: so few that their outcome is still at hand when it is taken apart."""
-        series = 8 * len(self.engine.columns) * self.t.size if self._histories else 0
+        series = 8 * len(self.engine.columns) * self.axis.values.size if self._histories else 0
         room = _BYTES if self._histories else _AT_HAND
         return max(1, room // (series + sum(column.width for column in self.columns)))
+
+    @property
+    def _own_times(self) -> bool:
+        """Whether the times of each design's instants are kept."""
+        return self.keep != "peaks" and self.axis.name != "t"
 
     @cached_property
     def _quantities(self) -> tuple[Output, ...]:
@@ -190,10 +207,11 @@ class Harvest:
         return tuple(name for name in self.engine.columns if self.keep == "histories" or Output.of(name).along)
 
     def _status(self) -> Column:
+        told = {number: words for number, words in STATUSES.items() if self.axis.name != "t" or number != Status.NO_INSTANTS}
         words = {
             "long_name": "whether a design has a result, or why it has none",
-            "flag_meanings": " ".join(word for word, _ in STATUSES.values()),
-            "sentences": json.dumps({number: sentence for number, (_, sentence) in STATUSES.items()}),
+            "flag_meanings": " ".join(word for word, _ in told.values()),
+            "sentences": json.dumps({number: sentence for number, (_, sentence) in told.items()}),
         }
         return Column(STATUS, "1", words, dtype="|i1")
 
@@ -206,6 +224,9 @@ class Harvest:
             Column(f"peak:{name}", unit, words | {"long_name": f"largest in size over time: {what}"} | open_),
             Column(f"peak_t:{name}", "s", {"long_name": f"instant of the peak: {what}"} | open_),
         ]
+        if self.axis.joint:
+            where = f"coordinate of joint '{self.axis.joint}' at the peak: {what}"
+            found.append(Column(f"peak_over:{name}", self.axis.drive_unit, {"long_name": where} | open_))
         if output.group == "section":
             found.append(Column(f"peak_xi:{name}", "1", {"long_name": f"ratio xi/l of the peak: {what}"} | open_))
         return found
@@ -217,7 +238,7 @@ class Harvest:
     def _along(self, name: str, prefix: str, axes: tuple[str, ...]) -> Column:
         quantity = Output.of(name.partition(":")[2]).quantity
         words = quantity.attributes | {"long_name": f"{prefix}{quantity.long_name}"} | self._open(name.partition(":")[2])
-        lengths = tuple({"t": self.t.size, "xi": self.xi.size}[axis] for axis in axes)
+        lengths = tuple({self.axis.name: self.axis.values.size, "xi": self.xi.size}[axis] for axis in axes)
         return Column(name, quantity.unit, words, axes, lengths)
 
     def _along_links(self, outcome: Outcome, p: Array) -> tuple[list[Array], list[Array]]:
@@ -236,7 +257,7 @@ class Harvest:
                 basis = laws.basis(self.xi)
                 largest += [laws.largest(force, basis) for force in FORCES]
             if self.keep == "histories":
-                grids = np.full((len(FORCES), len(p), self.t.size, self.xi.size), np.nan)
+                grids = np.full((len(FORCES), len(p), self.axis.values.size, self.xi.size), np.nan)
                 for i in np.flatnonzero(outcome.status == 0):
                     law = matter.law({output: series[i, k] for output, k in rows.items()}, p[i])
                     basis = law.basis(self.xi)

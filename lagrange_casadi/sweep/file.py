@@ -23,20 +23,25 @@ from .axes import DESIGN, Designs, Grid
 from .blocks import chunk_of, slabs
 from .chunks import FILTERS
 from .columns import KINDS, Column
+from .instant_axis import InstantAxis
 from .plan import SCHEMA, Plan
 
 WORDS = ("versions", "mechanism", "wanted", "t", "xi", "grid")
 """Attributes that are JSON; the others of a plan's identity are as they stand."""
 
 _CHUNK = 1 << 15
-_AXES = {"t": ("s", "time"), "xi": ("1", "place along a link, ratio xi/l")}
-_TAKEN = ("grid", *KINDS, DESIGN, *_AXES)
+_XI = ("1", "place along a link, ratio xi/l")
+_TAKEN = ("grid", *(kind for kind in KINDS if kind != "peak_over"), DESIGN, "t", "xi")
 
 
-def check_names(designs: Designs) -> None:
-    """Raise :class:`DeclarationError` for a parameter whose dimension would bear a name that the file keeps for its own."""
+def check_names(designs: Designs, axis: InstantAxis) -> None:
+    """Raise :class:`DeclarationError` for a parameter whose dimension would bear a name that the file keeps for its own.
+
+    ``axis`` is that of the instants.
+    """
+    taken = (*_TAKEN, axis.name, *(("peak_over",) if axis.joint else ()))
     for name in designs.dimensions:
-        if name in _TAKEN and isinstance(designs, Grid):
+        if name in taken and isinstance(designs, Grid):
             raise DeclarationError(
                 f"parameter '{name}' cannot be an axis: the file keeps that name for its own; sweep a list of designs instead"
             )
@@ -93,10 +98,12 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
             scale.make_scale(name)
         else:
             scales.attach(scale, [DESIGN])
-    for axis, values in (("t", plan.harvest.t), ("xi", plan.harvest.xi)):
+    instants = plan.harvest.axis
+    axes = {instants.name: (instants.values, instants.unit, instants.long_name), "xi": (plan.harvest.xi, *_XI)}
+    for axis, (values, unit, meaning) in axes.items():
         if any(axis in column.axes for column in plan.columns):
             scale = file.create_dataset(axis, data=values, fletcher32=True, fillvalue=np.nan, **LARGE)
-            scale.attrs["units"], scale.attrs["long_name"] = _AXES[axis]
+            scale.attrs["units"], scale.attrs["long_name"] = unit, meaning
             scale.make_scale(axis)
     file.attrs["schema"] = SCHEMA
     for key, value in plan.identity.items():

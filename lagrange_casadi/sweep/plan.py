@@ -16,7 +16,9 @@ import numpy as np
 from ..declare.density import Array
 from ..declare.description import SHAPE as DESCRIPTION
 from ..declare.description import Description, describe
-from ..declare.scene import EvenPoints, Scene, Wanted, checked, checked_ratios, outputs, points
+from ..declare.even_points import EvenPoints, points
+from ..declare.scene import Scene, Wanted, checked_ratios, outputs
+from ..declare.times import Over, Times, Timing
 from ..designs.engine import DesignEngine
 from ..equations.derive import derive
 from ..equations.fingerprint import fingerprint, sources
@@ -28,10 +30,16 @@ from .axes import Designs, check_designs, counted
 from .blocks import Slab, chunk_of, slabs
 from .columns import Column, Harvest, Keep, check_keep
 from .engine import Engine
+from .instant_axis import InstantAxis
 
 SCHEMA = "lagrange-casadi-sweep"
-SCHEMA_VERSION = 2
-"""Files of version 1 have no seal; they are still read."""
+SCHEMA_VERSION = 3
+"""Files of version 1 have no seal; those of version 2, which are still written, have one axis of time for all designs."""
+
+_WITH_COMMON_TIMES = 2
+
+_BOUND = (float, str)
+"""Where instants start and stop: a number, or an expression of parameters in words."""
 
 IDENTITY = {
     "schema_version": int,
@@ -39,7 +47,7 @@ IDENTITY = {
     "versions": {str: str},
     **dict.fromkeys(("sources", "backend", "precision", "compiler", "flags", "rung", "keep", "scene"), str),
     "wanted": {},
-    "t": [float, float, int],
+    "t": ([float, float, int], [_BOUND, _BOUND, int], [_BOUND, _BOUND, int, str, _BOUND]),
     "xi": (None, [float, float, int]),
     "mechanism": DESCRIPTION,
     "grid": {str: str},
@@ -71,7 +79,7 @@ class Task:
     """
 
     wanted: tuple[str, ...]
-    t: EvenPoints
+    timing: Timing
     xi: EvenPoints | None
     keep: Keep
     rung: Rung
@@ -84,13 +92,13 @@ class Task:
     def harvest(self, scene: Scene) -> Harvest:
         """The scene compiled, and what is kept of its outcomes."""
         xi = np.zeros(0) if self.xi is None else points(self.xi)
-        engine = compiled(scene, self.wanted, self.t, self.rung)
-        return Harvest(engine, scene.mechanism, self.keep, points(self.t), xi)
+        engine = compiled(scene, self.wanted, self.timing, self.rung)
+        return Harvest(engine, scene.mechanism, self.keep, InstantAxis.of(scene, self.timing), xi)
 
 
-def compiled(scene: Scene, wanted: Sequence[str], t: EvenPoints, rung: Rung) -> Engine:
+def compiled(scene: Scene, wanted: Sequence[str], timing: Timing, rung: Rung) -> Engine:
     """The engine of a scene."""
-    return DesignEngine.of(scene, wanted, t, rung)
+    return DesignEngine.of(scene, wanted, rung=rung, timing=timing)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +118,8 @@ class Plan:
         designs: Designs,
         *,
         fixed: Mapping[str, float] | None = None,
-        t: EvenPoints | None = None,
+        t: Times | None = None,
+        over: Over | None = None,
         xi: EvenPoints | None = None,
         wanted: Sequence[str] | None = None,
         keep: Keep = "peaks",
@@ -130,9 +139,7 @@ class Plan:
             raise DeclarationError(f"the grid has {counted(designs.size)}, more than 10^9; if that is meant, say many=True")
         names = _wanted(scene, wanted)
         ratios = None if xi is None else checked_ratios(xi)
-        task = Task(
-            names, checked("t", scene.t if t is None else t), ratios, keep, rung, _assembly(scene, designs, values, names, rung)
-        )
+        task = Task(names, scene.timing(t, over), ratios, keep, rung, _assembly(scene, designs, values, names, rung))
         scene = task.scene(scene)
         harvest = task.harvest(scene)
         largest = max(harvest.columns, key=lambda column: column.width)
@@ -205,7 +212,7 @@ class Plan:
     def identity(self) -> dict[str, Any]:
         """What all numbers of the sweep follow from, in plain words: no clock, no path, nothing of how it is run."""
         words = {
-            "schema_version": SCHEMA_VERSION,
+            "schema_version": _WITH_COMMON_TIMES if self.task.timing.shared else SCHEMA_VERSION,
             "case": self.scene.mechanism.name,
             **signature(self.scene, self.task, self.harvest.engine.provenance),
             "mechanism": self.description,
@@ -231,7 +238,7 @@ def _assembly(
             try:
                 tried = dataclasses.replace(scene, assembly={**values, **row})
                 derive(tried, wanted, iterate=iterate)
-            except (AssemblyError, MobilityError, ParameterError):
+            except (AssemblyError, DeclarationError, ParameterError):
                 continue
             return tuple(tried.assembly.items())
         raise
@@ -259,7 +266,7 @@ def signature(scene: Scene, task: Task, provenance: Provenance) -> dict[str, Any
         "flags": provenance.flags,
         "rung": provenance.rung,
         "wanted": dataclasses.asdict(wanted),
-        "t": task.t,
+        "t": task.timing.words(scene.mechanism.symbols),
         "xi": task.xi,
         "keep": task.keep,
         "scene": fingerprint(scene, wanted) or "cannot be told",

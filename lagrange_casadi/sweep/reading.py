@@ -16,12 +16,14 @@ import numpy.typing as npt
 
 from ..declare.density import Array
 from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, one_line
+from ..quantities import ANGLE, LENGTH
 from ..store.runs import opened_file, schema_of
 from ..system.seal import Seen, verify
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
 from .columns import STATUS
 from .contents import KeptColumn, contents
+from .instant_axis import CYCLE, OVER
 from .parts import Folder
 from .plan import SCHEMA, SCHEMA_VERSION
 from .selection import matches
@@ -30,7 +32,6 @@ if TYPE_CHECKING:
     import xarray
 
 _BLOCK = 1 << 15
-_UNITS = {"t": "s", "xi": "1"}
 
 Values = npt.NDArray[Any]
 
@@ -151,8 +152,8 @@ class Sweep:
         return axes
 
     def unit(self, name: str) -> str:
-        """The unit of a parameter, of ``t`` or ``xi``, or of a column."""
-        return self.parameters.get(name) or _UNITS.get(name) or self.column(name).unit
+        """The unit of a parameter, of an axis such as ``t`` or ``xi``, or of a column."""
+        return self.parameters.get(name) or self._units.get(name) or self.column(name).unit
 
     def blocks(self, names: Sequence[str], along: Sequence[str] = ()) -> Iterator[tuple[npt.NDArray[np.int64], dict[str, Values]]]:
         """The selected designs in turn, in blocks of rows: their numbers, and values of parameters and columns by name.
@@ -210,7 +211,7 @@ class Sweep:
         }
         if DESIGN in self.dimensions:
             coordinates[DESIGN] = (DESIGN, self.chosen.get(DESIGN, np.arange(self.dimensions[DESIGN])), {"units": "1"})
-        for axis, unit in _UNITS.items():
+        for axis, unit in self._units.items():
             if any(axis in k.axes for k in kept):
                 coordinates[axis] = (axis, self[axis], {"units": unit})
         return xarray.Dataset(data, coordinates, {"case": self.case})
@@ -235,6 +236,13 @@ class Sweep:
             axes = self.column(name).axes
             if axes and axes != tuple(along):
                 raise DeclarationError(f"column '{name}' has a value for every {' and '.join(axes)}, not one a design")
+
+    @cached_property
+    def _units(self) -> dict[str, str]:
+        """The units of the axes of columns, those of instants first."""
+        joint = self.identity["t"][3] if len(self.identity["t"]) > 3 else ""
+        slides = joint and self.description["joints"][joint]["coordinate"] == "slide"
+        return {"t": "s", OVER: LENGTH if slides else ANGLE, CYCLE: "1", "xi": "1"}
 
     @cached_property
     def _over(self) -> dict[str, str]:

@@ -30,6 +30,7 @@ _KINDS = {
     "peak": "|peak|",
     "peak_at": "peak",
     "peak_t": "instant of the peak",
+    "peak_over": "coordinate of the drive at the peak",
     "peak_xi": r"$\xi/l$ of the peak",
     "mean": "mean",
     "rms": "rms",

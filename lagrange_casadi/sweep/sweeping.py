@@ -12,7 +12,9 @@ from typing import Any
 
 from ..arithmetic.compensated import Precision
 from ..case import Case
-from ..declare.scene import EvenPoints, Scene
+from ..declare.even_points import EvenPoints
+from ..declare.scene import Scene
+from ..declare.times import Over, Times
 from ..errors import DeclarationError
 from ..instants.rung import Backend, Rung
 from ..system.room import MOST_THREADS
@@ -30,7 +32,8 @@ def sweep(
     *,
     out: str | os.PathLike[str] | None = None,
     parameters: Mapping[str, float] | None = None,
-    t: EvenPoints | None = None,
+    t: Times | None = None,
+    over: Over | None = None,
     xi: EvenPoints | None = None,
     wanted: Sequence[str] | None = None,
     keep: Keep = "peaks",
@@ -58,8 +61,9 @@ def sweep(
         The file; by default one that lives as long as what is returned.
     parameters
         Values of parameters that are not swept.
-    t, wanted
-        As in :func:`.evaluate`; ``all`` leaves out the motion, unless that is wanted by name.
+    t, over, wanted
+        As in :func:`.evaluate`; ``all`` leaves out the motion, unless that is wanted by name. With ``over``, or with bounds of
+        ``t`` that are expressions of parameters, every design has times of its own.
     xi
         Ratios xi/l at which section forces are kept too: over the instants, the value largest in size at each.
     keep
@@ -92,6 +96,7 @@ def sweep(
         designs_of(grid),
         fixed=parameters,
         t=t,
+        over=over,
         xi=xi,
         wanted=wanted,
         keep=keep,

@@ -1,0 +1,74 @@
+"""Evenly spaced points, as a user says them: start, stop and count."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import DeclarationError
+from ..system.room import require
+from .density import Array
+
+EvenPoints = tuple[float, float, int]
+"""Evenly spaced: start, stop and count; both ends are included."""
+
+_MADE_FROM = 3
+"""How many arrays points are, with what they are made from."""
+
+_EXACT = 2**53
+"""Up to which doubles hold all whole numbers, so that a quotient of two is rounded once."""
+
+_UNEVEN = 1e-9
+"""Of a step: what is off by less is off by rounding."""
+
+
+def checked(what: str, even: EvenPoints) -> EvenPoints:
+    """Even points in numbers. Raises :class:`DeclarationError` for a count below 1, ends that are not finite, fall, or are one."""
+    try:
+        start, stop, count = float(even[0]), float(even[1]), int(even[2])
+        if len(even) != 3:
+            raise ValueError
+    except (TypeError, ValueError, IndexError, OverflowError):
+        raise DeclarationError(f"{what}: expected (start, stop, count), got {even!r}") from None
+    if count < 1 or count != even[2]:
+        raise DeclarationError(f"{what}: COUNT must be a whole number of at least 1, got {even[2]}")
+    if not (math.isfinite(start) and math.isfinite(stop)):
+        raise DeclarationError(f"{what}: START and STOP must be finite, got {start:g} and {stop:g}")
+    if stop < start or (count > 1 and stop == start):
+        raise DeclarationError(f"{what}: STOP must be after START, got {start:g} and {stop:g}")
+    if count == 1 and stop > start:
+        raise DeclarationError(f"{what}: COUNT must be 2 or more to reach from {start:g} to {stop:g}, got 1")
+    return start, stop, count
+
+
+def points(even: EvenPoints, numbers: npt.NDArray[np.int64] | None = None) -> Array:
+    """All of some even points, or those of given numbers.
+
+    Each is rounded once from what the decimals of the ends say, so that 0.2:0.4:3 has 0.3, not 0.30000000000000004; where
+    these take more than the digits of a double, they are those of ``numpy.linspace``. Raises :class:`SizeError` for more than
+    memory holds.
+    """
+    start, stop, count = even
+    if numbers is None:
+        require(f"the points from {start:g} to {stop:g}", (_MADE_FROM, count))
+    numbers = np.arange(count) if numbers is None else numbers
+    first, last = (Fraction(repr(float(end))) for end in (start, stop))
+    step = (last - first) / max(count - 1, 1)
+    whole = math.lcm(first.denominator, step.denominator)
+    base, by = int(first * whole), int(step * whole)
+    if max(abs(base), abs(int(last * whole)), whole) <= _EXACT:
+        return np.asarray((base + by * numbers) / whole)
+    values = numbers * ((stop - start) / max(count - 1, 1)) + start
+    return np.asarray(np.where(numbers == count - 1, float(stop), values))
+
+
+def are_even(values: Array) -> bool:
+    """Whether values are equal steps, but for rounding."""
+    if values.size < 3:
+        return True
+    gaps = np.abs(values - np.linspace(values[0], values[-1], values.size))
+    step = abs(values[-1] - values[0]) / (values.size - 1)
+    return bool(gaps.max() <= _UNEVEN * step + 4.0 * np.spacing(np.abs(values).max()))

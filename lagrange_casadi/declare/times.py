@@ -1,0 +1,271 @@
+"""At which instants a scene is evaluated: in equal steps of time, or of the coordinate of a driven joint.
+
+Start and stop may be expressions of the parameters. Then every design has instants of its own.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..errors import AngleError, DeclarationError, UnknownNameError
+from ..quantities import ANGLE, LENGTH
+from ..system.numerals import real
+from .angles import angle
+from .density import Array
+from .even_points import EvenPoints, checked, points
+from .expressions import scalar
+from .limits import told_parameters
+from .mechanism import Mechanism
+from .motion import Motion
+from .parts import Expression
+from .reaching import Missed, Reaching, Way
+
+Over = tuple[str, Expression, Expression, int]
+"""Equal steps of the coordinate of a driven joint [rad or m]: its name, start, stop and count; both ends are included."""
+
+Times = tuple[Expression, Expression, int]
+"""Equal steps of time [s]: start, stop and count; both ends are included."""
+
+Bound = float | str
+"""A number, or a function of the parameters as CasADi writes it down, so that it can be compared and sent."""
+
+
+@dataclass(frozen=True)
+class Timing:
+    """How instants are asked for: ``count`` from ``start`` to ``stop``, of time [s], or of the coordinate of ``joint`` [rad or m].
+
+    A law of motion that is not steady is followed to that joint's coordinate from the time ``around`` [s].
+    """
+
+    start: Bound
+    stop: Bound
+    count: int
+    joint: str = ""
+    around: Bound = 0.0
+
+    @classmethod
+    def of(cls, mechanism: Mechanism, motion: Mapping[str, Motion], t: Any, over: Any = None) -> Timing:
+        """What a user says: ``t``, or where that is given ``over``; ``t`` then says where ``over`` is looked for.
+
+        Raises :class:`.DeclarationError` for what is neither, :class:`.UnknownNameError` for a joint that is not driven.
+        """
+        if over is None:
+            return cls(*_read(mechanism, "t", t))
+        if not isinstance(over, (tuple, list)) or len(over) != 4 or not isinstance(over[0], str):
+            raise DeclarationError(f"over: expected (joint, start, stop, count), got {over!r}")
+        if over[0] not in motion:
+            raise UnknownNameError("driven joint in over", over[0], motion)
+        slides = mechanism.joints[over[0]].slides
+        bounds = [_typed(name, bound, over[0], slides) for name, bound in zip(("START", "STOP"), over[1:], strict=False)]
+        start, stop, count = _read(mechanism, "over", (*bounds, over[3]))
+        if count < 2:
+            raise DeclarationError(f"over: COUNT must be 2 or more, got {count}")
+        if start == stop:
+            raise DeclarationError(f"over: STOP must not be START, got {over[1]} for both")
+        return cls(start, stop, count, over[0], _read(mechanism, "t", t)[0])
+
+    @property
+    def fixed(self) -> bool:
+        """Whether start and stop are numbers, the same for all parameters."""
+        return not isinstance(self.start, str) and not isinstance(self.stop, str)
+
+    @property
+    def shared(self) -> bool:
+        """Whether the instants are the same whatever the parameters are."""
+        return self.fixed and not self.joint
+
+    def bounds(self, p: Array) -> tuple[Array, Array, Array]:
+        """Start, stop and around for parameters (n, parameters), each (n,)."""
+        start, stop, around = (_values(bound, p) for bound in (self.start, self.stop, self.around))
+        return start, stop, around
+
+    def words(self, symbols: Any) -> list[Any]:
+        """The same for JSON: start, stop, count, and where there is one the joint and around; expressions as text that tells them
+        apart."""
+        bounds = (self.start, self.stop, self.around)
+        start, stop, around = (_text(bound, symbols) if isinstance(bound, str) else bound for bound in bounds)
+        return [start, stop, self.count, self.joint, around] if self.joint else [start, stop, self.count]
+
+
+@dataclass(frozen=True, eq=False)
+class DriveAxis:
+    """The coordinate of a driven ``joint`` at instants that are equal steps of it: ``values`` (t,), in ``unit``, rad or m."""
+
+    joint: str
+    unit: str
+    values: Array
+
+    @property
+    def long_name(self) -> str:
+        """What it is, in words."""
+        return f"coordinate of joint '{self.joint}'"
+
+    @property
+    def label(self) -> str:
+        """The same for an axis of a figure, with the unit of :meth:`drawn`."""
+        return f"{self.joint} [{'deg' if self.unit == ANGLE else self.unit}]"
+
+    def shown(self, value: float) -> str:
+        """A coordinate in words, an angle in degrees."""
+        return f"{self.joint} = {self.drawn(value):.5g} {'deg' if self.unit == ANGLE else self.unit}"
+
+    def drawn(self, values: Any) -> Any:
+        """Coordinates as figures and lines show them: angles in degrees."""
+        return np.degrees(values) if self.unit == ANGLE else values
+
+
+@dataclass(frozen=True, eq=False)
+class Instants:
+    """Instants ``t`` (t,) [s], and where they were asked for by a drive, its coordinate there."""
+
+    t: Array
+    over: DriveAxis | None = None
+
+
+@functools.lru_cache(maxsize=64)
+def reaching(mechanism: Mechanism, motion: Motion) -> Reaching:
+    """The law of a drive, to be inverted."""
+    return Reaching.of(motion, mechanism.symbols)
+
+
+def even_of(mechanism: Mechanism, timing: Timing, values: Mapping[str, float]) -> EvenPoints:
+    """Start, stop and count in numbers, for values of all parameters. Raises :class:`.DeclarationError` for what they cannot be."""
+    start, stop, _ = (float(bound[0]) for bound in timing.bounds(_row(values)))
+    if not timing.joint:
+        try:
+            return checked("t", (start, stop, timing.count))
+        except DeclarationError as error:
+            raise DeclarationError(f"{error}{'' if timing.fixed else told_parameters(mechanism, values)}") from None
+    if not (math.isfinite(start) and math.isfinite(stop)) or start == stop:
+        raise DeclarationError(
+            f"over: START and STOP must be finite and apart, got {start:g} and {stop:g}{told_parameters(mechanism, values)}"
+        )
+    return start, stop, timing.count
+
+
+def span_of(mechanism: Mechanism, motion: Mapping[str, Motion], timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:
+    """The first and the last instant [s]. Raises :class:`.DeclarationError` where there are none."""
+    start, stop, _ = even_of(mechanism, timing, values)
+    if not timing.joint:
+        return start, stop
+    way = _way(mechanism, motion, timing, values)
+    return float(way.first[0]), float(way.last[0])
+
+
+def instants_of(mechanism: Mechanism, motion: Mapping[str, Motion], timing: Timing, values: Mapping[str, float]) -> Instants:
+    """All instants for values of all parameters. Raises :class:`.DeclarationError` where there are none."""
+    even = even_of(mechanism, timing, values)
+    if not timing.joint:
+        return Instants(points(even))
+    coordinates = points(even)
+    way = _way(mechanism, motion, timing, values)
+    t = reaching(mechanism, motion[timing.joint]).times(way, coordinates[None], _row(values))[0]
+    if not np.isfinite(t).all():
+        raise DeclarationError(
+            f"over: {timing.count} coordinates of joint '{timing.joint}' from {_shown(mechanism, timing.joint, even[0])} to "
+            f"{_shown(mechanism, timing.joint, even[1])} cannot be told apart in time: its motion nearly rests there"
+        )
+    unit = LENGTH if mechanism.joints[timing.joint].slides else ANGLE
+    return Instants(t, DriveAxis(timing.joint, unit, coordinates))
+
+
+def _way(mechanism: Mechanism, motion: Mapping[str, Motion], timing: Timing, values: Mapping[str, float]) -> Way:
+    """When a drive goes from start to stop. Raises :class:`.DeclarationError` where it does not, and says what it does instead."""
+    p = _row(values)
+    start, stop, around = timing.bounds(p)
+    law = reaching(mechanism, motion[timing.joint])
+    way = law.way(start, stop, p, around, looks=4 * timing.count + 1)
+    why = Missed(int(way.missed[0]))
+    if why is Missed.REACHED:
+        return way
+    joint, told = timing.joint, functools.partial(_shown, mechanism, timing.joint)
+    asked, where = f"from {told(start[0])} to {told(stop[0])}", f"t = {way.t[0]:.6g} s, at {told(way.d[0])}"
+    said = {
+        Missed.STANDS_STILL: f"stands still, and does not go {asked}",
+        Missed.OTHER_WAY: f"goes the other way than {asked} at t = {way.t[0]:.6g} s; START and STOP are in the order of time",
+        Missed.TURNS_BACK: f"does not go {asked} all the way: it turns back at {where}",
+        Missed.ENDS: f"does not go {asked}: its samples end at {where}",
+        Missed.NEVER: f"does not go {asked}",
+    }[why]
+    raise DeclarationError(f"over: the motion of joint '{joint}' {said}{told_parameters(mechanism, values)}")
+
+
+def _shown(mechanism: Mechanism, joint: str, value: float) -> str:
+    """A coordinate in words."""
+    if mechanism.joints[joint].slides:
+        return f"{value:.6g} m"
+    return f"{value:.6g} rad ({math.degrees(value):.6g} deg)"
+
+
+def _read(mechanism: Mechanism, what: str, even: Any) -> tuple[Bound, Bound, int]:
+    """Start, stop and count, each a number or an expression of parameters; two numbers are looked at as :func:`.checked` does."""
+    if not isinstance(even, Sequence) or not any(isinstance(bound, ca.SX) for bound in even[:2]):
+        if what == "t":
+            return checked(what, even)
+        low, high, count = checked(what, _rising(even))
+        falls = float(even[0]) > float(even[1])
+        return (high, low, count) if falls else (low, high, count)
+    if len(even) != 3:
+        raise DeclarationError(f"{what}: expected (start, stop, count), got {even!r}")
+    names = ("START", "STOP")
+    each = [scalar(f"{what}: {name}", bound, _symbols(mechanism), "parameter") for name, bound in zip(names, even[:2], strict=True)]
+    _, _, count = checked(what, (0.0, 1.0, even[2]))
+    start, stop = (_written(mechanism, bound) if isinstance(bound, ca.SX) else bound for bound in each)
+    return start, stop, count
+
+
+def _typed(name: str, bound: Any, joint: str, slides: bool) -> Any:
+    """A bound that is a text as a number [rad or m]."""
+    if not isinstance(bound, str):
+        return bound
+    try:
+        return real(bound) if slides else angle(bound)
+    except AngleError as error:
+        raise DeclarationError(f"over: {name}: {error}") from None
+    except ValueError:
+        raise DeclarationError(f"over: {name}: expected a number in m, for joint '{joint}' slides, got {bound!r}") from None
+
+
+def _rising(even: Any) -> Any:
+    """The same with the lesser end first, where that can be told."""
+    try:
+        return (even[1], even[0], *even[2:]) if even[1] < even[0] else even
+    except (TypeError, IndexError):
+        return even
+
+
+def _symbols(mechanism: Mechanism) -> list[Any]:
+    return [parameter.symbol for parameter in mechanism.parameters.values()]
+
+
+def _written(mechanism: Mechanism, expression: Any) -> str:
+    return str(ca.Function("bound", [mechanism.symbols], [ca.densify(expression)], ["p"], ["bound"], {"cse": True}).serialize())
+
+
+@functools.lru_cache(maxsize=64)
+def _function(written: str) -> Any:
+    return ca.Function.deserialize(written)
+
+
+def _values(bound: Bound, p: Array) -> Array:
+    if not isinstance(bound, str):
+        return np.full(len(p), float(bound))
+    if not len(p):
+        return np.zeros(0)
+    return np.asarray(_function(bound)(p.T).full(), float).ravel()
+
+
+def _text(written: str, symbols: Any) -> str:
+    return f"{_function(written)(symbols)} #{hashlib.sha256(written.encode()).hexdigest()[:8]}"
+
+
+def _row(values: Mapping[str, float]) -> Array:
+    return np.array(list(values.values()), float)[None]

@@ -1,0 +1,24 @@
+"""A mechanism of two freedoms: two cranks and two rods that meet at a tool."""
+
+from lagrange_casadi import Mechanism, Scene
+from lagrange_casadi.declare.motion import polynomial
+
+
+def five_bar(drives=None, wanted=("all",), path=False, **keywords):
+    """Two cranks and two rods that meet at a tool, which is pushed; a weight hangs beside a station of a rod."""
+    m = Mechanism("five_bar")
+    heavier = m.parameter("heavier", 2.0)
+    a, b = m.link("a", length=0.3, mass=1.0), m.link("b", length=0.5, mass=1.5)
+    c, d = m.link("c", length=0.5, mass=1.2), m.link("d", length=0.3, mass=0.8)
+    m.revolute("O", m.ground.at(-0.1, 0), a)
+    m.revolute("C", m.ground.at(0.2, 0), d)
+    m.revolute("A", a.tip, b)
+    m.revolute("D", d.tip, c)
+    m.revolute("P", b.tip, c.tip)
+    m.weld("hung", b.at(0.2, 0.05), m.point_mass("weight", 0.4))
+    m.force("cut", c.tip, x=-20.0, y=5.0)
+    if path:
+        m.path("tool", b.tip)
+    motion = {"O": polynomial(2.0, 0.5, -0.2), "C": polynomial(1.0, -0.3, 0.4)}
+    drives = drives(heavier) if callable(drives) else drives
+    return Scene(m, motion, wanted, drives=drives, **({"posture": {"b": 1.0, "c": 2.0}, "t": (0, 1, 41)} | keywords))

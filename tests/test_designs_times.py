@@ -1,0 +1,132 @@
+"""Designs with instants of their own: each against its own evaluation, on every backend, whatever the neighbours."""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+from mechanisms import press, slider_crank, uneven
+
+from lagrange_casadi import Mechanism, Scene, evaluate, motion, refine
+from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.instants.rung import Rung
+
+TURN = math.tau
+ASKED = {
+    "over": {"over": ("O", 0.3, 0.3 + TURN, 61)},
+    "over expressions": {"over": lambda rpm: ("O", rpm / 6000, TURN + rpm / 3000, 61)},
+    "expressions of time": {"t": lambda rpm: (0, 60 / rpm, 61)},
+}
+P = np.array([[600.0, 0.5], [45.0, 0.4], [0.0, 0.5], [-60.0, 0.5], [3000.0, 0.3], [math.nan, 0.5]])
+FAILS = {2: Status.NO_INSTANTS, 3: Status.NO_INSTANTS, 5: Status.INVALID}
+
+
+@pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
+@pytest.mark.parametrize("law", [motion.polynomial, uneven])
+@pytest.mark.parametrize("asked", ASKED)
+def test_designs_are_their_own_evaluations(asked, law, backend):
+    """Peaks between instants, their times, the drive's coordinate there; histories at the instants that were asked for."""
+    scene = press(law, wanted=["effort", "section:rod", "motion"], **ASKED[asked])
+    designs = DesignEngine.of(scene, rung=Rung(backend))
+    outcome = designs.evaluate(P, histories=True)
+    assert outcome.status.tolist() == [FAILS.get(k, Status.OK) for k in range(len(P))]
+    for row in np.flatnonzero(outcome.status == Status.OK):
+        solution = evaluate(scene, parameters=dict(zip(designs.parameters, P[row], strict=True)))
+        np.testing.assert_allclose(outcome.times[row], solution.t, rtol=1e-14, atol=1e-16)
+        for k, output in enumerate(designs.outputs):
+            scale = np.abs(solution.outputs[output]).max()
+            np.testing.assert_allclose(
+                outcome.series[row, k], solution.outputs[output], rtol=0, atol=1e-13 * scale, err_msg=str(output)
+            )
+        for k, peak in enumerate(refine(scene, solution, designs.quantities)):
+            assert outcome.value[row, k] == pytest.approx(peak.value, rel=1e-11, abs=1e-11), peak.name
+            if solution.over:
+                w = P[row, 0] * TURN / 60
+                d = w * outcome.t[row, k] + (0.2 * math.sin(w * outcome.t[row, k]) if law is uneven else 0.0)
+                assert outcome.over[row, k] == pytest.approx(d, abs=1e-12)
+    assert np.isnan(outcome.value[2]).all()
+    assert np.isnan(outcome.series[2]).all()
+    assert np.isnan(outcome.times[3]).all()
+
+
+@pytest.mark.parametrize("law", [motion.polynomial, uneven])
+def test_means_are_over_the_time_of_a_whole_turn(law):
+    """The mean power of a drive without losses is zero, whatever its speed; the mean of a square is that of many more instants."""
+    scene = press(law, wanted=["effort"], over=("O", 0, TURN, 181))
+    p = np.array([[600.0, 0.5], [100.0, 0.4]])
+    outcome = DesignEngine.of(scene).evaluate(p)
+    for row, (rpm, length) in enumerate(p):
+        fine = evaluate(scene, t=(0, 60 / rpm, 20001), parameters={"rpm": rpm, "l": length})
+        effort = fine.effort("O")
+        for found, values in ((outcome.mean[row, 0], effort), (outcome.rms[row, 0] ** 2, effort**2)):
+            mean = (values[1:] + values[:-1]).mean() / 2
+            assert found == pytest.approx(mean, abs=1e-6 * np.abs(values).max())
+
+
+@pytest.mark.parametrize("rung", [Rung("lanes"), Rung("c", "single")], ids=lambda rung: rung.options)
+def test_a_row_has_the_same_bytes_whatever_stands_beside_it(rung, monkeypatch):
+    scene = press(uneven, wanted=["effort", "section:rod"], over=("O", 0, TURN, 41))
+    p = np.array([[rpm, 0.3 + 0.01 * k] for k, rpm in enumerate(np.linspace(50, 3000, 23))])
+    designs = DesignEngine.of(scene, rung=rung)
+    whole = designs.evaluate(p, threads=1, histories=True)
+    monkeypatch.setattr("lagrange_casadi.designs.engine._PIECE", 5 * 41)
+    for threads in (1, 3):
+        other = designs.evaluate(p, threads=threads, histories=True)
+        for name in ("status", "value", "t", "xi", "mean", "rms", "series", "over", "times"):
+            assert getattr(whole, name).tobytes() == getattr(other, name).tobytes(), name
+    for row in (0, 7, 22):
+        alone = designs.evaluate(p[[row]], histories=True)
+        assert alone.value.tobytes() == whole.value[[row]].tobytes()
+        assert alone.series.tobytes() == whole.series[[row]].tobytes()
+
+
+def test_what_all_designs_have_in_common_is_made_once():
+    """A motion and bounds without parameters: the instants are the same for all, and equal those of an evaluation."""
+    scene = slider_crank(["effort"], over=("O", 0, TURN, 31))
+    designs = DesignEngine.of(scene)
+    assert designs.times.common
+    assert designs.times.of(np.zeros((5, 5)))[1].shape == (1, 31)
+    np.testing.assert_array_equal(designs.t, evaluate(scene).t)
+    varied = press(over=lambda rpm: ("O", 0, rpm / 100, 5))
+    assert not DesignEngine.of(varied, ["effort"]).times.common
+
+
+def test_loops_that_are_iterated_begin_where_the_drive_starts():
+    """Half a turn from where the scene is assembled, on the same branch as one evaluation is."""
+    scene = press(wanted=["effort", "motion"])
+    rung = Rung("c", newton=6)
+    timing = scene.timing(over=("O", math.pi, 3 * math.pi, 61))
+    designs = DesignEngine.of(scene, rung=rung, timing=timing)
+    outcome = designs.evaluate(np.array([[600.0, 0.5], [60.0, 0.3]]), histories=True)
+    assert outcome.status.tolist() == [0, 0]
+    for row, values in enumerate(({"rpm": 600.0, "l": 0.5}, {"rpm": 60.0, "l": 0.3})):
+        solution = evaluate(scene, parameters=values, over=("O", math.pi, 3 * math.pi, 61))
+        k = designs.columns.index("pose:ram:y")
+        np.testing.assert_allclose(outcome.series[row, k], solution.pose("ram").y, rtol=1e-9)
+
+
+def test_samples_of_a_motion_end_for_those_designs_alone_that_go_beyond():
+    m = Mechanism("arm")
+    stop = m.parameter("stop", 1.0, "s")
+    arm = m.link("arm", length=0.4, mass=2.0)
+    m.revolute("O", m.ground, arm)
+    law = motion.samples(np.linspace(0, 2, 21), np.linspace(0, 7, 21) + 0.2 * np.sin(np.linspace(0, 7, 21)))
+    scene = Scene(m, {"O": law}, ["effort"], t=(0, stop, 41))
+    outcome = DesignEngine.of(scene).evaluate(np.array([[0.5], [2.0], [2.1], [1.3]]))
+    assert outcome.status.tolist() == [0, 0, Status.NO_INSTANTS, 0]
+    for row, seconds in ((0, 0.5), (1, 2.0), (3, 1.3)):
+        solution = evaluate(scene, t=(0, seconds, 41))
+        assert abs(outcome.value[row, 0]) == pytest.approx(abs(refine(scene, solution, ["effort:O"])[0].value), rel=1e-9)
+    over = DesignEngine.of(Scene(m, {"O": law}, ["effort"], over=("O", 0, 6.0 * stop, 41)))
+    assert over.evaluate(np.array([[0.5], [1.0], [1.3]])).status.tolist() == [0, 0, Status.NO_INSTANTS]
+
+
+def test_a_gear_ratio_in_the_motion_makes_times_of_its_own():
+    """An expression of parameters in the law itself: the same angles at other times."""
+    scene = press(lambda _, w: motion.expression(lambda t: w * t + 0.1 * ca.sin(w * t)), wanted=["motion"], over=("O", 0, TURN, 13))
+    designs = DesignEngine.of(scene)
+    found = designs.evaluate(np.array([[60.0, 0.5], [6.0, 0.5]]), histories=True)
+    np.testing.assert_allclose(found.times[1], 10 * found.times[0], rtol=1e-14)
+    k = designs.columns.index("motion:O")
+    np.testing.assert_allclose(found.series[:, k], np.tile(np.linspace(0, TURN, 13), (2, 1)), atol=1e-14)
