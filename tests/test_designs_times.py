@@ -92,6 +92,15 @@ def test_what_all_designs_have_in_common_is_made_once():
     assert not DesignEngine.of(varied, ["effort"]).times.common
 
 
+def test_a_swing_that_is_looked_for_at_a_time_of_each_designs_own():
+    """A motion without parameters, followed from a time that has them: some designs find it on its way, others on the next."""
+    law = motion.harmonic(1.0, 0.4, 2.0)
+    scene = press(lambda *_: law, wanted=["motion"], t=lambda rpm: (rpm / 1000, 2 + rpm / 1000, 2))
+    designs = DesignEngine.of(scene, timing=scene.timing(over=("O", 0.7, 1.3, 9)))
+    found = designs.evaluate(np.array([[100.0, 0.5], [600.0, 0.5]]), histories=True)
+    np.testing.assert_allclose(found.times[1] - found.times[0], 0.5, atol=1e-14)
+
+
 def test_loops_that_are_iterated_begin_where_the_drive_starts():
     """Half a turn from where the scene is assembled, on the same branch as one evaluation is."""
     scene = press(wanted=["effort", "motion"])

@@ -1,19 +1,22 @@
 """Sweeps whose designs have instants of their own: the axis they share, in files, tables and xarray."""
 
 import math
+import pickle
 
 import h5py
 import numpy as np
 import pytest
 import xarray
 from click.testing import CliRunner
-from mechanisms import press, slider_crank
+from mechanisms import press, slider_crank, uneven
 
 from lagrange_casadi import Sweep, evaluate, sweep
 from lagrange_casadi.cli import program
 from lagrange_casadi.errors import DeclarationError, StoreError
 from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.sweep.axes import designs_of
 from lagrange_casadi.sweep.checking import check_sweep
+from lagrange_casadi.sweep.plan import Plan, signature
 
 GRID = {"rpm": [60.0, 600.0], "l": (0.3, 0.5, 3)}
 TURN = math.tau
@@ -113,6 +116,21 @@ def test_a_sweep_goes_on_only_over_the_same_instants(tmp_path):
         sweep(scene, GRID, over=("O", 0, 2 * TURN, 37), out=path, resume=True)
     with pytest.raises(DeclarationError, match="t and over exclude each other"):
         sweep(scene, GRID, over=("O", 0, TURN, 37), t=(0, 1, 5))
+
+
+@pytest.mark.parametrize("asked", ["t", "over"])
+def test_a_worker_that_makes_the_scene_anew_has_the_same_instants(asked):
+    """What is asked for is sent without the expressions of this process, and comes to the same bytes."""
+    scene = press(uneven, wanted=["effort"])
+    rpm = scene.mechanism.parameters["rpm"].symbol
+    words = {"t": {"t": (0, 60 / rpm, 31)}, "over": {"over": ("O", rpm / 6000, TURN, 31)}}[asked]
+    plan = Plan.of(scene, designs_of({"rpm": [60.0, 600.0]}), keep="histories", **words)
+    other, p = press(uneven, wanted=["effort"]), plan.block(0, 2)
+    task = pickle.loads(pickle.dumps(plan.task))
+    harvest = task.harvest(other)
+    assert signature(other, task, harvest.engine.provenance) == signature(scene, plan.task, plan.harvest.engine.provenance)
+    for one, column in zip(harvest.evaluate(p), plan.harvest.evaluate(p), strict=True):
+        assert one.tobytes() == column.tobytes()
 
 
 def test_a_parameter_may_bear_the_name_of_an_axis_that_is_not_there(tmp_path):

@@ -14,7 +14,7 @@ from mechanisms import driven_slider, press, slider_crank, uneven
 from lagrange_casadi import Mechanism, Scene, check, evaluate, load, motion, refine, save
 from lagrange_casadi.declare.times import Timing
 from lagrange_casadi.draw.figures import MechanismDrawing, SectionMaps, SpanPlot, TimePlot
-from lagrange_casadi.errors import DeclarationError, UnknownNameError
+from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
 from lagrange_casadi.study.peaks import shortfall
 
 pytestmark = pytest.mark.quick
@@ -180,6 +180,12 @@ def test_a_motion_that_does_not_get_there_is_refused_by_what_it_does(law, says):
         evaluate(press(lambda *_: law), over=("O", 0, TURN, 5))
     assert says in str(caught.value)
     assert "the motion of joint 'O'" in str(caught.value)
+
+
+@pytest.mark.parametrize("law", [motion.polynomial, uneven])
+def test_more_instants_than_memory_holds_are_refused(law):
+    with pytest.raises(SizeError, match="the outputs over time"):
+        evaluate(press(law), over=("O", 0, TURN, 10**12))
 
 
 def test_t_and_over_exclude_each_other():

@@ -25,9 +25,13 @@ _SHARE = 1 / 32
 _FIRST = 1e-6
 """Seconds of the first step from where a law rests with neither rate nor acceleration."""
 
-_STEPS, _HALVINGS, _NEWTON, _TRIALS = 5000, 80, 60, 200
-_EPS = float(np.finfo(float).eps)
-_ROUNDING = 16 * _EPS
+_STEPS, _HALVINGS = 5000, 80
+"""How many steps a motion is followed at most, and by how many halvings a time is known where it turns back."""
+
+_NEWTON, _TRIALS = 60, 200
+"""How often a time is bettered by Newton's method, and in all; the rest are halvings."""
+
+_ROUNDING = 16 * float(np.finfo(float).eps)
 """By how much of itself a coordinate may be off by rounding."""
 
 _RESTS = 1e-9

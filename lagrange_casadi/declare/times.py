@@ -37,6 +37,9 @@ Times = tuple[Expression, Expression, int]
 Bound = float | str
 """A number, or a function of the parameters as CasADi writes it down, so that it can be compared and sent."""
 
+_MOST_LOOKS = 1 << 16
+"""At so many times at most is a motion looked at, whether it turns back."""
+
 
 @dataclass(frozen=True)
 class Timing:
@@ -182,7 +185,7 @@ def _way(mechanism: Mechanism, motion: Mapping[str, Motion], timing: Timing, val
     p = _row(values)
     start, stop, around = timing.bounds(p)
     law = reaching(mechanism, motion[timing.joint])
-    way = law.way(start, stop, p, around, looks=4 * timing.count + 1)
+    way = law.way(start, stop, p, around, looks=min(4 * timing.count, _MOST_LOOKS) + 1)
     why = Missed(int(way.missed[0]))
     if why is Missed.REACHED:
         return way

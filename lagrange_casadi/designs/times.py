@@ -33,7 +33,9 @@ class DesignTimes:
     @property
     def common(self) -> bool:
         """Whether all designs have the same."""
-        return self.timing.fixed and (self.law is None or not self.law.varies)
+        if self.law is None or not self.timing.fixed:
+            return self.timing.fixed
+        return not self.law.varies and (self.law.steady or not isinstance(self.timing.around, str))
 
     @cached_property
     def default(self) -> tuple[Array, Array]:
