@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -116,7 +116,12 @@ def _describe_mechanism(description: Description) -> None:
         ends = " - ".join(f"{p['body']} ({p['x'] + 0.0:g}, {p['y'] + 0.0:g})" for p in (joint["parent"], joint["child"]))
         along = ""
         if joint["kind"] in ("prismatic", "slot"):
-            along = f", along ({joint['axis'][0] + 0.0:g}, {joint['axis'][1] + 0.0:g}) of {joint['parent']['body']}"
+            along = f", along {_vector(joint['axis'])} of {joint['parent']['body']}"
         turned = f", at {joint['angle']:g} rad ({math.degrees(joint['angle']):g} deg)" if joint["angle"] else ""
         click.echo(f"  {joint['kind']} joint {name}: {ends}{along}{turned}{', driven' if joint['driven'] else ''}")
-    click.echo("  gravity: ({:g}, {:g}) m/s^2".format(*(component + 0.0 for component in description["gravity"])))
+    click.echo(f"  gravity: {_vector(description['gravity'])} m/s^2")
+
+
+def _vector(components: Sequence[float]) -> str:
+    """Components in words; a file that was forged may have any number."""
+    return f"({', '.join(f'{component + 0.0:g}' for component in components)})"
