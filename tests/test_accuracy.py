@@ -34,7 +34,7 @@ def case(name):
     return scene, exactly(scene)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("rung", RUNGS)
 @pytest.mark.parametrize("name", NAMES)
 def test_cases(name, rung):
@@ -106,6 +106,7 @@ def test_random_loops(build, law, seed):
             assert_near(ratios(solution, exact))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "scene",
     [
@@ -146,7 +147,7 @@ def test_after_many_turns(later, words, certified):
     assert_near(ratios(solution, exactly(scene)))
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("kind", kinds.KINDS, ids=[kind.__name__ for kind in kinds.KINDS])
 def test_random_mechanisms(kind):
     """Some of every kind: none claims less than a tenth of its error, all together are near, and residuals are of rounding."""
@@ -164,7 +165,7 @@ def test_random_mechanisms(kind):
     assert 0.7 < np.median(every) < 3.0
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("kind", kinds.LINKAGES, ids=[kind.__name__ for kind in kinds.LINKAGES])
 def test_too_few_steps_claim_what_they_leave(kind):
     """Where loops begin near a dead centre the second instant is the worst, for the first is closed."""

@@ -36,7 +36,7 @@ def test_certificate_is_at_rounding_level(name):
         assert np.max(certificate[residual]) < 1e-13, residual
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("name", NAMES)
 def test_every_figure_can_be_drawn(name, tmp_path):
     case = load_case(CASES / name)

@@ -127,6 +127,7 @@ def test_a_millionth_fails(name):
     assert 1e-9 < wrong(scene, solution, output)[residual] < 1e-5
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", kinds.KINDS, ids=[kind.__name__ for kind in kinds.KINDS])
 def test_a_millionth_of_any_large_force_fails(kind):
     """Of every one that is no less than a hundredth of the largest reaction."""

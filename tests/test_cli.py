@@ -320,6 +320,7 @@ def scene():
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("delay", [0.0, 0.01, 0.02, 0.5])
 def test_ctrl_c_is_one_line_and_leaves_nothing(here, tmp_path_factory, delay):
     """A real interrupt of a real process, which would compute for a long while."""

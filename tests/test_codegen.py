@@ -61,7 +61,7 @@ def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
     assert np.max(np.abs(out - machine.out) / scale) <= (0.0 if name in ("slider_crank", "four_bar") else 1e-13)
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(10)
 @pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize("language", ["c", "c++"])
 @pytest.mark.parametrize("name", SCENES)

@@ -25,7 +25,7 @@ INSTANTS = 128
 FIELDS = ("status", "value", "t", "xi", "mean", "rms")
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("name", NAMES)
 def test_designs_are_their_own_evaluations(name):
     """Every number of a case a parameter."""
@@ -46,7 +46,7 @@ def test_designs_are_their_own_evaluations(name):
             assert outcome.rms[row, k] == pytest.approx(math.sqrt(np.average(series**2, weights=weights)), rel=1e-13)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "sleigh", "rrr3"])
 def test_all_rungs_agree(name):
     """Packs, scalar C and NumPy to rounding; single precision as far as it goes; steps of Newton's method where they are enough."""

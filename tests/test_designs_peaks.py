@@ -18,7 +18,7 @@ from lagrange_casadi.study.peaks import forces, refine
 both = pytest.mark.parametrize("backend", ["lanes", "vm"])
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("matter", DENSITIES)
 def test_any_density_and_any_station(matter):
     """Along the link exact: nothing on a fine grid is larger, and the peaks are those of the section law; packs find the same."""

@@ -170,7 +170,7 @@ STEPPING = {
 }
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(("name", "number"), zip(STEPPING, [signal.SIGINT, signal.SIGTERM] * 2, strict=True))
 def test_an_interrupt_does_not_wait_for_newtons_steps(here, name, number):
     """The whole takes minutes or hours."""

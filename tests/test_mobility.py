@@ -88,7 +88,7 @@ def point_of(body, choice):
     return body.at(along * body.length, beside if kind == "beside" else 0.0)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(st.lists(branch, min_size=1, max_size=5))
 def test_random_trees(branches):
     """Links hung on each other anywhere by any joint, either end of which may be the parent, at stations on and off their axes."""
@@ -119,7 +119,7 @@ lengths = st.floats(0.05, 2.0)
 masses = st.floats(0.0, 5.0)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.tuples(lengths, lengths, lengths), st.tuples(masses, masses, st.floats(0.1, 5.0)), st.floats(0.1, 3.0), st.booleans())
 def test_random_four_bars(length, mass, frame, turned):
     try:
@@ -168,7 +168,7 @@ def test_random_six_bars(x, y, mass, arm, turned):
         assert gap < 1e-10, worst
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.floats(0.01, 1.0), st.floats(1.05, 8.0), masses, masses, st.floats(0.1, 5.0))
 def test_random_slider_cranks(r, ratio, m1, m2, m3):
     parameters = {"r": r, "l": ratio * r, "m1": m1, "m2": m2, "m3": m3}

@@ -30,6 +30,7 @@ def verdict(seed):
     return found, told
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", QUICK)
 def test_right_or_refused(seed):
     found, told = verdict(seed)

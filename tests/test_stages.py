@@ -89,6 +89,7 @@ def test_singles_after_hours(name, rung):
     assert gap(graph, t, rung, truth) < 1e-5
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", NAMES)
 def test_singles_at_the_start(name):
     graph, t, truth = case(name, 0.0)

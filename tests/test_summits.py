@@ -109,7 +109,7 @@ def assert_found(name, rungs):
         assert abs(value) <= largest * (1 + max(1e-6, tolerance))
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("name", SIGNALS)
 def test_the_largest_is_found(name):
     assert_found(name, RUNGS)
@@ -213,6 +213,7 @@ def test_what_grows_without_an_end_too_slowly_is_not_told():
     assert all(math.isnan(value) for _, value in searched(signal(law)))
 
 
+@pytest.mark.long
 def test_what_takes_too_many_times_is_not_told():
     """Of 200 000 teeth each is a little larger than the one before; that of the instants must not pass for the peak."""
     law = lambda x: ca.fmod(x, 1e-5) * (1 + x)  # noqa: E731

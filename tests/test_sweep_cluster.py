@@ -146,7 +146,7 @@ def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, 
     assert sweep(slider_crank, GRID, **ASKED, out=path, resume=True).path.read_bytes() == whole
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 @pytest.mark.parametrize("frozen", ["scheduler", "worker"])
 def test_an_interrupt_does_not_wait_for_what_is_frozen(slider_crank, tmp_path, number, frozen):
@@ -266,6 +266,7 @@ OTHERS = {
 }
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("says", "told"), OTHERS.values(), ids=OTHERS)
 def test_what_is_no_scheduler_is_one_line(slider_crank, tmp_path, monkeypatch, capfd, says, told):
     monkeypatch.setattr(cluster, "_PATIENCE", 1.0)

@@ -238,7 +238,7 @@ def test_a_forged_run_is_one_line(run, fifo, capsys, kind, long):
     assert_one_line(run, fifo, capsys, kind, long, RUN, 10)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("kind", ["attributes", "datasets"])
 @pytest.mark.parametrize("long", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_a_forged_sweep_is_one_line(swept, fifo, capsys, kind, long):
