@@ -4,7 +4,7 @@ from lagrange_casadi import Mechanism, Scene
 from lagrange_casadi.declare.motion import polynomial
 
 
-def five_bar(drives=None, wanted=("all",), path=False, **keywords):
+def five_bar(drives=None, wanted=("all",), path=False, power=False, **keywords):
     """Two cranks and two rods that meet at a tool, which is pushed; a weight hangs beside a station of a rod."""
     m = Mechanism("five_bar")
     heavier = m.parameter("heavier", 2.0)
@@ -19,6 +19,10 @@ def five_bar(drives=None, wanted=("all",), path=False, **keywords):
     m.force("cut", c.tip, x=-20.0, y=5.0)
     if path:
         m.path("tool", b.tip)
+    if power:
+        # The tool keeps its height: nothing but rounding.
+        vy = m.velocity(b.tip)[1]
+        m.output("still", vy * m.results.effort(m.joints["O"]), unit="W")
     motion = {"O": polynomial(2.0, 0.5, -0.2), "C": polynomial(1.0, -0.3, 0.4)}
     drives = drives(heavier) if callable(drives) else drives
     return Scene(m, motion, wanted, drives=drives, **({"posture": {"b": 1.0, "c": 2.0}, "t": (0, 1, 41)} | keywords))

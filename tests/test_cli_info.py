@@ -84,3 +84,34 @@ def test_long_expressions_are_cut(capsys):
 )
 def test_nobody_reads_minus_zero(kind, value, words):
     assert describe_coordinate("x", kind, value) == words
+
+
+PLOTTER = """
+from lagrange_casadi import Mechanism, Scene, motion
+
+def scene():
+    m = Mechanism("crane")
+    speed = m.parameter("speed", 2.0, "Hz", low=0.01)
+    arm, load = m.link("arm", length=1.0, mass=2.0), m.point_mass("load", 5.0)
+    swing = m.revolute("swing", m.ground, arm)
+    m.prismatic("reach", arm, load, axis=(1, 0))
+    m.line_load("wind", arm, y=(0.0, -40.0))
+    m.path("hook", load)
+    m.output("power", m.results.effort(swing) * m.rate(swing), unit="W")
+    line = {"hook": (motion.polynomial(0.8), motion.harmonic(0.1, 0.2, speed))}
+    return Scene(m, line, t=(0, 1 / speed, 11), posture={"arm": 0.0, "reach": 0.9}, drives=["swing", "reach"])
+"""
+
+
+def test_motions_of_points_drives_elsewhere_and_own_outputs(tmp_path, capsys):
+    """The bounds of time are expressions, and the motion is told over them."""
+    case = tmp_path / "crane.py"
+    case.write_text(PLOTTER)
+    assert main(["info", str(case)]) == 0
+    told = capsys.readouterr().out
+    assert "freedoms: 2, driven at swing, reach\n" in told
+    assert "  motion hook.x: 0.8 of the time t; from 0.8 m to 0.8 m\n" in told
+    assert "from 0.1 m to 0.1 m, within -0.1 m and 0.3 m\n" in told
+    assert "load wind: line load on arm, x = 0 N/m, y = 0 to -40 N/m, in ground axes\n" in told
+    assert "output power [W]: (effort:swing*swing_rate)\n" in told
+    assert "nan" not in told

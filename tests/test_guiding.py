@@ -117,6 +117,16 @@ def test_sweeps_and_exported_c_have_it(tmp_path):
     compare(by_c99(tmp_path, told, instants(solution.t, "double")), expected(scene, told, solution), told, made, solution)
 
 
+@pytest.mark.parametrize("rung", [Rung("lanes"), Rung("c", "single")], ids=["lanes", "single"])
+def test_a_quantity_that_is_zero_where_it_is_looked_at_condemns_no_design(rung):
+    """The power of a tool that goes to and fro is rounding at each of the instants of the witness."""
+    made = five_bar(path=True, power=True).mechanism
+    line = {"tool": (motion.harmonic(0.05, 0.1, 1.0), motion.polynomial(0.6))}
+    scene = Scene(made, line, ["output:still"], t=(0, 1, 101), posture=ROUGH, drives=["O", "C"])
+    designs = DesignEngine.of(scene, rung=rung)
+    assert not designs.failures(np.array(list(made.values().values())))
+
+
 def test_a_file_of_it_is_checked(tmp_path):
     save(evaluate(platform()), tmp_path / "x.h5")
     assert check(tmp_path / "x.h5") == []

@@ -45,7 +45,7 @@ def _law(law: Motion, symbol: Any) -> str:
 
 def _course(scene: Scene, joint: str) -> str:
     """From where to where a drive goes with the default parameters, and within what."""
-    mechanism, (start, stop, _) = scene.mechanism, scene.t
+    mechanism, (start, stop) = scene.mechanism, scene.span
     motion = motion_function({joint: scene.laws[joint]}, mechanism.symbols)
     values = list(mechanism.values(scene.assembly).values())
     way = motion(ca.DM(np.linspace(start, stop, _LOOKS)).T, ca.repmat(ca.DM(values), 1, _LOOKS))[0].full().ravel()

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from ..arithmetic.compensated import ROUNDING
 from ..declare.density import Array
 from ..declare.description import describe
 from ..declare.scene import Scene
@@ -20,10 +22,12 @@ from ..instants.backends import run
 from ..instants.phases import phases
 from ..instants.rung import Rung
 from ..instants.solution import Solution
+from ..judge.accuracy import estimate
 from ..judge.certificate import LOOSE, tolerance
 from ..quantities import Output
 
 INSTANTS = 5
+_ROUNDINGS = 10.0
 _AGREES = 1e-6
 """Of the largest value of a unit, what two ways to evaluate the same graph may differ by; in single precision more."""
 
@@ -46,12 +50,19 @@ def failures(scene: Scene, p: Array, t: Array, rung: Rung, outputs: Sequence[Out
     found = {name: float(np.max(gaps)) for name, gaps in residuals_of(whole, graph, rows, p, within).items()}
     failed = {name: gap for name, gap in found.items() if not gap <= limit}
     allowed = max(_AGREES, limit) if rung.precision == "double" else LOOSE
-    agreement = _agreement(whole, dict(zip(outputs, out[:, some], strict=True)))
+    compiled = dict(zip(outputs, out[:, some], strict=True))
+    agreement = _agreement(whole, compiled, {})
+    if not agreement <= allowed:
+        # What is nothing but rounding has no size of its own to be compared with.
+        graph_rows = table if graph.newton is None else replace(table, out=rows, iterated=table.iterated[:, some])
+        rounded = estimate(graph, graph_rows, whole, p)
+        coarser = ROUNDING[rung.precision] / ROUNDING["double"]
+        agreement = _agreement(whole, compiled, {output: _ROUNDINGS * coarser * error for output, error in rounded.items()})
     return failed if agreement <= allowed else failed | {"agreement": agreement}
 
 
-def _agreement(whole: Solution, found: Mapping[Output, Array]) -> float:
-    """How far outputs are from those of a solution, over the largest of their unit."""
+def _agreement(whole: Solution, found: Mapping[Output, Array], rounded: Mapping[Output, float]) -> float:
+    """How far outputs are from those of a solution, beyond what is ``rounded``, over the largest of their unit."""
     largest: dict[str, float] = {}
     for name, values in whole.outputs.items():
         unit = whole.unit(name)
@@ -63,5 +74,6 @@ def _agreement(whole: Solution, found: Mapping[Output, Array]) -> float:
         gaps, unit = values - whole.outputs[name], whole.unit(name)
         if unit == "rad":
             gaps = gaps - math.tau * np.rint(gaps / math.tau)
-        worst = max(worst, float(np.max(np.abs(gaps))) / (max(largest[unit], 1.0 if unit == "rad" else 0.0) or 1.0))
+        gap = max(float(np.max(np.abs(gaps))) - rounded.get(name, 0.0), 0.0)
+        worst = max(worst, gap / (max(largest[unit], 1.0 if unit == "rad" else 0.0) or 1.0))
     return worst
