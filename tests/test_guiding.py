@@ -7,7 +7,7 @@ from design_rows import around, assert_refined
 from exported import by_c99, compare, expected, exported, instants, solve
 from five_bars import five_bar
 
-from lagrange_casadi import Mechanism, Scene, check, evaluate, motion, save
+from lagrange_casadi import Mechanism, Scene, check, evaluate, load, motion, save
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.equations.derive import derive
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
@@ -128,8 +128,15 @@ def test_a_quantity_that_is_zero_where_it_is_looked_at_condemns_no_design(rung):
 
 
 def test_a_file_of_it_is_checked(tmp_path):
-    save(evaluate(platform()), tmp_path / "x.h5")
-    assert check(tmp_path / "x.h5") == []
+    """Over a guide's coordinate too."""
+    for number, keywords in enumerate(({}, {"over": ("plate.angle", 0.11, 0.19, 9)})):
+        path = tmp_path / f"{number}.h5"
+        found = evaluate(platform(), **keywords)
+        save(found, path)
+        assert check(path) == []
+        assert load(path).description == found.description
+    assert load(path).over.joint == "plate.angle"
+    np.testing.assert_allclose(found.pose("plate").angle, np.linspace(0.11, 0.19, 9), rtol=1e-14)
 
 
 def test_where_links_do_not_reach_the_path_is_named():

@@ -11,6 +11,7 @@ from five_bars import five_bar
 
 from lagrange_casadi import Mechanism, Scene, check, density, evaluate, load, motion, refine, save
 from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.draw import figures
 from lagrange_casadi.equations.derive import derive
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.instants.refusal import Status
@@ -220,3 +221,10 @@ def test_an_unknown_output_lists_what_there_is():
         evaluate(engine(), wanted=["output:powr"])
     with pytest.raises(UnknownNameError, match=r"unknown output of the mechanism's own 'powr' .*valid: power"):
         evaluate(engine(), wanted=["output:power"]).output("powr")
+
+
+def test_a_figure_says_their_names():
+    found = evaluate(engine(t=(0, 1, 21)), wanted=["output:power"])
+    spec = next(spec for spec in figures.default_figures(found) if spec.name == "output_power")
+    (axes,) = spec.draw(found).axes
+    assert (axes.get_ylabel(), axes.get_title()) == ("power [W]", "engine: power")

@@ -74,7 +74,21 @@ def describe(
     found = _described(mechanism, values, driven, lambda _: next(numbers))
     if mechanism.outputs:
         found["outputs"] = {name: own.unit for name, own in mechanism.outputs.items()}
-    return found if drives is None else found | {"drives": list(drives), "moved": len(driven) - len(mechanism.rows)}
+    if drives is None:
+        return found
+    return found | {"drives": list(drives), "motions": {name: _kind(mechanism, name) for name in driven}}
+
+
+def _kind(mechanism: Mechanism, name: str) -> str:
+    """The kind of a coordinate whose motion is given, of a joint or a guide (:mod:`.guiding`)."""
+    joint = mechanism.joints.get(name)
+    return (joint.coordinate if joint else "angle" if name.endswith(".angle") else None) or "slide"
+
+
+def motions_of(description: Description) -> dict[str, str]:
+    """The coordinates whose motion is given, of joints and of guides, with their kinds: "angle" or "slide"."""
+    driven = {name: joint["coordinate"] for name, joint in description["joints"].items() if joint["driven"]}
+    return driven | {str(name): str(kind) for name, kind in description.get("motions", {}).items()}
 
 
 @functools.lru_cache(maxsize=32)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..quantities import Output
 from .density import Array
-from .description import Description, drives_of
+from .description import Description, drives_of, motions_of
 
 _EDGE = 1e-9
 """Of a link's length: what leaves it by so little does so by rounding."""
@@ -20,7 +20,7 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description) -
     As far as efforts, the motion of the joint, or the sections of the link, are among the outputs.
     """
     drives = drives_of(description)
-    moved = description.get("moved", len(drives))
+    moved = len(motions_of(description)) - len(description["rows"])
     if len(drives) > moved and Output("effort", drives[0]) in outputs:
         told = f"{len(drives)} drives ({', '.join(drives)}) make {moved} motion{'s' if moved > 1 else ''}"
         yield f"{told}: of all efforts that do, these have the least weighted sum of squares"

@@ -176,7 +176,8 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
         if drawn and solution.determined(output) and np.any(values):
             groups.setdefault((output.group + ("_moment" if output.member == "mz" else ""), output.part), []).append(str(output))
     for (group, part), names in groups.items():
-        specs.append(TimePlot(f"{group}_{part}", tuple(names), f"{solution.case}: {group.replace('_', ' ')} of {part}"))
+        what = part if group == "output" else f"{group.replace('_', ' ')} of {part}"
+        specs.append(TimePlot(f"{group}_{part}", tuple(names), f"{solution.case}: {what}"))
     for link in solution.links_with_sections:
         if solution.determined(Output("section", link, "bending")):
             specs.append(SectionMaps(f"section_{link}", link))
@@ -265,7 +266,8 @@ def _figure(panels: int = 1) -> tuple[Figure, list[Any]]:
 
 def _finish(figure: Figure, axes: Any, solution: Solution, names: Sequence[str], title: str, note: str, along: str) -> None:
     axes.set_xlabel(along)
-    words = [quantity_of(name).long_name.partition(":")[0] for name in names]
+    shown = map(Output.of, names)
+    words = [o.part if o.group == "output" else o.quantity.long_name.partition(":")[0] for o in shown]
     if len(axes.get_lines()) > 1:
         words = list(dict.fromkeys(word.partition(",")[0] for word in words))
     axes.set_ylabel(f"{', '.join(words)} [{solution.unit(names[0])}]")

@@ -22,7 +22,7 @@ import numpy as np
 
 from ..declare.density import Array
 from ..declare.description import SHAPE as DESCRIPTION
-from ..declare.description import Description
+from ..declare.description import Description, motions_of
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
 from ..errors import DeclarationError, PathError, StoreError, one_line
@@ -330,8 +330,8 @@ def _read(file: h5py.File) -> Solution:
 def _drive_axis(dataset: Any, shape: tuple[int, ...], description: Description) -> DriveAxis:
     """The coordinate by which instants were asked for. Raises ``ValueError`` for that of a joint which is not driven."""
     values, joint, unit = _numbers(dataset, shape), shown(dataset.attrs["joint"]), shown(dataset.attrs["units"])
-    told = description["joints"].get(joint, {})
-    if not told.get("driven") or unit != (LENGTH if told["coordinate"] == "slide" else ANGLE):
+    kind = motions_of(description).get(joint)
+    if kind is None or unit != (LENGTH if kind == "slide" else ANGLE):
         raise ValueError(f"the instants are over '{joint}' in {unit}, which is no drive's coordinate")
     return DriveAxis(joint, unit, values)
 
