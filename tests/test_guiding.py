@@ -9,6 +9,7 @@ from five_bars import five_bar
 
 from lagrange_casadi import Mechanism, Scene, check, evaluate, load, motion, save
 from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.draw import figures
 from lagrange_casadi.equations.derive import derive
 from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameError
 from lagrange_casadi.instants.refusal import Status
@@ -184,3 +185,12 @@ def test_a_path_has_a_name_of_its_own():
         fresh.revolute("tip", fresh.ground, link)
     with pytest.raises(DeclarationError, match="path 'fixed': a point of the ground does not move"):
         fresh.path("fixed", fresh.ground.at(1, 0))
+
+
+def test_a_path_is_drawn():
+    found = evaluate(guided(t=(0, 1, 21)))
+    place = figures.MechanismDrawing().draw(found).axes[0]
+    drawn = [line.get_xydata() for line in place.get_lines()]
+    path = np.column_stack([found.output("tool_x"), found.output("tool_y")])
+    assert any(line.shape == path.shape and np.abs(line - path).max() < 1e-12 for line in drawn)
+    assert "tool" in " ".join(text.get_text() for text in place.texts)

@@ -146,6 +146,7 @@ def _described(
         name: {"value": values[name], "unit": parameter.unit, "low": parameter.low, "high": parameter.high}
         for name, parameter in mechanism.parameters.items()
     }
+    paths = {name: place(path.point) for name, path in mechanism.paths.items()}
     return {
         "name": mechanism.name,
         "parameters": parameters,
@@ -155,4 +156,4 @@ def _described(
         "loads": loads,
         "rows": {name: row.replaces for name, row in mechanism.rows.items()},
         "constraints": list(mechanism.constraints),
-    }
+    } | ({"paths": paths} if paths else {})

@@ -14,9 +14,11 @@ if TYPE_CHECKING:
 
 _COLOURS = ("#1f4e79", "#b3541e", "#2e7d4f", "#7a3b8f", "#8a6d1a", "#3c6e71", "#9c2f4a", "#555555")
 
+_PATH = "#c0392b"
+
 
 def draw_mechanism(solution: Solution, count: int) -> Figure:
-    """The mechanism at ``count`` instants, with the paths that its joints take over the whole time."""
+    """The mechanism at ``count`` instants, with the paths that its joints and declared points take over the whole time."""
     from matplotlib.figure import Figure
 
     paths, box, size = _extent(solution)
@@ -53,8 +55,9 @@ def draw_into(axes: Any, solution: Solution) -> None:
 
 
 def _extent(solution: Solution) -> tuple[dict[str, tuple[Array, Array]], tuple[float, float, float, float], float]:
-    """The paths of joints by name, the box that holds all, and its larger side [m]."""
+    """The paths of joints and of declared points by name, the box that holds all, and its larger side [m]."""
     paths = {name: _place(solution, joint["child"]) for name, joint in solution.description["joints"].items()}
+    paths |= {name: _place(solution, point) for name, point in solution.description.get("paths", {}).items()}
     ends = {name: _ends(solution, name) for name, body in solution.description["bodies"].items() if body["length"]}
     x = np.concatenate([p[0] for p in paths.values()] + [e[k] for e in ends.values() for k in (0, 2)])
     y = np.concatenate([p[1] for p in paths.values()] + [e[k] for e in ends.values() for k in (1, 3)])
@@ -86,6 +89,10 @@ def _draw_instant(axes: Any, solution: Solution, i: int, paths: Any, size: float
             axes.plot(x[i], y[i], "o", markersize=7, markerfacecolor="white", markeredgecolor="black", zorder=4)
             if grounded:
                 axes.plot(x[i], y[i] - 0.035 * size, "^", markersize=12, color="0.55", zorder=2)
+    for name in description.get("paths", {}):
+        x, y = paths[name]
+        axes.plot(x, y, color=_PATH, linewidth=1.4, zorder=2)
+        axes.plot(x[i], y[i], "D", markersize=5, color=_PATH, zorder=5)
     for (x, y), names in _labels(paths, i, size).items():
         axes.annotate(", ".join(names), (x, y), xytext=(6, 6), textcoords="offset points", fontsize=8, color="0.25", zorder=5)
 
