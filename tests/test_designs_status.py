@@ -37,8 +37,7 @@ def statuses(scene, p, rung, instants=None):
 both = pytest.mark.parametrize("backend", ["lanes", "vm"])
 
 
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
+@pytest.mark.parametrize("backend", ["lanes", "c", pytest.param("vm", marks=pytest.mark.long)])
 def test_lengths_about_a_dead_centre(backend):
     """A crank as long as its rod, all but, and longer; on the instants of dead centres and beside them."""
     near = [1 + sign * 10.0**k for sign in (-1, 1) for k in (-13, -10, -6, -4, -3)]
@@ -101,8 +100,7 @@ def test_iterated_loops_begin_from_the_guess_and_say_what_fails(backend):
         assert found == expected == [status]
 
 
-@pytest.mark.sampled(2)
-@both
+@pytest.mark.parametrize("backend", ["lanes", pytest.param("vm", marks=pytest.mark.long)])
 def test_what_does_not_fit_and_what_a_row_forbids(backend):
     m = Mechanism("bridge")
     a, b = m.link("a", length=1, mass=1), m.link("b", length=1, mass=1)

@@ -62,7 +62,7 @@ def test_a_slide_drives_where_the_crank_moves(slides):
     assert_balanced(scene, t=0.3 if slides else 0.02)
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=3, deadline=None)
 @given(st.lists(st.floats(0.01, 100.0), min_size=3, max_size=5))
 def test_of_more_drives_the_efforts_are_the_least(weights):
     """Efforts times weights are a combination of what the motions do at the drives (Lagrange's condition of the least)."""

@@ -16,7 +16,7 @@ from random_verdict import compare, is_regular, judge
 from lagrange_casadi import evaluate
 from lagrange_casadi.quantities import Output
 
-QUICK, LONG = range(30), range(30, 1000)
+QUICK, LONG = range(20), range(20, 1000)
 REFUSED = 0.02
 """How many of the regular mechanisms may be refused."""
 

@@ -287,6 +287,7 @@ def test_a_worker_is_no_scheduler(slider_crank, two_workers, tmp_path):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 def test_an_interrupt_comes_through_while_nothing_answers(slider_crank, tmp_path, number):
     asked = ["sweep", str(slider_crank.path), "--grid", "l=0.2,0.3", "--out", "x.h5"]
