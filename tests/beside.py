@@ -63,4 +63,18 @@ def _sleigh(arithmetic, values):
     return {"extras": [oracle.Extra("blade", None, effect)], "unaided": ["Y"]}
 
 
-_CASES = {"engine": _engine, "quick_return": _quick_return, "andrews_squeezer": _andrews_squeezer, "sleigh": _sleigh}
+def _jansen_leg(arithmetic, values):
+    number = arithmetic.number
+    base, near, far = 36.7 / 100, 49 / 100, 65.7 / 100
+    x = (base**2 + near**2 - far**2) / (2 * base)
+    foot = ("shin", number(x), number(math.sqrt(near**2 - x**2)))
+    return {"loads": [lambda place: [(foot, 0, number(values["push"]), 0)]]}
+
+
+_CASES = {
+    "engine": _engine,
+    "quick_return": _quick_return,
+    "andrews_squeezer": _andrews_squeezer,
+    "sleigh": _sleigh,
+    "jansen_leg": _jansen_leg,
+}

@@ -150,6 +150,16 @@ def test_quick_return_is_quicker_back():
     assert slow == pytest.approx(expected, abs=1e-2)
 
 
+def test_a_leg_takes_no_work_over_a_turn():
+    """Weights, inertia at a constant speed, and a constant push give back what they took; and the foot goes its known way."""
+    found = evaluate(load_case(CASES / "jansen_leg").scene, t=(0, 1.5, 7201))
+    effort, angle = found.effort("O"), found.motion("O").value
+    assert angle[-1] - angle[0] == pytest.approx(-2 * math.pi)
+    assert abs(_trapezoid(effort, angle)) < 1e-9 * np.abs(effort).max()
+    assert np.ptp(found.output("foot_x")) == pytest.approx(0.679, abs=1e-3)
+    assert np.ptp(found.output("foot_y")) == pytest.approx(0.225, abs=1e-3)
+
+
 def test_engine_turns_twice_and_gives_work():
     solution = evaluate(load_case(CASES / "engine").scene)
     assert solution.motion("main").value[-1] - solution.motion("main").value[0] == pytest.approx(4 * math.pi)

@@ -38,7 +38,7 @@ def test_designs_are_their_own_evaluations(name):
         assert_refined(scene, designs, outcome, row, p[row])
         solution = alone(scene, p[row], (*scene.t[:2], INSTANTS))
         for k, effort in enumerate(designs.efforts):
-            series = solution.effort(effort.partition(":")[2])
+            series = solution.array(effort)
             weights = np.ones(series.size)
             weights[[0, -1]] = 0.5
             size = 1e-13 * np.abs(series).max()

@@ -17,6 +17,7 @@ INSTANT = {
     "rrr3": 795,
     "arm": 222,
     "sleigh": 220,
+    "jansen_leg": 740,
 }
 
 
