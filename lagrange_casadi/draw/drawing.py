@@ -98,9 +98,10 @@ def _draw_instant(axes: Any, solution: Solution, i: int, paths: Any, size: float
 
 
 def _draw_body(axes: Any, solution: Solution, name: str, i: int, colour: str) -> None:
-    """A link's axis, and arms to the joints beside it; a body known by its centre of mass as arms from there."""
+    """A link's axis, and arms to joints and declared points beside it; a body known by its centre of mass as arms from there."""
     body = solution.description["bodies"][name]
     points = [end for joint in solution.description["joints"].values() for end in (joint["parent"], joint["child"])]
+    points += solution.description.get("paths", {}).values()
     own = [(point["x"], point["y"]) for point in points if point["body"] == name]
     if "centre" in body:
         centre = (body["centre"]["x"], body["centre"]["y"])
