@@ -112,10 +112,10 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
         link = isinstance(body, Link)
         yield f"{'link' if link else 'point mass'} '{body.name}'", [*([body.length] if isinstance(body, Link) else []), *made]
     for joint in mechanism.joints.values():
-        places = [number for point in (joint.parent, joint.child) for number in (point.x, point.y)]
+        places = [number for point in (joint.parent, joint.child) for number in point.place]
         yield f"joint '{joint.name}'", [*places, *joint.axis, joint.angle]
     for load in mechanism.loads.values():
-        yield f"load '{load.name}'", [number for point in load.points for number in (point.x, point.y)]
+        yield f"load '{load.name}'", [number for point in load.points for number in point.place]
     yield "gravity", [*mechanism.gravity]
 
 

@@ -220,7 +220,7 @@ def _inputs(graph: SceneGraph, precision: Precision, timed: bool) -> dict[str, M
 
 def _sign(graph: SceneGraph, output: Output) -> str:
     if output == Output("motion", output.part):
-        return "counter-clockwise" if graph.scene.guided.joints[output.part].coordinate == "angle" else "along the axis"
+        return "counter-clockwise" if graph.scene.guided.coordinates[output.part][1].kind == "angle" else "along the axis"
     return output.quantity.sign
 
 
