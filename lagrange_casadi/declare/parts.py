@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from ..errors import ParameterError
+from ..geometry.vectors import Expression as Expression
+from ..geometry.vectors import Vector as Vector
 from ..system.numerals import readable
 from .angles import angle
 from .density import Density
 
-Expression = Any
-"""A number, or a ``casadi.SX`` scalar in the mechanism's parameters."""
-
-Vector = tuple[Expression, Expression, Expression]
 End = Literal["base", "tip"]
 
 

@@ -10,9 +10,9 @@ import casadi as ca
 from ..declare.joints import Axis, Joint
 from ..declare.parts import Force, LineLoad, Link, Load, Point, Spring, Torque, Vector
 from ..geometry.frames import Velocities
-from ..geometry.joints import gap_motion, reaction, slide
 from ..geometry.vectors import AXES, cross, dot, minus, nil, plus, times
 from .growing import Grown
+from .joints import gap_motion, reaction, slide
 from .multibody import Applied, LoopEquations, RowGraph
 
 

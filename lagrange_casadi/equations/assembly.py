@@ -10,11 +10,11 @@ import casadi as ca
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..geometry.frames import Frame, Velocities
-from ..geometry.joints import closing_gaps
 from ..geometry.vectors import times
 from .applied import applied_by, held_by, push, work
 from .growing import Grown, coordinates_of
 from .inertia import kinetic_energy
+from .joints import closing_gaps
 from .multibody import LoopEquations, Multibody, RowGraph, change, column
 from .tree import Tree
 

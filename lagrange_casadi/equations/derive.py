@@ -104,7 +104,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     values = list(mechanism.values(scene.assembly).values())
     first = [float(x) for x in ca.DM(motion(scene.span[0], values)[0]).full().ravel()]
     start = Start(scene.span[0], first, values)
-    solved = kinematics.solve(body, scene.posture, start, iterate=iterate)
+    solved = kinematics.solve(body, {**scene.mechanism.reference_posture, **scene.posture}, start, iterate=iterate)
     solved, swings = count_turns(body, solved, motion, scene.span, start, _seeing(body, want))
 
     columns = _beyond(body, _seeing(body, want))

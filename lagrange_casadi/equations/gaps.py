@@ -7,8 +7,8 @@ from typing import Any
 import casadi as ca
 
 from ..declare.mechanism import Mechanism
-from ..geometry.joints import off
 from .blocks import Block, Equation
+from .joints import off
 from .multibody import Multibody
 
 

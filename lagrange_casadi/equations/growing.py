@@ -12,9 +12,9 @@ from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link, Point, Vector
 from ..geometry.frames import Frame
-from ..geometry.joints import orientation, turning_axes
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import AXES, ZERO, cross, dot, minus, plus, times
+from .joints import orientation, turning_axes
 from .multibody import Coordinate, Turned, column, own_coordinate, place_along, rates_along
 from .tree import Branch, Tree
 

@@ -12,6 +12,7 @@ from typing import Any
 import casadi as ca
 
 from ..declare.density import Density
+from ..declare.matter import second_moments
 from ..declare.parts import Link, PointMass, RigidMass, Vector
 from ..geometry.frames import Frame, Velocities
 from ..geometry.vectors import AXES, ZERO, minus, nil
@@ -51,16 +52,6 @@ def _rigid(matter: Any, frame: Frame, velocities: Velocities, *, space: bool, sp
             if j in axes and not nil(moments[i][j]):
                 energy += moments[i][j] * ca.dot(axes[i], axes[j])
     return energy
-
-
-def second_moments(inertia: Any) -> list[list[Any]]:
-    """J_ij, the integral of r_i r_j dm, from the moments of inertia I [kg m^2]: tr(I) / 2 - I."""
-    (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = inertia
-    return [
-        [(iyy + izz - ixx) / 2, -ixy, -ixz],
-        [-ixy, (ixx + izz - iyy) / 2, -iyz],
-        [-ixz, -iyz, (ixx + iyy - izz) / 2],
-    ]
 
 
 def _slender(points: list[tuple[Any, Vector]], inertia: Any, frame: Frame, velocities: Velocities) -> Any:

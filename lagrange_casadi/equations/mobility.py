@@ -29,12 +29,12 @@ from ..declare.limits import at_end
 from ..declare.mechanism import Mechanism
 from ..declare.parts import LineLoad, Link, Point, Vector
 from ..geometry.frames import Frame, Velocities
-from ..geometry.joints import borne, reaction, slide
 from ..geometry.vectors import ZERO, cross, plus, times
 from ..quantities import Output, force_members, law_members, station_members
 from .checks import Check, Column
 from .drives import solve_efforts
 from .gaps import reach
+from .joints import borne, reaction, slide
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
 from .multibody import Multibody, column

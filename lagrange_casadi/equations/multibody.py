@@ -19,8 +19,8 @@ from ..declare.mechanism import Mechanism
 from ..declare.parts import Point, Row, Vector
 from ..errors import DeclarationError
 from ..geometry.frames import Frame, Velocities
-from ..geometry.joints import slide, slide_motion, turned, turning
 from ..geometry.vectors import ZERO
+from .joints import slide, slide_motion, turned, turning
 from .lagrange import LagrangeSystem
 from .tree import Tree
 

@@ -12,9 +12,8 @@ from typing import Any
 
 import casadi as ca
 
-from ..declare.parts import Expression, Vector
 from .rotation import Rotation
-from .vectors import ZERO, minus, nil, plus
+from .vectors import ZERO, Expression, Vector, minus, nil, plus
 
 _UNTURNED = Rotation()
 

@@ -8,8 +8,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from ..declare.parts import Expression, Vector
-from .vectors import AXES, cross, dot, plus, times
+from .vectors import AXES, Expression, Vector, cross, dot, plus, times
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,10 @@ from typing import Any
 
 import casadi as ca
 
-from ..declare.parts import Expression, Vector
+Expression = Any
+"""A number, or a ``casadi.SX`` scalar."""
+
+Vector = tuple[Expression, Expression, Expression]
 
 ZERO: Vector = (0.0, 0.0, 0.0)
 AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

@@ -12,9 +12,9 @@ import casadi as ca
 
 from ..declare.joints import Joint
 from ..declare.parts import Expression, Vector
-from .frames import Frame
-from .rotation import Rotation
-from .vectors import AXES, cross, dot, minus, nil, plus, times
+from ..geometry.frames import Frame
+from ..geometry.rotation import Rotation
+from ..geometry.vectors import AXES, cross, dot, minus, nil, plus, times
 
 Gap = tuple[Expression, Expression, Expression]
 """Phi, Phi' and Phi''."""
