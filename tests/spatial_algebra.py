@@ -103,10 +103,10 @@ class Factored:
         """``row_units`` divide rows, ``column_units`` multiply columns."""
         scaled = matrix.astype(float) / row_units[:, None] * column_units
         left, values, right = np.linalg.svd(scaled)
-        values = values / (values[0] if values.size and values[0] else 1.0)
-        rank = int(np.sum(values > _LEAST))
-        largest = np.linalg.norm(scaled, 2) if scaled.size else 1.0
-        inverse = (right[:rank].T / (values[:rank] * largest)) @ left[:, :rank].T
+        largest = values[0] if values.size and values[0] else 1.0
+        rank = int(np.sum(values > _LEAST * largest))
+        inverse = (right[:rank].T / values[:rank]) @ left[:, :rank].T
+        values = values / largest
         return cls(
             matrix,
             column_units[:, None] * inverse / row_units,

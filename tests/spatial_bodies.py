@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -232,7 +233,7 @@ class Mechanism:
     def joint(self, name: str) -> Joint:
         return next(j for j in self.joints if j.name == name)
 
-    @property
+    @cached_property
     def size(self) -> float:
         """A length by which places and angles, forces and moments are compared."""
         points = [j.at_parent for j in self.joints] + [j.at_child for j in self.joints]
