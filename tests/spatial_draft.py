@@ -37,7 +37,8 @@ class Drawn:
     """A mechanism, its laws by (joint, index), a guess at t = 0, and what bears efforts.
 
     It moves from 0 to ``span``, and is followed there in ``steps``. Numbers of the mechanism are doubles, or of mpmath where a
-    loop closes only by exact ones. A planar mechanism lies in the ``plane`` of the first two columns of that matrix.
+    loop closes only by exact ones. A planar mechanism lies in the ``plane`` of the first two columns of that matrix. So
+    many spins are ``idle``: nothing holds them.
     """
 
     mechanism: Mechanism
@@ -46,6 +47,7 @@ class Drawn:
     pushed: Sequence | None = None
     span: float = 1.0
     steps: int = 8
+    idle: int = 0
     plane: np.ndarray | None = None
 
     def drives(self, t, digits=None) -> dict:

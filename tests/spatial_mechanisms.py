@@ -5,13 +5,15 @@ A loop is drawn again until it moves well over its whole span; what it is then i
 
 from __future__ import annotations
 
+import dataclasses
+import functools
 import itertools
 import math
 from collections.abc import Callable, Sequence
 
 import mpmath
 import numpy as np
-from spatial_bodies import AXES, GROUND, KINDS, Joint, Mechanism, Rigid
+from spatial_bodies import AXES, GROUND, KINDS, Joint, Load, Mechanism, Rigid
 from spatial_draft import Drawn, Law, across, acting, body, direction, frame, joint, orientation, point_on, rigid, rod, swing
 from spatial_motion import OpenLoopError
 
@@ -22,8 +24,9 @@ _Z = (0, 0, 1)
 
 
 def steady(draw: Callable[[np.random.Generator], Drawn]) -> Callable[[int], Drawn]:
-    """The first of a seed's draws that closes and is well away from singular all along."""
+    """The first of a seed's draws that closes, is well away from singular all along, and has no idle spin but its own."""
 
+    @functools.cache
     def of(seed: int) -> Drawn:
         for attempt in range(100):
             drawn = draw(np.random.default_rng([seed, attempt]))
@@ -31,7 +34,7 @@ def steady(draw: Callable[[np.random.Generator], Drawn]) -> Callable[[int], Draw
                 slopes = [slope for _, slope in drawn.traced(drawn.span)]
             except OpenLoopError:
                 continue
-            if all(slope.least > STEADY and not slope.vague for slope in slopes):
+            if all(slope.least > STEADY and not slope.vague and slope.null.shape[1] == drawn.idle for slope in slopes):
                 return drawn
         raise AssertionError(f"no draw of seed {seed} moves well")
 
@@ -113,7 +116,13 @@ def _loop(rng, universal, slides):
     coupler, A, B, guess = _coupler(rng, ((crank.length, 0, 0), at_last, R), a, b, "crank", last.name, universal)
     bodies = [crank, coupler, last]
     law = Law(0.0, rng.uniform(2, 6), rng.uniform(0.0, 0.2), rng.uniform(1, 4), 0.0)
-    return Drawn(Mechanism(bodies, [O, A, B, Q], **acting(rng, [crank, last])), {("O", 0): law}, guess | {("Q", 0): 0.0}, span=0.25)
+    return Drawn(
+        Mechanism(bodies, [O, A, B, Q], **acting(rng, [crank, last])),
+        {("O", 0): law},
+        guess | {("Q", 0): 0.0},
+        span=0.25,
+        idle=int(not universal),
+    )
 
 
 @steady
@@ -273,6 +282,62 @@ def bricard(rng) -> Drawn:
     return _ring(rng, [length] * 6, [right, -right] * 3, [first, -second] * 3, law)
 
 
+_FREEDOMS = {"revolute": 1, "prismatic": 1, "screw": 1, "cylindrical": 2, "universal": 2, "planar": 3, "spherical": 3, "slot": 4}
+
+
+def _kinds(rng):
+    """Kinds of joints that have seven freedoms, at most one with three turns, the first a single one."""
+    while True:
+        kinds = [str(rng.choice(["revolute", "prismatic", "screw"])), *rng.choice([*_FREEDOMS], rng.integers(2, 6))]
+        if sum(_FREEDOMS[kind] for kind in kinds) == 7 and sum(kind in ("spherical", "slot") for kind in kinds) < 2:
+            return [str(kind) for kind in kinds]
+
+
+@steady
+def loop(rng) -> Drawn:
+    """One loop of any joints with seven freedoms in all, the first driven; all coordinates are zero at the start."""
+    kinds = _kinds(rng)
+    points = [rng.normal(size=3) * 0.4 for _ in kinds]
+    bodies, poses = [], {GROUND: (np.zeros(3), np.eye(3))}
+    for i, (start, end) in enumerate(itertools.pairwise(points)):
+        bodies.append(body(rng, f"b{i}", float(np.linalg.norm(end - start))))
+        poses[f"b{i}"] = start, orientation(rng) if isinstance(bodies[-1], Rigid) else frame(end - start, rng)
+    names, joints = [GROUND, *(b.name for b in bodies), GROUND], []
+    for i, (kind, at) in enumerate(zip(kinds, points, strict=True)):
+        parent, child = (names[i], names[i + 1]) if i + 1 < len(kinds) else (GROUND, names[i])
+        (r, R), (s, S) = poses[parent], poses[child]
+        drawn = joint(rng, f"j{i}", kind, parent, child, R.T @ (at - r), S.T @ (at - s))
+        joints.append(dataclasses.replace(drawn, orientation=R.T @ S))
+    law = Law(0.0, rng.uniform(0.2, 2.0), rng.uniform(0.0, 0.05), 3.0, 0.0)
+    guess = {name: pose for name, pose in poses.items() if name != GROUND}
+    return Drawn(Mechanism(bodies, joints, **acting(rng, bodies)), {("j0", 0): law}, guess, span=0.2)
+
+
+@steady
+def suspension(rng) -> Drawn:
+    """A wheel's hub on five bars between spherical joints: its height is driven, and a load acts where the tyre stands."""
+    hub, at = rigid(rng, "hub", 0.15), np.array([0.0, 0.7, 0.3]) + rng.normal(size=3) * 0.02
+    ends = [(0.15, -0.05, 0.12), (-0.15, -0.05, 0.1), (0.12, -0.05, -0.12), (-0.12, -0.05, -0.1), (0.05, -0.08, -0.02)]
+    inner = [(0.25, 0.35, 0.4), (-0.25, 0.35, 0.38), (0.3, 0.25, 0.2), (-0.3, 0.25, 0.22), (0.15, 0.3, 0.29)]
+    bodies, joints, guess = [hub], [Joint("travel", "free", GROUND, "hub")], {"hub": (at, np.eye(3))}
+    for i, (end, base) in enumerate(zip(ends, inner, strict=True)):
+        end, base = (np.array(x) + rng.normal(size=3) * 0.02 for x in (end, base))
+        way = at + end - base
+        bodies.append(rod(rng, f"bar{i}", float(np.linalg.norm(way)), slender=True))
+        guess[f"bar{i}"] = base, frame(way, rng)
+        joints += [
+            Joint(f"C{i}", "spherical", GROUND, f"bar{i}", base),
+            Joint(f"H{i}", "spherical", f"bar{i}", "hub", (bodies[-1].length, 0, 0), end),
+        ]
+    tyre = Load("hub", (0, 0.05, -0.3), rng.normal(size=3) * 300, (0, 0, 0))
+    law = Law(at[2], 0.0, rng.uniform(0.02, 0.06), rng.uniform(2, 6), 0.0)
+    return Drawn(Mechanism(bodies, joints, loads=[tyre], gravity=(0, 0, -9.81)), {("travel", 2): law}, guess, span=0.5, idle=5)
+
+
 FAMILIES = {
-    f.__name__: f for f in (tree, arm, rssr, rsur, rssp, rsup, stewart, planar_four_bar, planar_slider_crank, bennett, bricard)
+    f.__name__: f
+    for f in (
+        *(tree, arm, rssr, rsur, rssp, rsup, loop, stewart, suspension),
+        *(planar_four_bar, planar_slider_crank, bennett, bricard),
+    )
 }

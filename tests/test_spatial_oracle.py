@@ -69,3 +69,33 @@ def test_the_numbers_are_met_in_thirty_digits(name):
     instant = entry.instant(entry.count - 1)
     for kind, gap in differences(instant, solved(instant, 40)).items():
         assert gap < 1e-28, (kind, gap)
+
+
+@pytest.mark.parametrize("name", [n for n in NAMES if n.startswith(("sdfast", "opensim"))])
+def test_published_reactions_in_the_childs_axes(name):
+    """SD/FAST's are printed to six decimals; OpenSim's are doubles."""
+    entry, accuracy = Entry(name), 5e-7 if name.startswith("sdfast") else 2e-11
+    for k in range(entry.count):
+        instant = entry.instant(k)
+        found = solved(instant, None)
+        assert all(abs(effort) < 1e-10 for effort in found.efforts.values())
+        for joint, given in instant.data["published_child_axes"].items():
+            R = found.poses[instant.mechanism.joint(joint).child].R
+            own = np.concatenate([R.T @ found.reactions[joint][:3], R.T @ found.reactions[joint][3:]])
+            told = [float(x) for x in (*given["force"], *given["torque"])]
+            assert np.max(np.abs(own - told)) < accuracy
+
+
+@pytest.mark.parametrize("name", [n for n in NAMES if n.startswith("adams")])
+def test_published_forces_on_the_ground(name):
+    """Adams' accelerations scatter by up to 7e-4 from row to row."""
+    entry = Entry(name)
+    for k in range(entry.count):
+        instant = entry.instant(k)
+        found, joint = solved(instant, None), instant.mechanism.joints[0]
+        force, moment = found.reactions["joint"][:3], found.reactions["joint"][3:]
+        arm = (found.poses["pendulum"].at(joint.at_child) - joint.at_parent).astype(float)
+        published = {key: np.array([float(x) for x in told]) for key, told in instant.data["published"].items()}
+        assert all(abs(effort) < 1e-10 * (1 + np.linalg.norm(arm)) for effort in found.efforts.values())
+        assert np.max(np.abs(-force - published["force"])) < 7e-4
+        assert np.max(np.abs(-(moment + np.cross(arm, force)) - published["torque"])) < 7e-4 * (1 + np.linalg.norm(arm))
