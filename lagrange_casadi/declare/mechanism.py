@@ -62,6 +62,7 @@ class Mechanism:
     """
 
     name: str
+    space: bool = False
     parameters: dict[str, Parameter] = field(default_factory=dict, init=False)
     bodies: dict[str, Body] = field(default_factory=dict, init=False)
     joints: dict[str, Joint] = field(default_factory=dict, init=False)

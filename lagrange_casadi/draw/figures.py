@@ -239,7 +239,7 @@ def _has(solution: Solution, spec: Spec) -> bool:
     if isinstance(spec, MechanismDrawing):
         return all(Output("pose", body, "x") in solution.outputs for body in solution.description["bodies"])
     names = set(solution.names())
-    return all(str(component) in names for name in spec.needs() for component in Output.of(name).components)
+    return all(str(component) in names for name in spec.needs() for component in Output.of(name).components(solution.table))
 
 
 def _along(solution: Solution) -> tuple[Array, str]:
