@@ -22,7 +22,7 @@ from ..tables import PLANE, SPACE, Table
 from . import grids
 from .sizes import growth_of_size, size_of, slope_of_size
 from .station_loads import AnyStationLoad, StationLoad
-from .turning import zeros_between, zeros_of_shear, zeros_of_uniform_shear
+from .turning import Turns, turns_between, zeros_of_shear, zeros_of_uniform_shear
 
 __all__ = ["Basis", "SectionLaw", "Side", "StationLoad", "made_of"]
 
@@ -208,7 +208,7 @@ class SectionLaw:
         return [self.during(slice(i, i + height)) for i in range(0, self.coefficients["n0"].size, height)]
 
     def _reached(self, force: str) -> tuple[Array, Array]:
-        places, values = self.curves(force)
+        places, values = self._marks(force, all_turns=True)
         columns = np.stack([np.argmin(values, axis=1), np.argmax(values, axis=1), np.argmax(np.abs(values), axis=1)])
         every = np.arange(len(values))
         return places[every, columns], values[every, columns]
@@ -222,9 +222,13 @@ class SectionLaw:
         """Ratios among which a force is largest in size at every instant, and the force there, both of shape (t, k).
 
         They are those of the base, the tip, every station, once for each of its sides, and between two stations that at which the
-        force turns along the link, or else the end that is next to that. So each is a smooth curve over time, as long as no station
-        passes another one.
+        force turns along the link, or else the end that is next to that; of a resultant its two largest summits there. So each is a
+        smooth curve over time, as long as no station passes another one and no summit of a resultant comes or goes.
         """
+        return self._marks(force, all_turns=False)
+
+    def _marks(self, force: str, *, all_turns: bool) -> tuple[Array, Array]:
+        """The same; or of a resultant wherever it turns, its smallest sizes too."""
         still = np.zeros_like(self.coefficients["n0"])
         stations = [np.clip(load.station, 0.0, 1.0) for load in self.loads]
         places = np.stack([still, still + 1.0, *(station for station in stations for _ in range(2))], axis=1)
@@ -241,7 +245,12 @@ class SectionLaw:
             beyond = (self._beyond(name, load, u, mask) for load, mask in zip(self.loads, masks, strict=True))
             return np.asarray(self._smooth(name, u) + sum(beyond))
 
-        found = self._turning(force, within, low, high)
+        parts = self._parts(force)
+        if len(parts) == 1:
+            found = self._turning(force, within, low, high)
+        else:
+            turns = self._turns_of_size(parts, within, low, high)
+            found = list(np.moveaxis(turns.places, -1, 0)) if all_turns else turns.summits(within(force, turns.places))
         return np.hstack([places, *found]), np.hstack([values, *(within(force, place) for place in found)])
 
     def _planes(self, force: str, basis: Basis) -> tuple[list[Array], Array, list[grids.Load], int]:
@@ -276,11 +285,8 @@ class SectionLaw:
 
     def _turning(self, force: str, within: Callable[[str, Array], Array], low: Array, high: Array) -> list[Array]:
         """Where between two stations the force's derivative along the link is zero, or nearest to it: of a bending moment, first
-        where the shear rises through zero, then where it falls; of a resultant, wherever its square turns.
+        where the shear rises through zero, then where it falls.
         """
-        parts = self._parts(force)
-        if len(parts) > 1:
-            return self._turning_of_size(parts, within, low, high)
         terms, l = self.table.sections[force], self.length
         if len(terms.coefficients) == 1:
             return []
@@ -293,9 +299,7 @@ class SectionLaw:
         middle = np.clip(np.where(np.isnan(turning), 0.0, turning)[:, None], low, high)
         return zeros_of_shear(lambda u: within(terms.shear, u), low, middle, high) if terms.arm else [middle]
 
-    def _turning_of_size(
-        self, parts: tuple[str, ...], within: Callable[[str, Array], Array], low: Array, high: Array
-    ) -> list[Array]:
+    def _turns_of_size(self, parts: tuple[str, ...], within: Callable[[str, Array], Array], low: Array, high: Array) -> Turns:
         """Where the square of a resultant turns: of a shear force where V . V' = 0, of a bending moment where M . M' = 0.
 
         Of a uniform link that is a cubic or a quintic. A density is a factor of V' and left out there.
@@ -315,7 +319,7 @@ class SectionLaw:
 
         # Of a density of n terms shear forces are of degree n + 1, and bending moments of n + 2.
         degree = 2 * self._terms_of_density + 3 if bends else self._terms_of_density + 2
-        return zeros_between(change, low, high, self.density.breaks, degree)
+        return turns_between(change, low, high, self.density.breaks, degree)
 
     @property
     def _terms_of_density(self) -> int:

@@ -1,6 +1,6 @@
-"""Where along a link a force turns: the zeros of its derivative between two stations, or what is nearest to them.
+"""Where along a link a force turns: the zeros of its slope between two stations, or what is nearest to them.
 
-All of it is done at many instants at once, and goes on smoothly from instant to instant.
+All of it is done at many instants at once.
 """
 
 from __future__ import annotations
@@ -8,9 +8,10 @@ from __future__ import annotations
 import functools
 import itertools
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
 from ..declare.density import Array
@@ -52,43 +53,67 @@ def zeros_of_uniform_shear(f0: Array, f1: Array, f2: Array, mass: Any, length: A
     return [1.0 - np.where(b < 0.0, falling, rising), 1.0 - np.where(b < 0.0, rising, falling)]
 
 
-def zeros_between(change: Callable[[Array], Array], low: Array, high: Array, breaks: Sequence[float], degree: int) -> list[Array]:
-    """All zeros between ``low`` and ``high`` of what is a polynomial of a ``degree`` between each two ``breaks``.
+class Turns(NamedTuple):
+    """Where something may turn, (t, parts, n): its ``places``, whether it has a ``summit`` there, and the size of its slope, ``off``.
 
-    ``low`` and ``high`` are (t, parts); ``change`` takes ratios (t, parts, n) and gives the polynomial there. Between two breaks
-    there are as many places as the degree, in order: each zero, and where there are fewer of them what is nearest.
+    All zeros of the slope are among the places; where there are fewer of them, others are those at which it is nearest to zero.
+    """
+
+    places: Array
+    summit: npt.NDArray[np.bool_]
+    off: Array
+
+    def summits(self, sizes: Array) -> list[Array]:
+        """Two summits for each part, (t, parts), in order along the link: the largest, by the ``sizes`` at all places.
+
+        Where there is one, it is both; where there is none, both are where the slope is smallest, as where a summit has just gone.
+        """
+        heights = np.where(self.summit, sizes, -np.inf)
+        none = ~self.summit.any(axis=-1, keepdims=True)
+        first = np.where(none, np.argmin(self.off, axis=-1, keepdims=True), np.argmax(heights, axis=-1, keepdims=True))
+        np.put_along_axis(heights, first, -np.inf, -1)
+        second = np.where(heights.max(axis=-1, keepdims=True) > -np.inf, np.argmax(heights, axis=-1, keepdims=True), first)
+        both = [np.take_along_axis(self.places, which, -1)[..., 0] for which in (first, second)]
+        return [np.minimum(*both), np.maximum(*both)]
+
+
+def turns_between(slope: Callable[[Array], Array], low: Array, high: Array, breaks: Sequence[float], degree: int) -> Turns:
+    """Where something turns between ``low`` and ``high``, whose ``slope`` is a polynomial of a ``degree`` between two ``breaks``.
+
+    ``low`` and ``high`` are (t, parts); ``slope`` takes ratios (t, parts, n), and may have any factor that is not negative.
     """
     nodes, weights = _interpolation(degree)
-    found: list[Array] = []
+    found: list[Turns] = []
     for a, b in itertools.pairwise(breaks):
-        start, stop = np.clip(a, low, high), np.clip(b, low, high)
+        start, stop = np.clip(a, low, high)[..., None], np.clip(b, low, high)[..., None]
         middle, half = (start + stop) / 2, (stop - start) / 2
-        values = change(middle[..., None] + half[..., None] * nodes)
-        zeros = ordered_zeros(np.moveaxis(values @ weights, -1, 0))
-        found += [np.clip(middle + half * zero, start, stop) for zero in zeros]
-    return found
+        values = slope(middle + half * nodes)
+        zeros, falls, off = _zeros(np.moveaxis(values @ weights, -1, 0))
+        found.append(Turns(np.clip(middle + half * zeros, start, stop), falls & (half > 0.0), off))
+    return Turns(*(np.concatenate(rows, axis=-1) for rows in zip(*found, strict=True)))
 
 
-def ordered_zeros(coefficients: Array) -> list[Array]:
-    """Places from -1 to 1, in order, among which are all zeros there of polynomials of degree n; as many as that.
+def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], Array]:
+    """Places from -1 to 1, in order (..., n), among which are all zeros there of polynomials of degree n; as many as that.
 
-    ``coefficients`` (n + 1, ...) are those of Chebyshev's polynomials. A polynomial is monotonic between two zeros of its
-    derivative, so it has one zero there or none; then that end is taken at which it is nearer to zero. So each place is a
-    continuous function of the coefficients, also where zeros come and go.
+    With them come whether it falls through zero there, and how far from zero it is. ``coefficients`` (n + 1, ...) are those of
+    Chebyshev's polynomials. A polynomial is monotonic between two zeros of its derivative, so it has one zero there or none; then
+    that end is taken at which it is nearer to zero.
     """
     levels = [coefficients]
     while len(levels[-1]) > 1:
         levels.append(np.asarray(chebyshev.chebder(levels[-1], axis=0), float))
     one = np.ones(coefficients.shape[1:])
     places: list[Array] = []
+    falls: list[npt.NDArray[np.bool_]] = []
     for level, slope in reversed(list(itertools.pairwise(levels))):
         ends = [-one, *places, one]
         values = [_value(level, x) for x in ends]
-        places = [
-            _zero(level, slope, a, b, at_a, at_b)
-            for (a, b), (at_a, at_b) in zip(itertools.pairwise(ends), itertools.pairwise(values), strict=True)
-        ]
-    return places
+        pairs = list(zip(itertools.pairwise(ends), itertools.pairwise(values), strict=True))
+        places = [_zero(level, slope, a, b, at_a, at_b) for (a, b), (at_a, at_b) in pairs]
+        falls = [(at_a > 0.0) & (at_b <= 0.0) for _, (at_a, at_b) in pairs]
+    off = [np.abs(_value(coefficients, x)) for x in places]
+    return np.stack(places, axis=-1), np.stack(falls, axis=-1), np.stack(off, axis=-1)
 
 
 def _zero(level: Array, slope: Array, a: Array, b: Array, at_a: Array, at_b: Array) -> Array:
