@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from compiled import cc
 
-from lagrange_casadi.codegen.designs import Along, matter_of
+from lagrange_casadi.codegen.link_curves import Along, matter_of
 from lagrange_casadi.declare.density import NumericDensity
 
 SWEEPS = """#include <math.h>

@@ -10,7 +10,8 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.compensated import Precision
-from ..codegen.designs import Along, Reduction, matter_of
+from ..codegen.designs import Reduction
+from ..codegen.link_curves import Along, matter_of
 from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array, Density
 from ..declare.mechanism import Mechanism

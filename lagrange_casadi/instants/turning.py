@@ -5,7 +5,6 @@ All of it is done at many instants at once.
 
 from __future__ import annotations
 
-import functools
 import itertools
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
@@ -15,6 +14,7 @@ import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
 from ..declare.density import Array
+from ..summits.polynomials import interpolation
 
 _HALVINGS = 60
 _CLOSE = 4 * float(np.finfo(float).eps)
@@ -54,7 +54,7 @@ def zeros_of_uniform_shear(f0: Array, f1: Array, f2: Array, mass: Any, length: A
 
 
 class Turns(NamedTuple):
-    """Where something may turn, (t, parts, n): its ``places``, whether it has a ``summit`` there, and the size of its slope, ``off``.
+    """Where something may turn, (t, parts, n): its ``places``, whether it has a ``summit`` there, and its slope's size, ``off``.
 
     All zeros of the slope are among the places; where there are fewer of them, others are those at which it is nearest to zero.
     """
@@ -82,7 +82,7 @@ def turns_between(slope: Callable[[Array], Array], low: Array, high: Array, brea
 
     ``low`` and ``high`` are (t, parts); ``slope`` takes ratios (t, parts, n), and may have any factor that is not negative.
     """
-    nodes, weights = _interpolation(degree)
+    nodes, weights = interpolation(degree)
     found: list[Turns] = []
     for a, b in itertools.pairwise(breaks):
         start, stop = np.clip(a, low, high)[..., None], np.clip(b, low, high)[..., None]
@@ -137,12 +137,3 @@ def _zero(level: Array, slope: Array, a: Array, b: Array, at_a: Array, at_b: Arr
 
 def _value(coefficients: Array, x: Array) -> Array:
     return np.asarray(chebyshev.chebval(x, coefficients, tensor=False))
-
-
-@functools.cache
-def _interpolation(degree: int) -> tuple[Array, Array]:
-    """Nodes from -1 to 1, and what makes Chebyshev coefficients of the values there: values @ weights."""
-    nodes = chebyshev.chebpts1(degree + 1)
-    weights = chebyshev.chebvander(nodes, degree) * (2.0 / (degree + 1))
-    weights[:, 0] /= 2.0
-    return nodes, np.asarray(weights, float)
