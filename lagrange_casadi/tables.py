@@ -60,11 +60,11 @@ class Quantity:
         return {"long_name": self.long_name} | ({"sign": self.sign} if self.sign else {})
 
 
-_ON_INBOARD = "action of the part towards the tip on the part towards the base"
+ON_INBOARD = "action of the part towards the tip on the part towards the base"
 _ON_CHILD = "action of the parent side on the child side"
 _ON_FIRST = "on the body of the load's first point"
 _ALONG = "positive along the joint's coordinate"
-_BY_HAND = f"{_ON_INBOARD}, by the right hand about"
+_BY_HAND = f"{ON_INBOARD}, by the right hand about"
 _ABOUT = "moment of the joint about its point on the child"
 _COORDINATE_OF = "coordinate of the joint: child against parent"
 _RATES = (
@@ -92,7 +92,7 @@ _OTHERS = (
     Quantity("certificate", "closure", ("t",), "1", "gaps of joints, and what users' equations miss, over the length of all links"),
     Quantity("certificate", "ends", ("t",), "1", "sections at the base and what acts there, over the largest force of the cycle"),
     Quantity("certificate", "condition", ("t",), "1", "how much the loops magnify: 1/sin(transmission angle), or 2/volume"),
-    Quantity("section", "axial", ("t", "xi"), FORCE, "axial force", f"tension is positive: {_ON_INBOARD}, along the axis"),
+    Quantity("section", "axial", ("t", "xi"), FORCE, "axial force", f"tension is positive: {ON_INBOARD}, along the axis"),
 )
 _AXIAL_LAW = (
     Quantity("law", "n0", ("t",), FORCE, "axial force at the tip"),
@@ -123,8 +123,8 @@ QUANTITIES = (
     *_LOAD,
     Quantity("load", "mz", ("t",), MOMENT, "applied torque", _ON_FIRST),
     *_OTHERS,
-    Quantity("section", "shear", ("t", "xi"), FORCE, "shear force", f"{_ON_INBOARD}, 90 deg counter-clockwise of the axis"),
-    Quantity("section", "bending", ("t", "xi"), MOMENT, "bending moment", f"{_ON_INBOARD}, counter-clockwise"),
+    Quantity("section", "shear", ("t", "xi"), FORCE, "shear force", f"{ON_INBOARD}, 90 deg counter-clockwise of the axis"),
+    Quantity("section", "bending", ("t", "xi"), MOMENT, "bending moment", f"{ON_INBOARD}, counter-clockwise"),
     *_AXIAL_LAW,
     *_shear_law("f", "shear force"),
     Quantity("law", "m0", ("t",), MOMENT, "bending moment at the tip"),
@@ -149,8 +149,8 @@ SPATIAL_QUANTITIES = (
     Quantity("load", "fz", ("t",), FORCE, "applied force, z", _ON_FIRST),
     *(Quantity("load", f"m{x}", ("t",), MOMENT, f"applied torque, {x}", _ON_FIRST) for x in "xyz"),
     *_OTHERS,
-    Quantity("section", "shear_y", ("t", "xi"), FORCE, "shear force, y", f"{_ON_INBOARD}, along the link's y"),
-    Quantity("section", "shear_z", ("t", "xi"), FORCE, "shear force, z", f"{_ON_INBOARD}, along the link's z"),
+    Quantity("section", "shear_y", ("t", "xi"), FORCE, "shear force, y", f"{ON_INBOARD}, along the link's y"),
+    Quantity("section", "shear_z", ("t", "xi"), FORCE, "shear force, z", f"{ON_INBOARD}, along the link's z"),
     Quantity("section", "torsion", ("t", "xi"), MOMENT, "torsional moment", f"{_BY_HAND} the axis"),
     Quantity("section", "bending_y", ("t", "xi"), MOMENT, "bending moment, y", f"{_BY_HAND} the link's y"),
     Quantity("section", "bending_z", ("t", "xi"), MOMENT, "bending moment, z", f"{_BY_HAND} the link's z"),
