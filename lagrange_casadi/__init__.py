@@ -8,6 +8,7 @@ from .case import Case, load_case
 from .declare.curves import Curve, curve, table
 from .declare.mechanism import Mechanism
 from .declare.scene import Scene
+from .declare.spatial import SpatialMechanism
 from .equations.derive import derive
 from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
@@ -28,6 +29,7 @@ __all__ = [
     "Peak",
     "Scene",
     "Solution",
+    "SpatialMechanism",
     "Sweep",
     "__version__",
     "best",

@@ -18,17 +18,34 @@ __all__ = ["ANGLE", "CONVENTIONS", "LENGTH", "MOMENT", "QUANTITIES", "Declared",
 LAW, STATION, FORCES, PLACE_FIRST = PLANE.law, PLANE.station, PLANE.forces, PLANE.place_first
 """Those of planar mechanisms."""
 
+
+def law_members(space: bool) -> tuple[str, ...]:
+    """The coefficients of a link's section law."""
+    return table_of(space).law
+
+
+def station_members(space: bool) -> tuple[str, ...]:
+    """What is told of a station of a link."""
+    return table_of(space).station
+
+
+def force_members(space: bool, *, moment: bool = True) -> tuple[str, ...]:
+    """The components of a force, and of its moment where it has one."""
+    forces, moments = (("fx", "fy", "fz"), ("mx", "my", "mz")) if space else (("fx", "fy"), ("mz",))
+    return (*forces, *moments) if moment else forces
+
+
 _LAWS = {*PLANE.law, *SPACE.law}
 _ENDINGS = {"rate": "_rate", "acceleration": "_acceleration"}
 _COORDINATE = ".coordinate"
 
 
 class Declared(Protocol):
-    """What the units of outputs depend on: the joints and the user's outputs of a mechanism, by name."""
+    """What the units of outputs depend on: the coordinates and the user's outputs of a mechanism, by name."""
 
     @property
-    def joints(self) -> Mapping[str, Any]:
-        """The joints."""
+    def coordinates(self) -> Mapping[str, tuple[Any, Any]]:
+        """The joint and the axis of each coordinate."""
 
     @property
     def outputs(self) -> Mapping[str, Any]:
@@ -55,10 +72,11 @@ class Output:
             return name
         group, _, text = name.partition(":")
         part, *rest = text.split(":")
-        if group == "motion" and not rest:
-            for member, ending in (("", _COORDINATE), *_ENDINGS.items()):
-                if part.endswith(ending):
-                    return cls(group, part.removesuffix(ending), member)
+        if group in ("motion", "effort"):
+            for member, ending in (("", _COORDINATE), *_ENDINGS.items()) if group == "motion" else ():
+                if text.endswith(ending):
+                    return cls(group, text.removesuffix(ending), member)
+            return cls(group, text)
         if group == "section" and len(rest) == 2:
             station, member = rest
             return cls("law", part, member) if station == "law" and member in _LAWS else cls("station", part, member, station)
@@ -103,8 +121,8 @@ class Output:
         """The unit in a mechanism."""
         if self.group == "output":
             return str(mechanism.outputs[self.part].unit)
-        joint = mechanism.joints.get(self.part) if self.group in ("motion", "effort") else None
-        return self.quantity.unit_for((joint and joint.coordinate) or "angle")
+        found = mechanism.coordinates.get(self.part) if self.group in ("motion", "effort") else None
+        return self.quantity.unit_for("angle" if found is None else found[1].kind)
 
 
 def quantity_of(name: str, space: bool = False) -> Quantity:

@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lagrange_casadi import Mechanism
-from lagrange_casadi.equations.multibody import Turned, joint_coordinate
-from lagrange_casadi.geometry.planar import Frame, Rotation
+from lagrange_casadi.equations.multibody import Turned, place_along
+from lagrange_casadi.geometry.frames import Frame
+from lagrange_casadi.geometry.rotation import Rotation
 
 pytestmark = pytest.mark.quick
 
@@ -21,8 +22,9 @@ def test_an_angle_counts_turns(parent, child):
     m = Mechanism("m")
     a, b = m.link("a", length=1, mass=1), m.link("b", length=1, mass=1)
     symbols = [ca.SX.sym(name, 3) for name in "ab"]
-    frames = {name: Frame(rotation=Rotation(*ca.vertsplit(symbol))) for name, symbol in zip("ab", symbols, strict=True)}
-    function = ca.Function("angle", symbols, [joint_coordinate(m.revolute("J", a.tip, b), frames, ())])
+    frames = {name: Frame(rotation=Rotation.flat(*ca.vertsplit(symbol))) for name, symbol in zip("ab", symbols, strict=True)}
+    joint = m.revolute("J", a.tip, b)
+    function = ca.Function("angle", symbols, [place_along(joint, joint.axes[0], frames, ())])
     one, two = ((math.cos(angle), math.sin(angle), angle) for angle in (parent, child))
     assert float(function(one, two)) == child - parent
 

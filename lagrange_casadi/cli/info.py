@@ -50,8 +50,12 @@ def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
     _describe_mechanism(describe(mechanism, mechanism.values(), scene.laws, scene.weights))
     for line in scene_lines(scene):
         click.echo(line)
-    timing, joints = scene.timing(), scene.guided.joints
-    click.echo(asked_line(timing.words(mechanism.symbols)[:4], bool(timing.joint) and joints[timing.joint].slides))
+    timing = scene.timing()
+    click.echo(
+        asked_line(
+            timing.words(mechanism.symbols)[:4], bool(timing.joint) and scene.guided.coordinates[timing.joint][1].kind == "slide"
+        )
+    )
     click.echo(f"xi/l: {scene.xi[0]:g} to {scene.xi[1]:g}, {scene.xi[2]} points")
     whole = kinds(mechanism)
     click.echo(f"outputs: {', '.join(outputs(mechanism))}" + (f"; all of a kind: {', '.join(whole)}" if whole else ""))

@@ -49,7 +49,7 @@ def _course(scene: Scene, joint: str) -> str:
     motion = motion_function({joint: scene.laws[joint]}, mechanism.symbols)
     values = list(mechanism.values(scene.assembly).values())
     way = motion(ca.DM(np.linspace(start, stop, _LOOKS)).T, ca.repmat(ca.DM(values), 1, _LOOKS))[0].full().ravel()
-    kind = scene.guided.joints[joint].coordinate or "angle"
+    kind = scene.guided.coordinates[joint][1].kind
     words = f"from {describe_coordinate(joint, kind, way[0])} to {describe_coordinate(joint, kind, way[-1])}"
     inside = min(way[0], way[-1]) <= way.min() and way.max() <= max(way[0], way[-1])
     ends = (describe_coordinate(joint, kind, x).partition(" = ")[2] for x in (way.min(), way.max()))

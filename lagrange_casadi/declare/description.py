@@ -81,8 +81,9 @@ def describe(
 
 def _kind(mechanism: Mechanism, name: str) -> str:
     """The kind of a coordinate whose motion is given, of a joint or a guide (:mod:`.guiding`)."""
-    joint = mechanism.joints.get(name)
-    return (joint.coordinate if joint else "angle" if name.endswith(".angle") else None) or "slide"
+    if name in mechanism.coordinates:
+        return mechanism.coordinates[name][1].kind
+    return "angle" if name.endswith(".angle") else "slide"
 
 
 def motions_of(description: Description) -> dict[str, str]:
@@ -150,7 +151,7 @@ def _described(
     return {
         "name": mechanism.name,
         "parameters": parameters,
-        "gravity": [number(component) for component in mechanism.gravity],
+        "gravity": [number(component) for component in mechanism.gravity[: 3 if mechanism.space else 2]],
         "bodies": bodies,
         "joints": joints,
         "loads": loads,

@@ -23,10 +23,12 @@ def weighed(mechanism: Mechanism, drives: Mapping[str, Expression] | Sequence[st
     if len(weights) < len(drives):
         raise DeclarationError(f"drives: a joint stands twice in {', '.join(drives)}")
     for name, weight in weights.items():
-        if name not in mechanism.joints:
-            raise UnknownNameError("joint in drives", name, mechanism.joints)
-        if mechanism.joints[name].coordinate is None:
-            raise DeclarationError(f"drives: joint '{name}' has no coordinate that an effort could work along")
+        if name in mechanism.joints and name not in mechanism.coordinates:
+            axes = ", ".join(axis.coordinate for axis in mechanism.joints[name].axes)
+            why = f"has several coordinates; name one of {axes}" if axes else "has no coordinate that an effort could work along"
+            raise DeclarationError(f"drives: joint '{name}' {why}")
+        if name not in mechanism.coordinates:
+            raise UnknownNameError("joint in drives", name, mechanism.coordinates)
         if not isinstance(weight, ca.SX):
             if not isinstance(weight, (int, float)) or not 0.0 < weight < float("inf"):
                 raise DeclarationError(f"drives: expected a positive weight of joint '{name}', got {weight!r}")
@@ -37,4 +39,4 @@ def weighed(mechanism: Mechanism, drives: Mapping[str, Expression] | Sequence[st
             f"drives: {len(weights)} cannot make {len(moved)} independent motions; name at least {len(moved)} joints for the "
             f"motion of {', '.join(moved)}, got {', '.join(weights) or 'none'}"
         )
-    return {name: weights[name] for name in mechanism.joints if name in weights}
+    return {name: weights[name] for name in mechanism.coordinates if name in weights}

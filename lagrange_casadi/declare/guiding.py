@@ -11,9 +11,10 @@ import copy
 from collections.abc import Mapping, Sequence
 
 from ..errors import DeclarationError, UnknownNameError
+from .joints import Joint
 from .mechanism import Mechanism
 from .motion import Motion
-from .parts import Body, Joint, Link, Point, PointMass, RigidMass
+from .parts import Body, Link, Point, PointMass, RigidMass
 
 _NAMES = {1: ("",), 2: (".x", ".y"), 3: (".x", ".y", ".angle")}
 
@@ -27,15 +28,26 @@ def laws_of(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]
     for name, laws in motion.items():
         given = (laws,) if isinstance(laws, Motion) or not isinstance(laws, (tuple, list)) else tuple(laws)
         if name in mechanism.joints:
+            joint = mechanism.joints[name]
+            _check_joint(joint)
+            if len(joint.axes) > 1:
+                found |= _along_axes(joint, given)
+                continue
             expected, what = 1, "joint"
-            _check_joint(mechanism.joints[name])
+        elif name in mechanism.coordinates:
+            expected, what = 1, "joint"
+        elif mechanism.space and (name in mechanism.paths or name in mechanism.bodies):
+            raise DeclarationError(
+                f"motion of '{name}': in space the motion of a point or a pose is that of a joint: declare a free() joint from the "
+                "ground to it, give that its motion, and name the joints that make it by drives=[...]"
+            )
         elif name in mechanism.paths:
             expected, what = 2, "path"
         elif name in mechanism.bodies and mechanism.bodies[name] is not mechanism.ground:
             expected, what = (3 if mechanism.bodies[name].oriented else 2), "body"
         else:
             bodies = [body.name for body in mechanism.moving]
-            raise UnknownNameError("joint, path or body in motion", name, [*mechanism.joints, *mechanism.paths, *bodies])
+            raise UnknownNameError("joint, path or body in motion", name, [*mechanism.coordinates, *mechanism.paths, *bodies])
         for law in given:
             if not isinstance(law, Motion):
                 raise DeclarationError(f"motion of {what} '{name}': expected a law of lagrange_casadi.motion, got {law!r}")
@@ -46,15 +58,23 @@ def laws_of(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]
     return found
 
 
+def _along_axes(joint: Joint, given: Sequence[Motion]) -> dict[str, Motion]:
+    """The motions of a joint's several axes, in their sequence."""
+    names = [axis.coordinate for axis in joint.axes]
+    if len(given) != len(names) or not all(isinstance(law, Motion) for law in given):
+        raise DeclarationError(f"motion of joint '{joint.name}': expected {len(names)} laws, of {', '.join(names)}, got {given!r}")
+    return dict(zip(names, given, strict=True))
+
+
 def _check_joint(joint: Joint) -> None:
-    if joint.coordinate is None:
+    if not joint.axes:
         why = "a weld does not move" if joint.kind == "weld" else "a point mass has no direction, so a pin at it has no angle"
         raise DeclarationError(f"joint '{joint.name}' cannot be driven: {why}")
 
 
 def guided(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]]) -> Mechanism:
     """The mechanism with the guides of what moves as given, and with the same symbols; itself where only joints do."""
-    names = [name for name in motion if name not in mechanism.joints]
+    names = [name for name in motion if name not in mechanism.joints and name not in mechanism.coordinates]
     if not names:
         return mechanism
     found = copy.copy(mechanism)

@@ -10,7 +10,8 @@ import casadi as ca
 from ..arithmetic.compensated import Precision
 from ..errors import DeclarationError, ParameterError, UnknownNameError
 from .density import Density
-from .parts import Body, Expression, Ground, Joint, Link, Parameter, Point
+from .joints import Joint
+from .parts import Body, Expression, Ground, Link, Parameter, Point
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from ..errors import DeclarationError
 from .density import Density, uniform
@@ -34,3 +35,18 @@ def matter_of(
         x, y = (checked(f"{what}: centre", c) for c in centre)
         return RigidMass(checked(f"{what}: mass", mass), (x, y), checked(f"{what}: inertia", inertia))
     return uniform(checked(f"{what}: mass", mass))
+
+
+def second_moments(inertia: Sequence[Sequence[Expression]]) -> list[list[Any]]:
+    """J_ij, the integral of r_i r_j dm, of moments of inertia I [kg m^2] in three rows: tr(I) / 2 - I."""
+    (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = inertia
+    return [
+        [(iyy + izz - ixx) / 2, -ixy, -ixz],
+        [-ixy, (ixx + izz - iyy) / 2, -iyz],
+        [-ixz, -iyz, (ixx + iyy - izz) / 2],
+    ]
+
+
+def inertias(matter: RigidMass) -> list[Expression]:
+    """The numbers of its moments of inertia."""
+    return [entry for row in matter.inertia for entry in row] if isinstance(matter.inertia, tuple) else [matter.inertia]

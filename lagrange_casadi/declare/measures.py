@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass, field
 from typing import Any
 
 import casadi as ca
 
-from .parts import Joint, Link, Point
+from .joints import Axis, Joint
+from .parts import Link, Point
 
 
 @dataclass(frozen=True, eq=False)
 class Measure:
     """What is measured, the symbols of where it is, and those of their rates and accelerations.
 
-    A joint has its coordinate, a point its x and y, a link the angle of its axis.
+    A joint has its coordinate along an ``axis``, a point its x and y, and in space its z, a link of a plane the angle of its axis.
     """
 
     of: Joint | Point | Link
     places: tuple[Any, ...]
     rates: tuple[Any, ...]
     accelerations: tuple[Any, ...]
+    axis: Axis | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,10 +31,11 @@ class Measures:
     """The measures that a mechanism's loads and constraints have asked for, each once."""
 
     asked: list[Measure] = field(default_factory=list)
+    components: str = "xy"
 
-    def joint(self, joint: Joint) -> Measure:
-        """The measure of a joint's coordinate."""
-        return self._find(joint, (joint.name,))
+    def joint(self, joint: Joint, axis: Axis) -> Measure:
+        """The measure of a joint's coordinate along an axis."""
+        return self._find(joint, (axis.coordinate,), axis)
 
     def link(self, link: Link) -> Measure:
         """The measure of a link's direction."""
@@ -41,9 +45,9 @@ class Measures:
         """The measure of a point's place."""
         for measure in self.asked:
             known = measure.of
-            if isinstance(known, Point) and known.body is point.body and known.x is point.x and known.y is point.y:
+            if isinstance(known, Point) and known.body is point.body and all(map(operator.is_, known.place, point.place)):
                 return measure
-        return self._find(point, (f"{point.body.name}_x", f"{point.body.name}_y"))
+        return self._find(point, tuple(f"{point.body.name}_{component}" for component in self.components))
 
     @property
     def places(self) -> Any:
@@ -65,10 +69,10 @@ class Measures:
         """All symbols of places and rates, one by one."""
         return [symbol for measure in self.asked for symbol in (*measure.places, *measure.rates)]
 
-    def _find(self, of: Joint | Point | Link, names: tuple[str, ...]) -> Measure:
+    def _find(self, of: Joint | Point | Link, names: tuple[str, ...], axis: Axis | None = None) -> Measure:
         for measure in self.asked:
-            if measure.of is of:
+            if measure.of is of and (measure.axis and measure.axis.coordinate) == (axis and axis.coordinate):
                 return measure
-        symbols = (tuple(ca.SX.sym(f"{name}{end}") for name in names) for end in ("", "_rate", "_acceleration"))
-        self.asked.append(Measure(of, *symbols))
+        places, rates, changes = (tuple(ca.SX.sym(f"{name}{end}") for name in names) for end in ("", "_rate", "_acceleration"))
+        self.asked.append(Measure(of, places, rates, changes, axis))
         return self.asked[-1]

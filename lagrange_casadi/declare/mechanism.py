@@ -17,6 +17,7 @@ import casadi as ca
 from ..errors import DeclarationError
 from .density import Density
 from .expressions import check_line, check_name, typed, unit_vector
+from .joints import Axis, Joint, JointKind
 from .kinks import refuse_kinks
 from .limits import check_connected, parameter_values
 from .line_loads import Spread, line_load
@@ -29,8 +30,6 @@ from .parts import (
     Expression,
     Force,
     Ground,
-    Joint,
-    JointKind,
     LineLoad,
     Link,
     Load,
@@ -41,6 +40,7 @@ from .parts import (
     Row,
     Spring,
     Torque,
+    Vector,
 )
 from .possible import demands
 from .results import Asked, OwnOutput, Results
@@ -62,7 +62,6 @@ class Mechanism:
     """
 
     name: str
-    space: bool = False
     parameters: dict[str, Parameter] = field(default_factory=dict, init=False)
     bodies: dict[str, Body] = field(default_factory=dict, init=False)
     joints: dict[str, Joint] = field(default_factory=dict, init=False)
@@ -71,7 +70,7 @@ class Mechanism:
     rows: dict[str, Row] = field(default_factory=dict, init=False)
     outputs: dict[str, OwnOutput] = field(default_factory=dict, init=False)
     paths: dict[str, Path] = field(default_factory=dict, init=False)
-    gravity: tuple[Expression, Expression] = field(default=(0.0, -9.81), init=False)
+    gravity: Vector = field(default=(0.0, -9.81, 0.0), init=False)
     frozen: bool = field(default=False, init=False)
     time: Any = field(default_factory=lambda: ca.SX.sym("t"), init=False)
     measures: Measures = field(default_factory=Measures, init=False)
@@ -99,6 +98,21 @@ class Mechanism:
     def links(self) -> dict[str, Link]:
         """The links by name."""
         return {name: body for name, body in self.bodies.items() if isinstance(body, Link)}
+
+    @property
+    def coordinates(self) -> dict[str, tuple[Joint, Axis]]:
+        """The coordinates by name, as the joint and its axis: ``JOINT``, or ``JOINT:NAME`` where a joint has several."""
+        return {axis.coordinate: (joint, axis) for joint in self.joints.values() for axis in joint.axes}
+
+    @property
+    def space(self) -> bool:
+        """Whether it lies in space, not in a plane."""
+        return False
+
+    @property
+    def reference_posture(self) -> Mapping[str, float]:
+        """Coordinates where all parts are where they were declared to be; a plane has none."""
+        return {}
 
     @property
     def own(self) -> Ownership:
@@ -306,28 +320,29 @@ class Mechanism:
         if path.point.body is self.ground:
             raise DeclarationError(f"path '{name}': a point of the ground does not move; name a point of a link or a point mass")
         for kind, unit, of in (("", "m", self.place), ("v", "m/s", self.velocity), ("a", "m/s^2", self.results.acceleration)):
-            for axis, symbol in zip("xy", of(path.point), strict=True):
+            for axis, symbol in zip(self.measures.components, of(path.point), strict=True):
                 self.output(f"{name}_{kind}{axis}", symbol, unit=unit)
         self.paths[name] = path
         return path
 
-    def coordinate(self, joint: Joint) -> Any:
-        """The symbol of a joint's coordinate, for loads and constraints; an angle counts turns from the start of the scene on."""
-        return self.measures.joint(self.own.moving_joint(joint)).places[0]
+    def coordinate(self, joint: Joint, axis: str = "") -> Any:
+        """The symbol of a joint's coordinate, for loads and constraints; an angle counts turns from the start of the scene on.
 
-    def rate(self, joint: Joint) -> Any:
+        Where a joint has several, ``axis`` names one of them, as ``turn_1``.
+        """
+        return self.measures.joint(*self.own.moving_joint(joint, axis)).places[0]
+
+    def rate(self, joint: Joint, axis: str = "") -> Any:
         """The symbol of a joint's rate, for loads and non-holonomic rows."""
-        return self.measures.joint(self.own.moving_joint(joint)).rates[0]
+        return self.measures.joint(*self.own.moving_joint(joint, axis)).rates[0]
 
-    def place(self, point: Body | Point) -> tuple[Any, Any]:
-        """The symbols of a point's x and y in ground axes [m], for loads and constraints."""
-        x, y = self.measures.point(self.own.point("place", point)).places
-        return x, y
+    def place(self, point: Body | Point) -> tuple[Any, ...]:
+        """The symbols of a point's x and y, and in space z, in ground axes [m], for loads and constraints."""
+        return self.measures.point(self.own.point("place", point)).places
 
-    def velocity(self, point: Body | Point) -> tuple[Any, Any]:
+    def velocity(self, point: Body | Point) -> tuple[Any, ...]:
         """The symbols of a point's velocity in ground axes [m/s], for loads and non-holonomic rows."""
-        x, y = self.measures.point(self.own.point("velocity", point)).rates
-        return x, y
+        return self.measures.point(self.own.point("velocity", point)).rates
 
     def direction(self, link: Link) -> Any:
         """The symbol of the direction of a link's axis against the ground's x axis [rad]; it counts turns as a coordinate does."""
@@ -339,7 +354,7 @@ class Mechanism:
     def set_gravity(self, x: Expression, y: Expression) -> None:
         """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in parameters."""
         self.own.open("set gravity")
-        self.gravity = (self.own.expression("gravity", x), self.own.expression("gravity", y))
+        self.gravity = (self.own.expression("gravity", x), self.own.expression("gravity", y), 0.0)
 
     def freeze(self) -> None:
         """Check the whole and end the declaration. Raises :class:`DeclarationError` for a part that hangs on nothing."""

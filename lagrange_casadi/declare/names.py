@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping
 
 from ..errors import DeclarationError
 from .expressions import check_name
-from .parts import Body, Constraint, Force, Ground, Joint, LineLoad, Link, Load, Parameter, Path, PointMass, Row, Spring, Torque
+from .joints import Joint
+from .parts import Body, Constraint, Force, Ground, LineLoad, Link, Load, Parameter, Path, PointMass, Row, Spring, Torque
 from .results import OwnOutput
 
 _WORDS: dict[type[object], str] = {

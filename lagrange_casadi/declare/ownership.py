@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from ..errors import DeclarationError
 from .expressions import scalar
+from .joints import Axis, Joint
 from .names import Part, check_free
-from .parts import Body, Expression, Joint, Link, Point
+from .parts import Body, Expression, Link, Point
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
@@ -29,7 +30,10 @@ class Ownership:
         if self.mechanism.bodies.get(point.body.name) is not point.body:
             raise DeclarationError(f"{what}: '{point.body.name}' is of another mechanism than '{self.mechanism.name}'")
         what = f"{what}: place on '{point.body.name}'"
-        return Point(point.body, self.expression(what, point.x), self.expression(what, point.y), point.end)
+        x, y, z = (self.expression(what, number) for number in point.place)
+        if not self.mechanism.space and not (isinstance(z, float) and z == 0.0):
+            raise DeclarationError(f"{what}: a plane has no z, got {z}; a mechanism in space is a SpatialMechanism")
+        return Point(point.body, x, y, point.end, z)
 
     def joint(self, joint: Joint) -> Joint:
         """A joint."""
@@ -40,11 +44,15 @@ class Ownership:
             )
         return joint
 
-    def moving_joint(self, joint: Joint) -> Joint:
-        """A joint that has a coordinate."""
-        if self.joint(joint).coordinate is None:
+    def moving_joint(self, joint: Joint, name: str = "") -> tuple[Joint, Axis]:
+        """A joint that has a coordinate, and the axis of that name; it needs none where the joint has one axis."""
+        axes = {axis.name: axis for axis in self.joint(joint).axes}
+        if not axes:
             raise DeclarationError(f"joint '{joint.name}' has no coordinate")
-        return joint
+        if name not in axes:
+            valid = ", ".join(axes) if len(axes) > 1 else "it has one coordinate, without a name"
+            raise DeclarationError(f"joint '{joint.name}' has no coordinate '{name}'; valid: {valid}")
+        return joint, axes[name]
 
     def expression(self, what: str, value: Expression, *, moving: bool = False, found: bool = False) -> Expression:
         """A finite float, or an SX scalar in parameters; where ``moving`` in time and state too; where ``found`` in results too."""

@@ -1,4 +1,4 @@
-"""The parts of a mechanism, frozen: parameters, bodies and their points, joints, loads, constraints and non-holonomic rows."""
+"""The parts of a mechanism, frozen: parameters, bodies and their points, loads, constraints and non-holonomic rows."""
 
 from __future__ import annotations
 
@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from ..errors import ParameterError
+from ..geometry.vectors import Expression as Expression
+from ..geometry.vectors import Vector as Vector
 from ..system.numerals import readable
 from .angles import angle
 from .density import Density
 
-Expression = Any
-"""A number, or a ``casadi.SX`` scalar in the mechanism's parameters."""
-
-JointKind = Literal["revolute", "prismatic", "slot", "weld"]
 End = Literal["base", "tip"]
 
 
@@ -83,24 +81,33 @@ class Point:
     x: Expression
     y: Expression
     end: End | None = None
+    z: Expression = 0.0
+
+    @property
+    def place(self) -> Vector:
+        """All three numbers."""
+        return self.x, self.y, self.z
 
 
 @dataclass(frozen=True, eq=False)
 class Ground(Body):
     """The fixed frame."""
 
-    def at(self, x: Expression, y: Expression) -> Point:
-        """The point of the ground at (x, y) [m]."""
-        return Point(self, x, y)
+    def at(self, x: Expression, y: Expression, z: Expression = 0.0) -> Point:
+        """The point of the ground at (x, y), in space (x, y, z) [m]."""
+        return Point(self, x, y, z=z)
 
 
 @dataclass(frozen=True, eq=False)
 class RigidMass:
-    """Mass [kg], place of the centre of mass in the link's axes [m], and moment of inertia about it [kg m^2]."""
+    """Mass [kg], place of the centre of mass in the link's axes [m], and moment of inertia about it [kg m^2].
+
+    In space the moments of inertia are a matrix, three rows of three, on the link's axes.
+    """
 
     mass: Expression
-    centre: tuple[Expression, Expression]
-    inertia: Expression
+    centre: tuple[Expression, ...]
+    inertia: Any
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,9 +131,9 @@ class Link(Body):
         """The tip, at station ``length``."""
         return Point(self, self.length, 0.0, "tip")
 
-    def at(self, x: Expression, y: Expression = 0.0) -> Point:
-        """The place at station ``x`` along the axis and ``y`` beside it [m]."""
-        return Point(self, x, y)
+    def at(self, x: Expression, y: Expression = 0.0, z: Expression = 0.0) -> Point:
+        """The place at station ``x`` along the axis and ``y``, in space ``z`` too, beside it [m]."""
+        return Point(self, x, y, z=z)
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,49 +157,6 @@ class Path:
 
 
 @dataclass(frozen=True, eq=False)
-class Joint:
-    """A joint between a point of its parent and a point of its child.
-
-    - ``revolute`` holds the two points together; the coordinate is the child's direction less the parent's [rad].
-    - ``prismatic`` holds the child's point on the line through the parent's point along ``axis`` (a unit vector in the parent's
-      axes) and the child's direction at ``angle`` [rad] from the parent's; the coordinate is the place on the line [m].
-    - ``slot`` holds the child's point on that line and leaves its direction free.
-    - ``weld`` holds the points together and the child's direction at ``angle`` from the parent's; it has no coordinate.
-
-    What slides on a line loads the line's carrier, the parent, where it is at the moment.
-    """
-
-    name: str
-    kind: JointKind
-    parent: Point
-    child: Point
-    axis: tuple[Expression, Expression] = (1.0, 0.0)
-    angle: Expression = 0.0
-
-    @property
-    def bodies(self) -> tuple[Body, Body]:
-        """Parent and child."""
-        return self.parent.body, self.child.body
-
-    @property
-    def slides(self) -> bool:
-        """Whether it holds a point on a line."""
-        return self.kind in ("prismatic", "slot")
-
-    @property
-    def holds_direction(self) -> bool:
-        """Whether the child's direction follows from the parent's."""
-        return self.kind in ("prismatic", "weld") and self.child.body.oriented
-
-    @property
-    def coordinate(self) -> Literal["angle", "slide"] | None:
-        """The kind of its coordinate; None for a weld, and for a pin at a point mass, which has no direction to measure."""
-        if self.slides:
-            return "slide"
-        return "angle" if self.kind == "revolute" and all(body.oriented for body in self.bodies) else None
-
-
-@dataclass(frozen=True, eq=False)
 class Force:
     """A force [N] at a point, in ground axes, or where ``turning`` in the body's own."""
 
@@ -201,6 +165,12 @@ class Force:
     x: Expression
     y: Expression
     turning: bool
+    z: Expression = 0.0
+
+    @property
+    def components(self) -> Vector:
+        """All three."""
+        return self.x, self.y, self.z
 
     @property
     def points(self) -> tuple[Point, ...]:
@@ -210,12 +180,22 @@ class Force:
 
 @dataclass(frozen=True, eq=False)
 class Torque:
-    """A torque [N m] on a body at a point, and the opposite on another one, or on the ground."""
+    """A torque [N m] on a body at a point, and the opposite on another one, or on the ground.
+
+    ``value`` is that about z; in space ``across`` are those about x and y, and where ``turning`` all are on the body's own axes.
+    """
 
     name: str
     point: Point
     value: Expression
     against: Point
+    across: tuple[Expression, Expression] = (0.0, 0.0)
+    turning: bool = False
+
+    @property
+    def components(self) -> Vector:
+        """All three."""
+        return *self.across, self.value
 
     @property
     def points(self) -> tuple[Point, ...]:
@@ -252,6 +232,7 @@ class LineLoad:
     x: tuple[Expression, Expression]
     y: tuple[Expression, Expression]
     turning: bool
+    z: tuple[Expression, Expression] = (0.0, 0.0)
 
     @property
     def points(self) -> tuple[Point, ...]:

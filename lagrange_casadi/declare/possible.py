@@ -19,6 +19,7 @@ from .density import Density
 from .ends import BEYOND, beyond_ends
 from .limits import END, margins
 from .lowest import lowest
+from .matter import inertias, second_moments
 from .parts import Expression, LineLoad, Link, PointMass, RigidMass
 
 if TYPE_CHECKING:
@@ -105,17 +106,17 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
         made = (
             [c for cell in matter.cells for c in cell]
             if isinstance(matter, Density)
-            else [matter.mass, *matter.centre, matter.inertia]
+            else [matter.mass, *matter.centre, *inertias(matter)]
             if isinstance(matter, RigidMass)
             else [matter]
         )
         link = isinstance(body, Link)
         yield f"{'link' if link else 'point mass'} '{body.name}'", [*([body.length] if isinstance(body, Link) else []), *made]
     for joint in mechanism.joints.values():
-        places = [number for point in (joint.parent, joint.child) for number in (point.x, point.y)]
+        places = [number for point in (joint.parent, joint.child) for number in point.place]
         yield f"joint '{joint.name}'", [*places, *joint.axis, joint.angle]
     for load in mechanism.loads.values():
-        yield f"load '{load.name}'", [number for point in load.points for number in (point.x, point.y)]
+        yield f"load '{load.name}'", [number for point in load.points for number in point.place]
     yield "gravity", [*mechanism.gravity]
 
 
@@ -148,9 +149,34 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
     assert not isinstance(mass, Density)
     found.append(Demand(mass, False, lambda n: f"{what}: mass must not be negative, got {readable(n(mass))} kg"))
     if isinstance(matter, RigidMass):
+        if isinstance(matter.inertia, tuple):
+            return mass, [*found, *_of_inertia(what, matter)]
         inertia = matter.inertia
         found.append(Demand(inertia, False, lambda n: f"{what}: inertia must not be negative, got {readable(n(inertia))} kg m^2"))
     return mass, found
+
+
+def _of_inertia(what: str, matter: RigidMass) -> list[Demand]:
+    """That moments of inertia are those of some mass: no principal second moment of it is negative.
+
+    So it is where no minor on the diagonal of the matrix of second moments is, each beside its largest terms.
+    """
+    moments = [[ca.SX(entry) for entry in row] for row in second_moments(matter.inertia)]
+    told = "x, y and z"
+
+    def refusal(number: Evaluator) -> str:
+        x, y, z = (readable(number(matter.inertia[k][k])) for k in range(3))
+        return (
+            f"{what}: no body has these moments of inertia: about {told} they are {x}, {y}, {z} kg m^2, and of principal moments "
+            "each is at most the sum of the other two"
+        )
+
+    found = []
+    for chosen in ((0,), (1,), (2,), (0, 1), (0, 2), (1, 2), (0, 1, 2)):
+        minor = ca.vertcat(*(ca.horzcat(*(moments[i][j] for j in chosen)) for i in chosen))
+        size = sum((ca.fabs(moments[i][i]) for i in range(3)), ca.SX(0)) ** len(chosen)
+        found.append(Demand(ca.det(minor) + END["double"] * size, False, refusal))
+    return found
 
 
 def _of_density(what: str, density: Density, length: Expression, precision: Precision) -> list[Demand]:

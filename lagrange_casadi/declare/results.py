@@ -11,8 +11,9 @@ import casadi as ca
 from ..errors import DeclarationError, UnknownNameError
 from ..quantities import FORCES, Output
 from .density import Density
+from .joints import Joint
 from .limits import no_sections
-from .parts import Body, Constraint, Expression, Joint, Link, Load, Point, Row
+from .parts import Body, Constraint, Expression, Link, Load, Point, Row
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
@@ -71,13 +72,12 @@ class Results:
         """The symbol of the acceleration of a joint's coordinate; or those of a point's, in ground axes [m/s^2]."""
         measures, own = self.mechanism.measures, self.mechanism.own
         if isinstance(of, Joint):
-            return measures.joint(own.moving_joint(of)).accelerations[0]
-        x, y = measures.point(own.point("acceleration", of)).accelerations
-        return x, y
+            return measures.joint(*own.moving_joint(of)).accelerations[0]
+        return measures.point(own.point("acceleration", of)).accelerations
 
     def effort(self, joint: Joint) -> Any:
         """The symbol of the effort of the drive at a joint, along its coordinate."""
-        return self._ask(Output("effort", self.mechanism.own.moving_joint(joint).name))
+        return self._ask(Output("effort", self.mechanism.own.moving_joint(joint)[1].coordinate))
 
     def reaction(self, joint: Joint) -> Force:
         """The symbols of a joint's reaction: what its parent does to its child, without the drive's effort."""

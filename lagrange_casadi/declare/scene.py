@@ -173,17 +173,17 @@ class Scene:
             if not isinstance(mapping, Mapping):
                 raise DeclarationError(f"{what}: expected a mapping by name, got {mapping!r}")
             object.__setattr__(self, what, MappingProxyType(dict(mapping)))
-        joints = self.mechanism.joints
-        guides = [name for name in self.laws if name not in joints]
+        guides = [name for name in self.laws if name not in self.mechanism.coordinates]
         if guides and self.drives is None:
             raise DeclarationError(
                 f"motion of '{guides[0].partition('.')[0]}': no effort is along it; name the joints that make it by drives=[...]"
             )
-        places = [*self.mechanism.links, *(n for n, j in joints.items() if j.coordinate)]
+        coordinates = self.mechanism.coordinates
+        places = [*(() if self.mechanism.space else self.mechanism.links), *coordinates]
         for name in self.posture:
             if name not in places:
                 raise UnknownNameError("link or joint in posture", name, places)
-        slides = [name for name, joint in joints.items() if joint.slides]
+        slides = [name for name, (_, axis) in coordinates.items() if axis.kind == "slide"]
         rough = {name: _rough(name, value, name not in slides) for name, value in self.posture.items()}
         object.__setattr__(self, "posture", MappingProxyType(rough))
         for row in self.mechanism.rows.values():

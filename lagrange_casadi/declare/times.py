@@ -66,7 +66,7 @@ class Timing:
             raise DeclarationError(f"over: expected (joint, start, stop, count), got {over!r}")
         if over[0] not in motion:
             raise UnknownNameError("driven joint in over", over[0], motion)
-        slides = mechanism.joints[over[0]].slides
+        slides = mechanism.coordinates[over[0]][1].kind == "slide"
         bounds = [_typed(name, bound, over[0], slides) for name, bound in zip(("START", "STOP"), over[1:], strict=False)]
         start, stop, count = _read(mechanism, "over", (*bounds, over[3]))
         if count < 2:
@@ -176,7 +176,7 @@ def instants_of(mechanism: Mechanism, motion: Mapping[str, Motion], timing: Timi
             f"over: {timing.count} coordinates of joint '{timing.joint}' from {_shown(mechanism, timing.joint, even[0])} to "
             f"{_shown(mechanism, timing.joint, even[1])} cannot be told apart in time: its motion nearly rests there"
         )
-    unit = LENGTH if mechanism.joints[timing.joint].slides else ANGLE
+    unit = LENGTH if mechanism.coordinates[timing.joint][1].kind == "slide" else ANGLE
     return Instants(t, DriveAxis(timing.joint, unit, coordinates))
 
 
@@ -203,7 +203,7 @@ def _way(mechanism: Mechanism, motion: Mapping[str, Motion], timing: Timing, val
 
 def _shown(mechanism: Mechanism, joint: str, value: float) -> str:
     """A coordinate in words."""
-    if mechanism.joints[joint].slides:
+    if mechanism.coordinates[joint][1].kind == "slide":
         return f"{value:.6g} m"
     return f"{value:.6g} rad ({math.degrees(value):.6g} deg)"
 

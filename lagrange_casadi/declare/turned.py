@@ -34,14 +34,14 @@ def note(scene: Scene, timing: Timing, p: Array) -> str:
     ``p`` is (n, parameters); those for which there are no instants do not count. A drive that swings or comes to rest does not
     turn. Nothing is said of several drives, whose turns are no cycle, nor where instants are asked for by the drive.
     """
-    joints = scene.mechanism.joints
+    coordinates = scene.mechanism.coordinates
     if len(scene.laws) != 1 or timing.joint or timing.count < 2:
         return ""
     ((joint, motion),) = scene.laws.items()
     start, stop, _ = timing.bounds(p)
     with np.errstate(invalid="ignore"):
         there = np.isfinite(stop - start) & (stop > start) & (start >= motion.span[0]) & (stop <= motion.span[1])
-    if joints[joint].slides or not there.any():
+    if coordinates[joint][1].kind == "slide" or not there.any():
         return ""
     start, stop, p = start[there], stop[there], p[there]
     law = reaching(scene.mechanism, motion)

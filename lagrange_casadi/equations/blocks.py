@@ -46,7 +46,7 @@ class Equation:
     def aligns(self) -> bool:
         """Whether it holds the direction of a joint's child: by its sine, which a half turn has too."""
         joint = self.loop.joint
-        return joint is not None and joint.holds_direction and self.row == self.loop.gap.numel() - 1
+        return joint is not None and joint.aligns and self.row == self.loop.gap.numel() - 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,7 +227,7 @@ def _require_freedom(multibody: Multibody, equations: int, parts: Sequence[Part]
         freedom = len(multibody.coordinates) - ranks[0]
         if freedom == driven == len(multibody.coordinates) - ranks[1] and all(len(rows) >= len(columns) for rows, columns in parts):
             return
-    movable = [name for name, joint in multibody.mechanism.joints.items() if joint.coordinate]
+    movable = list(multibody.mechanism.coordinates)
     advice = f"drive {freedom} of the joints {', '.join(movable)}" if freedom > 0 else "take a joint, a constraint or a link away"
     if freedom == driven:
         advice = "but these over-determine some loops and leave others loose; drive other joints"

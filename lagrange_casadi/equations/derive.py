@@ -16,7 +16,8 @@ from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted
 from ..errors import AssemblyError, MobilityError, PostureError
-from ..quantities import ANGLE, Output
+from ..geometry.vectors import ZERO
+from ..quantities import ANGLE, Output, force_members
 from ..system import cache
 from . import kinematics
 from .assembly import assemble
@@ -25,7 +26,7 @@ from .drives import closure, pushed
 from .fingerprint import fingerprint
 from .kinematics import Start
 from .mobility import internal_forces, needed_reactions
-from .multibody import Multibody, column
+from .multibody import Coordinate, Multibody, column
 from .own import own_outputs
 from .reciprocals import share_reciprocals
 from .scene_graph import SceneGraph
@@ -98,12 +99,12 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     tree = span(scene.guided, scene.laws)
     borne = needed_reactions(mechanism, want.reactions, want.sections)
     body = assemble(scene.guided, tree, scene.laws, borne, pushed(scene.needs_drives, scene.weights), want.own)
-    driven = tuple(c.joint for c in body.coordinates if c.driven)
+    driven = tuple(c.name for c in body.coordinates if c.driven)
     motion = motion_function({name: scene.laws[name] for name in driven}, p)
     values = list(mechanism.values(scene.assembly).values())
     first = [float(x) for x in ca.DM(motion(scene.span[0], values)[0]).full().ravel()]
     start = Start(scene.span[0], first, values)
-    solved = kinematics.solve(body, scene.posture, start, iterate=iterate)
+    solved = kinematics.solve(body, {**scene.mechanism.reference_posture, **scene.posture}, start, iterate=iterate)
     solved, swings = count_turns(body, solved, motion, scene.span, start, _seeing(body, want))
 
     columns = _beyond(body, _seeing(body, want))
@@ -117,8 +118,8 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     if want.motion:
         motions = _motion_columns(mechanism, body, solved, driven)
         angles = [c for c in body.coordinates if c.kind == "angle"]
-        loose: dict[Column, Any] = {Output("pose", c.body, "angle"): c.value for c in angles if c.joint in solved.loose}
-        counted: dict[Column, Any] = {Check("turns", c.joint): c.value for c in angles if c.joint not in solved.loose}
+        loose: dict[Column, Any] = {_known_by(c): c.value for c in angles if c.name in solved.loose}
+        counted: dict[Column, Any] = {Check("turns", c.name): c.value for c in angles if c.name not in solved.loose}
         loop_angles = {output: _turns(value, loose | counted) for output, value in motions.items() if _is_angle(mechanism, output)}
         loop_angles = {output: turns for output, turns in loop_angles.items() if not loose.keys().isdisjoint(turns)}
         whole = {check: ca.floor(value * (1 / math.tau)) for check, value in counted.items()}
@@ -128,7 +129,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
         columns |= dict(motions.items())
     for part in reversed(body.applied):
         if part.source in want.loads:
-            columns |= {Output("load", part.source, member): getattr(part, member) for member in ("fx", "fy", "mz")}
+            columns |= {Output("load", part.source, member): part.members[member] for member in force_members(mechanism.space)}
     placed = solved.evaluate(ca.vertcat(ca.SX(0, 1), *columns.values()))
     columns = dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True))
     inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, p]
@@ -184,7 +185,7 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
             "load" if part.source in body.mechanism.loads else "constraint" if part.source in body.mechanism.constraints else "row"
         )
         name = f"{kind} '{part.source}'"
-        found[name] = ca.vertcat(found.get(name, ca.SX(0, 1)), part.fx, part.fy, part.mz)
+        found[name] = ca.vertcat(found.get(name, ca.SX(0, 1)), *part.force, *part.couple)
     return found
 
 
@@ -202,23 +203,33 @@ def _motion_columns(
     mechanism: Mechanism, body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]
 ) -> dict[Output, Any]:
     columns: dict[Output, Any] = {}
-    for name, joint in mechanism.joints.items():
+    closing = {joint.name for joint in body.tree.closing}
+    for name, (joint, axis) in mechanism.coordinates.items():
         if name in driven:
             i = driven.index(name)
             motion = (solved.driven[i], solved.driven_rate[i], solved.driven_acceleration[i])
-        elif joint.coordinate is not None:
-            motion = body.joint_motion(joint)
-        else:
+        elif joint.turns > 2 and joint.name in closing:
             continue
+        else:
+            motion = body.motion_along(joint, axis)
         members = (Output("motion", name, member) for member in ("", "rate", "acceleration"))
         columns |= dict(zip(members, motion, strict=True))
     for part in mechanism.moving:
         frame = body.frames[part.name]
-        x, y = frame.place_of(0.0, 0.0)
-        columns |= {Output("pose", part.name, "x"): x, Output("pose", part.name, "y"): y}
-        if part.oriented:
+        place = zip("xyz" if mechanism.space else "xy", frame.place_of(ZERO), strict=False)
+        columns |= {Output("pose", part.name, component): value for component, value in place}
+        if part.oriented and mechanism.space:
+            axes = zip("xyz", (frame.rotation.x, frame.rotation.y, frame.rotation.z), strict=True)
+            cosines = ((f"{name}{component}", value) for name, axis in axes for component, value in zip("xyz", axis, strict=True))
+            columns |= {Output("pose", part.name, member): ca.SX(value) for member, value in cosines}
+        elif part.oriented:
             columns[Output("pose", part.name, "angle")] = frame.rotation.angle
     return columns
+
+
+def _known_by(coordinate: Coordinate) -> Output:
+    """The output that an angle that a loop sets is the same as."""
+    return Output("motion", coordinate.name) if coordinate.relative else Output("pose", coordinate.body, "angle")
 
 
 def _is_angle(mechanism: Mechanism, output: Output) -> bool:

@@ -7,8 +7,8 @@ from typing import Any
 import casadi as ca
 
 from ..declare.mechanism import Mechanism
-from ..geometry.planar import misalignment
 from .blocks import Block, Equation
+from .joints import off
 from .multibody import Multibody
 
 
@@ -42,7 +42,7 @@ def reach(mechanism: Mechanism) -> Any:
 def extent(mechanism: Mechanism) -> Any:
     """The links end to end, and how far from the origin they are joined to the ground [m]: a gap is small or large beside it."""
     points = (point for joint in mechanism.joints.values() for point in (joint.parent, joint.child))
-    places = [ca.fabs(ca.SX(place)) for point in points if point.body is mechanism.ground for place in (point.x, point.y)]
+    places = [ca.fabs(ca.SX(place)) for point in points if point.body is mechanism.ground for place in point.place]
     return reach(mechanism) + (ca.mmax(ca.vertcat(*places)) if places else 0)
 
 
@@ -50,7 +50,7 @@ def _turned(multibody: Multibody, equation: Equation) -> Any:
     """One less the cosine of what a direction is off."""
     joint = equation.loop.joint
     assert joint is not None
-    return 1 - misalignment(joint, *(multibody.frames[body.name] for body in joint.bodies)).c
+    return off(joint, *(multibody.frames[body.name] for body in joint.bodies))
 
 
 def _slope(multibody: Multibody, equation: Equation, length: Any) -> Any:

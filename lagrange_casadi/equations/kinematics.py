@@ -197,7 +197,7 @@ class _Solver:
             self.numbers.note(column(c.variables for c in block.unknown), values)
             for coordinate, value in zip(block.unknown, form.variables, strict=True):
                 self._know(coordinate, self.found.put_into(ca.substitute(value, form.branch, ca.SX(sign))))
-            self.loose |= {c.joint for c in block.unknown if c.kind == "angle"}
+            self.loose |= {c.name for c in block.unknown if c.kind == "angle"}
             self._judge(block, closure)
 
     def _judge(self, block: Block, closure: Any) -> None:
@@ -252,7 +252,7 @@ class _Solver:
         Where it is not ``needed``, joints that hold directions are not looked through, for that takes time.
         """
         found = {c: self.posture[posture_name(c)] for c in coordinates if posture_name(c) in self.posture}
-        angles = [c for c in coordinates if c.kind == "angle" and c not in found]
+        angles = [c for c in coordinates if c.kind == "angle" and not c.relative and c not in found]
         if angles and (needed or any(n not in self.multibody.frames and turns(self.multibody, n) for n in self.posture)):
             told = directions(self.multibody, self.posture, self.numbers, self.known)
             found |= {c: told[c.body] for c in angles if c.body in told}
@@ -260,7 +260,7 @@ class _Solver:
 
     def _iterate(self, block: Block, guess: Mapping[Coordinate, float]) -> None:
         for coordinate in block.unknown:
-            symbol = ca.SX.sym(f"z_{coordinate.joint}")
+            symbol = ca.SX.sym(f"z_{coordinate.name}")
             self._know(coordinate, coordinate.placed(coordinate.value, symbol))
             self.iterated.append(symbol)
             self.guess.append(guess[coordinate])
@@ -268,7 +268,7 @@ class _Solver:
             counted = any(ca.depends_on(loop.gap, coordinate.value) for loop in self.multibody.loop_equations)
             self.turning.append(coordinate.kind == "angle" and not counted)
             if self.turning[-1]:
-                self.loose.add(coordinate.joint)
+                self.loose.add(coordinate.name)
         self.residuals.append(block)
         self._settle()
 
@@ -291,7 +291,7 @@ class _Solver:
 
     def _where(self) -> str:
         driven = [c for c in self.multibody.coordinates if c.driven]
-        return where((c.joint, c.kind, v) for c, v in zip(driven, self.start.driven, strict=True))
+        return where((c.name, c.kind, v) for c, v in zip(driven, self.start.driven, strict=True))
 
     def finish(self, blocks: tuple[Block, ...]) -> Kinematics:
         """Rates and accelerations, block by block, and the substitution of everything."""

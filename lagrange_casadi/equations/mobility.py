@@ -24,14 +24,17 @@ from typing import Any
 import casadi as ca
 
 from ..declare.density import Density
+from ..declare.joints import Joint
 from ..declare.limits import at_end
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Joint, LineLoad, Link, Point
-from ..geometry.planar import Frame, Velocities, reaction, slide
-from ..quantities import LAW, STATION, Output
+from ..declare.parts import LineLoad, Link, Point, Vector
+from ..geometry.frames import Frame, Velocities
+from ..geometry.vectors import ZERO, cross, plus, times
+from ..quantities import Output, force_members, law_members, station_members
 from .checks import Check, Column
 from .drives import solve_efforts
 from .gaps import reach
+from .joints import borne, reaction, slide
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
 from .multibody import Multibody, column
@@ -79,13 +82,13 @@ def internal_forces(
     unknowns, values, free = _multipliers(multibody, kinematics, along)
 
     unaided = {graph.row.replaces for graph in multibody.rows}
-    drives = {c.joint: along[i] for i, c in enumerate(multibody.coordinates) if c.driven and c.joint not in unaided}
+    drives = {c.name: along[i] for i, c in enumerate(multibody.coordinates) if c.driven and c.name not in unaided}
     held: dict[Column, Any] = {}
     if weights is not None and multibody.efforts:
         needs = {name: ca.substitute(ca.SX(need), unknowns, values) for name, need in drives.items()}
         needs = {name: need for name, need in needs.items() if name in multibody.efforts or name not in weights}
         size = reach(multibody.mechanism)
-        units = {name: 1 if joint.coordinate == "angle" else size for name, joint in multibody.mechanism.joints.items()}
+        units = {name: 1 if axis.kind == "angle" else size for name, (_, axis) in multibody.mechanism.coordinates.items()}
         efforts = solve_efforts(multibody.efforts, needs, weights, units)
         drives = {name: multibody.efforts.get(name, drives.get(name)) for name in weights}
         values = ca.substitute(values, efforts.symbols, efforts.values)
@@ -94,19 +97,20 @@ def internal_forces(
     starts = itertools.accumulate((rates.numel() for rates in multibody.mobilities.values()), initial=0)
     by_joint = dict(zip(multibody.mobilities, ca.vertsplit(across, [*starts]), strict=True))
     joints = multibody.mechanism.joints
-    borne = {
+    found = {
         name: _reaction(multibody, joints[name], by_joint) for name in needed_reactions(multibody.mechanism, reactions, sections)
     }
     columns: dict[Column, Any] = {Output("effort", joint): force for joint, force in drives.items()} if effort else {}
     for name in reactions:
-        columns |= {Output("reaction", name, member): force for member, force in borne[name].items()}
+        members = force_members(multibody.mechanism.space, moment=joints[name].bears_moment)
+        columns |= {Output("reaction", name, member): found[name].member(member) for member in members}
     tying = {c.name: c.multipliers for c in multibody.loop_equations if c.joint is None}
     tying |= {graph.row.name: graph.multiplier for graph in multibody.rows}
     columns |= {Output("multiplier", name): tying[name] for name in multipliers}
     if reactions:
         columns |= {Check("multiplier", name): multiplier for name, multiplier in tying.items() if name not in multipliers}
     for name in sections:
-        columns |= _section_law(multibody, name, borne, drives)
+        columns |= _section_law(multibody, name, found, drives)
     # All at once, for a substitution visits the whole graph; and mobilities rest.
     rates = multibody.mobility_rates
     resting = ca.substitute(column(columns.values()), rates, ca.SX.zeros(rates.numel()))
@@ -114,42 +118,73 @@ def internal_forces(
     return InternalForces(dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True)) | held, free)
 
 
-def _section_law(multibody: Multibody, name: str, borne: Any, drives: Any) -> dict[Column, Any]:
+@dataclass(frozen=True, eq=False)
+class Action:
+    """A force [N] and a couple [N m], on the same axes."""
+
+    force: Vector = ZERO
+    couple: Vector = ZERO
+
+    def member(self, name: str) -> Any:
+        """A component by what files call it, as ``fx`` or ``mz``."""
+        return (self.force if name[0] == "f" else self.couple)["xyz".index(name[1])]
+
+    def __add__(self, other: Action) -> Action:
+        return Action(plus(self.force, other.force), plus(self.couple, other.couple))
+
+    def __neg__(self) -> Action:
+        return Action(times(-1, self.force), times(-1, self.couple))
+
+
+def _section_law(multibody: Multibody, name: str, found: Mapping[str, Action], drives: Any) -> dict[Column, Any]:
     """The coefficients of a link's law: of its material from the section mobility, of the tip and stations from what acts there."""
-    link, direction = multibody.mechanism.links[name], multibody.frames[name].rotation
+    link, direction, space = multibody.mechanism.links[name], multibody.frames[name].rotation, multibody.mechanism.space
     slopes = _material(multibody, name)
-    tip = [ca.SX(0), ca.SX(0), ca.SX(0)]
+    tip = Action()
     stations: dict[Column, Any] = {}
-    for source, x, y, (fx, fy, mz) in _loads_on(multibody, link, borne, drives):
-        n, f = direction.resolve(fx, fy)
-        acting = (n, f, mz - y * n)
-        if x is None:
-            tip = [total + part for total, part in zip(tip, acting, strict=True)]
-        else:
-            found = zip(STATION, (*acting, x / link.length), strict=True)
-            stations |= {Output("station", name, member, source): value for member, value in found}
-    n0, f0, m0 = tip
-    f1, f2 = -slopes[1, 0], -slopes[1, 1]
+    for source, place, action in _loads_on(multibody, link, found, drives):
+        force, couple = direction.resolve(action.force), direction.resolve(action.couple)
+        # About the link's axis, beside which it may act.
+        acting = Action(force, plus(couple, cross((0.0, *place[1:]), force)))
+        if place[0] is None:
+            tip += acting
+            continue
+        members = (*_by_plane(acting, space), place[0] / link.length)
+        stations |= {
+            Output("station", name, member, source): value for member, value in zip(station_members(space), members, strict=True)
+        }
+    by_mass, by_moment = ([-slopes[k, column] for k in range(slopes.size1())] for column in (0, 1))
+    at_tip, about = list(tip.force), tip.couple
     if _between_pins(multibody, link, drives):
         # The moment about the base is zero: of a light link between heavy bodies the tip's reaction would leave rounding only.
         assert isinstance(link.mass, Density)
         _, first, inertia = link.mass.ends(link.length)
-        f0 = -(f1 * first + f2 * (first * link.length + inertia / link.length))
-    n1, n2 = -slopes[0, 0], -slopes[0, 1]
+        at_tip[1] = -(by_mass[1] * first + by_moment[1] * (first * link.length + inertia / link.length))
     for part in multibody.applied:
         if part.spread is not None and part.point.body is link:
             # Mass lies evenly there, so that a load that is linear along the link goes by it as weight does.
             load = multibody.mechanism.loads[part.source]
             assert isinstance(load, LineLoad)
-            (n_base, f_base), (n_tip, f_tip) = part.spread
-            n1, n2 = n1 + n_base / load.matter, n2 + (n_tip - n_base) / (load.matter * link.length)
-            f1, f2 = f1 + f_base / load.matter, f2 + (f_tip - f_base) / (load.matter * link.length)
-    law = (n0, n1, n2, f0, f1, f2, m0)
-    return {Output("law", name, member): value for member, value in zip(LAW, law, strict=True)} | stations
+            for k, (base, end) in enumerate(zip(*part.spread, strict=True)):
+                if k < len(by_mass):
+                    by_mass[k] += base / load.matter
+                    by_moment[k] += (end - base) / (load.matter * link.length)
+    along, beside, *above = zip(at_tip, by_mass, by_moment, strict=False)
+    law = [*along, *beside, about[2]]
+    for plane in above:
+        law += [*plane, about[1], about[0]]
+    return {Output("law", name, member): ca.SX(value) for member, value in zip(law_members(space), law, strict=True)} | stations
+
+
+def _by_plane(acting: Action, space: bool) -> tuple[Any, ...]:
+    """The numbers of a station: what acts along and across the link's axis, and about it."""
+    return (*acting.force, *acting.couple) if space else (*acting.force[:2], acting.couple[2])
 
 
 def _between_pins(multibody: Multibody, link: Link, drives: Any) -> bool:
-    """Whether pins without effort at a link's base and at its tip are all that acts on it."""
+    """Whether pins of a plane without effort at a link's base and at its tip are all that acts on it."""
+    if multibody.mechanism.space:
+        return False
     if any(part.point.body is link for part in (*multibody.applied, *multibody.held)):
         return False
     joints = [joint for joint in multibody.mechanism.joints.values() if link in joint.bodies]
@@ -164,20 +199,25 @@ def _material(multibody: Multibody, name: str) -> Any:
     In axes at rest that lie along the link at the instant: the energy does not see which axes at rest it is written in, and in
     these the first moment's forces are the rate squared and its change, to the last bit.
     """
-    frame = multibody.felt[name].along_axis()
-    slopes, symbols = _of_any_link()
-    return ca.substitute(slopes, symbols, column([*frame.speed, *frame.acceleration, frame.rate, frame.angular]))
+    frame, space = multibody.felt[name].along_axis(), multibody.mechanism.space
+    slopes, symbols = _of_any_link(space)
+    motion = (frame.speed, frame.acceleration, frame.rate, frame.angular)
+    return ca.substitute(slopes, symbols, column(value for vector in motion for value in vector))
 
 
 @functools.cache
-def _of_any_link() -> tuple[Any, Any]:
-    """The same for symbols of the velocity and acceleration of the link's base, its rate, and the rate's change; and these."""
-    vx, vy, ax, ay, rate, angular = symbols = ca.vertsplit(ca.SX.sym("motion", 6))
-    base_frame = Frame(speed=(vx, vy), acceleration=(ax, ay), rate=rate, angular=angular)
+def _of_any_link(space: bool) -> tuple[Any, Any]:
+    """The same for symbols of the velocity and acceleration of the link's base, its angular velocity, and its change; and these."""
+    symbols = ca.SX.sym("motion", 12)
+    at_rest = () if space else (2, 5, 6, 7, 9, 10)
+    entries = [0.0 if k in at_rest else symbols[k] for k in range(12)]
+    speed, acceleration, rate, angular = ((entries[k], entries[k + 1], entries[k + 2]) for k in (0, 3, 6, 9))
+    base_frame = Frame(speed=speed, acceleration=acceleration, rate=rate, angular=angular)
     mass, first, second = (ca.SX.sym(f"mu{i}") for i in range(3))
-    released, velocities = ca.SX.sym("ed_section", 2), Velocities()
-    base = velocities.point(base_frame.displaced(released).motion_of(0.0, 0.0))
-    lever = velocities.point(Frame(rate=rate, angular=angular).motion_of(1.0, 0.0))
+    released, velocities = ca.SX.sym("ed_section", 3 if space else 2), Velocities()
+    translation = (released[0], released[1], released[2] if space else 0.0)
+    base = velocities.vector(base_frame.displaced(translation, ZERO).motion_of(ZERO))
+    lever = velocities.vector(Frame(rate=rate, angular=angular).motion_of((1.0, 0.0, 0.0)))
     piece = LagrangeSystem(
         kinetic=mass * ca.sumsqr(base) / 2 + first * ca.dot(base, lever) + second * ca.sumsqr(lever) / 2,
         force_function=ca.SX(0),
@@ -189,37 +229,36 @@ def _of_any_link() -> tuple[Any, Any]:
         velocity_graphs=column(velocities.graphs),
         velocity_rates=column(velocities.rates),
     )
-    return ca.jacobian(piece.terms()[1], ca.vertcat(mass, first)), ca.vertcat(*symbols)
+    return ca.jacobian(piece.terms()[1], ca.vertcat(mass, first)), symbols
 
 
-def _loads_on(multibody: Multibody, link: Link, borne: Any, drives: Any) -> Iterator[tuple[str, Any, Any, tuple[Any, Any, Any]]]:
-    """What acts on a link beyond its base: by whom, where in the link's axes, and force and couple in ground axes.
-
-    The station is None at the tip.
-    """
+def _loads_on(
+    multibody: Multibody, link: Link, found: Mapping[str, Action], drives: Any
+) -> Iterator[tuple[str, tuple[Any, Any, Any], Action]]:
+    """What acts on a link beyond its base: by whom, where in the link's axes, and in ground axes what. At the tip x is None."""
     for joint in multibody.mechanism.joints.values():
         for point, sign in ((joint.parent, -1), (joint.child, 1)):
-            if point.body is not link or joint.name not in borne:
+            if point.body is not link or joint.name not in found:
                 continue
-            parent = multibody.frames[joint.parent.body.name]
-            members = borne[joint.name]
-            fx, fy, mz = members["fx"], members["fy"], members.get("mz", 0)
-            if joint.name in drives and joint.slides:
-                ax, ay = parent.rotation.apply(*joint.axis)
-                fx, fy = fx + drives[joint.name] * ax, fy + drives[joint.name] * ay
-            elif joint.name in drives:
-                mz = mz + drives[joint.name]
-            x, y = point.x, point.y
+            action = found[joint.name]
+            for axis in joint.axes:
+                if axis.coordinate in drives:
+                    push = times(drives[axis.coordinate], multibody.along[axis.coordinate])
+                    action += Action(couple=push) if axis.kind == "angle" else Action(push)
+            x, y, z = point.place
             if joint.slides and point is joint.parent:
-                along, _ = slide(joint, parent, multibody.frames[joint.child.body.name])
-                x, y = x + joint.axis[0] * along, y + joint.axis[1] * along
+                parent, child = (multibody.frames[body.name] for body in joint.bodies)
+                for freedom in joint.lets:
+                    if freedom.move != "turn":
+                        direction = joint.triad[freedom.direction]
+                        x, y, z = plus((x, y, z), times(slide(joint, parent, child, direction), direction))
             elif _at_base(point):
                 continue
             elif point.end == "tip":
                 x = None
             else:
                 x = at_end(point)
-            yield joint.name, x, y, (sign * fx, sign * fy, sign * mz)
+            yield joint.name, (x, y, z), action if sign > 0 else -action
     seen: dict[str, int] = {}
     m = multibody.mechanism
     acting = {*m.joints, *m.loads, *m.constraints, *m.rows}
@@ -231,7 +270,7 @@ def _loads_on(multibody: Multibody, link: Link, borne: Any, drives: Any) -> Iter
                 seen[part.source] += 1
                 name = f"{part.source}_{seen[part.source]}"
             seen[part.source] = max(seen[part.source], 1)
-            yield name, x, part.point.y, (part.fx, part.fy, part.mz)
+            yield name, (x, *part.point.place[1:]), Action(part.force, part.couple)
 
 
 def _at_base(point: Point) -> bool:
@@ -259,7 +298,7 @@ def _multipliers(multibody: Multibody, kinematics: Kinematics, along: Any) -> tu
         symbols, values = ca.vertcat(own, symbols), ca.vertcat(system.solve_transposed(left, open_here), values)
     if multibody.rows:
         mu = column(graph.multiplier for graph in multibody.rows)
-        replaced = [next(c for c in rows if c.joint == graph.row.replaces) for graph in multibody.rows]
+        replaced = [next(c for c in rows if c.name == graph.row.replaces) for graph in multibody.rows]
         unaided = ca.substitute(column(rows[c] for c in replaced), symbols, values)
         solved = ca.solve(ca.jacobian(unaided, mu), -ca.substitute(unaided, mu, ca.SX.zeros(mu.numel())))
         values = ca.substitute(values, mu, solved)
@@ -267,13 +306,20 @@ def _multipliers(multibody: Multibody, kinematics: Kinematics, along: Any) -> tu
     return symbols, values, free
 
 
-def _reaction(multibody: Multibody, joint: Joint, actions: dict[str, Any]) -> dict[str, Any]:
+def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> Action:
+    """What a joint's parent does to its child, in ground axes, without efforts; the moment is about the child's point."""
     parent, child = (multibody.frames[body.name] for body in joint.bodies)
     for loop in multibody.loop_equations:
         if loop.joint is joint:
-            return reaction(joint, parent, child, loop.multipliers, closing=True)
+            return Action(*reaction(joint, parent, child, loop.multipliers))
     branch = next(branch for branch in multibody.tree.branches if branch.joint is joint)
-    return reaction(joint, parent, child, branch.sign * actions[joint.name], closing=False)
+    action = branch.sign * actions[joint.name]
+    if multibody.mechanism.space:
+        x, y, z, *about = ca.vertsplit(action)
+        moment: Vector = (about[0], about[1], about[2]) if about else ZERO
+    else:
+        x, y, z, moment = action[0], action[1], 0.0, (0.0, 0.0, action[2]) if joint.bears_moment else ZERO
+    return Action(*borne(joint, parent, child, (x, y, z), moment))
 
 
 def stations_of(outputs: Iterable[Output], link: str) -> tuple[str, ...]:

@@ -14,25 +14,29 @@ from typing import Any, Literal
 
 import casadi as ca
 
+from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Joint, Point, Row
-from ..geometry.planar import Frame, Pair, Velocities, slide, slide_motion
+from ..declare.parts import Point, Row, Vector
+from ..errors import DeclarationError
+from ..geometry.frames import Frame, Velocities
+from ..geometry.vectors import ZERO
+from .joints import slide, slide_motion, turned, turning
 from .lagrange import LagrangeSystem
 from .tree import Tree
 
 
 @dataclass(frozen=True, eq=False)
 class Coordinate:
-    """A coordinate of the tree: the joint that carries it, the body it places, and its symbols.
+    """A coordinate of the tree: its name, the body it places, the axis of a joint along which it does, and its symbols.
 
     ``variables`` is what graphs are written in: (cosine, sine, angle) or the slide itself, the value last; ``change`` their rates.
-    Cosine and sine are those of ``turn``, an expression in coordinates: the direction of the body, or of a driven body as seen from
-    the one it hangs on (``relative``).
+    Cosine and sine are those of ``turn``, an expression in coordinates: the direction of the body, or a turn about the axis
+    alone (``relative``).
     """
 
-    joint: str
+    name: str
     body: str
-    kind: Literal["angle", "slide"]
+    axis: Axis
     driven: bool
     variables: Any
     change: Any
@@ -40,6 +44,11 @@ class Coordinate:
     acceleration: Any
     turn: Any = None
     relative: bool = False
+
+    @property
+    def kind(self) -> Literal["angle", "slide"]:
+        """What it is."""
+        return self.axis.kind
 
     @property
     def value(self) -> Any:
@@ -78,16 +87,21 @@ class LoopEquations:
 class Applied:
     """What a load, or the multiplier of a constraint or row, does at a point of a body, as expressions of the state.
 
-    Force in ground axes [N] and couple [N m]; ``source`` names the load, constraint or row. Of what is ``spread`` along a link they
-    are the resultant; ``spread`` is then along its axis and across at the base, and the same at the tip [N/m].
+    Force [N] and couple [N m] in ground axes; ``source`` names the load, constraint or row. Of what is ``spread`` along a link they
+    are the resultant; ``spread`` is then on its axes at the base, and the same at the tip [N/m].
     """
 
     source: str
     point: Point
-    fx: Any
-    fy: Any
-    mz: Any
-    spread: tuple[Pair, Pair] | None = None
+    force: Vector = ZERO
+    couple: Vector = ZERO
+    spread: tuple[Vector, Vector] | None = None
+
+    @property
+    def members(self) -> dict[str, Any]:
+        """Force and couple by what files call them."""
+        names = ("fx", "fy", "fz", "mx", "my", "mz")
+        return dict(zip(names, (*self.force, *self.couple), strict=True))
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,8 +138,9 @@ class Multibody:
     """The graphs of a mechanism, over the symbols of its coordinates, mobilities, multipliers and time.
 
     ``frames`` are without mobilities; ``felt`` are with them, and their accelerations are less that of gravity, as matter feels
-    them. ``efforts`` are the symbols of efforts along other coordinates than those whose motion is given, by joint;
-    ``own`` are the user's outputs, in symbols of results too.
+    them. ``efforts`` are the symbols of efforts along other coordinates than those whose motion is given, and ``along``
+    what a unit of effort does to a joint's child, in ground axes, both by coordinate; ``own`` are the user's outputs, in symbols of
+    results too.
     """
 
     mechanism: Mechanism
@@ -140,6 +155,7 @@ class Multibody:
     held: tuple[Applied, ...]
     turned: tuple[Turned, ...]
     efforts: dict[str, Any]
+    along: dict[str, Vector]
     own: dict[str, Any]
     kinetic: Any
     velocities: Velocities
@@ -182,35 +198,54 @@ class Multibody:
             time=self.mechanism.time,
         )
 
-    def joint_motion(self, joint: Joint) -> tuple[Any, Any, Any]:
-        """Coordinate, rate and acceleration of any joint that has one, on the tree or closing a loop.
+    def motion_along(self, joint: Joint, axis: Axis) -> tuple[Any, Any, Any]:
+        """Coordinate, rate and acceleration of any joint along one of its axes, on the tree or closing a loop.
 
         Where loops set an angle, it is known up to whole turns.
         """
-        return joint_coordinate(joint, self.frames, self.coordinates), *joint_rates(joint, self.frames, self.coordinates)
+        place = place_along(joint, axis, self.frames, self.coordinates)
+        return place, *rates_along(joint, axis, self.frames, self.coordinates)
 
 
-def joint_coordinate(joint: Joint, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]) -> Any:
-    """A joint's coordinate; an angle counts turns, but where loops set it is known up to them only."""
-    for coordinate in coordinates:
-        if coordinate.joint == joint.name and (coordinate.driven or coordinate.kind == "slide"):
-            return coordinate.value
+def place_along(joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]) -> Any:
+    """A joint's coordinate along an axis; an angle counts turns, but where loops set it is known up to them only."""
+    own = own_coordinate(axis, coordinates)
+    if own is not None:
+        return own.value
     parent, child = (frames[body.name] for body in joint.bodies)
-    if joint.coordinate == "angle":
-        return ca.SX(child.rotation.against(parent.rotation).angle)
-    return ca.SX(slide(joint, parent, child)[0])
+    if axis.kind == "slide":
+        return ca.SX(slide(joint, parent, child, axis.direction))
+    return ca.SX(turned(joint, _number(joint, axis), parent, child))
 
 
-def joint_rates(joint: Joint, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]) -> tuple[Any, Any]:
-    """Rate and acceleration of a joint's coordinate."""
-    for coordinate in coordinates:
-        if coordinate.joint == joint.name and (coordinate.driven or coordinate.kind == "slide"):
-            return coordinate.rate, coordinate.acceleration
+def rates_along(joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates: tuple[Coordinate, ...]) -> tuple[Any, Any]:
+    """Rate and acceleration of a joint's coordinate along an axis."""
+    own = own_coordinate(axis, coordinates)
+    if own is not None:
+        return own.rate, own.acceleration
     parent, child = (frames[body.name] for body in joint.bodies)
-    if joint.coordinate == "angle":
-        return ca.SX(child.rate - parent.rate), ca.SX(child.angular - parent.angular)
-    rate, acceleration = slide_motion(joint, parent, child)
+    if axis.kind == "slide":
+        rate, acceleration = slide_motion(joint, parent, child, axis.direction)
+        return ca.SX(rate), ca.SX(acceleration)
+    rate, acceleration = turning(joint, _number(joint, axis), parent, child)
     return ca.SX(rate), ca.SX(acceleration)
+
+
+def _number(joint: Joint, axis: Axis) -> int:
+    """Which of a joint's turns an axis is."""
+    if joint.turns > 2:
+        raise DeclarationError(
+            f"joint '{joint.name}' closes a loop, and the angles of a joint that turns about three axes are not measured there"
+        )
+    return [one.coordinate for one in joint.axes if one.kind == "angle"].index(axis.coordinate)
+
+
+def own_coordinate(axis: Axis, coordinates: tuple[Coordinate, ...]) -> Coordinate | None:
+    """The coordinate of the tree that is along an axis; an absolute direction is not."""
+    for coordinate in coordinates:
+        if coordinate.name == axis.coordinate and (coordinate.driven or coordinate.relative or coordinate.kind == "slide"):
+            return coordinate
+    return None
 
 
 def change(expression: Any, coordinates: tuple[Coordinate, ...], time: Any) -> Any:

@@ -12,18 +12,18 @@ import casadi as ca
 from ..errors import PostureError
 from ..system.numerals import readable
 from .blocks import Block
-from .multibody import Coordinate, Multibody, joint_coordinate
+from .multibody import Coordinate, Multibody, place_along
 from .substitution import Numbers
 
 
 def posture_name(coordinate: Coordinate) -> str:
-    """By which name a posture tells a coordinate that is not driven: the link whose direction it is, or the sliding joint."""
-    return coordinate.body if coordinate.kind == "angle" else coordinate.joint
+    """By which name a posture tells a coordinate that is not driven: the link whose direction it is, or the coordinate's own."""
+    return coordinate.body if coordinate.kind == "angle" and not coordinate.relative else coordinate.name
 
 
 def turns(multibody: Multibody, name: str) -> bool:
     """Whether what a posture tells by a name is an angle."""
-    return name in multibody.frames or multibody.mechanism.joints[name].coordinate == "angle"
+    return name in multibody.frames or multibody.mechanism.coordinates[name][1].kind == "angle"
 
 
 def measured(multibody: Multibody, names: Collection[str]) -> dict[str, tuple[Any, set[Coordinate]]]:
@@ -34,8 +34,8 @@ def measured(multibody: Multibody, names: Collection[str]) -> dict[str, tuple[An
         if name in multibody.frames:
             expression = _direction(multibody, name)
         else:
-            joint = multibody.mechanism.joints[name]
-            expression = ca.SX(joint_coordinate(joint, multibody.frames, multibody.coordinates))
+            joint, axis = multibody.mechanism.coordinates[name]
+            expression = ca.SX(place_along(joint, axis, multibody.frames, multibody.coordinates))
         of = (owner.get(symbol.element_hash()) for symbol in ca.symvar(expression))
         told[name] = expression, {c for c in of if c is not None}
     return told

@@ -11,8 +11,9 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
+from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Body, Joint, Point
+from ..declare.parts import Body, Point
 from ..errors import DeclarationError
 
 
@@ -48,10 +49,11 @@ class Tree:
 
 
 def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
-    """The spanning tree of a frozen mechanism whose joints ``driven`` carry a prescribed motion.
+    """The spanning tree of a frozen mechanism whose coordinates ``driven`` have a prescribed motion.
 
     Raises :class:`DeclarationError` for drives that close a loop among themselves, and for a link that only slides on a point.
     """
+    driven = {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
     depth: dict[Body, int] = {mechanism.ground: 0}
     branches: list[Branch] = []
     waiting = list(mechanism.joints.values())
@@ -89,7 +91,9 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
 
 
 def _can_carry(joint: Joint, reverse: bool) -> bool:
-    """A point on a line places neither the body that carries the line, nor the direction of the one that slides."""
+    """In a plane a point on a line places neither the body that carries the line, nor the direction of the one that slides."""
+    if joint.directions is not None:
+        return not reverse or (joint.parent.body.oriented and (joint.child.body.oriented or joint.turns == 3))
     if joint.slides and not joint.holds_direction:
         return not reverse and not joint.child.body.oriented
     return not (reverse and joint.kind == "weld" and not joint.child.body.oriented)
@@ -100,4 +104,7 @@ def _rank(joint: Joint, driven: Collection[str]) -> int:
         return 3
     if joint.holds_direction:
         return 2
+    if joint.directions is not None:
+        # What lets more free is rather cut: fewer equations close it. Nothing closes a screw.
+        return 1 - len(joint.lets) if joint.kind != "screw" else 2
     return 0 if joint.slides else 1

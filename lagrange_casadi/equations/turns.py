@@ -58,8 +58,8 @@ def count_turns(
     whose turns do not follow from those of drives.
     """
     angles = [c for c in multibody.coordinates if c.kind == "angle"]
-    loose = column(c.value for c in angles if c.joint in solved.loose)
-    counted = solved.evaluate(column(c.value for c in angles if c.joint not in solved.loose))
+    loose = column(c.value for c in angles if c.name in solved.loose)
+    counted = solved.evaluate(column(c.value for c in angles if c.name not in solved.loose))
     values: dict[str, Any] = {}
     users: dict[str, list[str]] = {}
     for turned in multibody.turned:

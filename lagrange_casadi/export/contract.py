@@ -224,7 +224,7 @@ def _inputs(graph: SceneGraph, precision: Precision, timed: bool) -> dict[str, M
 def _sign(graph: SceneGraph, output: Output) -> str:
     table = table_of(graph.scene.mechanism.space)
     if output == Output("motion", output.part) and table is PLANE:
-        return "counter-clockwise" if graph.scene.guided.joints[output.part].coordinate == "angle" else "along the axis"
+        return "counter-clockwise" if graph.scene.guided.coordinates[output.part][1].kind == "angle" else "along the axis"
     return output.meant(table).sign
 
 

@@ -83,7 +83,9 @@ def _follows(source: Source) -> str:
 
 def _gravity(source: Source) -> str:
     mechanism = source.program.graph.scene.mechanism
-    return ", ".join(f"{mechanism.number(component, source.values):g}" for component in mechanism.gravity)
+    return ", ".join(
+        f"{mechanism.number(component, source.values):g}" for component in mechanism.gravity[: 3 if mechanism.space else 2]
+    )
 
 
 def _parameters(c: Contract) -> str:

@@ -238,7 +238,7 @@ def the_drive(graph: SceneGraph) -> str:
         named = ", ".join(f"'{name}'" for name in graph.driven) or "none"
         raise DeclarationError(f"table: expected one driven joint, whose angle decides all, got {named}")
     (joint,) = graph.driven
-    if graph.scene.guided.joints[joint].coordinate != "angle":
+    if graph.scene.guided.coordinates[joint][1].kind != "angle":
         raise DeclarationError(f"table: the driven joint '{joint}' slides; expected one that turns, for only an angle repeats")
     return joint
 

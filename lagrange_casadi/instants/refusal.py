@@ -105,9 +105,9 @@ def refusal(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: R
     if not bad.any():
         return None
     i = int(np.argmax(bad))
-    joints = graph.scene.guided.joints
+    coordinates = graph.scene.guided.coordinates
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
-    at = where((name, joints[name].coordinate or "", value) for name, value in zip(graph.driven, driven, strict=True))
+    at = where((name, coordinates[name][1].kind, value) for name, value in zip(graph.driven, driven, strict=True))
     at = f"at t = {t[i]:.6g} s{at}"
     status, why = _why(graph, evaluated, held, i, at, [rule for rule in passed if passed[rule][i]], extent)
     return Refusal(status, _beyond(graph, p, evaluated.stages.precision, at) or why)

@@ -62,8 +62,8 @@ class Peak:
 
 
 def table_of_described(description: Description) -> Table:
-    """The table of the quantities of a described mechanism: that of planar ones, or that of spatial ones."""
-    return table_of(bool(description.get("space", False)))
+    """The table of the quantities of a described mechanism: that of planar ones, or that of spatial ones, whose gravity has a z."""
+    return table_of(len(description["gravity"]) > 2)
 
 
 def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[Output, Array]:
@@ -77,9 +77,10 @@ def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[
     sections = groups.index("section")
     parts = parts_of(description)
 
-    def rank(output: Output) -> tuple[int, int, str, int]:
+    def rank(output: Output) -> tuple[int, int, str, str, int]:
         group = sections if output.along else groups.index(output.group)
-        return group, parts.index(output.part), output.station, rows.index(output.meant(table))
+        part, _, axis = output.part.partition(":")
+        return group, parts.index(part), axis, output.station, rows.index(output.meant(table))
 
     return {output: outputs[output] for output in sorted(outputs, key=rank)}
 

@@ -14,8 +14,9 @@ import casadi as ca
 import numpy as np
 
 from ..declare.density import Array
+from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Joint, Point
+from ..declare.parts import Point
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,7 @@ class InstantAxis:
         if timing.shared:
             return cls("t", "s", "time", scene.instants(timing, scene.mechanism.values()).t)
         joint = timing.joint
-        unit = "" if not joint else LENGTH if scene.guided.joints[joint].slides else ANGLE
+        unit = "" if not joint else LENGTH if scene.guided.coordinates[joint][1].kind == "slide" else ANGLE
         if joint and timing.fixed:
             start, stop, _ = timing.bounds(np.zeros((1, 0)))
             coordinates = points((float(start[0]), float(stop[0]), timing.count))

@@ -1,0 +1,154 @@
+"""Directions in space as users tell them: axes, turns in sequence, places of a reference posture, moments of inertia."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from ..errors import DeclarationError
+from ..geometry.rotation import Rotation, direction
+from ..geometry.vectors import AXES, ZERO, Vector, cross, dot, minus, times
+from .joints import Triad
+from .parts import Expression
+
+Checked = Callable[[str, Any], Expression]
+"""Takes what is said of an expression, and the expression."""
+
+_RIGHT = 1e-9
+"""A cosine that is smaller is that of a right angle."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """Where a body is in the reference posture: its origin, and its axes, in ground axes."""
+
+    origin: Vector = ZERO
+    rotation: Rotation = Rotation()  # noqa: RUF009 - it is frozen
+
+    def local(self, place: Vector) -> Vector:
+        """The body's point at a place."""
+        return self.rotation.resolve(minus(place, self.origin))
+
+    def directions(self, triad: Triad) -> Triad:
+        """Directions in ground axes on the body's axes."""
+        u, v, w = (self.rotation.resolve(one) for one in triad)
+        return u, v, w
+
+    def seen(self, other: Reference) -> tuple[Vector, Vector]:
+        """The directions of another body's x and y axes on this one's."""
+        return self.rotation.resolve(other.rotation.x), self.rotation.resolve(other.rotation.y)
+
+
+def vector(what: str, value: Any, checked: Checked) -> Vector:
+    """Three expressions. Raises :class:`DeclarationError` for anything else."""
+    if not isinstance(value, (tuple, list)) or len(value) != 3:
+        raise DeclarationError(f"{what} must be three components (x, y, z), got {value!r}")
+    x, y, z = (checked(what, component) for component in value)
+    return x, y, z
+
+
+def triad_of(what: str, axis: Any, second: Any, checked: Checked) -> Triad:
+    """Directions u, v, w at right angles: along an axis, along a second one or any across it, and at right angles to both.
+
+    Raises :class:`DeclarationError` for an axis of length zero, and for a second one that is not at right angles to it.
+    """
+    if axis is None:
+        return AXES
+    u = _unit(f"{what}: axis", vector(f"{what}: axis", axis, checked))
+    if second is None:
+        v = across(u)
+    else:
+        v = _unit(f"{what}: second axis", vector(f"{what}: second axis", second, checked))
+        cosine = dot(u, v)
+        if isinstance(cosine, float) and abs(cosine) > _RIGHT:
+            degrees = math.degrees(math.acos(max(-1.0, min(1.0, cosine))))
+            raise DeclarationError(f"{what}: its axes must be at right angles, and are at {degrees:.6g} deg")
+    return u, v, cross(u, v)
+
+
+def across(axis: Vector) -> Vector:
+    """A direction at right angles to one: the part across it of the coordinate axis that is most across; of symbols, any."""
+    if all(isinstance(component, float) for component in axis):
+        most = min(range(3), key=lambda k: abs(axis[k]))
+        return _unit("axis", minus(AXES[most], times(axis[most], axis)))
+    # Duff et al., Building an orthonormal basis, revisited, JCGT 6, 2017.
+    x, y, z = (ca.SX(component) for component in axis)
+    sign = ca.if_else(z >= 0, 1.0, -1.0)
+    factor = -1 / (sign + z)
+    return 1 + sign * x * x * factor, sign * x * y * factor, -sign * x
+
+
+def turned_by(what: str, turns: Sequence[tuple[str, Expression]], checked: Checked) -> tuple[Vector, Vector]:
+    """The directions of the x and y axes after turns in sequence, each about an axis that those before carry."""
+    found = Rotation()
+    for turn in turns:
+        if not isinstance(turn, (tuple, list)) or len(turn) != 2 or turn[0] not in ("x", "y", "z"):
+            raise DeclarationError(f"{what}: turned is turns about 'x', 'y' or 'z' in sequence, as [('x', '90 deg')], got {turn!r}")
+        angle = checked(f"{what}: turned", turn[1])
+        found = found.then(Rotation.about(AXES["xyz".index(turn[0])], *direction(angle), angle))
+    return found.x, found.y
+
+
+def between(what: str, places: Any, beside: Any, checked: Checked) -> tuple[Reference, Expression]:
+    """Where a link is that lies between two places, and its length; ``beside`` tells which way its y axis is."""
+    if not isinstance(places, (tuple, list)) or len(places) != 2:
+        raise DeclarationError(f"{what}: between must be two places, got {places!r}")
+    base, tip = (vector(f"{what}: between", place, checked) for place in places)
+    along = minus(tip, base)
+    length = _size(along)
+    if isinstance(length, float) and length == 0.0:
+        raise DeclarationError(f"{what}: the two places that it lies between are one")
+    x = times(1 / length, along)
+    if beside is None:
+        y = across(x)
+    else:
+        aside = vector(f"{what}: beside", beside, checked)
+        y = _unit(f"{what}: beside", minus(aside, times(dot(aside, x), x)))
+    return Reference(base, Rotation.of(x, y)), length
+
+
+def tensor(what: str, inertia: Any, checked: Checked) -> tuple[Vector, Vector, Vector]:
+    """Moments of inertia as three rows. Raises :class:`DeclarationError` for what is no symmetric matrix, or three moments."""
+    told = f"{what}: inertia"
+    if isinstance(inertia, (tuple, list)) and len(inertia) == 3 and not any(isinstance(row, (tuple, list)) for row in inertia):
+        x, y, z = vector(told, inertia, checked)
+        return (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
+    if not isinstance(inertia, (tuple, list)) or len(inertia) != 3:
+        raise DeclarationError(f"{told} must be three moments, or a matrix of three rows, got {inertia!r}")
+    rows = tuple(vector(told, row, checked) for row in inertia)
+    for i in range(3):
+        for j in range(i):
+            one, other = rows[i][j], rows[j][i]
+            same = one == other if isinstance(one, float) and isinstance(other, float) else ca.is_equal(ca.SX(one), ca.SX(other), 9)
+            if not same:
+                raise DeclarationError(f"{told} must be symmetric, and entries ({i + 1}, {j + 1}) and ({j + 1}, {i + 1}) differ")
+    return rows[0], rows[1], rows[2]
+
+
+def rotated(moments: tuple[Vector, Vector, Vector], reference: Reference) -> tuple[Vector, Vector, Vector]:
+    """Moments of inertia on ground axes, on a body's."""
+    axes = (reference.rotation.x, reference.rotation.y, reference.rotation.z)
+    x, y, z = (
+        tuple(dot(one, (dot(moments[0], other), dot(moments[1], other), dot(moments[2], other))) for other in axes) for one in axes
+    )
+    return (x[0], x[1], x[2]), (x[1], y[1], y[2]), (x[2], y[2], z[2])
+
+
+def _unit(what: str, value: Vector) -> Vector:
+    size = _size(value)
+    if isinstance(size, float) and size == 0.0:
+        raise DeclarationError(f"{what} must not be of length zero")
+    if isinstance(size, float):
+        x, y, z = (component / size for component in value)
+        return x, y, z
+    return times(1 / size, value)
+
+
+def _size(value: Vector) -> Expression:
+    if all(isinstance(component, float) for component in value):
+        return math.hypot(*value)
+    return ca.sqrt(dot(value, value))

@@ -1,0 +1,171 @@
+"""Joints: what each kind lets free, as one table, and a joint as the sequence of axes along which it does.
+
+A kind's freedoms are slides and turns about the directions u, v, w of the joint's triad, which the parent carries. Slides come
+first; of several turns each is carried by the turns before it. A new kind of joint is an entry of the table.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+from .parts import Body, Expression, Point, Vector
+
+JointKind = Literal["revolute", "prismatic", "cylindrical", "universal", "spherical", "screw", "planar", "slot", "weld", "free"]
+Move = Literal["slide", "turn", "screw"]
+Triad = tuple[Vector, Vector, Vector]
+
+
+class Freedom(NamedTuple):
+    """What a kind of joint lets free: a slide or turn along a direction of its triad, by number.
+
+    ``name`` tells it among the freedoms of its joint; None where it is no coordinate.
+    """
+
+    name: str | None
+    move: Move
+    direction: int
+
+
+_TURNS = (Freedom("turn_1", "turn", 0), Freedom("turn_2", "turn", 1), Freedom("turn_3", "turn", 2))
+_SLIDES = (Freedom("slide_1", "slide", 0), Freedom("slide_2", "slide", 1), Freedom("slide_3", "slide", 2))
+
+IN_SPACE: dict[JointKind, tuple[Freedom, ...]] = {
+    "revolute": (Freedom("", "turn", 0),),
+    "prismatic": (Freedom("", "slide", 0),),
+    "cylindrical": (Freedom("slide", "slide", 0), Freedom("turn", "turn", 0)),
+    "universal": _TURNS[:2],
+    "spherical": _TURNS,
+    "screw": (Freedom("", "screw", 0),),
+    "planar": (Freedom("slide_1", "slide", 1), Freedom("slide_2", "slide", 2), Freedom("turn", "turn", 0)),
+    "slot": (Freedom("slide", "slide", 0), *_TURNS),
+    "weld": (),
+    "free": (*_SLIDES, *_TURNS),
+}
+"""The freedoms of the kinds of joints, and their names."""
+
+IN_PLANE: dict[JointKind, tuple[Freedom, ...]] = {
+    "revolute": (Freedom("", "turn", 2),),
+    "prismatic": (Freedom("", "slide", 0),),
+    "slot": (Freedom("", "slide", 0), Freedom(None, "turn", 2)),
+    "weld": (),
+}
+"""The same in a plane, whose normal is the third direction of every triad."""
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """A coordinate of a joint: along what it is measured, in the parent's axes where all coordinates are zero.
+
+    ``name`` is its own among the coordinates of its joint, empty where there is one; ``coordinate`` is its full name, ``JOINT`` or
+    ``JOINT:NAME``. Of a screw, ``pitch`` is how far it slides for an angle [m/rad].
+    """
+
+    name: str
+    coordinate: str
+    move: Move
+    direction: Vector
+    pitch: Expression = 0.0
+
+    @property
+    def kind(self) -> Literal["angle", "slide"]:
+        """What its coordinate is."""
+        return "slide" if self.move == "slide" else "angle"
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """A joint between a point of its parent and a point of its child.
+
+    - ``revolute`` holds the two points together; the coordinate is the child's direction less the parent's [rad].
+    - ``prismatic`` holds the child's point on the line through the parent's point along ``axis`` (a unit vector in the parent's
+      axes) and the child's direction at ``angle`` [rad] from the parent's; the coordinate is the place on the line [m].
+    - ``slot`` holds the child's point on that line and leaves its direction free.
+    - ``weld`` holds the points together and the child's direction at ``angle`` from the parent's; it has no coordinate.
+
+    What slides on a line loads the line's carrier, the parent, where it is at the moment.
+
+    In space ``directions`` are three at right angles, in the parent's axes, and :data:`IN_SPACE` tells along which the joint moves;
+    ``turned`` are the directions of the child's x and y axes, in the parent's axes, where all coordinates are zero. ``pitch`` is
+    that of a screw [m/rad].
+    """
+
+    name: str
+    kind: JointKind
+    parent: Point
+    child: Point
+    axis: tuple[Expression, ...] = (1.0, 0.0)
+    angle: Expression = 0.0
+    directions: Triad | None = None
+    turned: tuple[Vector, Vector] | None = None
+    pitch: Expression = 0.0
+
+    @property
+    def triad(self) -> Triad:
+        """Three directions at right angles that the parent carries; in a plane along the axis, across it, and out of the plane."""
+        if self.directions is not None:
+            return self.directions
+        x, y = self.axis
+        return (x, y, 0.0), (-y, x, 0.0), (0.0, 0.0, 1.0)
+
+    @property
+    def bodies(self) -> tuple[Body, Body]:
+        """Parent and child."""
+        return self.parent.body, self.child.body
+
+    @property
+    def lets(self) -> tuple[Freedom, ...]:
+        """The freedoms of its kind."""
+        return (IN_PLANE if self.turned is None else IN_SPACE)[self.kind]
+
+    @property
+    def freedoms(self) -> tuple[Freedom, ...]:
+        """What it lets free between its bodies; where one has no direction there are no turns."""
+        oriented = all(body.oriented for body in self.bodies)
+        return tuple(freedom for freedom in self.lets if oriented or freedom.move == "slide")
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """Its coordinates, in the sequence in which they move the child."""
+        named = [freedom for freedom in self.freedoms if freedom.name is not None]
+        return tuple(
+            Axis(
+                freedom.name or "",
+                f"{self.name}:{freedom.name}" if freedom.name else self.name,
+                freedom.move,
+                self.triad[freedom.direction],
+                self.pitch,
+            )
+            for freedom in named
+        )
+
+    @property
+    def slides(self) -> bool:
+        """Whether its child's point moves along a line of its parent, or more."""
+        return any(freedom.move != "turn" for freedom in self.lets)
+
+    @property
+    def holds_direction(self) -> bool:
+        """Whether the child's direction follows from the parent's."""
+        return self.child.body.oriented and all(freedom.move == "slide" for freedom in self.lets)
+
+    @property
+    def turns(self) -> int:
+        """About how many axes it lets its child turn."""
+        return sum(freedom.move != "slide" for freedom in self.lets)
+
+    @property
+    def bears_moment(self) -> bool:
+        """Whether it can hold its child against turning, about some axis."""
+        return self.child.body.oriented and self.parent.body.oriented and self.turns < (1 if self.turned is None else 3)
+
+    @property
+    def aligns(self) -> bool:
+        """Whether it holds a direction that must not be off by half a turn."""
+        return self.bears_moment and self.turns < (1 if self.turned is None else 2)
+
+    @property
+    def coordinate(self) -> Literal["angle", "slide"] | None:
+        """The kind of its coordinate, where it has one; None too for a pin at a point mass, which has no direction to measure."""
+        axes = self.axes
+        return axes[0].kind if len(axes) == 1 else None

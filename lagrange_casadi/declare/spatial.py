@@ -1,0 +1,327 @@
+"""Mechanisms in space: the same declaration, with three components where a plane has two."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..errors import DeclarationError
+from .density import Density
+from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
+from .directions import between as lying
+from .expressions import typed
+from .joints import IN_SPACE, Joint, JointKind, Triad
+from .matter import matter_of
+from .measures import Measures
+from .mechanism import Mechanism
+from .parts import Body, Expression, Force, LineLoad, Link, Point, PointMass, RigidMass, Torque, Vector
+
+Turns = Sequence[tuple[str, Expression]]
+"""Turns in sequence, each about the ``"x"``, ``"y"`` or ``"z"`` axis that the turns before it carry, by an angle [rad, or text]."""
+
+
+@dataclass(eq=False)
+class SpatialMechanism(Mechanism):
+    """A mechanism under declaration whose links lie in space. What is common with :class:`.Mechanism` reads the same.
+
+    Points are (x, y, z), axes and gravity have three components; gravity is (0, 0, -9.81) m/s^2 unless :meth:`set_gravity` says
+    otherwise. A link's x axis runs from its base to its tip; y and z are the axes of its cross-section.
+
+    Where things are is said in one of two ways, joint by joint:
+
+    - *relative*: a joint is between a point of its parent and a point of its child, its ``axis`` in the parent's axes, and
+      ``turned`` says how the child is turned against the parent where the joint's coordinates are zero;
+    - *hard points*: all is said in ground axes, in one reference posture. A link lies ``between`` two places, a joint is ``at`` a
+      place, its ``axis`` in ground axes; coordinates are zero in the reference posture, from where loops are assembled.
+    """
+
+    gravity: Vector = field(default=(0.0, 0.0, -9.81), init=False)
+    measures: Measures = field(default_factory=lambda: Measures(components="xyz"), init=False)
+    references: dict[str, Reference] = field(default_factory=dict, init=False)
+    hard: set[str] = field(default_factory=set, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.references[self.ground.name] = Reference()
+
+    @property
+    def space(self) -> bool:
+        """Whether it lies in space: it does."""
+        return True
+
+    @property
+    def reference_posture(self) -> dict[str, float]:
+        """Coordinates where all parts are where they were declared to be: zero, of joints that were declared at a place."""
+        return {name: 0.0 for name, (joint, _) in self.coordinates.items() if joint.name in self.hard}
+
+    def link(  # type: ignore[override]
+        self,
+        name: str,
+        *,
+        length: Expression = None,
+        between: tuple[Vector, Vector] | None = None,
+        beside: Vector | None = None,
+        mass: Expression = None,
+        density: Density | None = None,
+        centre: Vector | None = None,
+        inertia: Any = None,
+    ) -> Link:
+        """Declare a link of a ``length`` [m], or one that lies ``between`` two places of the reference posture.
+
+        Its mass is one of: ``mass`` [kg] alone, a uniform slender rod; a ``density`` of :mod:`.density`, along a slender axis; or
+        ``mass``, ``centre`` [m] and ``inertia`` about the centre [kg m^2], three moments or a matrix of three rows, for a body
+        whose sections are not wanted. These are on the link's axes; of a link ``between`` places they are on the ground's, in the
+        reference posture. Its y axis is then the part across the link of the direction ``beside``, by default of the ground's axis
+        that is most across it.
+        """
+        self.own.free("link", name, self.bodies)
+        what = f"link '{name}'"
+        if (length is None) == (between is None):
+            raise DeclarationError(f"{what}: give its length, or the two places that it lies between")
+        if beside is not None and between is None:
+            raise DeclarationError(f"{what}: beside goes with between; a joint tells how a link of a length is turned")
+        reference = None
+        if between is not None:
+            reference, length = lying(what, between, beside, self.own.expression)
+        if (centre is None) != (inertia is None):
+            raise DeclarationError(f"{what}: centre and inertia go together, and with a mass")
+        matter: Density | RigidMass
+        if centre is not None:
+            if mass is None or density is not None:
+                raise DeclarationError(f"{what}: centre and inertia go with a mass, and without a density")
+            place, moments = self._vector(f"{what}: centre", centre), tensor(what, inertia, self.own.expression)
+            if reference is not None:
+                place, moments = reference.local(place), rotated(moments, reference)
+            matter = RigidMass(self.own.expression(f"{what}: mass", mass), place, moments)
+        else:
+            matter = matter_of(what, mass, density, None, None, self.own.expression)
+        link = Link(name, self.own.expression(f"{what}: length", length), matter)
+        self.bodies[name] = link
+        if reference is not None:
+            self.references[name] = reference
+        return link
+
+    def at(self, body: Body, x: Expression, y: Expression, z: Expression) -> Point:
+        """The point of a body that is at a place (x, y, z) [m] of the reference posture."""
+        what = f"place on '{body.name}'"
+        x, y, z = self._reference(what, body).local(self._vector(what, (x, y, z)))
+        return Point(body, x, y, z=z)
+
+    def revolute(
+        self,
+        name: str,
+        parent: Body | Point,
+        child: Body | Point,
+        *,
+        axis: Vector = (0.0, 0.0, 1.0),
+        at: Any = None,
+        turned: Turns = (),
+    ) -> Joint:
+        """Let ``child`` turn about ``axis`` through a point of ``parent``; a link stands for its base, the ground for its
+        origin.
+        """
+        return self._spatial(name, "revolute", parent, child, axis, None, at, turned)
+
+    def prismatic(  # type: ignore[override]
+        self, name: str, parent: Body | Point, child: Body | Point, *, axis: Vector, at: Any = None, turned: Turns = ()
+    ) -> Joint:
+        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, without turning."""
+        return self._spatial(name, "prismatic", parent, child, axis, None, at, turned)
+
+    def cylindrical(
+        self, name: str, parent: Body | Point, child: Body | Point, *, axis: Vector, at: Any = None, turned: Turns = ()
+    ) -> Joint:
+        """Let ``child`` slide along ``axis`` and turn about it: coordinates ``slide`` and ``turn``."""
+        return self._spatial(name, "cylindrical", parent, child, axis, None, at, turned)
+
+    def universal(
+        self,
+        name: str,
+        parent: Body | Point,
+        child: Body | Point,
+        *,
+        axis: Vector,
+        second: Vector,
+        at: Any = None,
+        turned: Turns = (),
+    ) -> Joint:
+        """Let ``child`` turn about ``axis``, which the parent carries, and about ``second``, which it carries itself, at right
+        angles to the first: coordinates ``turn_1`` and ``turn_2``. Both directions are told where the coordinates are zero."""
+        return self._spatial(name, "universal", parent, child, axis, second, at, turned)
+
+    def spherical(self, name: str, parent: Body | Point, child: Body | Point, *, at: Any = None, turned: Turns = ()) -> Joint:
+        """Hold a point of ``child`` to a point of ``parent``: coordinates ``turn_1``, ``turn_2``, ``turn_3`` are turns about the
+        parent's x axis, and the y and z axes that the turns before carry. Where the joint closes a loop it has no coordinates."""
+        return self._spatial(name, "spherical", parent, child, None, None, at, turned)
+
+    def screw(
+        self,
+        name: str,
+        parent: Body | Point,
+        child: Body | Point,
+        *,
+        axis: Vector,
+        lead: Expression,
+        at: Any = None,
+        turned: Turns = (),
+    ) -> Joint:
+        """Let ``child`` turn about ``axis`` and slide along it by ``lead`` [m] a turn: its coordinate is the angle."""
+        pitch = self.own.expression(f"joint '{name}': lead", lead) / math.tau
+        return self._spatial(name, "screw", parent, child, axis, None, at, turned, pitch)
+
+    def planar(
+        self,
+        name: str,
+        parent: Body | Point,
+        child: Body | Point,
+        *,
+        axis: Vector,
+        second: Vector | None = None,
+        at: Any = None,
+        turned: Turns = (),
+    ) -> Joint:
+        """Let ``child`` move in the plane through a point of ``parent`` that is normal to ``axis``: coordinates ``slide_1`` along
+        ``second``, ``slide_2`` at right angles to both, and ``turn`` about ``axis``."""
+        return self._spatial(name, "planar", parent, child, axis, second, at, turned)
+
+    def slot(  # type: ignore[override]
+        self,
+        name: str,
+        parent: Body | Point,
+        child: Body | Point,
+        *,
+        axis: Vector = (1.0, 0.0, 0.0),
+        at: Any = None,
+        turned: Turns = (),
+    ) -> Joint:
+        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, and ``child`` turn freely: coordinates
+        ``slide``, and as of a spherical joint. Where the joint closes a loop it has the slide alone."""
+        return self._spatial(name, "slot", parent, child, axis, None, at, turned)
+
+    def weld(  # type: ignore[override]
+        self, name: str, parent: Body | Point, child: Body | Point, *, at: Any = None, turned: Turns = ()
+    ) -> Joint:
+        """Fix ``child`` to ``parent``."""
+        return self._spatial(name, "weld", parent, child, None, None, at, turned)
+
+    def free(self, name: str, parent: Body | Point, child: Body | Point, *, at: Any = None, turned: Turns = ()) -> Joint:
+        """Hold nothing: coordinates ``slide_1`` to ``slide_3`` are the place of the child's point in the parent's axes, ``turn_1``
+        to ``turn_3`` turns as of a spherical joint. So the motion of a body's pose is given, or a body flies."""
+        return self._spatial(name, "free", parent, child, None, None, at, turned)
+
+    def force(
+        self,
+        name: str,
+        point: Body | Point,
+        *,
+        x: Expression = 0.0,
+        y: Expression = 0.0,
+        z: Expression = 0.0,
+        turning: bool = False,
+    ) -> Force:
+        """Apply a force [N] at a point, in ground axes, or in the body's own where ``turning``."""
+        load = super().force(name, point, x=x, y=y, turning=turning)
+        found = Force(name, load.point, load.x, load.y, turning, self._load(name, z))
+        self.loads[name] = found
+        return found
+
+    def torque(  # type: ignore[override]
+        self,
+        name: str,
+        point: Body | Point,
+        *,
+        x: Expression = 0.0,
+        y: Expression = 0.0,
+        z: Expression = 0.0,
+        against: Body | Point | None = None,
+        turning: bool = False,
+    ) -> Torque:
+        """Apply a torque [N m] to a body at a point, in ground axes, or in the body's own where ``turning``; and its opposite to
+        another body (default: the ground)."""
+        load = super().torque(name, point, z, against=against)
+        across = (self._load(name, x), self._load(name, y))
+        found = Torque(name, load.point, load.value, load.against, across, turning)
+        self.loads[name] = found
+        return found
+
+    def line_load(self, name: str, link: Link, *, x: Any = 0.0, y: Any = 0.0, turning: bool = False) -> LineLoad:
+        """Not yet: a load along a link of a mechanism in space."""
+        raise DeclarationError(f"load '{name}': a load along a link is for planar mechanisms; in space apply forces at its points")
+
+    def set_gravity(self, x: Expression, y: Expression, z: Expression = 0.0) -> None:
+        """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in parameters."""
+        self.own.open("set gravity")
+        self.gravity = self._vector("gravity", (x, y, z))
+
+    def direction(self, link: Link) -> Any:
+        """Not in space, where a link has no single angle."""
+        raise DeclarationError("direction: a link in space has no single angle; build from place() of its points, or coordinate()")
+
+    def _spatial(
+        self,
+        name: str,
+        kind: JointKind,
+        parent: Body | Point,
+        child: Body | Point,
+        axis: Vector | None,
+        second: Vector | None,
+        at: Any,
+        turned: Turns,
+        pitch: Expression = 0.0,
+    ) -> Joint:
+        self.own.free("joint", name, self.joints)
+        what = f"joint '{name}'"
+        if not isinstance(turned, (list, tuple)) or isinstance(turned, str):
+            raise DeclarationError(f"{what}: turned is turns in sequence, as [('x', '90 deg')], got {turned!r}")
+        directions: Triad = triad_of(what, axis, second, self.own.expression)
+        if at is None:
+            start, end = self.own.point(what, parent), self.own.point(what, child)
+            zero = turned_by(what, [(about, typed(what, angle)) for about, angle in turned], self.own.expression)
+        else:
+            start, end, directions, zero = self._at_reference(what, parent, child, at, directions, turned)
+        if start.body is end.body:
+            raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
+        if not start.body.oriented and ((IN_SPACE[kind] and kind not in ("revolute", "spherical")) or kind == "weld"):
+            raise DeclarationError(
+                f"{what}: its parent '{start.body.name}' is a point mass and has no direction to carry an axis; make the other "
+                "body the parent"
+            )
+        if not start.body.oriented or not end.body.oriented:
+            kind = "spherical" if kind == "revolute" else kind
+        joint = Joint(name, kind, start, end, (1.0, 0.0, 0.0), 0.0, directions, zero, pitch)
+        self.joints[name] = joint
+        if at is not None:
+            self.hard.add(name)
+        return joint
+
+    def _at_reference(
+        self, what: str, parent: Body | Point, child: Body | Point, at: Any, directions: Triad, turned: Turns
+    ) -> tuple[Point, Point, Triad, tuple[Vector, Vector]]:
+        """Points, directions and orientation of a joint from where it is in the reference posture."""
+        if turned:
+            raise DeclarationError(f"{what}: turned goes with points of bodies; at says all in the reference posture")
+        for body in (parent, child):
+            if not isinstance(body, Body) or self.bodies.get(body.name) is not body:
+                raise DeclarationError(f"{what}: at goes with bodies of '{self.name}', whose points follow from it, got {body!r}")
+        assert isinstance(parent, Body)
+        assert isinstance(child, Body)
+        place = self._vector(f"{what}: at", at)
+        for body in (parent, child):
+            if isinstance(body, PointMass) and body.name not in self.references:
+                self.references[body.name] = Reference(place)
+        first, second = self._reference(what, parent), self._reference(what, child)
+        (px, py, pz), (cx, cy, cz) = first.local(place), second.local(place)
+        return Point(parent, px, py, z=pz), Point(child, cx, cy, z=cz), first.directions(directions), first.seen(second)
+
+    def _reference(self, what: str, body: Body) -> Reference:
+        if body.name not in self.references:
+            raise DeclarationError(
+                f"{what}: '{body.name}' has no place in the reference posture; declare it between two places, or give the "
+                "joint points of its bodies"
+            )
+        return self.references[body.name]
+
+    def _vector(self, what: str, value: Any) -> Vector:
+        return vector(what, value, self.own.expression)

@@ -1,0 +1,120 @@
+"""What loads and multipliers do to bodies, and the work that they do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import casadi as ca
+
+from ..declare.joints import Axis, Joint
+from ..declare.parts import Force, LineLoad, Link, Load, Point, Spring, Torque, Vector
+from ..geometry.frames import Velocities
+from ..geometry.vectors import AXES, cross, dot, minus, nil, plus, times
+from .growing import Grown
+from .joints import gap_motion, reaction, slide
+from .multibody import Applied, LoopEquations, RowGraph
+
+
+def applied_by(load: Load, resting: Grown) -> list[Applied]:
+    """A load as forces and couples at points, by the state."""
+    if isinstance(load, Force):
+        force = _vector(resting, load.components)
+        if load.turning:
+            force = resting.frames[load.point.body.name].rotation.apply(force)
+        return [Applied(load.name, load.point, force)]
+    if isinstance(load, Torque):
+        couple = _vector(resting, load.components)
+        if load.turning:
+            couple = resting.frames[load.point.body.name].rotation.apply(couple)
+        ends = ((load.point, couple), (load.against, times(-1, couple)))
+        return [Applied(load.name, point, couple=value) for point, value in ends]
+    if isinstance(load, LineLoad):
+        return [_along(load, resting)]
+    assert isinstance(load, Spring)
+    at = resting.at_state
+    first, second = (resting.frames[point.body.name] for point in (load.first, load.second))
+    apart = minus(second.place_of(load.second.place), first.place_of(load.first.place))
+    closing = minus(second.motion_of(load.second.place)[0], first.motion_of(load.first.place)[0])
+    distance = ca.sqrt(dot(apart, apart))
+    rate = dot(apart, closing) / distance
+    tension = at(load.stiffness) * (distance - at(load.length)) + at(load.damping) * rate
+    x, y, z = (tension * component / distance for component in apart)
+    return [Applied(load.name, load.first, (x, y, z)), Applied(load.name, load.second, times(-1, (x, y, z)))]
+
+
+def held_by(resting: Grown, name: str, expression: Any, of: LoopEquations | RowGraph) -> Iterator[Applied]:
+    """What a multiplier does to bodies, by what its equation is written in: a joint's coordinate, a place, a direction."""
+    multiplier, seen = (of.multipliers, resting.counted) if isinstance(of, LoopEquations) else (of.multiplier, resting.at_state)
+    for measure in resting.mechanism.measures.asked:
+        symbols = ca.vertcat(*(measure.places if isinstance(of, LoopEquations) else measure.rates))
+        if not ca.depends_on(expression, symbols):
+            continue
+        part = [multiplier * seen(slope) for slope in ca.vertsplit(ca.jacobian(expression, symbols).T)]
+        if isinstance(measure.of, Point):
+            x, y, z = (*part, 0.0)[:3]
+            yield Applied(name, measure.of, (x, y, z))
+        elif isinstance(measure.of, Link):
+            yield Applied(name, measure.of.base, couple=(0.0, 0.0, part[0]))
+        else:
+            assert measure.axis is not None
+            yield from _along_coordinate(resting, name, measure.of, measure.axis, part[0])
+
+
+def work(felt: Grown, applied: Iterable[Applied], loops: Iterable[LoopEquations], velocities: Velocities) -> None:
+    """Let loads and multipliers do work: along the velocities of points, and of what a closing joint holds together."""
+    for part in applied:
+        frame = felt.frames[part.point.body.name]
+        _bear(velocities, frame.motion_of(part.point.place), part.force)
+        _bear(velocities, (frame.rate, frame.angular), part.couple)
+    for loop in loops:
+        if loop.joint is not None:
+            parent, child = felt.ends(loop.joint)
+            force, moment = reaction(loop.joint, parent, child, loop.multipliers)
+            _bear(velocities, gap_motion(loop.joint, parent, child), force)
+            _bear(velocities, (minus(child.rate, parent.rate), minus(child.angular, parent.angular)), moment)
+
+
+def push(felt: Grown, joint: Joint, axis: Axis, effort: Any, velocities: Velocities) -> None:
+    """Let an effort do work along a joint's coordinate."""
+    parent, child = felt.ends(joint)
+    along = times(effort, felt.along(joint, axis))
+    turning = (minus(child.rate, parent.rate), minus(child.angular, parent.angular))
+    _bear(velocities, turning if axis.kind == "angle" else gap_motion(joint, parent, child), along)
+
+
+def _bear(velocities: Velocities, motion: tuple[Vector, Vector], force: Vector) -> None:
+    if not all(nil(component) for component in force):
+        velocities.vector(motion, force)
+
+
+def _vector(resting: Grown, components: Vector) -> Vector:
+    x, y, z = (component if isinstance(component, float) else resting.at_state(component) for component in components)
+    return x, y, z
+
+
+def _along(load: LineLoad, resting: Grown) -> Applied:
+    """A load along a link: what it is at the ends, and its resultant at the middle of the link."""
+    rotation, length = resting.frames[load.link.name].rotation, load.link.length
+    ends = [_vector(resting, (x, y, z)) for x, y, z in zip(load.x, load.y, load.z, strict=True)]
+    base, tip = ends if load.turning else (rotation.resolve(end) for end in ends)
+    whole = times(length / 2, plus(*ends))
+    couple = times(length * length / 12, cross(AXES[0], minus(tip, base)))
+    return Applied(load.name, load.points[0], rotation.apply(whole) if load.turning else whole, rotation.apply(couple), (base, tip))
+
+
+def _along_coordinate(resting: Grown, name: str, joint: Joint, axis: Axis, force: Any) -> Iterator[Applied]:
+    """What works along a joint's coordinate does to its bodies."""
+    parent, child = resting.ends(joint)
+    along = times(force, resting.along(joint, axis))
+    if axis.kind == "angle":
+        yield Applied(name, joint.child, couple=along)
+        yield Applied(name, joint.parent, couple=times(-1, along))
+        return
+    place = joint.parent.place
+    for other in joint.axes:
+        if other.kind == "slide":
+            place = plus(place, times(slide(joint, parent, child, other.direction), other.direction))
+    x, y, z = place
+    yield Applied(name, joint.child, along)
+    yield Applied(name, Point(joint.parent.body, x, y, z=z), times(-1, along))

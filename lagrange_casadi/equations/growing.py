@@ -1,0 +1,207 @@
+"""Frames grown outward from the ground along the spanning tree, and the coordinates that place them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import casadi as ca
+
+from ..declare.joints import Axis, Joint
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Link, Point, Vector
+from ..geometry.frames import Frame
+from ..geometry.rotation import Rotation
+from ..geometry.vectors import AXES, ZERO, cross, dot, minus, plus, times
+from .joints import orientation, turning_axes
+from .multibody import Coordinate, Turned, column, own_coordinate, place_along, rates_along
+from .tree import Branch, Tree
+
+
+class Grown:
+    """Frames of bodies, grown body by body."""
+
+    def __init__(self, mechanism: Mechanism, carried: Mapping[str, tuple[Coordinate, ...]], ground: Frame) -> None:
+        self.mechanism = mechanism
+        self.carried = carried
+        self.coordinates = tuple(coordinate for found in carried.values() for coordinate in found)
+        self.frames: dict[str, Frame] = {mechanism.ground.name: ground}
+        self.mobilities: dict[str, Any] = {}
+        self.turned: dict[str, Turned] = {}
+        self._turning: dict[str, Vector] = {}
+
+    def ends(self, joint: Joint) -> tuple[Frame, Frame]:
+        """The frames of a joint's parent and child."""
+        parent, child = joint.bodies
+        return self.frames[parent.name], self.frames[child.name]
+
+    def hang(self, branch: Branch, *, displace: bool) -> None:
+        """Place a body on its branch, with the branch's mobility where wanted."""
+        joint = branch.joint
+        frame = self._undisplaced(branch, self.carried[joint.name])
+        if displace:
+            plane = not self.mechanism.space
+            moves = AXES[:2] if plane else AXES
+            turns = (AXES[2:] if plane else AXES) if joint.bears_moment else ()
+            rates = self.mobilities[joint.name] = ca.SX.sym(f"ed_{joint.name}", len(moves) + len(turns))
+            translation, turning = ZERO, ZERO
+            for k, axis in enumerate(moves):
+                translation = plus(translation, times(rates[k], axis))
+            for k, axis in enumerate(turns, len(moves)):
+                turning = plus(turning, times(rates[k], axis))
+            frame = frame.displaced(translation, turning)
+        self.frames[branch.far.body.name] = frame
+
+    def counted(self, expression: Any) -> Any:
+        """An expression of what the user measures in the tree's own variables, angles counted by turns."""
+        return self._measured(expression, turns=True)
+
+    def at_state(self, expression: Any) -> Any:
+        """The same with rates; angles that are not driven are symbols of their own, for :mod:`.turns` to tell."""
+        return self._measured(expression, turns=False)
+
+    def _measured(self, expression: Any, *, turns: bool) -> Any:
+        symbols: list[Any] = []
+        values: list[Any] = []
+        for measure in self.mechanism.measures.asked:
+            of = measure.of
+            if not ca.depends_on(ca.SX(expression), ca.vertcat(*measure.places, *measure.rates, *measure.accelerations)):
+                continue
+            symbols += [*measure.places, *measure.rates, *measure.accelerations]
+            if isinstance(of, Joint):
+                assert measure.axis is not None
+                own = own_coordinate(measure.axis, self.coordinates)
+                known = turns or measure.axis.kind == "slide" or (own is not None and own.driven)
+                place = place_along(of, measure.axis, self.frames, self.coordinates) if known else self._seen(of, measure.axis)
+                values += [place, *rates_along(of, measure.axis, self.frames, self.coordinates)]
+            elif isinstance(of, Point):
+                frame, many = self.frames[of.body.name], len(measure.places)
+                speed, acceleration = frame.motion_of(of.place)
+                values += [*frame.place_of(of.place)[:many], *speed[:many], *acceleration[:many]]
+            else:
+                frame = self.frames[of.name]
+                values += [frame.rotation.angle if turns else self._seen(of), frame.rate[2], frame.angular[2]]
+        return ca.substitute(ca.SX(expression), column(symbols), column(values))
+
+    def _seen(self, of: Joint | Link, axis: Axis | None = None) -> Any:
+        """The symbol of an angle."""
+        name = of.name if axis is None else axis.coordinate
+        if name not in self.turned:
+            own = None if axis is None else own_coordinate(axis, self.coordinates)
+            if own is not None:
+                c, s, angle = ca.vertsplit(own.variables)
+            elif isinstance(of, Link) or not self.mechanism.space:
+                turn = self.frames[of.name].rotation if isinstance(of, Link) else self._between(of)
+                c, s, angle = turn.c, turn.s, turn.angle
+            else:
+                assert axis is not None
+                angle = place_along(of, axis, self.frames, self.coordinates)
+                c, s = ca.cos(angle), ca.sin(angle)
+            symbol = ca.SX.sym(f"{name}_seen")
+            self.turned[name] = Turned(name, symbol, ca.SX(c), ca.SX(s), ca.SX(angle))
+        return self.turned[name].symbol
+
+    def _between(self, joint: Joint) -> Rotation:
+        parent, child = self.ends(joint)
+        return child.rotation.against(parent.rotation)
+
+    def _undisplaced(self, branch: Branch, coordinates: Sequence[Coordinate]) -> Frame:
+        """The frame of the body that hangs on a branch, anchored at the joint's point on its child."""
+        near, far = branch.near, branch.far
+        base = self.frames[near.body.name]
+        rotation, rate, angular = self._turn(branch, coordinates, base)
+        point, anchor = near.place, far.place
+        slides = [
+            (times(c.axis.pitch, c.axis.direction) if c.axis.move == "screw" else c.axis.direction, c)
+            for c in coordinates
+            if c.axis.move != "turn"
+        ]
+        for direction, coordinate in slides:
+            along = times(coordinate.value, direction)
+            if branch.reverse:
+                anchor = plus(anchor, along)
+            else:
+                point = plus(point, along)
+        speed, acceleration = base.motion_of(point)
+        carrier, turning = (rotation, rate) if branch.reverse else (base.rotation, base.rate)
+        for direction, coordinate in slides:
+            axis = carrier.apply(times(branch.sign, direction))
+            speed = plus(speed, times(coordinate.rate, axis))
+            # The line turns under what slides on it (Coriolis).
+            spin = times(coordinate.rate, times(2, turning))
+            acceleration = plus(acceleration, plus(times(coordinate.acceleration, axis), cross(spin, axis)))
+        return Frame(base.place_of(point), speed, acceleration, rotation, rate, angular, anchor)
+
+    def _turn(self, branch: Branch, coordinates: Sequence[Coordinate], base: Frame) -> tuple[Rotation, Vector, Vector]:
+        """Direction, angular velocity and its change of the body that hangs on a branch."""
+        if not branch.far.body.oriented:
+            return Rotation(), ZERO, ZERO
+        joint, rate, angular = branch.joint, base.rate, base.angular
+        turns = [c for c in coordinates if c.kind == "angle"]
+        if turns and not turns[0].relative and not joint.turned:
+            (coordinate,) = turns
+            own = Rotation.flat(*ca.vertsplit(coordinate.variables))
+            if not coordinate.driven:
+                return own, (0.0, 0.0, coordinate.rate), (0.0, 0.0, coordinate.acceleration)
+            spin, change = (times(branch.sign, (0.0, 0.0, one)) for one in (coordinate.rate, coordinate.acceleration))
+            assert base.rotation.angle is not None
+            assert own.angle is not None
+            return replace(own, angle=base.rotation.angle + branch.sign * own.angle), plus(rate, spin), plus(angular, change)
+        zero = orientation(joint)
+        rotation = base.rotation.then(zero.inverse) if branch.reverse else base.rotation
+        for coordinate in reversed(turns) if branch.reverse else turns:
+            direction = coordinate.axis.direction
+            c, s, angle = ca.vertsplit(coordinate.variables)
+            own = Rotation.about(direction, c, s, angle)
+            self._turning[coordinate.name] = rotation.apply(direction)
+            axis = times(branch.sign, self._turning[coordinate.name])
+            angular = plus(angular, plus(times(coordinate.acceleration, axis), cross(times(coordinate.rate, rate), axis)))
+            rate = plus(rate, times(coordinate.rate, axis))
+            rotation = rotation.then(own.inverse if branch.reverse else own)
+        return rotation if branch.reverse else rotation.then(zero), rate, angular
+
+    def along(self, joint: Joint, axis: Axis) -> Vector:
+        """The force or couple on a joint's child, in ground axes, that does a unit of work along an axis, and none along others."""
+        parent, child = self.ends(joint)
+        if axis.kind == "slide":
+            return parent.rotation.apply(axis.direction)
+        turns = [one.coordinate for one in joint.axes if one.kind == "angle"]
+        number = turns.index(axis.coordinate)
+        if len(turns) < 3:
+            return turning_axes(joint, parent, child)[number]
+        # The first axis and the last one are not at right angles: each couple is at right angles to the other two axes.
+        first, second, last = (self._turning[name] for name in turns)
+        if number == 1:
+            return second
+        own, other = (first, last) if number == 0 else (last, first)
+        slope = dot(first, last)
+        return times(1 / (1 - slope * slope), minus(own, times(slope, other)))
+
+
+def coordinates_of(mechanism: Mechanism, tree: Tree, driven: Collection[str]) -> dict[str, tuple[Coordinate, ...]]:
+    """The coordinates of every branch, by its joint; none where a branch leaves no freedom."""
+    # Directions that drives alone set, and their rates, by body: of a plane.
+    turned: dict[str, tuple[Any, Any]] = {} if mechanism.space else {mechanism.ground.name: (ca.SX(0), ca.SX(0))}
+    found: dict[str, tuple[Coordinate, ...]] = {}
+    for branch in tree.branches:
+        joint, near, far = branch.joint, branch.near.body.name, branch.far.body
+        if joint.holds_direction and near in turned:
+            turned[far.name] = (turned[near][0] + branch.sign * joint.angle, turned[near][1])
+        own: list[Coordinate] = []
+        for axis in joint.axes:
+            name, drives = axis.coordinate, axis.coordinate in driven
+            q, rate, acceleration = (ca.SX.sym(f"{name}{end}") for end in ("", "_rate", "_acceleration"))
+            if axis.kind == "slide":
+                own.append(Coordinate(name, far.name, axis, drives, q, rate, rate, acceleration))
+                continue
+            turn, spin = q, rate
+            if drives and near in turned:
+                turn, spin = (before + branch.sign * one for before, one in zip(turned[near], (q, rate), strict=True))
+                turned[far.name] = turn, spin
+            c, s = ca.SX.sym(f"cos_{name}"), ca.SX.sym(f"sin_{name}")
+            variables, change = ca.vertcat(c, s, q), ca.vertcat(-s * spin, c * spin, rate)
+            relative = mechanism.space or (drives and near not in turned)
+            own.append(Coordinate(name, far.name, axis, drives, variables, change, rate, acceleration, turn, relative=relative))
+        found[joint.name] = tuple(own)
+    return found

@@ -1,0 +1,203 @@
+"""What joints look like in space: where they slide, what they close, what they bear. What a plane has none of is nil.
+
+In each function ``parent`` and ``child`` are the frames of a joint's bodies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import casadi as ca
+
+from ..declare.joints import Joint
+from ..declare.parts import Expression, Vector
+from ..geometry.frames import Frame
+from ..geometry.rotation import Rotation
+from ..geometry.vectors import AXES, cross, dot, minus, nil, plus, times
+
+Gap = tuple[Expression, Expression, Expression]
+"""Phi, Phi' and Phi''."""
+
+
+def orientation(joint: Joint) -> Rotation:
+    """The child's axes, as the parent sees them where the joint's coordinates are zero."""
+    return Rotation.by(joint.angle) if joint.turned is None else Rotation.of(*joint.turned)
+
+
+def apart(joint: Joint, parent: Frame, child: Frame) -> Vector:
+    """From the parent's point to the child's, in the parent's axes."""
+    return minus(parent.local(child.place_of(joint.child.place)), joint.parent.place)
+
+
+def gap_motion(joint: Joint, parent: Frame, child: Frame) -> tuple[Vector, Vector]:
+    """Velocity and acceleration of a joint's point on the child, less those of the parent's point that it is at, in ground axes."""
+    own = child.motion_of(joint.child.place)
+    under = parent.motion_at(child.place_of(joint.child.place)) if joint.slides else parent.motion_of(joint.parent.place)
+    return minus(own[0], under[0]), minus(own[1], under[1])
+
+
+def slide(joint: Joint, parent: Frame, child: Frame, along: Vector) -> Expression:
+    """How far the child's point is from the parent's along a direction in the parent's axes."""
+    return dot(apart(joint, parent, child), along)
+
+
+def slide_motion(joint: Joint, parent: Frame, child: Frame, along: Vector) -> tuple[Expression, Expression]:
+    """Rate and acceleration of :func:`slide`, while nothing moves but along the joint's slides."""
+    axis = parent.rotation.apply(along)
+    speed, acceleration = gap_motion(joint, parent, child)
+    rate, change = dot(speed, axis), dot(acceleration, axis)
+    if sum(freedom.move == "slide" for freedom in joint.lets) > 1:
+        change -= 2 * dot(cross(parent.rate, speed), axis)
+    return rate, change
+
+
+def turned(joint: Joint, number: int, parent: Frame, child: Frame) -> Expression:
+    """The angle of a joint about the first (0) or the second of its one or two turns; in a plane it counts turns."""
+    if joint.turned is None:
+        return child.rotation.against(parent.rotation).angle
+    seen = misalignment(joint, parent, child)
+    first, second, third = (_at_zero(joint, direction) for direction in _triad(joint))
+    if number == 0:
+        there = seen.apply(second)
+        return ca.atan2(dot(there, third), dot(there, second))
+    there = seen.resolve(first)
+    return ca.atan2(dot(there, third), dot(there, first))
+
+
+def turning(joint: Joint, number: int, parent: Frame, child: Frame) -> tuple[Expression, Expression]:
+    """Rate and acceleration of :func:`turned`, while nothing turns but about the joint's axes."""
+    rate, angular = minus(child.rate, parent.rate), minus(child.angular, parent.angular)
+    axis = AXES[2] if joint.turned is None else turning_axes(joint, parent, child)[number]
+    carrier = child if number else parent
+    return dot(rate, axis), dot(angular, axis) + dot(rate, cross(carrier.rate, axis))
+
+
+def closing_gaps(joint: Joint, parent: Frame, child: Frame) -> tuple[Any, Any, Any]:
+    """Phi of a joint that closes a loop (paper eq. 5) with Phi' and Phi''.
+
+    Phi are gaps in ground axes or across slides, and of directions where they are held; its multipliers are the action of the
+    parent on the child along these gaps.
+    """
+    gaps = [gap for gap, _ in (*_gaps_of_place(joint, parent, child), *_gaps_of_direction(joint, parent, child))]
+    phi, phi_rate, phi_acceleration = (ca.vertcat(*column) for column in zip(*gaps, strict=True))
+    return phi, phi_rate, phi_acceleration
+
+
+def reaction(joint: Joint, parent: Frame, child: Frame, multipliers: Any) -> tuple[Vector, Vector]:
+    """Force and moment of the parent on the child at a joint that closes a loop, in ground axes, by its multipliers."""
+    force: Vector = (0.0, 0.0, 0.0)
+    moment: Vector = (0.0, 0.0, 0.0)
+    places = [way for _, way in _gaps_of_place(joint, parent, child)]
+    directions = [way for _, way in _gaps_of_direction(joint, parent, child)]
+    for k, way in enumerate(places):
+        force = plus(force, times(multipliers[k], way))
+    for k, way in enumerate(directions, len(places)):
+        moment = plus(moment, times(multipliers[k], way))
+    return force, moment
+
+
+def borne(joint: Joint, parent: Frame, child: Frame, force: Vector, moment: Vector) -> tuple[Vector, Vector]:
+    """What a joint bears of a force and a moment in ground axes: nothing along its slides, nothing about its turns.
+
+    A screw bears a moment about its axis that is less its force along it times its pitch, so that both do no work.
+    """
+    slides = [parent.rotation.apply(joint.triad[f.direction]) for f in joint.lets if f.move == "slide"]
+    if len(slides) == 1 and joint.turned is None:
+        normal = cross(AXES[2], slides[0])
+        force = times(dot(force, normal), normal)
+    else:
+        for axis in slides:
+            force = minus(force, times(dot(force, axis), axis))
+    if joint.bears_moment:
+        for axis in turning_axes(joint, parent, child):
+            about = dot(moment, axis)
+            if not nil(joint.pitch):
+                about += joint.pitch * dot(force, axis)
+            moment = minus(moment, times(about, axis))
+    return force, moment
+
+
+def turning_axes(joint: Joint, parent: Frame, child: Frame) -> list[Vector]:
+    """The axes in ground axes about which a joint that bears a moment lets its child turn, at right angles to each other."""
+    turns = [joint.triad[freedom.direction] for freedom in joint.lets if freedom.move != "slide"]
+    own = [_at_zero(joint, direction) for direction in turns[1:]]
+    return [*map(parent.rotation.apply, turns[:1]), *map(child.rotation.apply, own[:1])]
+
+
+def off(joint: Joint, parent: Frame, child: Frame) -> Expression | None:
+    """One less the cosine of what the directions that a joint holds are off; None where half a turn off is as good."""
+    turns = [f for f in joint.lets if f.move != "slide"]
+    seen = misalignment(joint, parent, child)
+    if not turns:
+        # Of a plane the trace is 1 + 2 cos.
+        return 1 - seen.c if seen.angle is not None else 1 - (seen.x[0] + seen.y[1] + seen.z[2] - 1) / 2
+    if len(turns) > 1 or seen.angle is not None:
+        return None
+    axis = _at_zero(joint, joint.triad[turns[0].direction])
+    return 1 - dot(axis, seen.apply(axis))
+
+
+def misalignment(joint: Joint, parent: Frame, child: Frame) -> Rotation:
+    """How the child is turned from where the joint's coordinates are zero."""
+    return child.rotation.against(parent.rotation.then(orientation(joint)))
+
+
+def _gaps_of_place(joint: Joint, parent: Frame, child: Frame) -> Iterator[tuple[Gap, Vector]]:
+    """Gaps between points, each with the direction in ground axes along which it is measured."""
+    speed, acceleration = gap_motion(joint, parent, child)
+    slides = [f.direction for f in joint.lets if f.move == "slide"]
+    if not slides:
+        between = minus(child.place_of(joint.child.place), parent.place_of(joint.parent.place))
+        for k, axis in enumerate(AXES):
+            if not nil(speed[k]):
+                yield (between[k], speed[k], acceleration[k]), axis
+        return
+    distance, (u, v, w) = apart(joint, parent, child), joint.triad
+    # The lines turn under what slides on them (Coriolis).
+    if len(slides) == 1:
+        axis, beside = parent.rotation.apply(u), parent.rotation.apply(w)
+        rate = dot(speed, axis)
+        across = cross(beside, axis)
+        found = [(v, across, 2 * dot(parent.rate, beside) * rate), (w, beside, -2 * dot(parent.rate, across) * rate)]
+    else:
+        across = parent.rotation.apply(u)
+        found = [(u, across, 2 * dot(cross(parent.rate, speed), across))] if len(slides) == 2 else []
+    for along, across, turning in found:
+        rate = dot(speed, across)
+        if not nil(rate):
+            yield (dot(distance, along), rate, dot(acceleration, across) - turning), across
+
+
+def _gaps_of_direction(joint: Joint, parent: Frame, child: Frame) -> Iterator[tuple[Gap, Vector]]:
+    """Gaps of directions that are held, each with the axis in ground axes about which its multiplier is a moment."""
+    turns = [f.direction for f in joint.lets if f.move != "slide"]
+    if not (joint.child.body.oriented and joint.parent.body.oriented) or len(turns) > 2:
+        return
+    base, seen = parent.rotation.then(orientation(joint)), misalignment(joint, parent, child)
+    rate, angular = minus(child.rate, parent.rate), minus(child.angular, parent.angular)
+    turning = Frame(rate=base.resolve(rate), angular=base.resolve(minus(angular, cross(parent.rate, rate))))
+    first, second, third = AXES if not turns else (_at_zero(joint, direction) for direction in _triad(joint))
+    held = (
+        ((first, second), (second, third), (third, first)),
+        ((first, second), (first, third)),
+        ((second, first),),
+    )[len(turns)]
+    for own, across in held:
+        there = seen.apply(own)
+        speed, acceleration = turning.motion_of(there)
+        change = dot(speed, across)
+        if not nil(change):
+            yield (dot(there, across), change, dot(acceleration, across)), base.apply(cross(there, across))
+
+
+def _triad(joint: Joint) -> tuple[Vector, Vector, Vector]:
+    """The joint's directions, from that of its first turn on."""
+    first = next((freedom.direction for freedom in joint.lets if freedom.move != "slide"), 0)
+    u, v, w = (joint.triad[(first + k) % 3] for k in range(3))
+    return u, v, w
+
+
+def _at_zero(joint: Joint, direction: Vector) -> Vector:
+    """A direction in the parent's axes, in the child's axes where the joint's coordinates are zero."""
+    return orientation(joint).resolve(direction)

@@ -1,0 +1,45 @@
+"""Vectors as three expressions. What is zero by structure is the number 0, so that graphs hold nothing of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi as ca
+
+Expression = Any
+"""A number, or a ``casadi.SX`` scalar."""
+
+Vector = tuple[Expression, Expression, Expression]
+
+ZERO: Vector = (0.0, 0.0, 0.0)
+AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def plus(a: Vector, b: Vector) -> Vector:
+    """a + b."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def minus(a: Vector, b: Vector) -> Vector:
+    """a - b."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def times(factor: Expression, a: Vector) -> Vector:
+    """A vector by a factor."""
+    return factor * a[0], factor * a[1], factor * a[2]
+
+
+def dot(a: Vector, b: Vector) -> Expression:
+    """a . b."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    """a x b."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def nil(value: Any) -> bool:
+    """Whether a value is zero by structure."""
+    return bool(ca.SX(value).is_zero())

@@ -1,0 +1,159 @@
+"""The balance of force and moment of every free body, for the wrenches that all joints pass.
+
+The unknowns are six a joint: what the parent does to the child, ground axes, its moment about the child's point. A coordinate
+without an effort passes no power: one more equation each. The effort of another is its power for a unit rate, and what that
+effort does is taken out of the reaction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from spatial_algebra import Factored, cross, identity, skew, vector
+from spatial_bodies import GROUND, Joint, Mechanism
+from spatial_motion import Motion
+
+
+@dataclass(frozen=True)
+class Acting:
+    """A force and a moment on a body at a place, ground axes."""
+
+    body: str
+    place: np.ndarray
+    force: np.ndarray
+    moment: np.ndarray
+
+
+@dataclass(frozen=True)
+class Wrenches:
+    """What all joints pass, ``found`` six numbers each, and the variations ``null`` of them that hold each other (in doubles)."""
+
+    found: dict[str, np.ndarray]
+    null: list[dict[str, np.ndarray]]
+    vague: bool
+
+
+@dataclass(frozen=True)
+class Balance:
+    """The balances of a mechanism's bodies at an instant."""
+
+    motion: Motion
+    poses: dict
+    values: dict
+    pushed: frozenset
+
+    @property
+    def mechanism(self) -> Mechanism:
+        return self.motion.mechanism
+
+    def point(self, joint: Joint):
+        """The child's point, where what a joint passes is."""
+        return self.poses[joint.child].at(self.motion.at_child[joint.name])
+
+    def twists(self, joint: Joint):
+        """Of every axis, what the child's point and the child do for a unit rate: index (None for a loose turn), v, w."""
+        kept = self.motion.kept(joint)
+        passage = self.motion.passage(joint, self.poses[joint.parent], self.values)
+        idle = len(joint.turning) == 3 and not {(joint.name, k) for k in joint.turning} & self.pushed
+        for k, u, at in zip(kept, passage.directions, passage.places, strict=True):
+            axis = self.motion.axes[joint.name][k]
+            if not (idle and axis.turns):
+                v = u * axis.slide
+                yield k, (v + cross(u, passage.end.r - at) if axis.turns else v), (u if axis.turns else u * 0)
+        if idle:
+            # Three turns, whatever their axes: no moment about any, so that nothing is singular where axes meet.
+            for e in identity(self.motion.arithmetic):
+                yield None, e * 0, e
+
+    def given(self) -> list[Acting]:
+        """Loads, springs and dampers."""
+        arithmetic, found = self.motion.arithmetic, []
+        for load in self.mechanism.loads:
+            pose = self.poses[load.body]
+            force, torque = vector(arithmetic, load.force), vector(arithmetic, load.torque)
+            if load.turning:
+                force, torque = pose.R @ force, pose.R @ torque
+            found.append(Acting(load.body, pose.at(vector(arithmetic, load.point)), force, torque))
+        for spring in self.mechanism.springs:
+            (a, at_a), (b, at_b) = ((name, vector(arithmetic, point)) for name, point in spring.ends)
+            way = self.poses[b].at(at_b) - self.poses[a].at(at_a)
+            length = arithmetic.sqrt(way @ way)
+            speed = (self.poses[b].velocity(at_b) - self.poses[a].velocity(at_a)) @ way / length
+            tension = arithmetic.number(spring.stiffness) * (length - arithmetic.number(spring.free))
+            tension += arithmetic.number(spring.damping) * speed
+            pull = way * (tension / length)
+            found += [Acting(a, self.poses[a].at(at_a), pull, way * 0), Acting(b, self.poses[b].at(at_b), -pull, way * 0)]
+        return [one for one in found if one.body != GROUND]
+
+    def passed(self, wrenches) -> list[Acting]:
+        """What joints do to bodies."""
+        found = []
+        for joint in self.mechanism.joints:
+            force, moment = wrenches[joint.name][:3], wrenches[joint.name][3:]
+            at = self.point(joint)
+            found += [Acting(joint.child, at, force, moment), Acting(joint.parent, at, -force, -moment)]
+        return [one for one in found if one.body != GROUND]
+
+    def inertia(self, body):
+        """What a body needs: force, and moment about its centre; and that centre's place."""
+        arithmetic, pose = self.motion.arithmetic, self.poses[body.name]
+        mass, centre, inertia = body.inertias(arithmetic)
+        inertia = pose.R @ inertia @ pose.R.T
+        force = (pose.acceleration(centre) - vector(arithmetic, self.mechanism.gravity)) * mass
+        return force, inertia @ pose.alpha + cross(pose.w, inertia @ pose.w), pose.at(centre)
+
+    def solve(self) -> Wrenches:
+        """The wrenches of all joints. Raises :class:`spatial_algebra.InconsistentError` where no forces balance the bodies."""
+        arithmetic, joints, bodies = self.motion.arithmetic, self.mechanism.joints, self.mechanism.bodies
+        nought, size = arithmetic.number(0), self.mechanism.size
+        needs = {b.name: self.inertia(b) for b in bodies}
+        row = {b.name: 6 * i for i, b in enumerate(bodies)}
+        matrix = arithmetic.zeros(6 * len(bodies), 6 * len(joints)) + nought
+        right = np.concatenate([x for b in bodies for x in needs[b.name][:2]])
+        for i, joint in enumerate(joints):
+            for name, sign in ((joint.child, 1), (joint.parent, -1)):
+                if name != GROUND:
+                    block = matrix[row[name] : row[name] + 6, 6 * i : 6 * i + 6]
+                    block[:3, :3] += identity(arithmetic) * sign
+                    block[3:, 3:] += identity(arithmetic) * sign
+                    block[3:, :3] += skew(self.point(joint) - needs[name][2]) * sign
+        for one in self.given():
+            r = row[one.body]
+            right[r : r + 3] -= one.force
+            right[r + 3 : r + 6] -= one.moment + cross(one.place - needs[one.body][2], one.force)
+        powers, units = [], []
+        for i, joint in enumerate(joints):
+            for k, v, w in self.twists(joint):
+                if (joint.name, k) not in self.pushed:
+                    line = arithmetic.zeros(6 * len(joints)) + nought
+                    line[6 * i : 6 * i + 3], line[6 * i + 3 : 6 * i + 6] = v, w
+                    powers.append(line)
+                    units.append(size if any(w) else 1.0)
+        matrix = np.concatenate([matrix, *(line[None] for line in powers)])
+        right = np.concatenate([right, arithmetic.zeros(len(powers)) + nought])
+        columns = np.array(([1.0] * 3 + [size] * 3) * len(joints))
+        rows = np.array(([1.0] * 3 + [size] * 3) * len(bodies) + units)
+        factored = Factored.of(matrix, rows, columns)
+        found = factored.solve(arithmetic, right, "the spatial oracle's forces do not balance its bodies")
+        null = [{j.name: (columns * column)[6 * i : 6 * i + 6] for i, j in enumerate(joints)} for column in factored.null.T]
+        return Wrenches({j.name: found[6 * i : 6 * i + 6] for i, j in enumerate(joints)}, null, factored.vague)
+
+    def split(self, joint: Joint, wrench):
+        """The efforts of a joint's pushed axes by index, and its reaction without them, of what it passes."""
+        force, moment, efforts = wrench[:3], wrench[3:], {}
+        twists = {k: (v, w) for k, v, w in self.twists(joint) if k is not None}
+        for k, (v, w) in twists.items():
+            if (joint.name, k) not in self.pushed:
+                continue
+            efforts[k] = wrench[:3] @ v + wrench[3:] @ w
+            if k not in joint.turning:
+                force = force - v * efforts[k]
+            elif len(joint.turning) < 3:
+                moment = moment - w * efforts[k]
+            else:
+                # A couple that does its power on this turn and none on the two others.
+                _, b, c = (twists[joint.turning[(joint.turning.index(k) + i) % 3]][1] for i in range(3))
+                across = cross(b, c)
+                moment = moment - across * (efforts[k] / (across @ w))
+        return efforts, np.concatenate([force, moment])

@@ -1,0 +1,241 @@
+"""What the spatial oracle is told of a mechanism: plain data of its own. Numbers may be doubles, strings or of any arithmetic."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from spatial_algebra import cross, orthonormal, pi, unit, vector
+
+Vector = Sequence[Any]
+Law = Callable[[Any], Any] | Sequence[Any]
+GROUND = "ground"
+NIL = (0, 0, 0)
+AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+_TURNS = {"spherical": 3, "slot": 3, "free": 3, "universal": 2, "prismatic": 0, "weld": 0}
+KINDS = ("revolute", "prismatic", "cylindrical", "universal", "spherical", "screw", "planar", "slot", "weld", "free")
+
+
+@dataclass(frozen=True)
+class Rigid:
+    """A rigid body: ``inertia`` (3x3) is about the ``centre``, both in its axes."""
+
+    name: str
+    mass: Any
+    centre: Vector = NIL
+    inertia: Sequence[Vector] = (NIL, NIL, NIL)
+
+    def inertias(self, arithmetic):
+        """Mass, centre, and inertia about it."""
+        return (
+            arithmetic.number(self.mass),
+            vector(arithmetic, self.centre),
+            arithmetic.array([vector(arithmetic, row) for row in self.inertia]),
+        )
+
+
+@dataclass(frozen=True)
+class Rod:
+    """A straight body from its origin along its x.
+
+    ``density`` is mass per length (kg/m) over the ratio xi; ``polar``, ``lateral_y``, ``lateral_z`` are a slice's moments of
+    inertia per length about x, y and z through its centre, ``product`` its yz entry (kg m). Each is a function of xi, or the
+    coefficients of a polynomial in it; smooth between ``breaks``.
+    """
+
+    name: str
+    length: Any
+    density: Law
+    polar: Law = ()
+    lateral_y: Law = ()
+    lateral_z: Law = ()
+    product: Law = ()
+    breaks: Vector = (0, 1)
+
+    def slices(self, arithmetic, start=0, end=1):
+        """Slices between two ratios: places along the rod, masses, and moments of inertia (3x3), by Gauss' rule."""
+        nodes, weights = arithmetic.gauss
+        length, zero = arithmetic.number(self.length), arithmetic.number(0)
+        for a, b in itertools.pairwise(vector(arithmetic, self.breaks)):
+            a, b = max(a, start), min(b, end)
+            if b <= a:
+                continue
+            for node, weight in zip(nodes, weights, strict=True):
+                xi, w = a + (node + 1) / 2 * (b - a), weight * (b - a) / 2 * length
+                j, y, z, p = (_value(arithmetic, law, xi) * w for law in (self.polar, self.lateral_y, self.lateral_z, self.product))
+                inertia = arithmetic.array([[j, zero, zero], [zero, y, p], [zero, p, z]])
+                yield xi * length, _value(arithmetic, self.density, xi) * w, inertia
+
+    def inertias(self, arithmetic):
+        """Mass, centre, and inertia about it."""
+        slices = [*self.slices(arithmetic)]
+        zero = arithmetic.number(0)
+        mass = sum((m for _, m, _ in slices), zero)
+        place = sum((m * x for x, m, _ in slices), zero) / mass if mass else zero
+        across = sum((m * (x - place) ** 2 for x, m, _ in slices), zero)
+        inertia = sum((i for *_, i in slices), arithmetic.zeros(3, 3) * zero)
+        spread = arithmetic.array([[zero, zero, zero], [zero, across, zero], [zero, zero, across]])
+        return mass, arithmetic.array([place, zero, zero]), inertia + spread
+
+
+def _value(arithmetic, law, xi):
+    if callable(law):
+        return arithmetic.number(law(xi))
+    found = arithmetic.number(0)
+    for coefficient in reversed(law):
+        found = found * xi + arithmetic.number(coefficient)
+    return found
+
+
+def uniform(name, length, mass) -> Rod:
+    """A slender uniform rod of so much mass."""
+    return Rod(name, length, lambda xi: (mass + 0 * xi) / length)
+
+
+def second_moments(yy: Law, zz: Law, yz: Law = ()) -> dict[str, Law]:
+    """The slices' laws of a rod from its second moments of mass per length: sums of y y, z z and y z over the section."""
+
+    def at(law, xi):
+        return law(xi) if callable(law) else sum(c * xi**k for k, c in enumerate(law))
+
+    return {
+        "polar": lambda xi: at(yy, xi) + at(zz, xi),
+        "lateral_y": zz,
+        "lateral_z": yy,
+        "product": lambda xi: -at(yz, xi),
+    }
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One coordinate of a joint: a turn about ``direction``, or a slide along it; ``slide`` is the way a unit of it makes."""
+
+    direction: np.ndarray
+    turns: bool
+    slide: Any
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint: axes in sequence, each carried by the turns before it.
+
+    ``at_parent`` and ``at_child`` are its point in both bodies' axes; ``axis`` (and ``axis2``, at coordinates zero) are in the
+    parent's axes; ``frame`` lists the three directions of a spherical joint's turns, a slot's, and a free one's slides and turns;
+    ``orientation`` is the child's against the parent at coordinates zero. The ``lead`` is a screw's slide for a whole turn.
+    """
+
+    name: str
+    kind: str
+    parent: str
+    child: str
+    at_parent: Vector = NIL
+    at_child: Vector = NIL
+    axis: Vector = (0, 0, 1)
+    axis2: Vector | None = None
+    lead: Any = 0
+    frame: Sequence[Vector] = AXES
+    orientation: Sequence[Vector] = AXES
+
+    def __post_init__(self) -> None:
+        assert self.kind in KINDS, f"'{self.kind}' is no joint; there are {KINDS}"
+
+    @property
+    def count(self) -> int:
+        """How many coordinates it has."""
+        return {"cylindrical": 2, "universal": 2, "spherical": 3, "planar": 3, "slot": 4, "weld": 0, "free": 6}.get(self.kind, 1)
+
+    @property
+    def turning(self) -> range:
+        """The indices of its turns."""
+        if self.kind == "cylindrical":
+            return range(1)
+        turns = _TURNS.get(self.kind, 1)
+        return range(self.count - turns, self.count)
+
+    def axes(self, arithmetic) -> list[Axis]:
+        """Its axes, in the parent's axes at coordinates zero."""
+        one = arithmetic.number(1)
+        first = unit(arithmetic, vector(arithmetic, self.axis))
+        second = None
+        if self.axis2 is not None:
+            given = unit(arithmetic, vector(arithmetic, self.axis2))
+            assert abs(given @ first) < 1e-9, f"the axes of '{self.name}' are not at right angles"
+            second = unit(arithmetic, given - first * (given @ first))
+        frame = [*orthonormal(arithmetic, [*zip(*self.frame, strict=True)]).T]
+        turns = [Axis(e, True, 0 * one) for e in frame]
+        slides = [Axis(e, False, one) for e in frame]
+        match self.kind:
+            case "revolute":
+                return [Axis(first, True, 0 * one)]
+            case "prismatic":
+                return [Axis(first, False, one)]
+            case "cylindrical":
+                return [Axis(first, True, 0 * one), Axis(first, False, one)]
+            case "universal":
+                return [Axis(first, True, 0 * one), Axis(second, True, 0 * one)]
+            case "screw":
+                return [Axis(first, True, arithmetic.number(self.lead) / (2 * pi(arithmetic)))]
+            case "planar":
+                return [Axis(first, False, one), Axis(second, False, one), Axis(cross(first, second), True, 0 * one)]
+            case "spherical":
+                return turns
+            case "slot":
+                return [Axis(first, False, one), *turns]
+            case "free":
+                return [*slides, *turns]
+            case _:
+                return []
+
+
+@dataclass(frozen=True)
+class Load:
+    """A constant force and torque on a body's point, in ground axes, or in the body's where it is ``turning`` with it."""
+
+    body: str
+    point: Vector = NIL
+    force: Vector = NIL
+    torque: Vector = NIL
+    turning: bool = False
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring and damper between two points, each (body, point): tension = stiffness (length - free) + damping length'."""
+
+    ends: tuple[tuple[str, Vector], tuple[str, Vector]]
+    stiffness: Any = 0
+    free: Any = 0
+    damping: Any = 0
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """Bodies, joints, gravity (m/s^2, ground axes) and what acts."""
+
+    bodies: Sequence[Rigid | Rod]
+    joints: Sequence[Joint]
+    gravity: Vector = (0, 0, "-9.81")
+    loads: Sequence[Load] = field(default_factory=tuple)
+    springs: Sequence[Spring] = field(default_factory=tuple)
+
+    def __post_init__(self) -> None:
+        names = [b.name for b in self.bodies] + [GROUND]
+        assert len({*names}) == len(names), "two bodies have one name"
+        for joint in self.joints:
+            assert {joint.parent, joint.child} <= {*names}, (
+                f"'{joint.name}' joins {joint.parent} and {joint.child}: not both are there"
+            )
+
+    def joint(self, name: str) -> Joint:
+        return next(j for j in self.joints if j.name == name)
+
+    @cached_property
+    def size(self) -> float:
+        """A length by which places and angles, forces and moments are compared."""
+        points = [j.at_parent for j in self.joints] + [j.at_child for j in self.joints]
+        found = [float(b.length) for b in self.bodies if isinstance(b, Rod)]
+        return max([*found, *(max(abs(float(x)) for x in p) for p in points)], default=1.0) or 1.0

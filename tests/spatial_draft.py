@@ -1,0 +1,175 @@
+"""Random parts of mechanisms in space: bodies, orientations, loads, laws of motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from arithmetic import DOUBLE
+from spatial_algebra import arithmetic_of
+from spatial_bodies import AXES, GROUND, NIL, Joint, Load, Mechanism, Rigid, Rod, Spring, second_moments
+from spatial_motion import Motion, solve_motion
+from spatial_oracle import Result, solve
+
+
+@dataclass(frozen=True)
+class Law:
+    """A coordinate's law: offset + speed t + amplitude sin(frequency t + phase)."""
+
+    offset: float = 0.0
+    speed: float = 0.0
+    amplitude: float = 0.0
+    frequency: float = 0.0
+    phase: float = 0.0
+
+    def at(self, t, digits=None):
+        """The coordinate, its rate and its acceleration."""
+        a = arithmetic_of(digits)
+        t, w, size = a.number(t), a.number(self.frequency), a.number(self.amplitude)
+        s, c = a.sin(w * t + a.number(self.phase)), a.cos(w * t + a.number(self.phase))
+        return a.number(self.offset) + a.number(self.speed) * t + size * s, a.number(self.speed) + size * w * c, -size * w * w * s
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A mechanism, its laws by (joint, index), a guess at t = 0, and what bears efforts.
+
+    It moves from 0 to ``span``, and is followed there in ``steps``. Numbers of the mechanism are doubles, or of mpmath where a
+    loop closes only by exact ones. A planar mechanism lies in the ``plane`` of the first two columns of that matrix. So
+    many spins are ``idle``: nothing holds them.
+    """
+
+    mechanism: Mechanism
+    laws: dict
+    guess: dict = field(default_factory=dict)
+    pushed: Sequence | None = None
+    span: float = 1.0
+    steps: int = 8
+    idle: int = 0
+    plane: np.ndarray | None = None
+
+    def drives(self, t, digits=None) -> dict:
+        """(q, q', q'') by (joint, index)."""
+        return {key: law.at(t, digits) for key, law in self.laws.items()}
+
+    def solve(self, t, digits=None, guess=None) -> Result:
+        """The instant t; followed from the guess at 0 unless another one is given."""
+        guess = guess or self.followed(t)
+        return solve(self.mechanism, self.drives(t, digits), guess, digits, self.pushed)
+
+    def followed(self, t) -> dict:
+        """The posture at t in doubles as a guess, followed from the one at 0; none of an open tree, which needs none."""
+        return [posture for posture, _ in self.traced(t)][-1] if self.guess else {}
+
+    def traced(self, t):
+        """The postures, each a guess, at 0 and after every step to t, with the factored slope of the motion there."""
+        guess = self.guess
+        for k in range(self.steps + 1):
+            motion = Motion(self.mechanism, self.laws, DOUBLE, self.pushed or ())
+            poses, coordinates, slope = solve_motion(motion, self.drives(float(t) * k / self.steps), guess)
+            guess = {b.name: (poses[b.name].r, poses[b.name].R) for b in self.mechanism.bodies}
+            guess |= {key: q for key, (q, *_) in coordinates.items()}
+            yield guess, slope
+
+    @property
+    def rods(self) -> list[str]:
+        return [b.name for b in self.mechanism.bodies if isinstance(b, Rod)]
+
+
+def direction(rng):
+    """A unit vector, of no direction above others."""
+    found = rng.normal(size=3)
+    return found / np.linalg.norm(found)
+
+
+def orientation(rng):
+    """A rotation matrix, of no rotation above others."""
+    w, x, y, z = (q := rng.normal(size=4)) / np.linalg.norm(q)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def across(rng, axis):
+    """A unit vector at right angles to another."""
+    found = np.cross(axis, direction(rng))
+    return found / np.linalg.norm(found)
+
+
+def frame(x, rng):
+    """A rotation matrix whose first column is along ``x``."""
+    x = np.asarray(x) / np.linalg.norm(x)
+    y = across(rng, x)
+    return np.array([x, y, np.cross(x, y)]).T
+
+
+def rod(rng, name, length=None, slender=False) -> Rod:
+    """A rod: uniform or tapered, slender or with second moments of its section."""
+    length = length or rng.uniform(0.2, 0.8)
+    density = [rng.uniform(0.5, 3.0)]
+    if rng.random() < 0.5:
+        density += [density[0] * rng.uniform(-0.7, 0.7)]
+    moments = {}
+    if not slender and rng.random() < 0.4:
+        yy, zz = rng.uniform(1e-4, 1e-3, 2)
+        yz = rng.uniform(-0.5, 0.5) * math.sqrt(yy * zz)
+        moments = second_moments([yy, 0.3 * yy], [zz, 0.2 * zz], [yz])
+    return Rod(name, length, density, **moments)
+
+
+def rigid(rng, name, size=0.3) -> Rigid:
+    """A rigid body: a cloud of a few points has an inertia that can be."""
+    points, masses = rng.normal(size=(5, 3)) * size / 2, rng.uniform(0.1, 0.6, 5)
+    centre = masses @ points / sum(masses)
+    arms = points - centre
+    inertia = sum(m * ((x @ x) * np.eye(3) - np.outer(x, x)) for m, x in zip(masses, arms, strict=True))
+    return Rigid(name, float(sum(masses)), centre, inertia)
+
+
+def body(rng, name, length=None, slender=False) -> Rod | Rigid:
+    """A rod or, one in three times, a rigid body."""
+    return rigid(rng, name) if not slender and rng.random() < 1 / 3 else rod(rng, name, length, slender)
+
+
+def point_on(rng, one):
+    """A point of a body: a rod's tip, a point along it, or one aside."""
+    if isinstance(one, Rigid):
+        return rng.normal(size=3) * 0.2
+    chance = rng.random()
+    if chance < 0.4:
+        return np.array([one.length, 0.0, 0.0])
+    return np.array([rng.uniform(0.1, 1.0) * one.length, *(rng.normal(size=2) * 0.1 if chance > 0.8 else (0.0, 0.0))])
+
+
+def swing(rng, around=0.0, size=1.0) -> Law:
+    """A law that swings."""
+    return Law(around, 0.0, size * rng.uniform(0.3, 1.0), rng.uniform(1.0, 4.0), rng.uniform(0.0, 6.0))
+
+
+def acting(rng, bodies) -> dict:
+    """Gravity, loads and springs; ``bodies`` may also be found at the ground."""
+    loads = [
+        Load(b.name, point_on(rng, b), rng.normal(size=3) * 5, rng.normal(size=3), bool(rng.random() < 0.5))
+        for b in bodies
+        if rng.random() < 0.4
+    ]
+    springs = []
+    if rng.random() < 0.5:
+        first, last = bodies[0], bodies[-1]
+        start = (GROUND, direction(rng) * 1.5) if first is last else (first.name, np.array([0.0, 0.05, 0.0]) + point_on(rng, first))
+        springs = [Spring((start, (last.name, point_on(rng, last))), rng.uniform(10, 50), rng.uniform(0.1, 0.4), rng.uniform(0, 3))]
+    return {"gravity": direction(rng) * 9.81, "loads": loads, "springs": springs}
+
+
+def joint(rng, name, kind, parent, child, at_parent=NIL, at_child=NIL) -> Joint:
+    """A joint whose axes and orientation are anyhow."""
+    axis = direction(rng)
+    lead = rng.uniform(0.05, 0.4) * rng.choice([-1, 1]) if kind == "screw" else 0
+    turns = orientation(rng).T if rng.random() < 0.5 else AXES
+    return Joint(name, kind, parent, child, at_parent, at_child, axis, across(rng, axis), lead, turns, orientation(rng))

@@ -1,0 +1,114 @@
+"""An independent solution of mechanisms in space: Newton-Euler on free bodies, in any number of digits.
+
+It imports nothing of the package. :mod:`spatial_bodies` says how a mechanism is told, :mod:`spatial_motion` finds how it moves,
+:mod:`spatial_balance` what its joints pass, :mod:`spatial_sections` what is inside its rods.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from spatial_algebra import arithmetic_of
+from spatial_balance import Balance, Wrenches
+from spatial_bodies import Mechanism, Rod
+from spatial_motion import Motion, Pose, solve_motion
+from spatial_sections import Section, section
+
+REACTION = ("fx", "fy", "fz", "mx", "my", "mz")
+SECTION = ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z")
+_OPEN = 1e-7
+
+
+@dataclass(frozen=True)
+class Result:
+    """Everything at one instant.
+
+    ``coordinates`` are (q, q', q'') by (joint, index), of all that are followed; ``efforts`` by (joint, index); ``reactions`` six
+    numbers by joint: force and moment of the parent on the child, ground axes, about the child's point, without the efforts;
+    ``sections`` by rod. Known in doubles only: ``loose_reactions`` (six, n) are the n ways in which ideal joints leave a reaction
+    open, ``loose_efforts`` (n) an effort, and :meth:`loose_section` a section's forces; ``idle`` are the motions that the drives
+    leave open, six a body (v, w) in columns; ``steadiness`` is how far from singular the motion is; ``vague`` where a rank is not
+    clear. Numbers that are open are one choice of many.
+    """
+
+    poses: dict[str, Pose]
+    coordinates: dict
+    efforts: dict
+    reactions: dict[str, np.ndarray]
+    sections: dict[str, Section]
+    loose_reactions: dict[str, np.ndarray]
+    loose_efforts: dict
+    loose_section: Callable
+    idle: dict[str, np.ndarray]
+    steadiness: float
+    vague: bool
+    size: float
+    balance: Balance
+    wrenches: Wrenches
+
+    @property
+    def open(self) -> set:
+        """What is open: (joint, member) of reactions, and (joint, index) of efforts."""
+        unit = np.array([1.0] * 3 + [self.size] * 3)[:, None]
+        found = set()
+        for joint, ways in self.loose_reactions.items():
+            found |= {(joint, m) for m, row in zip(REACTION, ways / unit, strict=True) if np.linalg.norm(row) > _OPEN}
+        return found | {key for key, row in self.loose_efforts.items() if np.linalg.norm(row) > _OPEN * self.size}
+
+    def open_section(self, rod: str, xi) -> tuple[bool, ...]:
+        """Which of a section's six forces are open."""
+        ways = self.loose_section(rod, xi) / np.array([1.0] * 3 + [self.size] * 3)[:, None]
+        return tuple(bool(x) for x in np.linalg.norm(ways, axis=1) > _OPEN)
+
+
+def solve(mechanism: Mechanism, drives, guess=None, digits=None, pushed=None) -> Result:
+    """One instant. ``drives`` are (q, q', q'') by (joint, index), ``pushed`` the keys that bear efforts, by default the same.
+
+    The ``guess`` holds poses (place, axes as a 3x3 matrix of columns) by body's name and coordinates by (joint, index); what is
+    missing follows through the joints from coordinates at zero. Raises :class:`spatial_motion.OpenLoopError` or
+    :class:`spatial_algebra.InconsistentError`.
+    """
+    arithmetic = arithmetic_of(digits)
+    pushed = frozenset(drives if pushed is None else pushed)
+    motion = Motion(mechanism, drives, arithmetic, pushed)
+    poses, values, factored = solve_motion(motion, drives, guess or {})
+    balance = Balance(motion, poses, values, pushed)
+    wrenches = balance.solve()
+    acting = balance.given() + balance.passed(wrenches.found)
+    rods = [b for b in mechanism.bodies if isinstance(b, Rod)]
+    sections = {rod.name: section(arithmetic, rod, poses[rod.name], mechanism.gravity, acting) for rod in rods}
+    efforts, reactions, loose_efforts, loose_reactions = {}, {}, {}, {}
+    for joint in mechanism.joints:
+        own, reactions[joint.name] = balance.split(joint, wrenches.found[joint.name])
+        efforts |= {(joint.name, k): effort for k, effort in own.items()}
+        ways = [_floats(*balance.split(joint, way[joint.name])) for way in wrenches.null]
+        loose_reactions[joint.name] = np.array([reaction for _, reaction in ways]).reshape(-1, 6).T
+        loose_efforts |= {(joint.name, k): np.array([own[k] for own, _ in ways]) for k in own}
+
+    def loose_section(rod, xi):
+        bare = (section(arithmetic, sections[rod].rod, poses[rod], mechanism.gravity, balance.passed(w)) for w in wrenches.null)
+        return np.array([one.at(xi, weight=False).astype(float) for one in bare]).reshape(-1, 6).T
+
+    units = np.array([mechanism.size] * 3 + [1.0] * 3)[:, None]
+    return Result(
+        poses={b.name: poses[b.name] for b in mechanism.bodies},
+        coordinates=values,
+        efforts=efforts,
+        reactions=reactions,
+        sections=sections,
+        loose_reactions=loose_reactions,
+        loose_efforts=loose_efforts,
+        loose_section=loose_section,
+        idle={name: units * factored.null[c : c + 6] for name, c in motion.column.items()},
+        steadiness=factored.least,
+        vague=factored.vague or wrenches.vague,
+        size=mechanism.size,
+        balance=balance,
+        wrenches=wrenches,
+    )
+
+
+def _floats(efforts, reaction):
+    return {k: float(x) for k, x in efforts.items()}, np.asarray(reaction, dtype=float)
