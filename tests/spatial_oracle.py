@@ -1,7 +1,14 @@
 """An independent solution of mechanisms in space: Newton-Euler on free bodies, in any number of digits.
 
 It imports nothing of the package. :mod:`spatial_bodies` says how a mechanism is told, :mod:`spatial_motion` finds how it moves,
-:mod:`spatial_balance` what its joints pass, :mod:`spatial_sections` what is inside its rods.
+:mod:`spatial_balance` what its joints pass, :mod:`spatial_sections` what is inside its rods. A swinging rod, in 40 digits:
+
+    rod = Rod("rod", 0.6, [1.5])
+    found = solve(Mechanism([rod], [Joint("pin", "revolute", "ground", "rod")]), {("pin", 0): ("0.2", 8, 10)}, digits=40)
+    found.efforts["pin", 0], found.reactions["pin"], found.sections["rod"].at("0.25"), found.open
+
+An effort's power is the effort times its coordinate's rate. A screw's effort is a couple; that of one of three turns is a couple
+that has no power on the two others.
 """
 
 from __future__ import annotations
