@@ -14,6 +14,8 @@ from spatial_motion import OpenLoopError
 from spatial_oracle import solve
 from spatial_reference import Entry
 
+pytestmark = pytest.mark.quick
+
 G = 9.81
 UPRIGHT = [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]
 
@@ -50,6 +52,8 @@ def test_a_puck_on_an_incline():
     found = solve(Mechanism([puck], [plane]), told)
     close([found.efforts["J", k] for k in range(3)], [3 * (2 + G * 0.6), 3 * 4.0, 0.3 * 5], 10)
     close(found.reactions["J"], [*(3 * G * 0.8 * cross(up, across)), 0, 0, 0], 100)
+    close(found.poses["puck"].r, 0.1 * up + 0.2 * across)
+    close(found.poses["puck"].R[:, 0], math.cos(0.4) * up + math.sin(0.4) * across)
 
 
 def test_a_universal_joint_carries_its_second_axis():
