@@ -1,10 +1,6 @@
 """Machines from practice, against what is known of them without any equation of motion, and against Newton-Euler."""
 
-import contextlib
-import functools
-import io
 import math
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -12,23 +8,11 @@ import oracle
 import pytest
 from balance import assert_balanced
 from conftest import CASES
+from machines import shown
 from splines import by_hand
 
 from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.equations.derive import derive
-
-PAGE = CASES.parent / "docs" / "machines.md"
-
-
-@functools.cache
-def shown(title):
-    """What the page on machines declares under a heading, by name."""
-    _, _, part = PAGE.read_text().partition(f"## {title}\n")
-    (block,) = re.findall(r"```python\n(.*?)```", part.partition("\n## ")[0], re.DOTALL)
-    names = {}
-    with contextlib.redirect_stdout(io.StringIO()):
-        exec(compile(block, title, "exec"), names)
-    return names
 
 
 def force(name, x, fx, fy, mz=0.0):
