@@ -25,8 +25,8 @@ def shown(title):
 
 
 def elsewhere():
-    """A planetary gear that rolls, driven at its planet's pin."""
-    return replace(shown("Planetary gear")["scene"], drives=["pin"])
+    """A planetary gear that rolls, driven at its sun and at its planet's pin."""
+    return replace(shown("Planetary gear")["scene"], drives={"main": 1.0, "pin": 2.0})
 
 
 SCENES = {
