@@ -133,7 +133,7 @@ class Mechanism:
         """Declare a parameter from ``low`` to ``high``, and return its ``casadi.SX`` symbol to build lengths and places from."""
         self.own.free("parameter", name, self.parameters)
         check_line(f"parameter '{name}': its unit", unit)
-        default, low, high = (typed(f"parameter '{name}'", x) if unit == "rad" else x for x in (default, low, high))
+        default, low, high = (typed(f"parameter '{name}': angle", x) if unit == "rad" else x for x in (default, low, high))
         parameter = Parameter(name, float(default), unit, float(low), float(high), ca.SX.sym(name))
         parameter.check(parameter.default)
         return self.parameters.setdefault(name, parameter).symbol
@@ -198,7 +198,8 @@ class Mechanism:
         return self._joint(name, "weld", parent, child, angle=angle)
 
     def gear(self, name: str, first: Joint, second: Joint, *, ratio: Expression, offset: Expression = 0.0) -> Constraint:
-        """Tie two joints: coordinate of ``second`` = ratio (coordinate of ``first``) + offset. A mesh of gears has ratio -z1/z2."""
+        """Tie two joints: coordinate of ``second`` = ratio (that of ``first``) + offset (or ``"15 deg"``); a mesh has -z1/z2."""
+        offset = offset if self.own.moving_joint(second).slides else typed(f"gear '{name}': offset", offset)
         ratio, offset = self.own.expression(f"gear '{name}': ratio", ratio), self.own.expression(f"gear '{name}': offset", offset)
         return self.constraint(name, self.coordinate(second) - ratio * self.coordinate(first) - offset)
 
@@ -301,7 +302,7 @@ class Mechanism:
         """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint, whose angle counts turns."""
         if self.own.joint(joint).coordinate != "angle":
             raise DeclarationError(f"load '{name}': joint '{joint.name}' has no angle for a torsion spring")
-        stretch, rate = self.coordinate(joint) - typed(f"load '{name}'", angle), self.rate(joint)
+        stretch, rate = self.coordinate(joint) - typed(f"load '{name}': angle", angle), self.rate(joint)
         return self.torque(name, joint.child, -(stiffness * stretch) - damping * rate, against=joint.parent)
 
     def output(self, name: str, expression: Any, *, unit: str = "1") -> OwnOutput:
@@ -401,7 +402,7 @@ class Mechanism:
                 f"{'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
             )
         unit = (1.0, 0.0) if axis is None else unit_vector(what, axis, lambda a: self.own.expression(f"{what}: axis", a))
-        joint = Joint(name, kind, start, end, unit, self.own.expression(f"{what}: angle", typed(what, angle)))
+        joint = Joint(name, kind, start, end, unit, self.own.expression(f"{what}: angle", typed(f"{what}: angle", angle)))
         self.joints[name] = joint
         return joint
 

@@ -149,6 +149,8 @@ class Results:
 
     def _own(self, kind: str, part: Any, own: Iterable[Any]) -> str:
         parts = list(own)
+        if isinstance(part, str) and part in [one.name for one in parts]:
+            raise DeclarationError(f"expected the {kind} itself, as its declaration returned it, got its name '{part}'")
         if not any(part is one for one in parts):
             name = getattr(part, "name", part)
             raise UnknownNameError(f"{kind} of mechanism '{self.mechanism.name}'", str(name), [one.name for one in parts])
