@@ -130,7 +130,10 @@ def test_a_pole_is_infinite():
     (peak,) = refine(scene, solution, ["effort:X"])
     assert math.isinf(peak.value)
     assert peak.t == pytest.approx(math.pi / 2 / 0.8, abs=1e-12)
-    assert all(0 <= row.sampled_worst < 1 for row in shortfall(scene, [50]))
+    # Of all quantities, sections would take nearly all the time.
+    efforts = [str(output) for output in solution.outputs if output.group == "effort"]
+    assert len(efforts) > 1
+    assert all(0 <= row.sampled_worst < 1 for row in shortfall(scene, [50], efforts))
 
 
 def test_angles_that_a_loop_sets_keep_their_turns():
