@@ -16,7 +16,7 @@ import casadi as ca
 
 from ..errors import DeclarationError
 from .density import Density
-from .expressions import check_line, check_name, typed, unit_vector
+from .expressions import check_line, check_name, typed
 from .joints import Axis, Joint, JointKind
 from .kinks import refuse_kinks
 from .limits import check_connected, parameter_values
@@ -42,6 +42,7 @@ from .parts import (
     Torque,
     Vector,
 )
+from .planar_joints import in_plane
 from .possible import demands
 from .results import Asked, OwnOutput, Results
 
@@ -199,7 +200,7 @@ class Mechanism:
 
     def gear(self, name: str, first: Joint, second: Joint, *, ratio: Expression, offset: Expression = 0.0) -> Constraint:
         """Tie two joints: coordinate of ``second`` = ratio (that of ``first``) + offset (or ``"15 deg"``); a mesh has -z1/z2."""
-        offset = offset if self.own.moving_joint(second).slides else typed(f"gear '{name}': offset", offset)
+        offset = offset if self.own.moving_joint(second)[1].kind == "slide" else typed(f"gear '{name}': offset", offset)
         ratio, offset = self.own.expression(f"gear '{name}': ratio", ratio), self.own.expression(f"gear '{name}': offset", offset)
         return self.constraint(name, self.coordinate(second) - ratio * self.coordinate(first) - offset)
 
@@ -392,19 +393,7 @@ class Mechanism:
         angle: Expression = 0.0,
     ) -> Joint:
         self.own.free("joint", name, self.joints)
-        what = f"joint '{name}'"
-        start, end = self.own.point(what, parent), self.own.point(what, child)
-        if start.body is end.body:
-            raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
-        if kind != "revolute" and not start.body.oriented:
-            raise DeclarationError(
-                f"{what}: its parent '{start.body.name}' is a point mass and has no direction to carry "
-                f"{'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
-            )
-        unit = (1.0, 0.0) if axis is None else unit_vector(what, axis, lambda a: self.own.expression(f"{what}: axis", a))
-        joint = Joint(name, kind, start, end, unit, self.own.expression(f"{what}: angle", typed(f"{what}: angle", angle)))
-        self.joints[name] = joint
-        return joint
+        return self.joints.setdefault(name, in_plane(self.own, name, kind, parent, child, axis, angle))
 
     def _load_point(self, name: str, place: Body | Point) -> Point:
         self.own.free("load", name, self.loads)
