@@ -111,11 +111,6 @@ class Mechanism:
         return False
 
     @property
-    def reference_posture(self) -> Mapping[str, float]:
-        """Coordinates where all parts are where they were declared to be; a plane has none."""
-        return {}
-
-    @property
     def own(self) -> Ownership:
         """What belongs to the mechanism."""
         return Ownership(self)

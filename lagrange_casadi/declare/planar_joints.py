@@ -29,4 +29,4 @@ def in_plane(
             f"{'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
         )
     unit = (1.0, 0.0) if axis is None else unit_vector(what, axis, lambda a: own.expression(f"{what}: axis", a))
-    return Joint(name, kind, start, end, unit, own.expression(f"{what}: angle", typed(what, angle)))
+    return Joint(name, kind, start, end, unit, own.expression(f"{what}: angle", typed(f"{what}: angle", angle)))

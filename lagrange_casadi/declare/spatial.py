@@ -53,11 +53,6 @@ class SpatialMechanism(Mechanism):
         """Whether it lies in space: it does."""
         return True
 
-    @property
-    def reference_posture(self) -> dict[str, float]:
-        """Coordinates where all parts are where they were declared to be: zero, of joints that were declared at a place."""
-        return {name: 0.0 for name, (joint, _) in self.coordinates.items() if joint.name in self.hard}
-
     def link(  # type: ignore[override]
         self,
         name: str,
@@ -350,3 +345,9 @@ class SpatialMechanism(Mechanism):
 
     def _vector(self, what: str, value: Any) -> Vector:
         return vector(what, value, self.own.expression)
+
+
+def reference_posture(mechanism: Mechanism) -> dict[str, float]:
+    """Coordinates where all parts are where they were declared to be: zero, of joints that were declared at a place."""
+    hard = mechanism.hard if isinstance(mechanism, SpatialMechanism) else ()
+    return {name: 0.0 for name, (joint, _) in mechanism.coordinates.items() if joint.name in hard}
