@@ -151,10 +151,23 @@ class SpatialMechanism(Mechanism):
         angles to the first: coordinates ``turn_1`` and ``turn_2``. Both directions are told where the coordinates are zero."""
         return self._spatial(name, "universal", parent, child, axis, second, at, turned)
 
-    def spherical(self, name: str, parent: Body | Point, child: Body | Point, *, at: Any = None, turned: Turns = ()) -> Joint:
-        """Hold a point of ``child`` to a point of ``parent``: coordinates ``turn_1``, ``turn_2``, ``turn_3`` are turns about the
-        parent's x axis, and the y and z axes that the turns before carry. Where the joint closes a loop it has no coordinates."""
-        return self._spatial(name, "spherical", parent, child, None, None, at, turned)
+    def spherical(
+        self,
+        name: str,
+        parent: Body | Point,
+        child: Body | Point,
+        *,
+        axis: Vector | None = None,
+        second: Vector | None = None,
+        at: Any = None,
+        turned: Turns = (),
+    ) -> Joint:
+        """Hold a point of ``child`` to a point of ``parent``: coordinates ``turn_1``, ``turn_2``, ``turn_3``.
+
+        They are turns about ``axis``, about ``second``, and about the direction at right angles to both, as those before carry it:
+        by default x, y and z. Where the joint closes a loop it has no coordinates.
+        """
+        return self._spatial(name, "spherical", parent, child, axis, second, at, turned)
 
     def screw(
         self,
@@ -206,10 +219,23 @@ class SpatialMechanism(Mechanism):
         """Fix ``child`` to ``parent``."""
         return self._spatial(name, "weld", parent, child, None, None, at, turned)
 
-    def free(self, name: str, parent: Body | Point, child: Body | Point, *, at: Any = None, turned: Turns = ()) -> Joint:
-        """Hold nothing: coordinates ``slide_1`` to ``slide_3`` are the place of the child's point in the parent's axes, ``turn_1``
-        to ``turn_3`` turns as of a spherical joint. So the motion of a body's pose is given, or a body flies."""
-        return self._spatial(name, "free", parent, child, None, None, at, turned)
+    def free(
+        self,
+        name: str,
+        parent: Body | Point,
+        child: Body | Point,
+        *,
+        axis: Vector | None = None,
+        second: Vector | None = None,
+        at: Any = None,
+        turned: Turns = (),
+    ) -> Joint:
+        """Hold nothing: so the motion of a body's pose is given, or a body flies.
+
+        Coordinates ``slide_1`` to ``slide_3`` are the place of the child's point along ``axis``, ``second`` and the direction at
+        right angles to both, by default the parent's x, y and z; ``turn_1`` to ``turn_3`` are turns as of a spherical joint.
+        """
+        return self._spatial(name, "free", parent, child, axis, second, at, turned)
 
     def force(
         self,

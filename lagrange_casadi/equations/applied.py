@@ -68,6 +68,13 @@ def work(felt: Grown, applied: Iterable[Applied], loops: Iterable[LoopEquations]
         _bear(velocities, frame.motion_of(part.point.place), part.force)
         _bear(velocities, (frame.rate, frame.angular), part.couple)
     for loop in loops:
+        if loop.bar is not None:
+            frame = felt.frames[loop.bar.link.name]
+            (speed, acceleration), (last_speed, last_acceleration) = (
+                frame.motion_of((place, 0.0, 0.0)) for place in (loop.bar.start, loop.bar.start + loop.bar.length)
+            )
+            along = times(loop.multipliers, frame.rotation.x)
+            _bear(velocities, (minus(last_speed, speed), minus(last_acceleration, acceleration)), along)
         if loop.joint is not None:
             parent, child = felt.ends(loop.joint)
             force, moment = reaction(loop.joint, parent, child, loop.multipliers)

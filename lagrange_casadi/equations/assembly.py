@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import replace
 from typing import Any
 
 import casadi as ca
@@ -42,6 +43,10 @@ def assemble(
         resting.hang(branch, displace=False)
         felt.hang(branch, displace=branch.joint.name in reactions)
     loops = [_loop_equations(joint.name, joint, *closing_gaps(joint, *resting.ends(joint))) for joint in tree.closing]
+    loops += [_loop_equations(bar.link.name, None, *map(ca.SX, resting.span(bar, displace=()))) for bar in tree.bars]
+    loops[len(tree.closing) :] = [replace(loop, bar=bar) for loop, bar in zip(loops[len(tree.closing) :], tree.bars, strict=True)]
+    for bar in tree.bars:
+        felt.span(bar, displace=[joint.name for joint in bar.joints if joint.name in reactions])
     for constraint in mechanism.constraints.values():
         gap = resting.counted(constraint.phi)
         rate = change(gap, resting.coordinates, mechanism.time)
@@ -49,10 +54,7 @@ def assemble(
     rows = tuple(_row(resting, row) for row in mechanism.rows.values())
     applied = tuple(part for load in mechanism.loads.values() for part in applied_by(load, resting))
     held = [
-        part
-        for loop in loops
-        if loop.joint is None
-        for part in held_by(resting, loop.name, mechanism.constraints[loop.name].phi, loop)
+        part for loop in loops if loop.declared for part in held_by(resting, loop.name, mechanism.constraints[loop.name].phi, loop)
     ]
     held += [part for graph in rows for part in held_by(resting, graph.row.name, graph.row.expression, graph)]
     velocities = Velocities()
@@ -64,7 +66,7 @@ def assemble(
     kinetic = sum(energies, ca.SX(0))
     work(felt, (*applied, *held), loops, velocities)
     # Where a joint with three turns closes a loop, its angles are not measured.
-    open_ = [joint for joint in tree.closing if joint.turns > 2]
+    open_ = [joint for joint in tree.closing if joint.turns > 2] + [joint for bar in tree.bars for joint in bar.joints]
     outputs = {name: resting.at_state(mechanism.outputs[name].expression) for name in own}
     efforts = {name: ca.SX.sym(f"tau_{name}") for name in pushed}
     for name, effort in efforts.items():

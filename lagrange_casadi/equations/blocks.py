@@ -89,8 +89,8 @@ class Block:
 
     @property
     def joints(self) -> str:
-        """The joints and constraints that close the loops, for messages."""
-        return ", ".join(f"{'joint' if loop.joint else 'constraint'} '{loop.name}'" for loop in self.loop_equations)
+        """The joints, bars and constraints that close the loops, for messages."""
+        return ", ".join(f"{loop.kind} '{loop.name}'" for loop in self.loop_equations)
 
     @property
     def jacobian(self) -> Any:
@@ -117,7 +117,7 @@ def solving_order(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block
     if any(len(rows) != len(columns) for rows, columns in parts):
         _require_freedom(multibody, len(equations), parts, start)
         parts = [piece for part in parts for piece in _pieces(part)]
-    counted = column(loop.gap for loop in multibody.loop_equations if loop.joint is None)
+    counted = column(loop.gap for loop in multibody.loop_equations if loop.declared)
     ordered = _in_order(parts, multibody.loop_equations)
     return tuple(Block(tuple(rows), tuple(columns), _form(multibody, rows, columns, counted)) for rows, columns in ordered)
 
@@ -209,7 +209,8 @@ def _in_order(parts: Sequence[Part], loops: Sequence[LoopEquations]) -> list[Par
 
 def _form(multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coordinate], counted: Any) -> ClosedForm | None:
     """The closed form of a part, where there is one."""
-    form = solve_loop(column(equation.gap for equation in rows), unknown, multibody.coordinates)
+    bar = all(equation.loop.bar is not None for equation in rows)
+    form = solve_loop(column(equation.gap for equation in rows), unknown, multibody.coordinates, bar=bar)
     # An angle whose turns some constraint counts must not come back from its cosine and sine.
     if form is not None and form.branch is not None and any(ca.depends_on(counted, c.value) for c in unknown):
         return None

@@ -191,7 +191,7 @@ def _seeing(body: Multibody, want: Wanted) -> dict[str, Any]:
 
 def _beyond(body: Multibody, seeing: Mapping[str, Any]) -> dict[Column, Any]:
     """How far what is put into curves with ends is beyond them, by the constraint, load or row that does it."""
-    found = {f"constraint '{loop.name}'": loop.gap for loop in body.loop_equations if loop.joint is None}
+    found = {f"constraint '{loop.name}'": loop.gap for loop in body.loop_equations if loop.declared}
     columns: dict[Column, Any] = {}
     for name, expression in (found | dict(seeing)).items():
         far = enumerate(beyond_ends(expression), 1)
@@ -203,7 +203,7 @@ def _motion_columns(
     mechanism: Mechanism, body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]
 ) -> dict[Output, Any]:
     columns: dict[Output, Any] = {}
-    closing = {joint.name for joint in body.tree.closing}
+    closing = {joint.name for joint in body.tree.closing} | {joint.name for bar in body.tree.bars for joint in bar.joints}
     for name, (joint, axis) in mechanism.coordinates.items():
         if name in driven:
             i = driven.index(name)

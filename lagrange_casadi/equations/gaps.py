@@ -16,7 +16,7 @@ def left(multibody: Multibody, block: Block, length: Any) -> Any:
     """What is left of a block's equations, in one number [m]: gaps as they are, any other over its slopes, times a ``length``."""
     total = ca.SX(0)
     for equation in block.equations:
-        if equation.loop.joint is None:
+        if equation.loop.declared:
             total += length * equation.gap / _slope(multibody, equation, length)
         elif equation.aligns:
             total += length * (ca.fabs(equation.gap) + _turned(multibody, equation))

@@ -14,6 +14,7 @@ from ..declare.parts import Link, Point, Vector
 from ..geometry.frames import Frame
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import AXES, ZERO, cross, dot, minus, plus, times
+from .bars import Bar, bar_frame
 from .joints import orientation, turning_axes
 from .multibody import Coordinate, Turned, column, own_coordinate, place_along, rates_along
 from .tree import Branch, Tree
@@ -52,6 +53,12 @@ class Grown:
                 turning = plus(turning, times(rates[k], axis))
             frame = frame.displaced(translation, turning)
         self.frames[branch.far.body.name] = frame
+
+    def span(self, bar: Bar, *, displace: Collection[str]) -> tuple[Any, Any, Any]:
+        """Place a bar between its ends, with the mobilities of the named joints, and return the equation of its length."""
+        self.mobilities |= {name: ca.SX.sym(f"ed_{name}", 3) for name in displace}
+        self.frames[bar.link.name], gap = bar_frame(bar, self.frames, self.mobilities)
+        return gap
 
     def counted(self, expression: Any) -> Any:
         """An expression of what the user measures in the tree's own variables, angles counted by turns."""

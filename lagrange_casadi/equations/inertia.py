@@ -16,6 +16,7 @@ from ..declare.matter import second_moments
 from ..declare.parts import Link, PointMass, RigidMass, Vector
 from ..geometry.frames import Frame, Velocities
 from ..geometry.vectors import AXES, ZERO, minus, nil
+from .bars import BarFrame
 
 
 def kinetic_energy(body: Link | PointMass, frame: Frame, velocities: Velocities, *, space: bool, spun: bool) -> Any:
@@ -59,7 +60,7 @@ def _slender(points: list[tuple[Any, Vector]], inertia: Any, frame: Frame, veloc
     x, y, z = frame.anchor
     held = x if nil(y) and nil(z) else 0.0
     base = velocities.vector(frame.motion_of((held, 0.0, 0.0)))
-    axis = velocities.vector(_direction(frame, AXES[0]))
+    axis = velocities.vector(frame.course if isinstance(frame, BarFrame) else _direction(frame, AXES[0]))
     first, second = ca.SX(0), ca.SX(inertia)
     for mass, place in points:
         arm = place[0] - held

@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 from ..declare.density import Array
 from ..errors import AssemblyError
+from ..geometry.vectors import AXES
 from .blocks import Block, solving_order
 from .gaps import left, misfit, reach
 from .linear import LinearSystem
@@ -296,6 +297,9 @@ class _Solver:
     def finish(self, blocks: tuple[Block, ...]) -> Kinematics:
         """Rates and accelerations, block by block, and the substitution of everything."""
         body, found = self.multibody, self.found
+        for bar in body.tree.bars:
+            along = self.numbers.of(column(body.frames[bar.link.name].rotation.x))
+            found.note(column(bar.aside), column(AXES[min(range(3), key=lambda k: abs(along[k]))]))
         driven = column(c.rate for c in body.coordinates if c.driven), column(c.acceleration for c in body.coordinates if c.driven)
         found.note(ca.vertcat(*driven), ca.vertcat(self.dd, self.ddd))
         systems: list[LinearSystem] = []

@@ -104,7 +104,7 @@ def internal_forces(
     for name in reactions:
         members = force_members(multibody.mechanism.space, moment=joints[name].bears_moment)
         columns |= {Output("reaction", name, member): found[name].member(member) for member in members}
-    tying = {c.name: c.multipliers for c in multibody.loop_equations if c.joint is None}
+    tying = {c.name: c.multipliers for c in multibody.loop_equations if c.declared}
     tying |= {graph.row.name: graph.multiplier for graph in multibody.rows}
     columns |= {Output("multiplier", name): tying[name] for name in multipliers}
     if reactions:
@@ -312,6 +312,11 @@ def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) ->
     for loop in multibody.loop_equations:
         if loop.joint is joint:
             return Action(*reaction(joint, parent, child, loop.multipliers))
+    bar = next((bar for bar in multibody.tree.bars if joint in bar.joints), None)
+    if bar is not None:
+        x, y, z = ca.vertsplit(actions[joint.name])
+        force = Action((x, y, z))
+        return force if joint.child.body is bar.link else -force
     branch = next(branch for branch in multibody.tree.branches if branch.joint is joint)
     action = branch.sign * actions[joint.name]
     if multibody.mechanism.space:

@@ -20,6 +20,7 @@ from ..declare.parts import Point, Row, Vector
 from ..errors import DeclarationError
 from ..geometry.frames import Frame, Velocities
 from ..geometry.vectors import ZERO
+from .bars import Bar
 from .joints import slide, slide_motion, turned, turning
 from .lagrange import LagrangeSystem
 from .tree import Tree
@@ -72,7 +73,8 @@ class Coordinate:
 class LoopEquations:
     """Equations that a joint that closes a loop, or a constraint, puts on the coordinates, and the symbols of their multipliers.
 
-    ``gap`` is Phi, with its total time derivatives. ``joint`` is None for a constraint of the user's.
+    ``gap`` is Phi, with its total time derivatives. ``joint`` is None for a ``bar``, which has its length, and for a constraint of
+    the user's.
     """
 
     name: str
@@ -81,6 +83,17 @@ class LoopEquations:
     gap_rate: Any
     gap_acceleration: Any
     multipliers: Any
+    bar: Bar | None = None
+
+    @property
+    def kind(self) -> str:
+        """What it is of, in a word."""
+        return "joint" if self.joint else "bar" if self.bar else "constraint"
+
+    @property
+    def declared(self) -> bool:
+        """Whether it is a constraint of the user's."""
+        return self.joint is None and self.bar is None
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,8 +22,17 @@ from .mobility import stations_of
 from .multibody import Coordinate, column
 from .sampling import drawn, vanish
 
-_MEMBERS = ((("n0",), ("n",)), (("f0", "m0"), ("f", "m")))
-"""What goes together, of the tip and of a station: a force across the link has an arm, one along it has none."""
+_IN_PLANE = ((("n0",), ("n",), 1), (("f0", "m0"), ("f", "m"), 1))
+_IN_SPACE = (
+    (("n0",), ("n",), 1),
+    (("fy0", "mz0"), ("fy", "mz"), 1),
+    (("fz0", "my0"), ("fz", "my"), -1),
+    (("mx0",), ("mx",), 1),
+)
+"""What goes together, of the tip and of a station: a force across the link has an arm, one along it has none.
+
+And the sign of the moment that a force has further out.
+"""
 
 _TWICE = 1e-14
 """Of a link's length: what is no further apart at random values of all symbols is one place that is written in two ways."""
@@ -43,7 +52,8 @@ def gathered(
 
     for link in links if free.numel() else ():
         stations = stations_of((key for key in columns if isinstance(key, Output)), link.name)
-        for tip, station in _MEMBERS if stations else ():
+        space = Output("law", link.name, "mx0") in columns
+        for tip, station, sign in (_IN_SPACE if space else _IN_PLANE) if stations else ():
             # The tip comes first: what joins it is told by the law's own coefficients.
             named = [([Output("law", link.name, member) for member in tip], ca.SX(1))]
             for name in stations:
@@ -51,7 +61,8 @@ def gathered(
                 named.append(([Output("station", link.name, member, name) for member in station], place))
             shares = [(outputs, column(columns[output] for output in outputs), place) for outputs, place in named]
             shares = [(outputs, load, place) for outputs, load, place in shares if is_open(load)]
-            loads = _together([load for _, load, _ in shares], [place for *_, place in shares], link.length, coordinates, is_open)
+            told, places = [load for _, load, _ in shares], [place for *_, place in shares]
+            loads = _together(told, places, sign * link.length, coordinates, is_open)
             for (outputs, _, _), load in zip(shares, loads, strict=True):
                 found |= zip(outputs, ca.vertsplit(load), strict=True)
     return found

@@ -15,6 +15,7 @@ from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Body, Point
 from ..errors import DeclarationError
+from .bars import Bar, bars_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,10 +43,14 @@ class Branch:
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """``branches`` in an order in which each hangs on the ground or on an earlier one; ``closing`` joints close the loops."""
+    """``branches`` in an order in which each hangs on the ground or on an earlier one; ``closing`` joints close the loops.
+
+    ``bars`` lie between bodies of the tree, and close loops as well.
+    """
 
     branches: tuple[Branch, ...]
     closing: tuple[Joint, ...]
+    bars: tuple[Bar, ...] = ()
 
 
 def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
@@ -53,10 +58,12 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
 
     Raises :class:`DeclarationError` for drives that close a loop among themselves, and for a link that only slides on a point.
     """
-    driven = {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
     depth: dict[Body, int] = {mechanism.ground: 0}
     branches: list[Branch] = []
-    waiting = list(mechanism.joints.values())
+    bars = bars_of(mechanism, driven)
+    barred = {joint for bar in bars for joint in bar.joints}
+    waiting = [joint for joint in mechanism.joints.values() if joint not in barred]
+    driven = {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
     while reachable := [
         Branch(joint, joint.parent.body not in depth)
         for joint in waiting
@@ -75,8 +82,13 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
         depth[best.far.body] = depth[best.near.body] + 1
         branches.append(best)
         waiting.remove(best.joint)
+    lying = {bar.link for bar in bars}
     for body in mechanism.moving:
-        if body not in depth:
+        if body not in depth and mechanism.space and body not in lying:
+            raise DeclarationError(
+                f"'{body.name}' hangs on bars alone; declare a free() joint from the ground to it, which holds nothing"
+            )
+        if body not in depth and body not in lying:
             raise DeclarationError(
                 f"link '{body.name}' only slides on a point; pin it to a point mass (of mass 0 if need be) that slides in its stead"
             )
@@ -87,7 +99,7 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
             raise DeclarationError(
                 f"the drive of joint '{joint.name}' is redundant: the motions of the other driven joints already place its bodies"
             )
-    return Tree(tuple(branches), tuple(waiting))
+    return Tree(tuple(branches), tuple(waiting), bars)
 
 
 def _can_carry(joint: Joint, reverse: bool) -> bool:

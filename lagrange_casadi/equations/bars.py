@@ -1,0 +1,156 @@
+"""Bars: slender links between two spherical joints, whose spin about their own axis nothing holds and nothing feels.
+
+A bar has no coordinates. It lies between its two ends, wherever these are, and its length is one equation: the square of their
+distance. Its points move as its ends do, in proportion. So its energy, and the work of forces on its axis, hold nothing of a spin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from ..declare.density import Density
+from ..declare.joints import Joint
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Body, Link, Point, Torque, Vector
+from ..geometry.frames import Frame
+from ..geometry.rotation import Rotation
+from ..geometry.vectors import ZERO, cross, dot, minus, nil, plus, times
+
+
+@dataclass(frozen=True, eq=False)
+class Bar:
+    """A link that is a bar, and its joints: first that nearer its base.
+
+    Its y axis is the part across it of the direction ``aside``: symbols for that of the ground's axes that is most across the bar
+    at the start.
+    """
+
+    link: Link
+    joints: tuple[Joint, Joint]
+    aside: tuple[Any, Any, Any]
+
+    def own(self, joint: Joint) -> Point:
+        """A joint's point on the bar."""
+        return joint.child if joint.child.body is self.link else joint.parent
+
+    def other(self, joint: Joint) -> Point:
+        """A joint's point on the other body."""
+        return joint.parent if joint.child.body is self.link else joint.child
+
+    @property
+    def start(self) -> Any:
+        """Where along the bar its first joint is [m]."""
+        return self.own(self.joints[0]).x
+
+    @property
+    def length(self) -> Any:
+        """How far its joints are apart [m]."""
+        return self.own(self.joints[1]).x - self.start
+
+
+@dataclass(frozen=True, eq=False)
+class BarFrame(Frame):
+    """The motion of a bar: that of its first joint, and what the bar's direction does: its rate, and the change of that."""
+
+    course: tuple[Vector, Vector] = (ZERO, ZERO)
+
+    def motion_of(self, point: Vector) -> tuple[Vector, Vector]:
+        """Velocity and acceleration of the bar's point: on its axis in proportion between its ends."""
+        x, y, z = point
+        if not (nil(y) and nil(z)):
+            return super().motion_of(point)
+        reach = x - self.anchor[0]
+        return plus(self.speed, times(reach, self.course[0])), plus(self.acceleration, times(reach, self.course[1]))
+
+
+def bars_of(mechanism: Mechanism, driven: Collection[str]) -> tuple[Bar, ...]:
+    """The links that are bars; none where something drives, measures or loads what a spin would change."""
+    if not mechanism.space:
+        return ()
+    found: dict[Body, Bar] = {}
+    ends: dict[Body, list[Joint]] = {}
+    for joint in mechanism.joints.values():
+        for body in joint.bodies:
+            ends.setdefault(body, []).append(joint)
+    seen = {measure.of.name for measure in mechanism.measures.asked if isinstance(measure.of, Joint)}
+    told = {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
+    for link in mechanism.links.values():
+        joints = ends.get(link, [])
+        if len(joints) != 2 or not isinstance(link.mass, Density):
+            continue
+        points = [joint.child if joint.child.body is link else joint.parent for joint in joints]
+        others = [body for joint in joints for body in joint.bodies if body is not link]
+        balls = all(joint.kind == "spherical" and joint.name not in seen | told for joint in joints)
+        if not balls or not all(_on_axis(point) for point in points) or any(body in found for body in others):
+            continue
+        if all(_on_axis(point) for point in _marked(mechanism, link)) and not _twisted(mechanism, link):
+            values = mechanism.values()
+            first, second = sorted(joints, key=lambda joint: _place(mechanism, joint, link, values))
+            if _place(mechanism, first, link, values) < _place(mechanism, second, link, values):
+                x, y, z = (ca.SX.sym(f"{link.name}_aside_{component}") for component in "xyz")
+                found[link] = Bar(link, (first, second), (x, y, z))
+    return tuple(found.values())
+
+
+def bar_frame(bar: Bar, frames: Mapping[str, Frame], released: Mapping[str, Any]) -> tuple[BarFrame, tuple[Any, Any, Any]]:
+    """A bar's frame between the bodies of its joints, displaced by the mobilities that are ``released``; and its length's equation.
+
+    The latter is Phi, Phi' and Phi'' of half the square of the distance over the length, less half the length [m].
+    """
+    places, speeds, accelerations = [], [], []
+    for joint in bar.joints:
+        point, frame = bar.other(joint), frames[bar.other(joint).body.name]
+        speed, acceleration = frame.motion_of(point.place)
+        if joint.name in released:
+            x, y, z = ca.vertsplit(released[joint.name])
+            speed = plus(speed, (x, y, z))
+        places.append(frame.place_of(point.place))
+        speeds.append(speed)
+        accelerations.append(acceleration)
+    length, apart = bar.length, minus(places[1], places[0])
+    rate, change = minus(speeds[1], speeds[0]), minus(accelerations[1], accelerations[0])
+    x, course = times(1 / length, apart), (times(1 / length, rate), times(1 / length, change))
+    aside = minus(bar.aside, times(dot(bar.aside, x), x))
+    rotation = Rotation(x, times(1 / ca.sqrt(dot(aside, aside)), aside), None)
+    frame = BarFrame(
+        places[0],
+        speeds[0],
+        accelerations[0],
+        rotation,
+        cross(x, course[0]),
+        cross(x, course[1]),
+        (bar.start, 0.0, 0.0),
+        course,
+    )
+    gap = (dot(apart, apart) / length - length) / 2, dot(x, rate), dot(x, change) + dot(course[0], rate)
+    return frame, gap
+
+
+def _marked(mechanism: Mechanism, link: Link) -> Iterator[Point]:
+    """Points of a link where something acts, or is measured."""
+    for load in mechanism.loads.values():
+        yield from (point for point in load.points if point.body is link)
+    for measure in mechanism.measures.asked:
+        if isinstance(measure.of, Point) and measure.of.body is link:
+            yield measure.of
+
+
+def _twisted(mechanism: Mechanism, link: Link) -> bool:
+    """Whether a load may twist a link, or turns with it."""
+    return any(
+        (isinstance(load, Torque) or getattr(load, "turning", False)) and any(point.body is link for point in load.points)
+        for load in mechanism.loads.values()
+    )
+
+
+def _on_axis(point: Point) -> bool:
+    return nil(point.y) and nil(point.z)
+
+
+def _place(mechanism: Mechanism, joint: Joint, link: Link, values: Mapping[str, float]) -> float:
+    point = joint.child if joint.child.body is link else joint.parent
+    return mechanism.number(point.x, values)

@@ -1,0 +1,180 @@
+"""Mechanisms of the spatial oracle declared to the package, and the package's graphs at instants."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import casadi as ca
+import numpy as np
+from spatial_bodies import GROUND, Rigid, Rod
+from spatial_draft import Drawn
+
+from lagrange_casadi import Scene, SpatialMechanism, density, derive, motion
+
+_SIZE = 0.3
+NAMES = {
+    "cylindrical": ("turn", "slide"),
+    "universal": ("turn_1", "turn_2"),
+    "spherical": ("turn_1", "turn_2", "turn_3"),
+    "planar": ("slide_1", "slide_2", "turn"),
+    "slot": ("slide", "turn_1", "turn_2", "turn_3"),
+    "free": ("slide_1", "slide_2", "slide_3", "turn_1", "turn_2", "turn_3"),
+}
+
+
+def coordinate(joint, index: int) -> str:
+    """What the package calls a coordinate that the oracle knows by its joint and number."""
+    return f"{joint.name}:{NAMES[joint.kind][index]}" if joint.kind in NAMES else joint.name
+
+
+def plain(drawn: Drawn) -> Drawn:
+    """The same with slender rods, joined between their ends, and with turns of slots about the axes that the package has there."""
+    bodies = [Rod(b.name, b.length, b.density, breaks=b.breaks) if isinstance(b, Rod) else b for b in drawn.mechanism.bodies]
+    rods = {b.name for b in bodies if isinstance(b, Rod)}
+    joints = []
+    for joint in drawn.mechanism.joints:
+        x, y, z = map(float, joint.at_child)
+        at_child = (abs(x) if joint.child in rods else x, y, z)
+        frame = _across(joint.axis) if joint.kind == "slot" else joint.frame
+        joints.append(dataclasses.replace(joint, at_child=at_child, frame=frame))
+    return dataclasses.replace(drawn, mechanism=dataclasses.replace(drawn.mechanism, bodies=bodies, joints=joints))
+
+
+def declared(drawn: Drawn, t: float = 0.0, **options) -> Scene:
+    """A scene of what was drawn, its loops assembled as the oracle has them at an instant."""
+    one = drawn.mechanism
+    m = SpatialMechanism("drawn")
+    m.set_gravity(*map(float, one.gravity))
+    parts = {GROUND: m.ground} | {b.name: _body(m, b) for b in one.bodies}
+
+    def at(body, point):
+        return parts[body].at(*map(float, point))
+
+    for joint in one.joints:
+        _join(m, joint, at(joint.parent, joint.at_parent), at(joint.child, joint.at_child))
+    for k, load in enumerate(one.loads):
+        for kind, vector in (("force", load.force), ("torque", load.torque)):
+            given = dict(zip("xyz", map(float, vector), strict=True))
+            getattr(m, kind)(f"{kind}{k}", at(load.body, load.point), **given, turning=load.turning)
+    for k, spring in enumerate(one.springs):
+        ends = (at(body, point) for body, point in spring.ends)
+        m.spring(f"spring{k}", *ends, stiffness=spring.stiffness, length=spring.free, damping=spring.damping)
+    laws = {coordinate(one.joint(name), k): _law(law) for (name, k), law in drawn.laws.items()}
+    drives = None if drawn.pushed is None else [coordinate(one.joint(name), k) for name, k in drawn.pushed]
+    posture = postures(drawn, t)
+    rough = {name: posture[name] for name in m.coordinates if name in posture and name not in laws}
+    return Scene(m, laws, **{"t": (t, t + drawn.span, 9), "posture": rough, "drives": drives, **options})
+
+
+def postures(drawn: Drawn, t: float) -> dict[str, float]:
+    """The coordinates at an instant, by the package's names, as they follow from the oracle's poses."""
+    found: dict[str, float] = {}
+    poses = {name: (np.asarray(p.r, float), np.asarray(p.R, float)) for name, p in drawn.solve(t).poses.items()}
+    poses[GROUND] = np.zeros(3), np.eye(3)
+    for joint in drawn.mechanism.joints:
+        (r, R), (s, S) = poses[joint.parent], poses[joint.child]
+        turned = R.T @ S @ np.array(joint.orientation, float).T
+        apart = R.T @ (s + S @ np.array(joint.at_child, float) - r - R @ np.array(joint.at_parent, float))
+        for k, value in enumerate(_coordinates(joint, turned, apart)):
+            found[coordinate(joint, k)] = float(value)
+    return found
+
+
+def instants(scene: Scene, times, wanted=None):
+    """The columns of a scene's graph at times, by name: loops are followed from the scene's start."""
+    graph = derive(scene, wanted)
+    p = [parameter.default for parameter in scene.mechanism.parameters.values()]
+    z = np.array(graph.newton.guess) if graph.newton else np.zeros(0)
+    rows = []
+    for t in times:
+        d, rate, acceleration = graph.motion(t, p)
+        for _ in range(60 if graph.newton else 0):
+            correction, size = graph.newton.step(z, t, d, p)
+            z = z + correction.full().ravel()
+            if float(size) < 1e-13:
+                break
+        rows.append(graph.instant(t, d, rate, acceleration, z, p).full().ravel())
+    return dict(zip(graph.names, np.array(rows).T, strict=True))
+
+
+def _body(m, body):
+    if isinstance(body, Rigid):
+        rows = tuple(tuple(map(float, row)) for row in body.inertia)
+        return m.link(body.name, length=_SIZE, mass=float(body.mass), centre=tuple(map(float, body.centre)), inertia=rows)
+    length, law = float(body.length), body.density
+    if callable(law):
+        return m.link(body.name, length=length, density=density.polynomial(float(law(0.5))))
+    return m.link(body.name, length=length, density=density.polynomial(*map(float, law)))
+
+
+def _join(m, joint, start, end) -> None:
+    turned = _turns(np.array(joint.orientation, float))
+    axis = tuple(map(float, joint.axis))
+    second = None if joint.axis2 is None else tuple(map(float, joint.axis2))
+    u, v, _ = (tuple(map(float, direction)) for direction in joint.frame)
+    match joint.kind:
+        case "weld":
+            m.weld(joint.name, start, end, turned=turned)
+        case "spherical" | "free":
+            getattr(m, joint.kind)(joint.name, start, end, axis=u, second=v, turned=turned)
+        case "universal":
+            m.universal(joint.name, start, end, axis=axis, second=second, turned=turned)
+        case "screw":
+            m.screw(joint.name, start, end, axis=axis, lead=float(joint.lead), turned=turned)
+        case "planar":
+            m.planar(joint.name, start, end, axis=tuple(np.cross(axis, second)), second=axis, turned=turned)
+        case kind:
+            getattr(m, kind)(joint.name, start, end, axis=axis, turned=turned)
+
+
+def _across(axis):
+    """The triad that the package completes an axis to."""
+    u = np.array(axis, float) / np.linalg.norm(np.array(axis, float))
+    v = np.eye(3)[np.argmin(np.abs(u))]
+    v = v - u * (v @ u)
+    v /= np.linalg.norm(v)
+    return u, v, np.cross(u, v)
+
+
+def _turns(R):
+    """A rotation as turns in sequence."""
+    yaw, pitch, roll = (
+        math.atan2(R[1, 0], R[0, 0]),
+        math.atan2(-R[2, 0], math.hypot(R[0, 0], R[1, 0])),
+        math.atan2(R[2, 1], R[2, 2]),
+    )
+    return [("z", yaw), ("y", pitch), ("x", roll)]
+
+
+def _coordinates(joint, turned, apart):
+    """A joint's coordinates from how its child is turned, and where its point is, on the parent's axes."""
+    u = np.array(joint.axis, float) / np.linalg.norm(np.array(joint.axis, float))
+    v = np.array(joint.axis2, float) if joint.axis2 is not None else np.array(_across(u)[1])
+    v = v - u * (v @ u)
+    v /= np.linalg.norm(v)
+    w = np.cross(u, v)
+    frame = np.array(joint.frame, float)
+    angle = math.atan2(w @ turned @ v, v @ turned @ v)
+    match joint.kind:
+        case "revolute" | "screw":
+            return (angle,)
+        case "prismatic":
+            return (apart @ u,)
+        case "cylindrical":
+            return angle, apart @ u
+        case "universal":
+            return angle, math.atan2(w @ turned.T @ u, u @ turned.T @ u)
+        case "planar":
+            about = math.atan2(v @ turned @ u, u @ turned @ u)
+            return apart @ u, apart @ v, about
+        case "weld":
+            return ()
+    M = frame @ turned @ frame.T
+    turns = (math.atan2(-M[1, 2], M[2, 2]), math.atan2(M[0, 2], math.hypot(M[0, 0], M[0, 1])), math.atan2(-M[0, 1], M[0, 0]))
+    slides = {"slot": (apart @ u,), "free": tuple(frame @ apart)}.get(joint.kind, ())
+    return (*slides, *turns)
+
+
+def _law(law):
+    return motion.expression(lambda t: law.offset + law.speed * t + law.amplitude * ca.sin(law.frequency * t + law.phase))
