@@ -187,9 +187,9 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     for output, values in solution.outputs.items():
         drawn = output.group in ("effort", "reaction", "multiplier", "load", "output") or output == Output("motion", output.part)
         if drawn and solution.determined(output) and np.any(values):
-            groups.setdefault((output.group + ("_moment" if output.member.startswith("m") else ""), output.part), []).append(
-                str(output)
-            )
+            own = "_own" if output.member.endswith(("u", "v", "w")) else ""
+            kind = f"{output.group}{own}{'_moment' if output.member.startswith('m') else ''}"
+            groups.setdefault((kind, output.part), []).append(str(output))
     for (group, part), names in groups.items():
         what = part if group == "output" else f"{group.replace('_', ' ')} of {part}"
         specs.append(TimePlot(f"{group}_{part}", tuple(names), f"{solution.case}: {what}"))
