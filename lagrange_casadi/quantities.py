@@ -1,8 +1,8 @@
-"""The one table of every output: its name, axes, unit, sign and meaning.
+"""Every output by its name; :mod:`.tables` has its axes, unit, sign and meaning.
 
 An output is a :class:`Output` wherever it is worked with. Its full name is a text, ``group:part:member`` (``section:rod:bending``,
 ``reaction:guide:fy``, ``effort:O``), which users write and read; the same name with slashes is its place in the file. Nothing else
-in the package states a unit or a sign, or takes a name apart.
+in the package takes a name apart.
 """
 
 from __future__ import annotations
@@ -11,111 +11,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-CONVENTIONS = (
-    "SI units; plane x-y; angles in rad, counter-clockwise; a link's axis e runs from its base (xi = 0) to its tip (xi = 1), "
-    "n is 90 deg counter-clockwise of e; section forces are the action of the part towards the tip on the part towards the "
-    "base, resolved on (e, n, z), so axial > 0 is tension and d(bending)/d(xi l) = -shear; a reaction is the action of the "
-    "joint's parent on its child, in ground axes, its moment about the joint's point on the child; an effort is positive "
-    "along its coordinate"
-)
+from .tables import ANGLE, CONVENTIONS, LENGTH, MOMENT, PLANE, QUANTITIES, SPACE, Quantity, Table, table_of
 
-CF = "CF-1.8"
-"""What programs may expect of units, names and scales in files: the climate and forecast metadata conventions."""
+__all__ = ["ANGLE", "CONVENTIONS", "LENGTH", "MOMENT", "QUANTITIES", "Declared", "Output", "quantity_of"]
 
-FORCE, MOMENT, LENGTH, ANGLE = "N", "N m", "m", "rad"
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """One kind of output.
-
-    ``axes`` is ``("t",)`` or ``("t", "xi")``. ``unit`` holds ``{q}`` where it depends on whether the joint's coordinate
-    is an angle (rad) or a slide (m), and ``{Q}`` where it depends on the effort that works on it (N m or N). A multiplier's unit is
-    that of power over its own equation's: the file says ``1`` where the equation's unit is the user's affair. An output of the
-    user's own has the unit that it was declared with.
-    """
-
-    group: str
-    member: str
-    axes: tuple[str, ...]
-    unit: str
-    long_name: str
-    sign: str = ""
-
-    def unit_for(self, kind: str) -> str:
-        """The unit for a coordinate of the given kind, ``"angle"`` or ``"slide"``."""
-        angular = kind == "angle"
-        return self.unit.format(q=ANGLE if angular else LENGTH, Q=MOMENT if angular else FORCE)
-
-    @property
-    def attributes(self) -> dict[str, str]:
-        """What a file says of this quantity, its unit left out."""
-        return {"long_name": self.long_name} | ({"sign": self.sign} if self.sign else {})
-
-
-_ON_INBOARD = "action of the part towards the tip on the part towards the base"
-_ON_CHILD = "action of the parent side on the child side"
-_ON_FIRST = "on the body of the load's first point"
-_ALONG = "positive along the joint's coordinate"
-
-QUANTITIES = (
-    Quantity("motion", "", ("t",), "{q}", "coordinate of the joint: child against parent", "counter-clockwise, or along the axis"),
-    Quantity("motion", "rate", ("t",), "{q}/s", "rate of the joint's coordinate"),
-    Quantity("motion", "acceleration", ("t",), "{q}/s^2", "acceleration of the joint's coordinate"),
-    Quantity("pose", "x", ("t",), LENGTH, "place of the base, x"),
-    Quantity("pose", "y", ("t",), LENGTH, "place of the base, y"),
-    Quantity("pose", "angle", ("t",), ANGLE, "direction of the axis, continuous in time", "counter-clockwise from x"),
-    Quantity("effort", "", ("t",), "{Q}", "effort of the drive", _ALONG),
-    Quantity("reaction", "fx", ("t",), FORCE, "reaction of the joint, x", _ON_CHILD),
-    Quantity("reaction", "fy", ("t",), FORCE, "reaction of the joint, y", _ON_CHILD),
-    Quantity("reaction", "mz", ("t",), MOMENT, "moment of the joint about its point on the child", _ON_CHILD),
-    Quantity("multiplier", "", ("t",), "1", "multiplier of a constraint or a non-holonomic row"),
-    Quantity("load", "fx", ("t",), FORCE, "applied force, x", _ON_FIRST),
-    Quantity("load", "fy", ("t",), FORCE, "applied force, y", _ON_FIRST),
-    Quantity("load", "mz", ("t",), MOMENT, "applied torque", _ON_FIRST),
-    Quantity("output", "", ("t",), "1", "output of the user's own"),
-    Quantity("certificate", "balance", ("t",), "1", "Newton-Euler balance of all bodies, over the largest force of the cycle"),
-    Quantity("certificate", "power", ("t",), "1", "balance of power, over the largest force times speed of the cycle"),
-    Quantity("certificate", "closure", ("t",), "1", "gaps of joints, and what users' equations miss, over the length of all links"),
-    Quantity("certificate", "ends", ("t",), "1", "sections at the base and what acts there, over the largest force of the cycle"),
-    Quantity("certificate", "condition", ("t",), "1", "how much the loops magnify: 1/sin(transmission angle), or 2/volume"),
-    Quantity("section", "axial", ("t", "xi"), FORCE, "axial force", f"tension is positive: {_ON_INBOARD}, along the axis"),
-    Quantity("section", "shear", ("t", "xi"), FORCE, "shear force", f"{_ON_INBOARD}, 90 deg counter-clockwise of the axis"),
-    Quantity("section", "bending", ("t", "xi"), MOMENT, "bending moment", f"{_ON_INBOARD}, counter-clockwise"),
-    Quantity("law", "n0", ("t",), FORCE, "axial force at the tip"),
-    Quantity("law", "n1", ("t",), "m/s^2", "axial force for a unit of the mass mu0 from the section to the tip"),
-    Quantity("law", "n2", ("t",), "1/s^2", "axial force for a unit of the first moment mu1 from the section to the tip"),
-    Quantity("law", "f0", ("t",), FORCE, "shear force at the tip"),
-    Quantity("law", "f1", ("t",), "m/s^2", "shear force for a unit of the mass mu0 from the section to the tip"),
-    Quantity("law", "f2", ("t",), "1/s^2", "shear force for a unit of the first moment mu1 from the section to the tip"),
-    Quantity("law", "m0", ("t",), MOMENT, "bending moment at the tip"),
-    Quantity("station", "n", ("t",), FORCE, "force on the link at a station, along the axis"),
-    Quantity("station", "f", ("t",), FORCE, "force on the link at a station, 90 deg counter-clockwise of the axis"),
-    Quantity("station", "m", ("t",), MOMENT, "moment on the link at a station"),
-    Quantity("station", "station", ("t",), "1", "place of the station, ratio xi/l"),
-)  # fmt: skip
-
-RESULTANT = Quantity("reaction", "resultant", ("t",), FORCE, "resultant of the joint's reaction")
-"""The size of a reaction's force: it follows from the reaction, and is no series of its own."""
-
-_BY_KEY = {(q.group, q.member): q for q in (*QUANTITIES, RESULTANT)}
-LAW = tuple(q.member for q in QUANTITIES if q.group == "law")
-STATION = tuple(q.member for q in QUANTITIES if q.group == "station")
-PLACE_FIRST = ("station", "n", "f", "m")
-"""The same as ``STATION``, in the order in which emitted C and :class:`.StationLoad` take them."""
-
-FORCES = tuple(q.member for q in QUANTITIES if q.group == "section")
-_LAW_IN_SPACE = ("n0", "n1", "n2", "fy0", "fy1", "fy2", "mz0", "fz0", "fz1", "fz2", "my0", "mx0")
+LAW, STATION, FORCES, PLACE_FIRST = PLANE.law, PLANE.station, PLANE.forces, PLANE.place_first
+"""Those of planar mechanisms."""
 
 
 def law_members(space: bool) -> tuple[str, ...]:
     """The coefficients of a link's section law."""
-    return _LAW_IN_SPACE if space else LAW
+    return table_of(space).law
 
 
 def station_members(space: bool) -> tuple[str, ...]:
     """What is told of a station of a link."""
-    return ("n", "fy", "fz", "mx", "my", "mz", "station") if space else STATION
+    return table_of(space).station
 
 
 def force_members(space: bool, *, moment: bool = True) -> tuple[str, ...]:
@@ -124,6 +35,7 @@ def force_members(space: bool, *, moment: bool = True) -> tuple[str, ...]:
     return (*forces, *moments) if moment else forces
 
 
+_LAWS = {*PLANE.law, *SPACE.law}
 _ENDINGS = {"rate": "_rate", "acceleration": "_acceleration"}
 _COORDINATE = ".coordinate"
 
@@ -167,7 +79,7 @@ class Output:
             return cls(group, text)
         if group == "section" and len(rest) == 2:
             station, member = rest
-            return cls("law", part, member) if station == "law" and member in LAW else cls("station", part, member, station)
+            return cls("law", part, member) if station == "law" and member in _LAWS else cls("station", part, member, station)
         if group == "certificate" and not rest:
             return cls(group, "", part)
         if len(rest) > 1:
@@ -185,15 +97,20 @@ class Output:
 
     @property
     def quantity(self) -> Quantity:
-        """Its row of the table. Raises ``KeyError`` where there is none."""
-        return _BY_KEY[self.group, self.member]
+        """Its row of the table of planar mechanisms, or where these have none of spatial ones: axes and unit are the same in both.
 
-    @property
-    def components(self) -> tuple[Output, ...]:
+        What it means in either is told by :meth:`meant`. Raises ``KeyError`` where there is none.
+        """
+        return (PLANE if (self.group, self.member) in PLANE else SPACE).row(self.group, self.member)
+
+    def meant(self, table: Table) -> Quantity:
+        """Its row of a table. Raises ``KeyError`` where there is none."""
+        return table.row(self.group, self.member)
+
+    def components(self, table: Table) -> tuple[Output, ...]:
         """Of what it is the size: the outputs of a resultant, else itself."""
-        if self.group != RESULTANT.group or self.member != RESULTANT.member:
-            return (self,)
-        return Output(self.group, self.part, "fx"), Output(self.group, self.part, "fy")
+        members = table.parts(self.group, self.member)
+        return (self,) if members == (self.member,) else tuple(Output(self.group, self.part, member) for member in members)
 
     @property
     def along(self) -> bool:
@@ -208,9 +125,9 @@ class Output:
         return self.quantity.unit_for("angle" if found is None else found[1].kind)
 
 
-def quantity_of(name: str) -> Quantity:
+def quantity_of(name: str, space: bool = False) -> Quantity:
     """The table's row for a full name such as ``motion:O_rate`` or ``section:rod:law:n0``.
 
     Raises ``KeyError`` for a name that is none of the table's.
     """
-    return Output.of(name).quantity
+    return Output.of(name).meant(table_of(space))

@@ -16,6 +16,7 @@ PACKAGE = Path(lagrange_casadi.__file__).parent
 ORDER = (
     "version",
     "errors",
+    "tables",
     "quantities",
     "system",
     "arithmetic",

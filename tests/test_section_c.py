@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from compiled import cc
 
-from lagrange_casadi.codegen.designs import Along, matter_of
+from lagrange_casadi.codegen.link_curves import Along, matter_of
 from lagrange_casadi.declare.density import NumericDensity
 
 SWEEPS = """#include <math.h>
@@ -68,7 +68,8 @@ def numbers(values):
 def program(links):
     """C that prints the forces of each link at each ratio twice, by sweeps' functions and by exported ones."""
     sweeps = resources.files("lagrange_casadi.codegen").joinpath("sections.c").read_text()
-    exported = Template(resources.files("lagrange_casadi.export").joinpath("templates/sections.c").read_text())
+    templates = resources.files("lagrange_casadi.export").joinpath("templates")
+    exported = Template("\n".join(templates.joinpath(name).read_text() for name in ("tails.c", "sections.c", "many_sections.c")))
     body, cases, shapes, matter, outputs, breaks, sizes = "", "", [], [], [], [], []
     for k, (length, edges, cells, law, loads) in enumerate(links):
         terms = max(map(len, cells))

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..instants.solution import Peak, Solution
 from ..instants.statistics import Statistics
-from ..quantities import RESULTANT, Output
+from ..quantities import Output
 
 _GROUPS = ("effort", "reaction", "section", "output")
 
@@ -55,14 +55,15 @@ def _told(solution: Solution) -> Iterator[Output]:
     for output in solution.quantities():
         if output.group in _GROUPS:
             yield output
-            resultant = Output("reaction", output.part, RESULTANT.member)
-            if output == resultant.components[-1]:
-                yield resultant
+            for member in solution.table.reactions:
+                resultant = Output("reaction", output.part, member)
+                if output == solution.made_of(resultant)[-1]:
+                    yield resultant
 
 
 def _error(solution: Solution, name: str) -> float | None:
     """How far a quantity may be off; the size of a force by no more than its components together."""
-    errors = [solution.errors.get(str(component)) for component in Output.of(name).components]
+    errors = [solution.errors.get(str(component)) for component in solution.made_of(Output.of(name))]
     told = [error for error in errors if error is not None]
     return math.hypot(*told) if len(told) == len(errors) else None
 

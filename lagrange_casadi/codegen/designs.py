@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import resources
 from typing import Any
@@ -19,6 +19,7 @@ from ..summits import search as summits
 from ..summits.sharpness import Kind, Watch
 from .calls import Call
 from .emit import FOLLOW, Parts, dump, emit, following, in_single, work
+from .link_curves import Along, along, in_space
 from .stages import Stages
 
 DESIGNS, BEGIN = "lagrange_casadi_designs", "lagrange_casadi_begin"
@@ -76,38 +77,11 @@ _LAST: dict[Precision, float] = {"double": summits.LAST, "single": 1e-5}
 _FILES = ("instants.c", "between.c", "fits.c", "looks.c", "within.c", "summits.c", "designs.c")
 
 
-@dataclass(frozen=True)
-class Along:
-    """A link's part in the columns: its seven coefficients, station, n, f and m of each station; and how its mass lies."""
-
-    law: tuple[int, ...]
-    stations: tuple[tuple[int, ...], ...]
-    breaks: tuple[float, ...]
-    terms: int
-
-    @property
-    def uniform(self) -> bool:
-        """Whether nothing but its own even mass acts between its ends."""
-        return not self.stations and len(self.breaks) == 2 and self.terms == 1
-
-    @property
-    def places(self) -> tuple[tuple[int | str, ...], ...]:
-        """Of each curve of each force, where along the link it is: a row of places, ``BASE`` or ``TIP``. See ``sections.c``."""
-        parts, stations = len(self.stations) + 1, len(self.stations)
-        ends: tuple[int | str, ...] = ("BASE", "TIP", *(4 * parts + k for k in range(stations) for _ in range(2)))
-        return (*ends, *range(parts)), (*ends, *range(parts, 2 * parts)), (*ends, *range(2 * parts, 4 * parts))
-
-    @property
-    def rows(self) -> int:
-        """How many rows of places there are."""
-        return 4 + 5 * len(self.stations)
-
-
 @dataclass(frozen=True, eq=False)
 class Reduction:
     """To what the instants of a design are reduced: what is kept of it, in numbers of columns.
 
-    ``quantities`` off links are one column, or the size of a vector of two; then come three forces of each of ``links``. ``units``
+    ``quantities`` off links are one column, or the size of a vector of two; then come the forces of each of ``links``. ``units``
     numbers the units of all of them, ``efforts`` says which have means. ``checks`` are columns with a kind of :data:`CHECKS` and a
     limit, ``doubts`` the checks that leave a quantity open, by number of both. ``matter(p)`` gives first ``margins`` numbers that
     must not be negative, ``positive`` of them not zero either: the first is the mechanism's extent [m]. Then comes what
@@ -166,7 +140,7 @@ def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, reductio
         text += following(graph, stages, None, parts.sizes | {"follow": BEGIN})
     text = emit(graph, stages, newton) + (in_single(text) if single else text)
     text += CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, reduction, parts))
-    text += _tables(reduction) + _source("sections.c")
+    text += _tables(reduction) + _source("sections.c") + in_space(reduction.links)
     text += _WORK.format(**parts.sizes | work("", *parts.wide, *parts.narrow, reduction.matter), drive=parts.drive)
     text += _curves(reduction)
     return text + "".join(_source(name) for name in _FILES)
@@ -174,7 +148,8 @@ def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, reductio
 
 def _macros(graph: SceneGraph, stages: Stages, newton: int | None, reduction: Reduction, parts: Parts) -> dict[str, object]:
     sizes, precision = parts.sizes, stages.precision
-    plain, links, checks, curves = len(reduction.quantities), len(reduction.links), len(reduction.checks), len(reduction.curves)
+    checks, curves = len(reduction.checks), len(reduction.curves)
+    quantities = len(reduction.quantities) + sum(len(link.places) for link in reduction.links)
     numbers = np.finfo(DTYPES[precision])
     return {
         "REAL": sizes["real"],
@@ -193,7 +168,7 @@ def _macros(graph: SceneGraph, stages: Stages, newton: int | None, reduction: Re
         "MATTER": max(1, reduction.matter.size1_out(0)),
         "MARGINS": reduction.margins,
         "POSITIVE": reduction.positive,
-        "QUANTITIES": plain + 3 * links,
+        "QUANTITIES": quantities,
         "CURVES": curves,
         "PLACES": reduction.places,
         "CHECKED": curves + reduction.places,
@@ -298,7 +273,7 @@ def _curves(reduction: Reduction) -> str:
         lines.append(f"  value[{k}] = {f'DESIGNS_ROOT({squares})' if len(columns) > 1 else f'y[{columns[0]}]'};\n")
     value, place, offset = len(reduction.quantities), 0, reduction.margins
     for k, link in enumerate(reduction.links):
-        lines.append(_along(k, link, f"value + {value}, place + {place}", offset))
+        lines.append(along(k, link, f"value + {value}, place + {place}", offset))
         value += sum(map(len, link.places))
         place += link.rows
         offset += 1 + (1 if link.uniform else (len(link.breaks) - 1) * (3 + link.terms))
@@ -308,49 +283,6 @@ static void designs_curves(const casadi_real* y, const casadi_real* matter, unsi
   (void) matter; (void) need; (void) place;
 {"".join(lines)}}}
 """
-
-
-def _along(number: int, link: Along, into: str, offset: int) -> str:
-    loads = [column for station in link.stations for column in station]
-    taken = "".join(f"    law[{i}] = y[{column}];\n" for i, column in enumerate(link.law))
-    taken += "".join(f"    loads[{i}] = y[{column}];\n" for i, column in enumerate(loads))
-    if link.uniform:
-        inner = f"    casadi_real law[7];\n{taken}    designs_uniform(matter + {offset}, law, {into});\n"
-    else:
-        sizes = f"{len(link.breaks) - 1}, {link.terms}, {len(link.stations)}"
-        inner = f"""    casadi_real law[7], loads[{max(1, len(loads))}], marks[{len(link.stations) + 1}];
-    const designs_link link = {{{sizes}, designs_breaks{number}, matter + {offset}, law, loads}};
-{taken}    designs_along(&link, marks, {into});
-"""
-    return f"  if (need >> {min(number, 63)} & 1) {{\n{inner}  }}\n"
-
-
-def matter_of(link: Along, length: Any, cells: Sequence[Sequence[Any]]) -> list[Any]:
-    """What ``sections.c`` takes for a link, of its length [m] and its cells [kg], filled up to as many terms: see there."""
-    if link.uniform:
-        return [length, cells[0][0]]
-    beyond: tuple[Any, Any, Any] = (0.0, 0.0, 0.0)
-    found: list[list[Any]] = []
-    for a, b, cell in reversed(list(zip(link.breaks, link.breaks[1:], cells, strict=False))):
-        turned = [
-            (-1) ** j * sum(c * math.comb(n, j) * b ** (n - j) for n, c in enumerate(cell) if n >= j) for j in range(len(cell))
-        ]
-        turned += [0.0] * (link.terms - len(turned))
-        found.append([*beyond, *turned])
-        x = b - a
-        own = [
-            sum(
-                c * x ** (j + k + 1) * (math.factorial(j) * math.factorial(k) / math.factorial(j + k + 1))
-                for j, c in enumerate(turned)
-            )
-            for k in range(3)
-        ]
-        beyond = (
-            beyond[0] + own[0],
-            beyond[1] + x * beyond[0] + own[1],
-            beyond[2] + 2 * x * beyond[1] + x * x * beyond[0] + own[2],
-        )
-    return [length, *(value for cell in reversed(found) for value in cell)]
 
 
 def _source(name: str) -> str:

@@ -7,6 +7,7 @@
 #endif
 
 #define TILE 2048
+#define MOST 8
 
 /* Put a tile into memory without reading first what it replaces, nor turning other data out of the cache. */
 static void stream(double* out, const double* tile, long long n) {
@@ -23,14 +24,17 @@ static void stream(double* out, const double* tile, long long n) {
   memcpy(out + i, tile + i, (size_t) (n - i)*sizeof(double));
 }
 
-/* One row: sum of c[m]*basis[m][j] over three or four terms, in this order. */
+/* One row: sum of c[m]*basis[m][j] over one, three or four terms, in this order. */
 static void combine(long long n, int terms, const double* c, const double* const* basis, double* restrict row) {
-  const double c0 = c[0], c1 = c[1], c2 = c[2], *b0 = basis[0], *b1 = basis[1], *b2 = basis[2];
+  const double c0 = c[0], *b0 = basis[0];
   long long j;
-  if (terms == 3) {
+  if (terms == 1) {
+    for (j = 0; j < n; ++j) row[j] = c0*b0[j];
+  } else if (terms == 3) {
+    const double c1 = c[1], c2 = c[2], *b1 = basis[1], *b2 = basis[2];
     for (j = 0; j < n; ++j) row[j] = (c0*b0[j] + c1*b1[j]) + c2*b2[j];
   } else {
-    const double c3 = c[3], *b3 = basis[3];
+    const double c1 = c[1], c2 = c[2], c3 = c[3], *b1 = basis[1], *b2 = basis[2], *b3 = basis[3];
     for (j = 0; j < n; ++j) row[j] = ((c0*b0[j] + c1*b1[j]) + c2*b2[j]) + c3*b3[j];
   }
 }
@@ -45,32 +49,48 @@ static void act(long long n, double station, double constant, double slope, cons
   }
 }
 
+/* A row at an instant i: in one plane what acts there, and with two planes the size of both; other is room for the second one's. */
+static void whole(long long n, const double* const* columns, const double* const* along, int planes, int terms,
+                  const double* const* acting, int loads, long long i, const double* u, double* restrict row, double* restrict other) {
+  double c[MOST];
+  long long j;
+  int m, s, plane;
+  for (m = 0; m < planes*terms; ++m) c[m] = columns[m][i];
+  for (plane = 0; plane < planes; ++plane) {
+    double* sum = plane ? other : row;
+    combine(n, terms, c + plane*terms, along + plane*terms, sum);
+    for (s = plane*loads; s < (plane + 1)*loads; ++s) {
+      const double* const* load = acting + 3*s;
+      act(n, load[0][i], load[1][i], load[2][i], u, sum);
+    }
+  }
+  if (planes == 2) {
+    for (j = 0; j < n; ++j) row[j] = sqrt(row[j]*row[j] + other[j]*other[j]);
+  }
+}
+
 /* out[i*k + j], n rows of k ratios u. columns[m][i] are the coefficients of basis[m*k + j], and acting[3*s], [3*s + 1], [3*s + 2] the
-   station, the constant and the slope of load s. */
+   station, the constant and the slope of load s. With two planes there are so many terms and loads of each, one plane's after the
+   other's, and out is the size of both. */
 __attribute__((visibility("default")))
 void lagrange_casadi_grid(const lagrange_casadi_grid_call* call) {
   const long long n = call->n, k = call->k;
-  const int terms = call->terms, loads = call->loads, streams = call->streams;
+  const int planes = call->planes, terms = call->terms, loads = call->loads, streams = call->streams;
   const double *const *columns = call->columns, *const *acting = call->acting, *basis = call->basis, *u = call->u;
   double* out = call->out;
-  double tile[TILE], c[4];
-  const double* along[4];
+  double tile[TILE], other[TILE];
+  const double* along[MOST];
   const long long width = k < TILE ? k : TILE, rows = TILE/width;
   long long first, start, i;
-  int m, s;
+  int m;
   for (first = 0; first < n; first += rows) {
     const long long many = n - first < rows ? n - first : rows;
     for (start = 0; start < k; start += width) {
       const long long size = k - start < width ? k - start : width;
       double* rows_here = streams ? tile : out + first*k + start;
-      for (m = 0; m < terms; ++m) along[m] = basis + m*k + start;
+      for (m = 0; m < planes*terms; ++m) along[m] = basis + m*k + start;
       for (i = 0; i < many; ++i) {
-        for (m = 0; m < terms; ++m) c[m] = columns[m][first + i];
-        combine(size, terms, c, along, rows_here + i*size);
-        for (s = 0; s < loads; ++s) {
-          const double* const* load = acting + 3*s;
-          act(size, load[0][first + i], load[1][first + i], load[2][first + i], u + start, rows_here + i*size);
-        }
+        whole(size, columns, along, planes, terms, acting, loads, first + i, u + start, rows_here + i*size, other);
       }
       if (streams) stream(out + first*k + start, tile, many*size);
     }
@@ -86,28 +106,23 @@ void lagrange_casadi_grid(const lagrange_casadi_grid_call* call) {
 __attribute__((visibility("default")))
 void lagrange_casadi_largest(const lagrange_casadi_largest_call* call) {
   const long long designs = call->designs, n = call->n, k = call->k;
-  const int terms = call->terms, loads = call->loads;
+  const int planes = call->planes, terms = call->terms, loads = call->loads;
   const double *const *columns = call->columns, *const *acting = call->acting, *basis = call->basis, *u = call->u;
   double* out = call->out;
-  double row[TILE], high[TILE], low[TILE], c[4];
-  const double* along[4];
+  double row[TILE], other[TILE], high[TILE], low[TILE];
+  const double* along[MOST];
   long long d, start, i, j;
-  int m, s;
+  int m;
   for (d = 0; d < designs; ++d) {
     for (start = 0; start < k; start += TILE) {
       const long long size = k - start < TILE ? k - start : TILE;
-      for (m = 0; m < terms; ++m) along[m] = basis + (m*designs + d)*k + start;
+      for (m = 0; m < planes*terms; ++m) along[m] = basis + (m*designs + d)*k + start;
       for (j = 0; j < size; ++j) {
         high[j] = -HUGE_VAL;
         low[j] = HUGE_VAL;
       }
       for (i = d*n; i < (d + 1)*n; ++i) {
-        for (m = 0; m < terms; ++m) c[m] = columns[m][i];
-        combine(size, terms, c, along, row);
-        for (s = 0; s < loads; ++s) {
-          const double* const* load = acting + 3*s;
-          act(size, load[0][i], load[1][i], load[2][i], u + start, row);
-        }
+        whole(size, columns, along, planes, terms, acting, loads, i, u + start, row, other);
         for (j = 0; j < size; ++j) {
           high[j] = row[j] > high[j] ? row[j] : high[j];
           low[j] = row[j] < low[j] ? row[j] : low[j];

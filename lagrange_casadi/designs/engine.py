@@ -37,6 +37,7 @@ from ..instants.solution import Provenance
 from ..quantities import Output
 from ..summits.sharpness import bent, with_watched
 from ..system.room import cores, require
+from ..tables import table_of
 from .interpreted import columns_of, outcome
 from .reduction import KeptOutputs, stages_of
 from .times import DesignTimes
@@ -289,8 +290,8 @@ class DesignEngine:
     @cached_property
     def _shown(self) -> list[int]:
         """The quantities that are given: of a link that has some forces determined, all are made, and these are shown."""
-        found = enumerate(self.kept.quantities)
-        return [k for k, q in found if q.group != "section" or not made_of(self.left_open, q.part, q.member)]
+        found, table = enumerate(self.kept.quantities), table_of(self.scene.mechanism.space)
+        return [k for k, q in found if q.group != "section" or not made_of(self.left_open, q.part, q.member, table)]
 
     def failures(self, p: Array) -> dict[str, float]:
         """What fails of one design that has a result, (parameters,), looked at with all its outputs: see :mod:`.witness`."""

@@ -16,7 +16,7 @@ from ..instants.determinacy import undetermined
 from ..instants.refusal import Status, refusal
 from ..instants.rung import Rung
 from ..instants.signals import Quantity, SectionForce, Signals
-from ..quantities import FORCES
+from ..tables import table_of
 from .reduction import KeptOutputs
 
 
@@ -80,11 +80,12 @@ def _signals(
 ) -> Signals:
     """Some quantities that are kept of a design, as curves over time."""
     mechanism, reduction = graph.scene.mechanism, kept.reduction
+    table = table_of(mechanism.space)
     matter = _matter(kept, mechanism, dict(zip(mechanism.parameters, p.tolist(), strict=True)))
     sections = [
-        SectionForce(force, along.law, along.stations, length, density)
+        SectionForce(force, table, along.law, along.stations, length, density)
         for along, (length, density) in zip(reduction.links, matter, strict=True)
-        for force in FORCES
+        for force in table.forces
     ]
     quantities: list[Quantity] = [*reduction.quantities, *sections]
     return Signals(graph, evaluated.stages, kept.sharpness, [quantities[k] for k in some], t, p, evaluated.iterated, newton)

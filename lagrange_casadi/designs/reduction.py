@@ -10,7 +10,8 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.compensated import Precision
-from ..codegen.designs import Along, Reduction, matter_of
+from ..codegen.designs import Reduction
+from ..codegen.link_curves import Along, matter_of
 from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array, Density
 from ..declare.mechanism import Mechanism
@@ -25,8 +26,9 @@ from ..instants.refusal import Status
 from ..instants.rules import rules
 from ..instants.rung import Rung
 from ..instants.section_law import made_of
-from ..quantities import FORCES, LAW, PLACE_FIRST, RESULTANT, Output
+from ..quantities import Output
 from ..summits.sharpness import Sharpness
+from ..tables import Table, table_of
 
 
 def stages_of(graph: SceneGraph, rung: Rung, t: Array, *, alike: bool = True) -> Stages:
@@ -67,30 +69,33 @@ class KeptOutputs:
     def of(cls, graph: SceneGraph, rung: Rung, left_open: Collection[Output] = ()) -> KeptOutputs:
         """What is kept of a scene's designs on a rung, less what is ``left_open``."""
         mechanism, at = graph.scene.mechanism, graph.outputs
+        table = table_of(mechanism.space)
         chosen: dict[Output, tuple[int, ...]] = {}
         for output, k in at.items():
             if output.along or output in graph.loop_angles or output in left_open:
                 continue
-            size = Output("reaction", output.part, RESULTANT.member)
-            if output == size.components[0] and all(other in at and other not in left_open for other in size.components):
-                chosen[size] = tuple(at[other] for other in size.components)
+            for member in table.reactions if output.group == "reaction" else ():
+                size = Output("reaction", output.part, member)
+                parts = [other for other in size.components(table) if other in at]
+                if parts[:1] == [output] and len(parts) > 1 and not any(other in left_open for other in parts):
+                    chosen[size] = tuple(at[other] for other in parts)
             chosen[output] = (k,)
         links = [link for link in mechanism.links.values() if Output("law", link.name, "n0") in at]
-        links = [link for link in links if not all(made_of(left_open, link.name, force) for force in FORCES)]
-        names = [*chosen, *(Output("section", link.name, force) for link in links for force in FORCES)]
+        links = [link for link in links if not all(made_of(left_open, link.name, force, table) for force in table.forces)]
+        names = [*chosen, *(Output("section", link.name, force) for link in links for force in table.forces)]
         if not names:
             raise DeclarationError("designs: nothing is wanted that has a peak")
         units = tuple(output.unit(mechanism) for output in names)
         numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
         efforts = tuple(name for name in names if name.group in ("effort", "output"))
-        along = tuple(_along(link, at) for link in links)
+        along = tuple(_along(link, at, table) for link in links)
         matter, positive, margins = _matter(mechanism, links, along, rung.precision)
         columns = {column for columns in chosen.values() for column in columns}
         columns |= {column for link in along for column in (*link.law, *(k for station in link.stations for k in station))}
         sharpness = Sharpness.of(graph, sorted(columns))
         checks = _checks(graph, rung)
         doubted = {k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")}
-        made = {name: _made_of(graph, name) for name in names}
+        made = {name: _made_of(graph, name, table) for name in names}
         doubts = [(doubted[graph.doubtful[n]], k) for k, name in enumerate(names) for n in made[name] if n in graph.doubtful]
         reduction = Reduction(
             quantities=tuple(chosen.values()),
@@ -110,22 +115,22 @@ class KeptOutputs:
         return cls(tuple(names), units, efforts, tuple(link.name for link in links), reduction, sharpness)
 
 
-def _along(link: Link, at: dict[Output, int]) -> Along:
+def _along(link: Link, at: dict[Output, int], table: Table) -> Along:
     assert isinstance(link.mass, Density)
     stations = stations_of(at, link.name)
     return Along(
-        tuple(at[Output("law", link.name, member)] for member in LAW),
-        tuple(tuple(at[Output("station", link.name, member, station)] for member in PLACE_FIRST) for station in stations),
+        tuple(at[Output("law", link.name, member)] for member in table.law),
+        tuple(tuple(at[Output("station", link.name, member, station)] for member in table.place_first) for station in stations),
         link.mass.breaks,
         max(len(cell) for cell in link.mass.cells),
     )
 
 
-def _made_of(graph: SceneGraph, quantity: Output) -> list[Output]:
+def _made_of(graph: SceneGraph, quantity: Output, table: Table) -> list[Output]:
     """The outputs that a quantity is made of."""
     if quantity.group == "section":
-        return made_of(graph.outputs, quantity.part, quantity.member)
-    return list(quantity.components)
+        return made_of(graph.outputs, quantity.part, quantity.member, table)
+    return list(quantity.components(table))
 
 
 def _checks(graph: SceneGraph, rung: Rung) -> list[tuple[int, str, float]]:

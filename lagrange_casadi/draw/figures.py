@@ -19,8 +19,9 @@ from ..declare.density import Array
 from ..declare.description import parts_of
 from ..errors import DeclarationError, StoreError, UnknownNameError, one_line
 from ..instants.solution import Peak, Solution
-from ..quantities import FORCES, Output, quantity_of
+from ..quantities import Output
 from ..store.untrusted import parsed
+from ..tables import PLANE, SPACE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -104,7 +105,10 @@ class SpanPlot:
 
 @dataclass(frozen=True)
 class SectionMaps:
-    """The three section forces of a link as maps of time and xi/l, the peaks marked; a grid finer than the picture is thinned."""
+    """The section forces of a link as maps of time and xi/l, the peaks marked; a grid finer than the picture is thinned.
+
+    In space there are six, and the resultants of shear and bending.
+    """
 
     kind: ClassVar[str] = "maps"
     name: str
@@ -112,33 +116,42 @@ class SectionMaps:
 
     def needs(self) -> tuple[str, ...]:
         """Full names of the quantities it draws."""
-        return tuple(str(Output("section", self.link, force)) for force in FORCES)
+        return tuple(str(Output("section", self.link, force)) for force in PLANE.forces)
 
     def draw(self, solution: Solution) -> Figure:
         """The figure."""
         from matplotlib.figure import Figure
 
-        figure = Figure(figsize=(8.0, 8.4), layout="constrained")
+        names = [Output("section", self.link, force) for force in solution.table.forces]
+        names = [name for name in names if solution.determined(name)]
+        across = 1 if solution.table is PLANE else 2
+        down = -(-len(names) // across)
+        figure = Figure(figsize=(8.0 * across, 2.8 * down), layout="constrained")
         instants, ratios = (slice(None, None, 1 + size // _PIXELS) for size in (solution.t.size, solution.xi.size))
         law, xi = solution.section(self.link).law.during(instants), solution.xi[ratios]
         places, along = _along(solution)
         basis = law.basis(xi)
-        for axes, force, name in zip(figure.subplots(3, 1, sharex=True), FORCES, self.needs(), strict=True):
-            values, peak = law.on_grid(force, basis), solution.peak(name)
-            bound = abs(peak.value) or 1.0
+        plots = list(figure.subplots(down, across, sharex=True, squeeze=False).flat)
+        for axes, name in zip(plots, names, strict=False):
+            values, peak = law.on_grid(name.member, basis), solution.peak(name)
+            bound, signed = abs(peak.value) or 1.0, len(name.components(solution.table)) == 1
+            colours, least = ("RdBu_r", -bound) if signed else ("viridis", 0.0)
             picture = axes.pcolormesh(
-                places[instants], xi, values.T, cmap="RdBu_r", vmin=-bound, vmax=bound, shading="nearest", rasterized=True
+                places[instants], xi, values.T, cmap=colours, vmin=least, vmax=bound, shading="nearest", rasterized=True
             )
             x, at = _place_of(peak, solution)
             axes.plot(x, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
             axes.set_title(
-                f"{quantity_of(name).long_name}: peak {peak.value:.4g} {peak.unit} at {at}, "
+                f"{name.meant(solution.table).long_name}: peak {peak.value:.4g} {peak.unit} at {at}, "
                 rf"$\xi/l$ = {peak.xi:.3f}",
                 fontsize=10,
             )
             axes.set_ylabel(r"$\xi/l$")
-            figure.colorbar(picture, ax=axes, label=f"{quantity_of(name).long_name} [{peak.unit}]")
-        axes.set_xlabel(along)
+            figure.colorbar(picture, ax=axes, label=f"{name.meant(solution.table).long_name} [{peak.unit}]")
+        for axes in plots[-across:]:
+            axes.set_xlabel(along)
+        for axes in plots[len(names) :]:
+            axes.set_axis_off()
         figure.suptitle(f"{solution.case}: section forces of {self.link}, as the tip's side acts on the base's", fontsize=11)
         return figure
 
@@ -174,14 +187,16 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     for output, values in solution.outputs.items():
         drawn = output.group in ("effort", "reaction", "multiplier", "load", "output") or output == Output("motion", output.part)
         if drawn and solution.determined(output) and np.any(values):
-            groups.setdefault((output.group + ("_moment" if output.member == "mz" else ""), output.part), []).append(str(output))
+            groups.setdefault((output.group + ("_moment" if output.member.startswith("m") else ""), output.part), []).append(
+                str(output)
+            )
     for (group, part), names in groups.items():
         what = part if group == "output" else f"{group.replace('_', ' ')} of {part}"
         specs.append(TimePlot(f"{group}_{part}", tuple(names), f"{solution.case}: {what}"))
     for link in solution.links_with_sections:
         if solution.determined(Output("section", link, "bending")):
             specs.append(SectionMaps(f"section_{link}", link))
-    return (*specs, MechanismDrawing())
+    return tuple(specs) if solution.table is SPACE else (*specs, MechanismDrawing())
 
 
 def dump_specs(specs: Sequence[Spec]) -> str:
@@ -215,6 +230,8 @@ def draw(solution: Solution, specs: Sequence[Spec], folder: Path) -> Iterator[tu
             raise DeclarationError(f"expected specs of lagrange_casadi.figures, got {spec!r}")
         if not _FILE.fullmatch(spec.name) or sum(other.name == spec.name for other in chosen) > 1:
             raise DeclarationError(f"figure '{spec.name}': expected letters, digits, underscores and hyphens, each name once")
+        if isinstance(spec, MechanismDrawing) and solution.table is SPACE:
+            raise DeclarationError(f"figure '{spec.name}': a spatial mechanism cannot be drawn yet; leave it out")
         _check_parts(solution, spec)
     for spec in chosen:
         if not _has(solution, spec):
@@ -239,7 +256,7 @@ def _has(solution: Solution, spec: Spec) -> bool:
     if isinstance(spec, MechanismDrawing):
         return all(Output("pose", body, "x") in solution.outputs for body in solution.description["bodies"])
     names = set(solution.names())
-    return all(str(component) in names for name in spec.needs() for component in Output.of(name).components)
+    return all(str(component) in names for name in spec.needs() for component in Output.of(name).components(solution.table))
 
 
 def _along(solution: Solution) -> tuple[Array, str]:
@@ -267,7 +284,7 @@ def _figure(panels: int = 1) -> tuple[Figure, list[Any]]:
 def _finish(figure: Figure, axes: Any, solution: Solution, names: Sequence[str], title: str, note: str, along: str) -> None:
     axes.set_xlabel(along)
     shown = map(Output.of, names)
-    words = [o.part if o.group == "output" else o.quantity.long_name.partition(":")[0] for o in shown]
+    words = [o.part if o.group == "output" else o.meant(solution.table).long_name.partition(":")[0] for o in shown]
     if len(axes.get_lines()) > 1:
         words = list(dict.fromkeys(word.partition(",")[0] for word in words))
     axes.set_ylabel(f"{', '.join(words)} [{solution.unit(names[0])}]")

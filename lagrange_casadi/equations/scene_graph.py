@@ -13,7 +13,7 @@ import casadi as ca
 from ..declare.density import Array
 from ..declare.motion import Laws
 from ..declare.scene import Scene, Wanted
-from ..quantities import LAW, STATION, Output
+from ..quantities import Output, law_members, station_members
 from .checks import Check, Column, Kind, column_of
 from .gaps import extent
 from .kinematics import NewtonLoop
@@ -68,9 +68,14 @@ class SceneGraph:
     @cached_property
     def links(self) -> tuple[str, ...]:
         """The links of which a whole section law was wanted, and is there."""
+        space = self.scene.mechanism.space
         needed = {
-            link: [Output("law", link, member) for member in LAW]
-            + [Output("station", link, member, station) for station in stations_of(self.outputs, link) for member in STATION]
+            link: [Output("law", link, member) for member in law_members(space)]
+            + [
+                Output("station", link, member, station)
+                for station in stations_of(self.outputs, link)
+                for member in station_members(space)
+            ]
             for link in self.wanted.sections
         }
         return tuple(link for link, outputs in needed.items() if all(output in self.outputs for output in outputs))

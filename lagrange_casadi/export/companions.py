@@ -6,10 +6,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ..tables import Table
 from .contract import REST, Contract, Member
 from .golden import RATIOS
 from .matlab import matlab
 from .program import literal
+from .sections import comparisons, in_words
 from .source import Source
 from .text import markdown, quoted, template
 
@@ -120,7 +122,7 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
         inputs_off=row(g.inputs_off),
         outputs=rows(g.outputs),
         outputs_off=row(g.outputs_off),
-        forces=_forces(rows(g.forces.reshape(len(g.times), -1)), row(g.forces_off.ravel())) if c.links else "",
+        forces=_forces(c.table, rows(g.forces.reshape(len(g.times), -1)), row(g.forces_off.ravel())) if c.links else "",
         given="\n".join(f"  inputs->{m.name} = ({c.prefix}_real) row[{k}];" for k, m in enumerate(c.inputs)),
         taken_inputs="\n".join(_taken(c, m, coordinates) for m in c.inputs if not m.rest_of),
         taken_outputs="\n".join(
@@ -152,18 +154,20 @@ def _taken(c: Contract, m: Member, coordinates: dict[str, int]) -> str:
     return f'    compare("motion: {m.name}", {given}, {value}, inputs_off[{k}], 0);'
 
 
-def _forces(rows: str, off: str) -> str:
+def _forces(table: Table, rows: str, off: str) -> str:
+    words, many = in_words(table), len(table.forces)
     return (
-        f"\n/* Axial force, shear force and bending moment, of each link, at each ratio. */\n"
-        f"static const double forces_at[INSTANTS][LINKS*RATIOS*3] = {{\n{rows}\n}};\n"
-        f"static const double forces_off[LINKS*3] = {{{off}}};\n"
+        f"\n/* {words[0].upper()}{words[1:]}, of each link, at each ratio. */\n"
+        f"static const double forces_at[INSTANTS][LINKS*RATIOS*{many}] = {{\n{rows}\n}};\n"
+        f"static const double forces_off[LINKS*{many}] = {{{off}}};\n"
         f"static const double ratios[RATIOS] = {{{', '.join(map(str, RATIOS))}}};\n"
     )
 
 
 def _sections(c: Contract) -> str:
     links = ",\n".join(f"  {link.constant}" for link in c.links)
-    return template("selftest_sections.c", p=c.prefix, P=c.prefix.upper(), links=links)
+    words = {"p": c.prefix, "P": c.prefix.upper(), "links": links, "many": len(c.table.forces)}
+    return template("selftest_sections.c", **words, comparisons=comparisons(c.table))
 
 
 def _bad_parameter(c: Contract) -> str:

@@ -15,6 +15,7 @@ from ..equations.mobility import stations_of
 from ..equations.scene_graph import SceneGraph
 from ..instants.solution import Solution
 from ..quantities import Output
+from ..tables import PLANE, Table, table_of
 from .naming import constants, members, prefix
 
 REST = "rest:"
@@ -80,7 +81,7 @@ class Contract:
 
     ``inputs`` and ``outputs`` are the members of these structs in order; ``rests`` tells that each coordinate, and the time, has
     a second number, what rounding it to single precision left. ``settings`` are the parameters, ``links`` those with sections,
-    ``drives`` the driven joints. ``timed`` tells that the time itself matters.
+    ``drives`` the driven joints. ``timed`` tells that the time itself matters. ``table`` says what they mean.
     """
 
     prefix: str
@@ -93,6 +94,7 @@ class Contract:
     drives: tuple[str, ...]
     timed: bool
     undetermined: tuple[str, ...]
+    table: Table
 
     @property
     def rests(self) -> bool:
@@ -162,6 +164,7 @@ def contract(
         graph.driven,
         timed,
         tuple(map(str, left_open)),
+        solution.table,
     )
 
 
@@ -219,15 +222,16 @@ def _inputs(graph: SceneGraph, precision: Precision, timed: bool) -> dict[str, M
 
 
 def _sign(graph: SceneGraph, output: Output) -> str:
-    if output == Output("motion", output.part):
+    table = table_of(graph.scene.mechanism.space)
+    if output == Output("motion", output.part) and table is PLANE:
         return "counter-clockwise" if graph.scene.guided.coordinates[output.part][1].kind == "angle" else "along the axis"
-    return output.quantity.sign
+    return output.meant(table).sign
 
 
 def _output(graph: SceneGraph, output: Output, member: str, solution: Solution, largest: Mapping[str, float]) -> Member:
     unit, wrapped = output.unit(graph.scene.mechanism), output in graph.loop_angles
     within = "in (-pi, pi]" if wrapped else _range(solution, output, largest[unit])
-    meaning = f"{_where(output)}: {_brief(output.quantity.long_name)}"
+    meaning = f"{_where(output)}: {_brief(output.meant(solution.table).long_name)}"
     return Member(member, str(output), unit, meaning, _sign(graph, output), within, wrapped)
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
-from ..quantities import CONVENTIONS, Output
+from ..quantities import Output
 from ..version import __version__
 from .contract import Contract, Member, Setting
 from .source import Source
@@ -191,7 +191,7 @@ def page(description: Description) -> str:
     rest = "".join(_table(title, members) for title, members in tables if members)
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{escape(c.name)}</title></head>\n<body>\n'
-        f"<h1>{escape(c.name)}</h1>\n<p>{_ABOUT}</p>\n<p>{escape(CONVENTIONS)}.</p>\n{rest}"
+        f"<h1>{escape(c.name)}</h1>\n<p>{_ABOUT}</p>\n<p>{escape(c.table.conventions)}.</p>\n{rest}"
         f"<p>Written by lagrange_casadi {__version__} from the scene {description.source.scene}.</p>\n</body>\n</html>\n"
     )
 

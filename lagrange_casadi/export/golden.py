@@ -12,7 +12,7 @@ from ..arithmetic.compensated import ROUNDING, Precision
 from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
 from ..instants.solution import Solution
-from ..quantities import FORCES, Output
+from ..quantities import Output
 from .contract import FAINT, REST, Contract, Member
 
 INSTANTS = 9
@@ -28,7 +28,7 @@ _MOTION = 4096.0
 class Golden:
     """Instants, ``steps`` of the scene's grid apart, and there ``inputs`` (instants, inputs) and ``outputs`` (instants, outputs).
 
-    ``forces`` (instants, links, ratios, 3) are axial, shear and bending. What has a tolerance has one a column, ``forces`` one a
+    ``forces`` (instants, links, ratios, forces) are those of sections. What has a tolerance has one a column, ``forces`` one a
     link and force. ``times`` and, in single precision, ``inputs`` are what two singles hold of a value. ``worst`` is the largest
     error expected of an output, of its largest value, and which output that is.
     """
@@ -60,11 +60,12 @@ def golden(graph: SceneGraph, contract: Contract, solution: Solution, exact: Sol
     rounding = np.array([scale * exact.errors[m.source] for m in contract.outputs])
     saved = np.array([_saved(m, solution, exact) for m in contract.outputs])
     off = rounding + 2.0 * saved + least * np.abs(outputs).max(axis=0)
-    forces = np.zeros((t.size, len(contract.links), len(RATIOS), 3))
-    forces_off = np.zeros((len(contract.links), 3))
+    names = contract.table.forces
+    forces = np.zeros((t.size, len(contract.links), len(RATIOS), len(names)))
+    forces_off = np.zeros((len(contract.links), len(names)))
     for i, link in enumerate(contract.links):
         laws = [solved.section(link.name).law for solved in (exact, solution)]
-        for k, force in enumerate(FORCES):
+        for k, force in enumerate(names):
             true, found = (law.at(force, np.tile(RATIOS, (exact.t.size, 1))) for law in laws)
             forces[:, i, :, k] = true[chosen]
             forces_off[i, k] = scale * exact.errors[str(Output("section", link.name, force))] + least * np.abs(true).max()

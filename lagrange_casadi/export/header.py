@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
-from ..quantities import CONVENTIONS
+from ..tables import PLANE
 from .contract import Contract
+from .sections import LAW, LAW_IN_SPACE, about
 from .source import Source
 from .stack import deepest
 from .statuses import STATUSES
@@ -23,8 +24,8 @@ def header(source: Source) -> str:
         null=", 0" if c.settings else "",
         begin=_begin(source),
         story=filled(source.story),
-        conventions=filled(f"Conventions: {CONVENTIONS}. {_ZERO} Gravity is ({_gravity(source)}) m/s^2."),
-        law=_LAW if c.links else "",
+        conventions=filled(f"Conventions: {c.table.conventions}. {_ZERO} Gravity is ({_gravity(source)}) m/s^2."),
+        law=(LAW if c.table is PLANE else LAW_IN_SPACE) if c.links else "",
         mapping=filled("Called otherwise here: " + ", ".join(f"{k} is {v}" for k, v in c.mapped.items()) + ".", "\n\n")
         if c.mapped
         else "",
@@ -58,10 +59,6 @@ _ZERO = (
     "A joint's angle is the direction of the child's axis less that of the parent's, which of the ground is x; a slide is how far "
     "the child's point is from the parent's, along the joint's axis."
 )
-_LAW = """ Those of a section law are for _section, which is all you need.
-   They mean: axial = n0 + n1 mu0 + n2 mu1, shear = f0 + f1 mu0 + f2 mu1, bending = m0 + f0 (l - xi) + f1 (mu1 - xi mu0) + f2 (mu2 -
-   xi mu1) at xi from the base, where mu0 is the mass from there to the tip, mu1 and mu2 its first and second moment about the base;
-   and then what acts on the link at stations, where something joins or loads it between its ends, beyond xi."""
 
 
 def _begin(source: Source) -> str:
@@ -110,16 +107,9 @@ def _links(c: Contract) -> str:
     if not c.links:
         return ""
     rows = ",\n".join(f"  {link.constant} = {k}" for k, link in enumerate(c.links))
-    forces = "\n".join(
-        member(p, *row)
-        for row in (
-            ("axial", "axial force [N]; tension is positive; any number"),
-            ("shear", "shear force [N]; 90 deg counter-clockwise of the axis; any number"),
-            ("bending", "bending moment [N m]; counter-clockwise; any number"),
-        )
-    )
-    about = "/* What the part towards the tip does to the part towards the base. */"
-    return f"\ntypedef enum {{\n{rows}\n}} {p}_link;\n\n{about}\ntypedef struct {{\n{forces}\n}} {p}_forces;\n"
+    forces = "\n".join(member(p, force, about(c.table, force)) for force in c.table.forces)
+    story = "/* What the part towards the tip does to the part towards the base. */"
+    return f"\ntypedef enum {{\n{rows}\n}} {p}_link;\n\n{story}\ntypedef struct {{\n{forces}\n}} {p}_forces;\n"
 
 
 def _section_functions(c: Contract) -> str:

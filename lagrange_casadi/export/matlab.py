@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from .contract import Contract, Member
 from .program import literal
@@ -35,7 +35,8 @@ def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]
             links=", ".join(f'"{link.name}"' for link in c.links) or "0",
             prepare=_prepare(c),
             time_rest=f", ({c.prefix}_real) (t - (double) ({c.prefix}_real) t)" if c.rests else "",
-            section=template("mex_section.c", **words) if c.links else _no_section(c),
+            section=_section(c, words) if c.links else _no_section(c),
+            matrices=f"{', '.join(c.table.forces[:-1])} and {c.table.forces[-1]}",
         ),
         "build_mex.m": template("build_mex.m", **words),
         "mex_example.m": template(
@@ -78,6 +79,17 @@ def _prepare(c: Contract) -> str:
         "    put(&parameters, members_of_parameters + k, number(value, 0));\n"
         "  }\n"
         f"  status = {p}_prepare(model, &parameters);"
+    )
+
+
+def _section(c: Contract, words: Mapping[str, str]) -> str:
+    forces = c.table.forces
+    return template(
+        "mex_section.c",
+        **words,
+        pointers=", ".join(f"*{force}" for force in forces),
+        added="\n".join(f'  {force} = added(found, "{force}", many, width, mxDOUBLE_CLASS);' for force in forces),
+        filled="\n".join(f"      {force}[j*many + i] = (double) forces.{force};" for force in forces),
     )
 
 

@@ -10,15 +10,15 @@ from functools import cached_property
 import casadi as ca
 
 from ..codegen.emit import newton_rule
-from ..declare.density import Density
 from ..declare.ends import BEYOND
 from ..instants.rules import rules
-from ..quantities import LAW, PLACE_FIRST, Output
+from ..quantities import Output
 from ..version import __version__
 from .contract import REST, Contract
 from .data import sampled, table_call, table_text
 from .golden import Golden
 from .program import Format, Program, literal
+from .sections import functions
 from .statuses import STATUSES
 from .text import comment, indented, printed, template
 
@@ -43,7 +43,7 @@ class Source:
     def code(self) -> str:
         """The source: ``<prefix>.c``."""
         p, sizes = self.contract.prefix, self.program.sizes
-        sections = self._sections() if self.contract.links else ""
+        sections = functions(self.contract, self.program, self._number, self._function("sqrt")) if self.contract.links else ""
         return template(
             "mechanism.c",
             **self.words,
@@ -354,40 +354,6 @@ class Source:
             yield f"if (closed != {P}_OK) return closed;"
         rows = len(self.program.columns)
         yield f"if (!all_finite(y, {rows})) return {P}_NOT_FINITE;"
-
-    def _sections(self) -> str:
-        c, links = self.contract, self.program.graph.scene.mechanism.links
-        shapes: list[str] = []
-        laws: list[str] = []
-        breaks: list[float] = []
-        sizes: list[int] = []
-        place = self.program.sizes["gapped"]
-        names = {Output.of(m.source): m.name for m in c.outputs}
-        for link in c.links:
-            density = links[link.name].mass
-            assert isinstance(density, Density)
-            lengths = [len(cell) for cell in density.cells]
-            shapes.append(f"  {{{len(lengths)}, {len(breaks)}, {len(sizes)}}}")
-            breaks += density.breaks
-            sizes += lengths
-            rows = [f"  case {link.constant}:", f"    matter_of = model->matter + {place};"]
-            rows.append(f"    stations = {len(link.stations)};")
-            rows += [f"    law[{i}] = outputs->{names[Output('law', link.name, term)]};" for i, term in enumerate(LAW)]
-            acting = [Output("station", link.name, term, station) for station in link.stations for term in PLACE_FIRST]
-            rows += [f"    acting[{i}] = outputs->{names[output]};" for i, output in enumerate(acting)]
-            laws.append("\n".join([*rows, "    break;"]))
-            place += 1 + sum(lengths)
-        return template(
-            "sections.c",
-            **self.words,
-            most=max(sizes),
-            breaks=", ".join(self._number(u) for u in breaks),
-            sizes=", ".join(map(str, sizes)),
-            shapes=",\n".join(shapes),
-            loads=4 * max(1, *(len(link.stations) for link in c.links)) if c.links else 4,
-            laws="\n".join(laws),
-            indent=" " * (len(c.prefix) * 2 + 16),
-        )
 
 
 def _spoiled(c: Contract, status: str) -> Iterable[str]:

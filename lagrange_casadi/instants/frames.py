@@ -24,7 +24,7 @@ def dataset(solution: Solution) -> xarray.Dataset:
     except ImportError:
         raise LagrangeCasadiError("to_xarray needs xarray; install it with: pip install xarray") from None
     data = {
-        str(q): (q.quantity.axes, solution.array(q), {"units": solution.unit(q)} | q.quantity.attributes)
+        str(q): (q.quantity.axes, solution.array(q), {"units": solution.unit(q)} | q.meant(solution.table).attributes)
         for q in solution.quantities()
     }
     coordinates = {"t": ("t", solution.t, {"units": "s"}), "xi": ("xi", solution.xi, {"units": "1", "long_name": "ratio xi/l"})}

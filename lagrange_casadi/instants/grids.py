@@ -36,6 +36,7 @@ _SHARE = 1 << 21
 _OPTIONS = ("-O3", "-march=native")
 
 _SUM = {
+    "planes": "int",
     "terms": "int",
     "columns": "const double* const*",
     "basis": "const double*",
@@ -52,18 +53,21 @@ Load = tuple[Array, Array, Array]
 """Station, constant and slope of what acts there: sections on its base side feel constant + slope (station - u)."""
 
 
-def fill(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array, threads: int = 1) -> None:
+def fill(
+    columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array, threads: int = 1, planes: int = 1
+) -> None:
     """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what acts at stations.
 
-    ``columns`` and the rows of ``basis`` are three or four; ``u`` are the ratios. Raises :class:`DeclarationError` for an ``out``
-    of another shape.
+    ``columns`` and the rows of ``basis`` are one, three or four; ``u`` are the ratios. With two ``planes`` they are as many for
+    each, one plane's after the other's, as loads are, and ``out`` is the size of both sums. Raises :class:`DeclarationError` for an
+    ``out`` of another shape.
     """
     if out.shape != (columns[0].size, u.size):
         raise DeclarationError(f"out: expected an array of shape {(columns[0].size, u.size)}, got {out.shape}")
     plain = out.flags.c_contiguous and out.dtype == np.float64
     library = _compiled() if plain and out.size >= WORTH_COMPILING else None
     if library is None:
-        _fill_in_blocks(columns, basis, loads, u, out)
+        _fill_in_blocks(columns, basis, loads, u, out, planes)
         return
     flat, functions, ratios = _flat(columns, basis, loads, u)
     n, k = out.shape
@@ -72,7 +76,7 @@ def fill(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array
 
     def run(start: int) -> None:
         rows = (ctypes.c_void_p * len(flat))(*(row.ctypes.data + start * row.itemsize for row in flat))
-        here = _sum(len(columns), rows, functions, ratios) | {"out": out[start:].ctypes.data}
+        here = _sum(len(columns), planes, rows, functions, ratios) | {"out": out[start:].ctypes.data}
         library.lagrange_casadi_grid(GRID.made(n=min(size, n - start), k=k, streams=int(out.nbytes >= _STREAMING), **here))
 
     if shares == 1:
@@ -82,7 +86,7 @@ def fill(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array
         list(pool.map(run, range(0, n, size)))
 
 
-def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array) -> Array:
+def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, planes: int = 1) -> Array:
     """Over the instants of n designs the value largest in size at each ratio, with its sign: (n, xi).
 
     ``columns`` and what ``loads`` consist of are (n, t), ``basis`` is (terms, n, xi); see :func:`fill`. Of values of one size the
@@ -95,14 +99,15 @@ def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
     if library is None:
         for i in range(n):
             grid = np.empty((t, u.size))
-            _fill_in_blocks([column[i] for column in columns], basis[:, i], [(a[i], b[i], c[i]) for a, b, c in loads], u, grid)
+            acting = [(a[i], b[i], c[i]) for a, b, c in loads]
+            _fill_in_blocks([column[i] for column in columns], basis[:, i], acting, u, grid, planes)
             high, low = grid.max(axis=0), grid.min(axis=0)
             out[i] = np.where(high >= -low, high, low)
         out[~finite] = np.nan
         return out
     flat, functions, ratios = _flat(columns, basis, loads, u)
     rows = (ctypes.c_void_p * len(flat))(*(array.ctypes.data for array in flat))
-    whole = _sum(len(columns), rows, functions, ratios) | {"out": out.ctypes.data}
+    whole = _sum(len(columns), planes, rows, functions, ratios) | {"out": out.ctypes.data}
     library.lagrange_casadi_largest(LARGEST.made(designs=n, n=t, k=u.size, **whole))
     out[~finite] = np.nan
     return out
@@ -126,31 +131,49 @@ def _flat(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Arra
     return rows, np.ascontiguousarray(basis, dtype=np.float64), np.ascontiguousarray(u, dtype=np.float64)
 
 
-def _sum(terms: int, rows: Any, functions: Array, ratios: Array) -> dict[str, int]:
-    """What a call takes of :func:`_flat`; ``rows`` are the addresses of the columns, so many ``terms``, and of the loads' parts."""
+def _sum(columns: int, planes: int, rows: Any, functions: Array, ratios: Array) -> dict[str, int]:
+    """What a call takes of :func:`_flat`; ``rows`` are the addresses of the columns, so many, and of the loads' parts."""
     first = ctypes.addressof(rows)
     return {
-        "terms": terms,
+        "planes": planes,
+        "terms": columns // planes,
         "columns": first,
         "basis": functions.ctypes.data,
-        "loads": (len(rows) - terms) // 3,
-        "acting": first + terms * ctypes.sizeof(ctypes.c_void_p),
+        "loads": (len(rows) - columns) // (3 * planes),
+        "acting": first + columns * ctypes.sizeof(ctypes.c_void_p),
         "u": ratios.ctypes.data,
     }
 
 
-def _fill_in_blocks(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array) -> None:
+def _fill_in_blocks(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array, planes: int) -> None:
     height = max(1, _BLOCK // max(1, out.shape[1]))
+    terms, many = len(columns) // planes, len(loads) // planes
     for start in range(0, out.shape[0], height):
         block = slice(start, start + height)
         rows = out[block]
-        np.multiply(columns[0][block, None], basis[0], out=rows)
-        for column, function in zip(columns[1:], basis[1:], strict=True):
-            rows += column[block, None] * function
-        for station, constant, slope in loads:
-            at = station[block, None]
-            seen = (u < at) | ((u >= 1.0) & (at >= 1.0))
-            rows += np.where(seen, constant[block, None] + slope[block, None] * (at - u), 0.0)
+        for plane in range(planes):
+            values = np.empty(rows.shape) if plane else rows
+            here, there = slice(plane * terms, (plane + 1) * terms), slice(plane * many, (plane + 1) * many)
+            _sum_up(
+                [column[block] for column in columns[here]], basis[here], [_cut(load, block) for load in loads[there]], u, values
+            )
+            if plane:
+                np.sqrt(rows * rows + values * values, out=rows)
+
+
+def _cut(load: Load, block: slice) -> Load:
+    station, constant, slope = load
+    return station[block], constant[block], slope[block]
+
+
+def _sum_up(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, rows: Array) -> None:
+    np.multiply(columns[0][:, None], basis[0], out=rows)
+    for column, function in zip(columns[1:], basis[1:], strict=True):
+        rows += column[:, None] * function
+    for station, constant, slope in loads:
+        at = station[:, None]
+        seen = (u < at) | ((u >= 1.0) & (at >= 1.0))
+        rows += np.where(seen, constant[:, None] + slope[:, None] * (at - u), 0.0)
 
 
 @functools.cache

@@ -1,53 +1,35 @@
 """The section law of a link as numbers: its forces at any ratio xi/l, and where along the link they peak.
 
 With u = xi/l the forces are those of the material beyond the section, whose moments :mod:`.density` gives, and of what acts on the
-link beyond it: at the tip (n0, f0, m0), and at stations in between, each seen by the sections on its base side.
+link beyond it: at the tip (n0, f0, m0), and at stations in between, each seen by the sections on its base side. In space a link has
+two planes of bending, each like that of a planar link, and torsion, which nothing but the ends and stations changes.
 """
 
 from __future__ import annotations
 
-import functools
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
 
 from ..declare.density import Array, NumericDensity
-from ..quantities import FORCES, PLACE_FIRST, Output
+from ..quantities import Output
 from ..system.room import cores, require
+from ..tables import PLANE, SPACE, Table
 from . import grids
+from .sizes import growth_of_size, size_of, slope_of_size
+from .station_loads import AnyStationLoad, StationLoad
+from .turning import Turns, turns_between, zeros_of_shear, zeros_of_uniform_shear
 
-MEMBERS = {
-    "axial": (("n0", "n1", "n2"), ("n",)),
-    "shear": (("f0", "f1", "f2"), ("f",)),
-    "bending": (("m0", "f0", "f1", "f2"), ("m", "f")),
-}
-"""The coefficients of a force, and what of the loads at stations goes into it."""
+__all__ = ["Basis", "SectionLaw", "Side", "StationLoad", "made_of"]
 
 Side = Literal["base", "tip"]
 _SIDES: tuple[Side, ...] = ("tip", "base")
 
-_HALVINGS = 60
 _BLOCK = 1 << 15
-
-
-@dataclass(frozen=True, eq=False)
-class StationLoad:
-    """What acts on a link at a station: force along ``n`` and across ``f`` the axis [N], moment ``m`` [N m], each (t,).
-
-    ``station`` is the ratio xi/l, (t,): it moves where something slides along the link.
-    """
-
-    name: str
-    station: Array
-    n: Array
-    f: Array
-    m: Array
-
-    def during(self, instants: slice) -> StationLoad:
-        """The same at some of the instants."""
-        return StationLoad(self.name, *(values[instants] for values in (self.station, self.n, self.f, self.m)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,12 +43,24 @@ class Basis:
 
 @dataclass(frozen=True, eq=False)
 class SectionLaw:
-    """The law of one link: ``coefficients`` by name (n0 ... m0), each (t,); length [m], density, and loads at stations."""
+    """The law of one link: ``coefficients`` by name, each (t,); length [m], density, and loads at stations.
+
+    The coefficients are the seven of a planar mechanism or the twelve of a spatial one; :attr:`table` says which.
+    """
 
     length: float
     density: NumericDensity
     coefficients: Mapping[str, Array]
-    loads: tuple[StationLoad, ...] = ()
+    loads: tuple[AnyStationLoad, ...] = ()
+
+    @cached_property
+    def table(self) -> Table:
+        """Where its forces are told, and what each is made of."""
+        return PLANE if PLANE.law[-1] in self.coefficients else SPACE
+
+    def _parts(self, force: str) -> tuple[str, ...]:
+        """The forces whose size a force is, or itself."""
+        return self.table.parts("section", force)
 
     def basis(self, xi: Array) -> Basis:
         """The functions along the link at ratios ``xi`` of any shape; they serve every force, and the law at any instants."""
@@ -86,9 +80,9 @@ class SectionLaw:
         if out is None:
             require(f"a grid of {force}", size)
         basis = xi if isinstance(xi, Basis) else self.basis(xi)
-        columns, rows = self._terms(force, basis)
         out = grids.empty(f"a grid of {force}", size) if out is None else out
-        grids.fill(columns, rows, [self._acting(force, load) for load in self.loads], basis.u, out, threads or cores())
+        columns, rows, acting, planes = self._planes(force, basis)
+        grids.fill(columns, rows, acting, basis.u, out, threads or cores(), planes)
         return out
 
     def largest(self, force: str, basis: Basis) -> Array:
@@ -96,8 +90,8 @@ class SectionLaw:
 
         It has its sign, the positive one where both are as large, and is NaN of a law that is not finite throughout.
         """
-        columns, rows = self._terms(force, basis)
-        return grids.largest(columns, rows, [self._acting(force, load) for load in self.loads], basis.u)
+        columns, rows, acting, planes = self._planes(force, basis)
+        return grids.largest(columns, rows, acting, basis.u, planes)
 
     def during(self, instants: slice) -> SectionLaw:
         """The law at some of the instants."""
@@ -107,6 +101,8 @@ class SectionLaw:
     def at(self, force: str, xi: Any, side: Side = "tip") -> Array:
         """A force at ratios of shape (t, ...), one row an instant; ``side`` tells which value is meant at a station."""
         u = np.asarray(xi, dtype=float)
+        if len(parts := self._parts(force)) > 1:
+            return size_of(self.at(part, u, side) for part in parts)
         values = self._smooth(force, u)
         for load in self.loads:
             station = _column(load.station, u)
@@ -117,7 +113,7 @@ class SectionLaw:
         """The law of the same link with other numbers in it, (..., t)."""
         coefficients = {name: outputs[Output("law", link, name)] for name in self.coefficients}
         loads = tuple(
-            StationLoad(load.name, *(outputs[Output("station", link, member, load.name)] for member in PLACE_FIRST))
+            type(load)(load.name, *(outputs[Output("station", link, member, load.name)] for member in self.table.place_first))
             for load in self.loads
         )
         return replace(self, coefficients=coefficients, loads=loads)
@@ -133,7 +129,7 @@ class SectionLaw:
         u = np.stack([*(np.full_like(self.coefficients["n0"], ratio) for ratio in xi), *stations], axis=-1)
         seen = [[_seen(u, load.station[:, None], side) for side in _SIDES] for load in self.loads]
         basis, found = self.basis(u), {}
-        for force in FORCES:
+        for force in self.table.sections:
             columns, rows = self._terms(force, basis)
             gaps = sum(change[..., None] * row for change, row in zip(changes._terms(force, basis)[0], rows, strict=True))
             sizes = sum(np.abs(column[:, None] * row) for column, row in zip(columns, rows, strict=True))
@@ -146,15 +142,25 @@ class SectionLaw:
                     gaps[..., k] += np.where(visible, gap, 0.0)
                     sizes[..., k] += np.where(visible, size, 0.0)
             found[force] = gaps, sizes
+        for force in self.table.forces:
+            if len(parts := self._parts(force)) > 1:
+                values = [np.stack([self.at(part, u, side) for side in _SIDES[: gaps.shape[-1]]], axis=-1) for part in parts]
+                gap = growth_of_size(values, [found[part][0] for part in parts])
+                found[force] = gap, size_of(found[part][1] for part in parts)
         return found
 
     def along(self, force: str, xi: Any, side: Side = "tip") -> Array:
         """The derivative of a force by the ratio, at ratios of shape (t, ...)."""
         u = np.asarray(xi, dtype=float)
-        if force == "bending":
-            return -self.length * self.at("shear", u, side)
+        if len(parts := self._parts(force)) > 1:
+            return slope_of_size([self.at(part, u, side) for part in parts], [self.along(part, u, side) for part in parts])
+        terms = self.table.sections[force]
+        if terms.arm:
+            return np.asarray(-terms.arm * self.length * self.at(terms.shear, u, side))
+        if len(terms.coefficients) == 1:
+            return np.zeros(u.shape)
         _, first, second = (_column(column, u) for column in self._terms(force, self.basis(u))[0])
-        return -self.density.at(u) * (first + self.length * u * second)
+        return np.asarray(-self.density.at(u) * (first + self.length * u * second))
 
     def rate(self, force: str, rates: SectionLaw, xi: Any, side: Side = "tip") -> Array:
         """The time derivative of a force at ratios of shape (t, ...) that stand still, or, at a station, move with it.
@@ -162,15 +168,22 @@ class SectionLaw:
         ``rates`` has the time derivatives of coefficients, loads and stations in their places.
         """
         u = np.asarray(xi, dtype=float)
-        pairs = list(zip(self.loads, rates.loads, strict=True))
-        # A station that moves takes its force's arm with it.
-        loads = (replace(r, station=load.station, m=r.m + load.f * self.length * r.station) for load, r in pairs)
-        still = replace(rates, loads=tuple(loads)).at(force, u, side)
-        going = sum(np.where(u == _column(load.station, u), _column(r.station, u), 0.0) for load, r in pairs)
-        return still + going * self.along(force, u, side) if pairs else still
+        if len(parts := self._parts(force)) > 1:
+            return slope_of_size([self.at(part, u, side) for part in parts], [self.rate(part, rates, u, side) for part in parts])
+        values, passing = replace(rates, loads=()).at(force, u, side), np.zeros(u.shape)
+        for load, change in zip(self.loads, rates.loads, strict=True):
+            station, _, slope = (_column(values, u) for values in self._acting(force, load))
+            going, more, steeper = (_column(values, u) for values in self._acting(force, change))
+            # A station that moves takes its force's arm with it.
+            seen = _seen(u, station, side)
+            values = values + np.where(seen, more + slope * going + steeper * (station - u), 0.0)
+            passing = passing + np.where(u == station, going, 0.0)
+        return values + passing * self.along(force, u, side) if self.loads else values
 
     def bound(self, force: str, xi: Array) -> float:
         """The largest size that a force may have at ratios ``xi`` where coefficients and loads have any sign."""
+        if len(parts := self._parts(force)) > 1:
+            return math.hypot(*(self.bound(part, xi) for part in parts))
         columns, rows = self._terms(force, self.basis(xi))
         size = sum(np.abs(column)[:, None] * np.abs(row) for column, row in zip(columns, rows, strict=True))
         for load in self.loads:
@@ -180,18 +193,22 @@ class SectionLaw:
 
     def extreme(self, force: str) -> tuple[Array, Array]:
         """The ratio at which a force is largest in size, and the force there, at every instant, both of shape (t,)."""
-        n = self.coefficients["n0"].size
-        blocks = [self.during(slice(i, i + _BLOCK))._extreme(force) for i in range(0, n, _BLOCK)]
+        blocks = [block._extreme(force) for block in self._blocks(force)]
         return np.concatenate([place for place, _ in blocks]), np.concatenate([value for _, value in blocks])
 
     def reached(self, force: str) -> tuple[Array, Array]:
         """Where along a link a force is smallest, largest, and largest in size as by :meth:`extreme`, and what it is: (3, t)."""
-        n = self.coefficients["n0"].size
-        blocks = [self.during(slice(i, i + _BLOCK))._reached(force) for i in range(0, n, _BLOCK)]
+        blocks = [block._reached(force) for block in self._blocks(force)]
         return np.concatenate([place for place, _ in blocks], axis=1), np.concatenate([value for _, value in blocks], axis=1)
 
+    def _blocks(self, force: str) -> list[SectionLaw]:
+        """The law over few instants after another, so that what is sought at them stays at hand."""
+        turns = (2 * self._terms_of_density + 4) * len(self.density.cells) if len(self._parts(force)) > 1 else 1
+        height = max(1, _BLOCK // (turns * (len(self.loads) + 1))) if turns > 1 else _BLOCK
+        return [self.during(slice(i, i + height)) for i in range(0, self.coefficients["n0"].size, height)]
+
     def _reached(self, force: str) -> tuple[Array, Array]:
-        places, values = self.curves(force)
+        places, values = self._marks(force, all_turns=True)
         columns = np.stack([np.argmin(values, axis=1), np.argmax(values, axis=1), np.argmax(np.abs(values), axis=1)])
         every = np.arange(len(values))
         return places[every, columns], values[every, columns]
@@ -205,9 +222,13 @@ class SectionLaw:
         """Ratios among which a force is largest in size at every instant, and the force there, both of shape (t, k).
 
         They are those of the base, the tip, every station, once for each of its sides, and between two stations that at which the
-        force turns along the link, or else the end that is next to that. So each is a smooth curve over time, as long as no station
-        passes another one.
+        force turns along the link, or else the end that is next to that; of a resultant its two largest summits there. So each is a
+        smooth curve over time, as long as no station passes another one and no summit of a resultant comes or goes.
         """
+        return self._marks(force, all_turns=False)
+
+    def _marks(self, force: str, *, all_turns: bool) -> tuple[Array, Array]:
+        """The same; or of a resultant wherever it turns, its smallest sizes too."""
         still = np.zeros_like(self.coefficients["n0"])
         stations = [np.clip(load.station, 0.0, 1.0) for load in self.loads]
         places = np.stack([still, still + 1.0, *(station for station in stations for _ in range(2))], axis=1)
@@ -218,76 +239,98 @@ class SectionLaw:
         seen = [low + high < 2 * station[:, None] for station in stations]
 
         def within(name: str, u: Array) -> Array:
-            beyond = (self._beyond(name, load, u, mask) for load, mask in zip(self.loads, seen, strict=True))
+            if len(parts := self._parts(name)) > 1:
+                return size_of(within(part, u) for part in parts)
+            masks = (mask.reshape(mask.shape + (1,) * (u.ndim - mask.ndim)) for mask in seen)
+            beyond = (self._beyond(name, load, u, mask) for load, mask in zip(self.loads, masks, strict=True))
             return np.asarray(self._smooth(name, u) + sum(beyond))
 
-        found = self._turning(force, functools.partial(within, "shear"), low, high)
+        parts = self._parts(force)
+        if len(parts) == 1:
+            found = self._turning(force, within, low, high)
+        else:
+            turns = self._turns_of_size(parts, within, low, high)
+            found = list(np.moveaxis(turns.places, -1, 0)) if all_turns else turns.summits(within(force, turns.places))
         return np.hstack([places, *found]), np.hstack([values, *(within(force, place) for place in found)])
 
+    def _planes(self, force: str, basis: Basis) -> tuple[list[Array], Array, list[grids.Load], int]:
+        """Columns, functions along the link and loads of a force, or of all that it is the size of, one after another."""
+        parts = self._parts(force)
+        terms = [self._terms(part, basis) for part in parts]
+        rows = terms[0][1] if len(parts) == 1 else np.concatenate([rows for _, rows in terms])
+        acting = [self._acting(part, load) for part in parts for load in self.loads]
+        return [column for columns, _ in terms for column in columns], rows, acting, len(parts)
+
     def _terms(self, force: str, basis: Basis) -> tuple[list[Array], Array]:
-        return [self.coefficients[name] for name in MEMBERS[force][0]], basis.bending if force == "bending" else basis.force
+        terms = self.table.sections[force]
+        columns = [self.coefficients[name] for name in terms.coefficients]
+        if not terms.arm:
+            return columns, basis.force[: len(columns)]
+        return columns, basis.bending if terms.arm > 0 else np.concatenate([basis.bending[:1], -basis.bending[1:]])
 
     def _smooth(self, force: str, u: Array) -> Array:
         columns, rows = self._terms(force, self.basis(u))
         return np.asarray(sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True)))
 
-    def _acting(self, force: str, load: StationLoad) -> grids.Load:
-        if force == "axial":
-            return load.station, load.n, np.zeros_like(load.n)
-        if force == "shear":
-            return load.station, load.f, np.zeros_like(load.f)
-        return load.station, load.m, load.f * self.length
+    def _acting(self, force: str, load: AnyStationLoad) -> grids.Load:
+        terms = self.table.sections[force]
+        constant = getattr(load, terms.acting)
+        if not terms.arm:
+            return load.station, constant, np.zeros_like(constant)
+        return load.station, constant, terms.arm * getattr(load, self.table.sections[terms.shear].acting) * self.length
 
-    def _beyond(self, force: str, load: StationLoad, u: Array, seen: Any) -> Array:
+    def _beyond(self, force: str, load: AnyStationLoad, u: Array, seen: Any) -> Array:
         station, constant, slope = (_column(values, u) for values in self._acting(force, load))
         return np.where(seen, constant + slope * (station - u), 0.0)
 
-    def _turning(self, force: str, shear: Callable[[Array], Array], low: Array, high: Array) -> list[Array]:
-        """Where between two stations the force's derivative along the link is zero, or nearest to it: of bending, first where the
-        shear rises through zero, then where it falls.
+    def _turning(self, force: str, within: Callable[[str, Array], Array], low: Array, high: Array) -> list[Array]:
+        """Where between two stations the force's derivative along the link is zero, or nearest to it: of a bending moment, first
+        where the shear rises through zero, then where it falls.
         """
-        c, l = self.coefficients, self.length
-        first, second = ("n1", "n2") if force == "axial" else ("f1", "f2")
+        terms, l = self.table.sections[force], self.length
+        if len(terms.coefficients) == 1:
+            return []
+        constant, first, second = (self.coefficients[name] for name in terms.coefficients[-3:])
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            turning = -c[first] / (c[second] * l)
-            if force == "bending" and self.density.uniform and not self.loads:
-                return [np.clip(np.where(np.isnan(zero), 0.0, zero)[:, None], 0.0, 1.0) for zero in self._zeros_of_uniform_shear()]
+            turning = -first / (second * l)
+            if terms.arm and self.density.uniform and not self.loads:
+                zeros = zeros_of_uniform_shear(constant, first, second, self.density.cells[0][0], l)
+                return [np.clip(np.where(np.isnan(zero), 0.0, zero)[:, None], 0.0, 1.0) for zero in zeros]
         middle = np.clip(np.where(np.isnan(turning), 0.0, turning)[:, None], low, high)
-        return [middle] if force != "bending" else self._zeros_of_shear(shear, low, middle, high)
+        return zeros_of_shear(lambda u: within(terms.shear, u), low, middle, high) if terms.arm else [middle]
 
-    def _zeros_of_uniform_shear(self) -> list[Array]:
-        """f0 + b v + a v^2 = 0 with v = 1 - u; the root that would cancel comes from the other one."""
-        c, l, m = self.coefficients, self.length, self.density.cells[0][0]
-        a, b = -c["f2"] * m * l / 2, c["f1"] * m + c["f2"] * m * l
-        q = -(b + np.copysign(np.sqrt(np.maximum(b * b - 4.0 * a * c["f0"], 0.0)), b)) / 2
-        rising, falling = q / a, c["f0"] / q
-        return [1.0 - np.where(b < 0.0, falling, rising), 1.0 - np.where(b < 0.0, rising, falling)]
+    def _turns_of_size(self, parts: tuple[str, ...], within: Callable[[str, Array], Array], low: Array, high: Array) -> Turns:
+        """Where the square of a resultant turns: of a shear force where V . V' = 0, of a bending moment where M . M' = 0.
 
-    @staticmethod
-    def _zeros_of_shear(shear: Callable[[Array], Array], low: Array, middle: Array, high: Array) -> list[Array]:
-        """Shear is monotonic on either side of its turning point, whatever the density: halve that.
-
-        Where it has no zero there, that end is taken at which it is nearer to zero.
+        Of a uniform link that is a cubic or a quintic. A density is a factor of V' and left out there.
         """
-        places = [low, middle, high]
-        ends = [shear(u) for u in places]
-        zeros = []
-        for k in (0, 1):
-            a, b = places[k : k + 2]
-            negative, nearer = ends[k] <= 0.0, np.where(np.abs(ends[k]) <= np.abs(ends[k + 1]), a, b)
-            none = negative == (ends[k + 1] <= 0.0)
-            for _ in range(_HALVINGS):
-                half = (a + b) / 2
-                lower = (shear(half) <= 0.0) == negative
-                a, b = np.where(lower, half, a), np.where(lower, b, half)
-            zeros.append(np.where(none, nearer, (a + b) / 2))
-        rises = (ends[1] > ends[0]) | ((ends[1] == ends[0]) & (ends[2] < ends[1]))
-        return [np.where(rises, zeros[0], zeros[1]), np.where(rises, zeros[1], zeros[0])]
+        bends = bool(self.table.sections[parts[0]].arm)
+
+        def slope(part: str, u: Array) -> Array:
+            terms = self.table.sections[part]
+            if bends:
+                return -terms.arm * within(terms.shear, u)
+            first, second = (_column(self.coefficients[name], u) for name in terms.coefficients[1:])
+            return np.asarray(-(first + self.length * u * second))
+
+        def change(u: Array) -> Array:
+            with np.errstate(all="ignore"):
+                return np.asarray(sum(within(part, u) * slope(part, u) for part in parts))
+
+        # Of a density of n terms shear forces are of degree n + 1, and bending moments of n + 2.
+        degree = 2 * self._terms_of_density + 3 if bends else self._terms_of_density + 2
+        return turns_between(change, low, high, self.density.breaks, degree)
+
+    @property
+    def _terms_of_density(self) -> int:
+        return max(map(len, self.density.cells))
 
 
-def made_of(outputs: Iterable[Output], link: str, force: str) -> list[Output]:
+def made_of(outputs: Iterable[Output], link: str, force: str, table: Table = PLANE) -> list[Output]:
     """The outputs, among others, that a force of a link is made of; without the places of stations."""
-    coefficients, members = MEMBERS[force]
+    terms = [table.sections[part] for part in table.parts("section", force)]
+    coefficients = {name for of in terms for name in of.coefficients}
+    members = {of.acting for of in terms} | {table.sections[of.shear].acting for of in terms if of.arm}
     own = (output for output in outputs if output.along and output.part == link)
     return [output for output in own if output.member in (members if output.station else coefficients)]
 

@@ -14,22 +14,28 @@ from ..codegen.emit import NOT_CONVERGED
 from ..codegen.stages import Stages
 from ..declare.density import Array, NumericDensity
 from ..equations.scene_graph import SceneGraph
-from ..quantities import LAW
 from ..summits.between import Flags
 from ..summits.panels import Samples
 from ..summits.search import Curves, Peaks, peaks
 from ..summits.sharpness import Sharpness, bent
+from ..tables import Table
 from .backends import follow
-from .section_law import SectionLaw, StationLoad
+from .section_law import SectionLaw
+from .sizes import size_of
+from .station_loads import station_load
 
 _BLOCK = 4096
 
 
 @dataclass(frozen=True, eq=False)
 class SectionForce:
-    """A section force of a link: the columns of its law and of what acts at each station, and how its mass lies."""
+    """A section force of a link: the columns of its law and of what acts at each station, and how its mass lies.
+
+    The ``table`` says which columns these are.
+    """
 
     force: str
+    table: Table
     law: tuple[int, ...]
     stations: tuple[tuple[int, ...], ...]
     length: float
@@ -37,14 +43,15 @@ class SectionForce:
 
     def curves(self, columns: Array) -> tuple[Array, Array]:
         """Ratios and values, each (curves, t): see :meth:`.SectionLaw.curves`."""
-        law = dict(zip(LAW, columns[list(self.law)], strict=True))
-        loads = tuple(StationLoad("", *columns[list(station)]) for station in self.stations)
+        law = dict(zip(self.table.law, columns[list(self.law)], strict=True))
+        members = (dict(zip(self.table.place_first, columns[list(station)], strict=True)) for station in self.stations)
+        loads = tuple(station_load("", acting) for acting in members)
         places, values = SectionLaw(self.length, self.density, law, loads).curves(self.force)
         return places.T, values.T
 
 
 Quantity: TypeAlias = "tuple[int, ...] | SectionForce"
-"""A column, two that are the components of a vector whose size is meant, or a section force."""
+"""A column, some that are the components of a vector whose size is meant, or a section force."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +126,7 @@ class Signals:
                 found.append(quantity.curves(columns))
                 continue
             rows = columns[list(quantity)]
-            values = rows[0] if len(rows) == 1 else np.hypot(*rows)
+            values = rows[0] if len(rows) == 1 else size_of(rows)
             if q in self.turned:
                 values = values + math.tau * np.round((self.turned[q][near] - values) / math.tau)
             found.append((np.full((1, values.size), np.nan), values[None]))

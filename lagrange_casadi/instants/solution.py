@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -16,11 +17,14 @@ from ..declare.limits import no_sections
 from ..declare.notes import notes
 from ..declare.times import DriveAxis
 from ..errors import DeclarationError, UnknownNameError
-from ..quantities import FORCES, QUANTITIES, Output
-from ..system.room import require
+from ..quantities import Output
+from ..tables import Table, table_of
 from .frames import dataset, frame
-from .section_law import Basis, SectionLaw, StationLoad, made_of
+from .section_law import SectionLaw, made_of
+from .sizes import size_of
+from .station_loads import station_load
 from .statistics import Statistics
+from .views import JointMotion, Pose, Reaction, Section
 
 if TYPE_CHECKING:
     import pandas
@@ -57,89 +61,9 @@ class Peak:
     over: float | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class JointMotion:
-    """Coordinate of a joint [rad or m] with its rate and acceleration, each (t,): child against parent.
-
-    An angle is counter-clockwise, a slide along the joint's axis. Both are continuous in time.
-    """
-
-    value: Array
-    rate: Array
-    acceleration: Array
-
-
-@dataclass(frozen=True, eq=False)
-class Reaction:
-    """Action of the joint's parent on its child, in ground axes, each (t,): ``fx``, ``fy`` [N], ``mz`` [N m] counter-clockwise.
-
-    ``mz`` is about the joint's point on the child, and None where the joint bears no moment. The drive's effort is not part of it.
-    """
-
-    fx: Array
-    fy: Array
-    mz: Array | None
-
-    @property
-    def resultant(self) -> Array:
-        """The size of the force (t,) [N]."""
-        return np.hypot(self.fx, self.fy)
-
-
-@dataclass(frozen=True, eq=False)
-class Pose:
-    """Place of a body's base in ground axes [m] and direction of its axis [rad], each (t,).
-
-    ``angle`` is counter-clockwise from x and continuous in time; it is None for a point mass.
-    """
-
-    x: Array
-    y: Array
-    angle: Array | None
-
-
-@dataclass(frozen=True, eq=False)
-class Section:
-    """The forces inside a link: what the part towards the tip does to the part towards the base, on the link's axes (e, n, z).
-
-    e runs from base to tip, n is 90 degrees counter-clockwise of e. At a station the grids hold the value on its tip side. What
-    equilibrium does not determine is NaN. A grid is made when it is first asked for, from ``law``, which holds seven numbers an
-    instant, and loads at stations; each raises :class:`.SizeError` where memory does not hold it. The paper's internal forces
-    (Nguyen, Petre, Stroe, eq. 13, 20 and 21) have the opposite sign.
-    """
-
-    law: SectionLaw
-    xi: Array
-
-    def __repr__(self) -> str:
-        return f"<Section of a link of {self.law.length:g} m: {self.law.coefficients['n0'].size} instants, {self.xi.size} ratios>"
-
-    @cached_property
-    def axial(self) -> Array:
-        """Axial force (t, xi) [N], along e: positive in tension."""
-        return self._grid("axial")
-
-    @cached_property
-    def shear(self) -> Array:
-        """Shear force (t, xi) [N], positive along n; it is minus the slope of ``bending`` along the link."""
-        return self._grid("shear")
-
-    @cached_property
-    def bending(self) -> Array:
-        """Bending moment (t, xi) [N m], positive counter-clockwise.
-
-        A positive one stretches the fibres on the side of -n, to the right of whoever goes from base to tip, and compresses those
-        on the side of n. A cantilever whose tip is pulled along -n has a negative one.
-        """
-        return self._grid("bending")
-
-    def _grid(self, force: str) -> Array:
-        require(f"a grid of {force}", (self.law.coefficients["n0"].size, self.xi.size))
-        return self.law.on_grid(force, self._basis)
-
-    @cached_property
-    def _basis(self) -> Basis:
-        return self.law.basis(self.xi)
+def table_of_described(description: Description) -> Table:
+    """The table of the quantities of a described mechanism: that of planar ones, or that of spatial ones, whose gravity has a z."""
+    return table_of(len(description["gravity"]) > 2)
 
 
 def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[Output, Array]:
@@ -147,13 +71,16 @@ def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[
 
     Raises ``ValueError`` for one of a part that is not declared.
     """
-    groups = list(dict.fromkeys(q.group for q in QUANTITIES))
+    table = table_of_described(description)
+    rows = table.rows
+    groups = list(dict.fromkeys(q.group for q in rows))
     sections = groups.index("section")
     parts = parts_of(description)
 
-    def rank(output: Output) -> tuple[int, int, str, int]:
+    def rank(output: Output) -> tuple[int, int, str, str, int]:
         group = sections if output.along else groups.index(output.group)
-        return group, parts.index(output.part), output.station, QUANTITIES.index(output.quantity)
+        part, _, axis = output.part.partition(":")
+        return group, parts.index(part), axis, output.station, rows.index(output.meant(table))
 
     return {output: outputs[output] for output in sorted(outputs, key=rank)}
 
@@ -184,6 +111,11 @@ class Solution:
     errors: Mapping[str, float] = field(default_factory=dict)
     tolerance: float = 0.0
     over: DriveAxis | None = None
+
+    @cached_property
+    def table(self) -> Table:
+        """What its quantities mean: the table of planar mechanisms, or that of spatial ones."""
+        return table_of_described(self.description)
 
     @cached_property
     def series(self) -> Mapping[str, Array]:
@@ -218,7 +150,7 @@ class Solution:
     def reaction(self, joint: str) -> Reaction:
         """Reaction of a joint: what its parent does to its child, without the drive's effort."""
         fx, fy = (self._find("joint with a reaction", Output("reaction", joint, member)) for member in ("fx", "fy"))
-        return Reaction(fx, fy, self.outputs.get(Output("reaction", joint, "mz")))
+        return Reaction(fx, fy, *(self.outputs.get(Output("reaction", joint, member)) for member in ("mz", "fz", "mx", "my")))
 
     def motion(self, joint: str) -> JointMotion:
         """Motion of a joint's coordinate: its value, rate and acceleration."""
@@ -232,7 +164,15 @@ class Solution:
     def pose(self, body: str) -> Pose:
         """Place and direction of a link or point mass, in ground axes."""
         x, y = (self._find("body with a pose", Output("pose", body, member)) for member in ("x", "y"))
-        return Pose(x, y, self.outputs.get(Output("pose", body, "angle")))
+        angle, z = (self.outputs.get(Output("pose", body, member)) for member in ("angle", "z"))
+        return Pose(x, y, angle, z, self._axes(body))
+
+    def _axes(self, body: str) -> Array | None:
+        """The axes of a body in ground axes (t, 3, 3), or None where it has no direction."""
+        found = np.full((self.t.size, 3, 3), np.nan)
+        for (i, axis), (k, component) in itertools.product(enumerate("xyz"), enumerate("xyz")):
+            found[:, i, k] = self.outputs.get(Output("pose", body, axis + component), np.nan)
+        return None if np.isnan(found[:, 0]).all() else found
 
     def section(self, link: str) -> Section:
         """Forces inside a link.
@@ -270,13 +210,18 @@ class Solution:
         """Whether equilibrium determines a quantity, at all instants."""
         output = self._output(name)
         if output.group == "section":
-            return not made_of(self.left_open, output.part, output.member)
-        return not any(component in self.left_open for component in output.components)
+            return not made_of(self.left_open, output.part, output.member, self.table)
+        return not any(component in self.left_open for component in output.components(self.table))
+
+    def made_of(self, output: Output) -> tuple[Output, ...]:
+        """The series whose size a resultant is, of those that there are; any other output is made of itself."""
+        components = output.components(self.table)
+        return tuple(o for o in components if o in self.outputs) or components
 
     def quantities(self) -> Iterator[Output]:
         """All quantities, the coefficients of the laws left out and the section forces in their place."""
         yield from (output for output in self.outputs if not output.along)
-        yield from (Output("section", link, force) for link in self._sections for force in FORCES)
+        yield from (Output("section", link, force) for link in self._sections for force in self.table.forces)
 
     def names(self) -> Iterator[str]:
         """The full names of all quantities."""
@@ -299,10 +244,9 @@ class Solution:
         """
         output = self._output(name)
         if self._over_time(output):
-            values = [self.outputs[component] for component in output.components]
-            return values[0] if len(values) == 1 else np.hypot(*values)
-        grid: Array = getattr(self._of_section(output), output.member)
-        return grid
+            values = [self.outputs[component] for component in self.made_of(output)]
+            return values[0] if len(values) == 1 else size_of(values)
+        return self._of_section(output).array(output.member)
 
     def extremes(self, name: str | Output) -> tuple[Array, Array | None]:
         """A quantity at every instant, (t,); of a section force the value largest in size along the link, and its ratio xi/l."""
@@ -357,19 +301,19 @@ class Solution:
 
     def _section(self, link: str, law: Mapping[str, Array], stations: Mapping[str, Mapping[str, Array]]) -> Section:
         body = self.description["bodies"][link]
-        loads = tuple(StationLoad(name, **members) for name, members in stations.items())
+        loads = tuple(station_load(name, members) for name, members in stations.items())
         return Section(SectionLaw(body["length"], density_of(body), law, loads), self.xi)
 
     def _output(self, name: str | Output) -> Output:
         with suppress(KeyError):
             output = Output.of(name)
-            if output.quantity:
+            if output.meant(self.table):
                 return output
         raise UnknownNameError("quantity", str(name), self.names())
 
     def _over_time(self, output: Output) -> bool:
         """Whether a quantity is a series that the solution has, or the size of such."""
-        return all(component in self.outputs for component in output.components)
+        return all(component in self.outputs for component in self.made_of(output))
 
     def _of_section(self, output: Output) -> Section:
         """The section that a section force is of."""

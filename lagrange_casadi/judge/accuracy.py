@@ -20,7 +20,7 @@ from ..equations.scene_graph import SceneGraph
 from ..instants.backends import Evaluated
 from ..instants.cycle_table import CycleTable
 from ..instants.solution import Solution
-from ..quantities import FORCES, Output
+from ..quantities import Output
 from .certificate import blur
 from .disturbed import Instants, effects, openness
 
@@ -100,7 +100,7 @@ def _of_cycle(graph: SceneGraph, cycle: CycleTable, solution: Solution) -> dict[
     bounds = replace(solution, outputs=nothing | {output: np.array([error]) for output, error in errors.items()})
     for link in bounds.links_with_sections:
         law = bounds.section(link).law
-        forces = (Output("section", link, force) for force in FORCES)
+        forces = (Output("section", link, force) for force in law.table.forces)
         errors |= {output: law.bound(output.member, _ALONG) for output in forces if solution.determined(output)}
     return errors
 

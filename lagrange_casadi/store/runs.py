@@ -28,17 +28,19 @@ from ..declare.times import DriveAxis
 from ..errors import DeclarationError, PathError, StoreError, one_line
 from ..instants.solution import Provenance, Solution, in_order
 from ..judge.certificate import LOOSE, blur, certify
-from ..quantities import ANGLE, CF, CONVENTIONS, FORCES, LAW, LENGTH, Output
+from ..quantities import Output
 from ..system.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
 from ..system.seal import Seen, kind_of, seal, verify
+from ..tables import ANGLE, CF, LENGTH, SPACE
 from .scales import LARGE, Scales
 from .untrusted import check_chunks, check_dataset, check_links, parsed, shown, told_as
 
 SCHEMA = "lagrange-casadi"
-SCHEMA_VERSION = 3
-"""Files of version 1 have no seal; those of version 2, which are still written, are not over a drive's coordinate."""
+SCHEMA_VERSION = 4
+"""Files of version 1 have no seal. Those of version 2 are not over a drive's coordinate, and those of 3 of planar mechanisms alone;
+both are still written."""
 
-_WITHOUT_OVER = 2
+_WITHOUT_OVER, _PLANAR = 2, 3
 
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
@@ -100,7 +102,11 @@ def check_target(target: Path) -> None:
 
 def _require_room(solution: Solution, target: Path) -> None:
     """Raise :class:`StoreError` where the disk has less room than the grids take."""
-    size = 8 * solution.t.size * (len(solution.series) + 3 * solution.xi.size * len(solution.links_with_sections))
+    size = (
+        8
+        * solution.t.size
+        * (len(solution.series) + len(solution.table.forces) * solution.xi.size * len(solution.links_with_sections))
+    )
     try:
         free = shutil.disk_usage(target.parent).free
     except OSError:
@@ -165,7 +171,7 @@ def _check_certificate(solution: Solution) -> Iterator[str]:
 
 
 def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Iterator[str]:
-    place, quantity, name = _place(output), output.quantity, output
+    place, quantity, name = _place(output), output.meant(solution.table), output
     dataset = file[place]
     _check_numbers(dataset, [{"t": solution.t.size, "xi": solution.xi.size}[axis] for axis in quantity.axes])
     gap, finite = _read_through(dataset, solution, name)
@@ -234,14 +240,14 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     for name, values in solution.certificate.items():
         _add(file, scales, solution, Output("certificate", "", name), values)
     for link in solution.links_with_sections:
-        for force in FORCES:
+        for force in solution.table.forces:
             _add_grid(file, scales, solution, Output("section", link, force), breathe)
     scales.finish()
     provenance = solution.provenance
     file.attrs["schema"] = SCHEMA
-    file.attrs["schema_version"] = SCHEMA_VERSION if solution.over else _WITHOUT_OVER
+    file.attrs["schema_version"] = _version(solution)
     file.attrs["case"] = solution.case
-    file.attrs["Conventions"], file.attrs["conventions"] = CF, CONVENTIONS
+    file.attrs["Conventions"], file.attrs["conventions"] = CF, solution.table.conventions
     file.attrs["mechanism"] = json.dumps(solution.description)
     file.attrs["parameters"] = json.dumps({k: v["value"] for k, v in solution.description["parameters"].items()})
     file.attrs["certified"] = solution.certified
@@ -252,6 +258,11 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     for key in _PROVENANCE:
         file.attrs[key] = getattr(provenance, key)
     file.attrs["figures"] = figures
+
+
+def _version(solution: Solution) -> int:
+    """The first version of the schema that has all of a solution."""
+    return SCHEMA_VERSION if solution.table is SPACE else _PLANAR if solution.over else _WITHOUT_OVER
 
 
 def _add(file: h5py.File, scales: Scales, solution: Solution, output: Output, values: Array) -> None:
@@ -281,7 +292,7 @@ def _add_grid(file: h5py.File, scales: Scales, solution: Solution, output: Outpu
 
 
 def _create(file: h5py.File, scales: Scales, solution: Solution, output: Output, shape: tuple[int, ...]) -> h5py.Dataset:
-    quantity, name = output.quantity, str(output)
+    quantity, name = output.meant(solution.table), str(output)
     width = tuple(min(size, _CHUNK_BYTES // 8) for size in shape[1:])
     chunks = (min(shape[0], max(1, _CHUNK_BYTES // (8 * math.prod(width)))), *width)
     dataset = file.create_dataset(_place(output), shape, np.float64, chunks=chunks, fletcher32=True, fillvalue=np.nan)
@@ -322,7 +333,7 @@ def _read(file: h5py.File) -> Solution:
     solution = Solution(case, t, xi, ordered, description, provenance, left_open, certificate, errors, limit, over)
     for link in solution.links_with_sections:
         law = solution.section(link).law
-        if set(law.coefficients) != set(LAW) or len(law.density.breaks) != len(law.density.cells) + 1:
+        if set(law.coefficients) != set(solution.table.law) or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is not whole")
     return solution
 

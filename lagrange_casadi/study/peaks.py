@@ -29,8 +29,9 @@ from ..evaluate import evaluate
 from ..instants.backends import follow
 from ..instants.section_law import SectionLaw, Side
 from ..instants.signals import Quantity, SectionForce, Signals
+from ..instants.sizes import size_of
 from ..instants.solution import Peak, Solution
-from ..quantities import LAW, PLACE_FIRST, RESULTANT, Output
+from ..quantities import Output
 from ..summits.search import Peaks
 from ..summits.sharpness import Sharpness
 
@@ -122,8 +123,9 @@ def shortfall(
 def resultants(solution: Solution) -> list[str]:
     """The full names of the resultants of a solution's reactions that equilibrium determines."""
     joints = dict.fromkeys(output.part for output in solution.outputs if output.group == "reaction")
-    names = (str(Output("reaction", joint, RESULTANT.member)) for joint in joints)
-    return [name for name in names if solution.determined(name)]
+    found = (Output("reaction", joint, member) for joint in joints for member in solution.table.reactions)
+    there = (output for output in found if solution.made_of(output)[0] in solution.outputs)
+    return [str(output) for output in there if solution.determined(output)]
 
 
 def forces(solution: Solution) -> list[str]:
@@ -246,11 +248,13 @@ class _ContinuousSolution:
     def quantity(self, output: Output) -> Quantity:
         """Where a quantity is among the columns."""
         if output.group != "section":
-            return tuple(self.rows[component] for component in output.components)
+            return tuple(self.rows[component] for component in self.solution.made_of(output))
         link, law = output.part, self.solution.section(output.part).law
-        stations = (tuple(self.rows[Output("station", link, member, load.name)] for member in PLACE_FIRST) for load in law.loads)
-        coefficients = tuple(self.rows[Output("law", link, member)] for member in LAW)
-        return SectionForce(output.member, coefficients, tuple(stations), law.length, law.density)
+        stations = (
+            tuple(self.rows[Output("station", link, member, load.name)] for member in law.table.place_first) for load in law.loads
+        )
+        coefficients = tuple(self.rows[Output("law", link, member)] for member in law.table.law)
+        return SectionForce(output.member, law.table, coefficients, tuple(stations), law.length, law.density)
 
     def scales(self, names: Sequence[Output]) -> tuple[list[int], list[float]]:
         """The units of quantities, by number, and the largest size of anything that has each."""
@@ -306,9 +310,9 @@ class _ContinuousSolution:
                 sizes = [abs(law.at(force, place[:, None], side)[0, 0]) for side in sides]
                 rate = law.rate(force, law_rate, place[:, None], sides[int(np.argmax(sizes))])[0, 0]
                 found[:, k] = value[0], place[0], np.sign(value[0]) * rate
-            elif len(name.components) > 1:
-                rows = [self.rows[component] for component in name.components]
-                value = np.hypot(*columns[rows, 0])
+            elif len(parts := self.solution.made_of(name)) > 1:
+                rows = [self.rows[component] for component in parts]
+                value = size_of(columns[rows, 0])
                 found[:, k] = value, np.nan, columns[rows, 0] @ changes[rows, 0] / (value or 1.0)
             else:
                 value = columns[self.rows[name], 0]

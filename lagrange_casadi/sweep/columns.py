@@ -21,8 +21,10 @@ from ..declare.mechanism import Mechanism
 from ..designs.engine import Outcome
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.refusal import Status
-from ..instants.section_law import SectionLaw, StationLoad
-from ..quantities import FORCES, Output
+from ..instants.section_law import SectionLaw
+from ..instants.station_loads import station_load
+from ..quantities import Output
+from ..tables import Table, table_of
 from .chunks import encoded
 from .engine import STATUSES, Engine
 from .instant_axis import InstantAxis
@@ -102,30 +104,34 @@ class Harvest:
             found += self._peak(name)
         for name in engine.efforts:
             output = Output.of(name)
-            unit, words = output.unit(self.mechanism), output.quantity.attributes
+            unit, words = output.unit(self.mechanism), output.meant(self._table).attributes
             mean, rms = f"mean over time: {words['long_name']}", f"root of the mean square over time: {words['long_name']}"
             found.append(Column(f"mean:{name}", unit, words | {"long_name": mean} | self._open(name)))
             found.append(Column(f"rms:{name}", unit, {"long_name": rms} | self._open(name)))
         found += [
             self._along(f"peak_at:section:{link}:{force}", "largest in size over the instants: ", ("xi",))
             for link in self._links
-            for force in FORCES
+            for force in self._table.forces
             if self.xi.size
         ]
         for name in self._series:
             output = Output.of(name)
-            words = output.quantity.attributes | self._open(name)
+            words = output.meant(self._table).attributes | self._open(name)
             found.append(Column(f"history:{name}", output.unit(self.mechanism), words, over, (self.axis.values.size,)))
         if self._own_times:
             found.append(Column(TIMES, "s", {"long_name": "time"}, over, (self.axis.values.size,)))
         if self.keep == "histories" and self.xi.size:
-            found += [self._along(f"history:section:{link}:{force}", "", (*over, "xi")) for link in self._links for force in FORCES]
+            found += [
+                self._along(f"history:section:{link}:{force}", "", (*over, "xi"))
+                for link in self._links
+                for force in self._table.forces
+            ]
         return tuple(found)
 
     @property
     def block(self) -> int:
         """How many designs make a block: what a core does in about a second, no more than memory and a reader's chunk allow."""
-        grids = len(FORCES) * len(self._links) * self.axis.values.size * self.xi.size
+        grids = len(self._table.forces) * len(self._links) * self.axis.values.size * self.xi.size
         seconds = self.engine.cost + grids * _GRID_COST
         return max(1, min(_MOST, int(_SECONDS / seconds), _BYTES // sum(column.width for column in self.columns)))
 
@@ -175,6 +181,11 @@ class Harvest:
         return found + whole
 
     @property
+    def _table(self) -> Table:
+        """What its quantities mean."""
+        return table_of(self.mechanism.space)
+
+    @property
     def _histories(self) -> bool:
         """Whether whole histories must be evaluated."""
         return self.keep != "peaks" or bool(self.xi.size)
@@ -218,7 +229,7 @@ class Harvest:
     def _peak(self, name: str) -> list[Column]:
         """The columns of one quantity of the engine's."""
         output, open_ = Output.of(name), self._open(name)
-        unit, words = output.unit(self.mechanism), output.quantity.attributes
+        unit, words = output.unit(self.mechanism), output.meant(self._table).attributes
         what = words["long_name"]
         found = [
             Column(f"peak:{name}", unit, words | {"long_name": f"largest in size over time: {what}"} | open_),
@@ -236,7 +247,7 @@ class Harvest:
         return {"missing": MISSING} if name in self.engine.doubtful else {}
 
     def _along(self, name: str, prefix: str, axes: tuple[str, ...]) -> Column:
-        quantity = Output.of(name.partition(":")[2]).quantity
+        quantity = Output.of(name.partition(":")[2]).meant(self._table)
         words = quantity.attributes | {"long_name": f"{prefix}{quantity.long_name}"} | self._open(name.partition(":")[2])
         lengths = tuple({self.axis.name: self.axis.values.size, "xi": self.xi.size}[axis] for axis in axes)
         return Column(name, quantity.unit, words, axes, lengths)
@@ -255,13 +266,13 @@ class Harvest:
             with np.errstate(all="ignore"):  # of designs that have no result
                 laws = matter.law({output: series[:, k] for output, k in rows.items()}, p)
                 basis = laws.basis(self.xi)
-                largest += [laws.largest(force, basis) for force in FORCES]
+                largest += [laws.largest(force, basis) for force in self._table.forces]
             if self.keep == "histories":
-                grids = np.full((len(FORCES), len(p), self.axis.values.size, self.xi.size), np.nan)
+                grids = np.full((len(self._table.forces), len(p), self.axis.values.size, self.xi.size), np.nan)
                 for i in np.flatnonzero(outcome.status == 0):
                     law = matter.law({output: series[i, k] for output, k in rows.items()}, p[i])
                     basis = law.basis(self.xi)
-                    for force, grid in zip(FORCES, grids, strict=True):
+                    for force, grid in zip(self._table.forces, grids, strict=True):
                         law.on_grid(force, basis, grid[i], threads=1)
                 whole += list(grids)
         return largest, whole
@@ -294,4 +305,4 @@ class _Matter:
             if output.station:
                 stations.setdefault(output.station, {})[output.member] = values
         coefficients = {output.member: values for output, values in members.items() if not output.station}
-        return SectionLaw(length, density, coefficients, tuple(StationLoad(part, **m) for part, m in stations.items()))
+        return SectionLaw(length, density, coefficients, tuple(station_load(part, m) for part, m in stations.items()))

@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 
 from ..errors import DeclarationError, NoDesignError, UnknownNameError
+from ..instants.solution import table_of_described
 from ..quantities import Output
+from ..tables import SPACE
 from .axes import DESIGN
 from .plots import Along, Front, Peaks, Scatter, Spec
 from .reading import Sweep
@@ -86,8 +88,9 @@ def _over(sweep: Sweep, over: tuple[str, ...], at: Mapping[str, float]) -> tuple
 def _groups(sweep: Sweep) -> dict[str, list[str]]:
     """The columns that are drawn together, by what the file's name says."""
     groups: dict[str, list[str]] = {}
+    space = table_of_described(sweep.description) is SPACE
     for name, output in _of_kind(sweep, "peak").items():
-        if group := _group(output):
+        if group := _group(output, space):
             groups.setdefault(group, []).append(name)
     return groups
 
@@ -98,11 +101,12 @@ def _of_kind(sweep: Sweep, kind: str) -> dict[str, Output]:
     return {name: Output.of(of) for name, own, of in named if own == kind}
 
 
-def _group(output: Output) -> str:
+def _group(output: Output, space: bool) -> str:
     if output.group == "section":
         return f"section_{output.part}"
     if output.group == "reaction":
-        return {"resultant": "reactions", "mz": "reaction_moments"}.get(output.member, "")
+        moment = "moment" if space else "mz"
+        return {"resultant": "reactions", moment: "reaction_moments"}.get(output.member, "")
     return _TOGETHER.get(output.group, "")
 
 

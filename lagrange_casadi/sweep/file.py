@@ -16,9 +16,9 @@ import h5py
 import numpy as np
 
 from ..errors import DeclarationError
-from ..quantities import CF, CONVENTIONS
 from ..store.scales import LARGE, Scales
 from ..system.publish import PatientFile
+from ..tables import CF, table_of
 from .axes import DESIGN, Designs, Grid
 from .blocks import chunk_of, slabs
 from .chunks import FILTERS
@@ -108,7 +108,7 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
     file.attrs["schema"] = SCHEMA
     for key, value in plan.identity.items():
         file.attrs[key] = json.dumps(value) if key in WORDS else value
-    file.attrs["Conventions"], file.attrs["conventions"] = CF, CONVENTIONS
+    file.attrs["Conventions"], file.attrs["conventions"] = CF, table_of(plan.scene.mechanism.space).conventions
     file.attrs["parameters"] = json.dumps(dict(plan.values))
     file.attrs["undetermined"] = json.dumps(plan.harvest.engine.undetermined)
     file.attrs["columns"] = len(plan.columns)

@@ -33,10 +33,11 @@ from .engine import Engine
 from .instant_axis import InstantAxis
 
 SCHEMA = "lagrange-casadi-sweep"
-SCHEMA_VERSION = 3
-"""Files of version 1 have no seal; those of version 2, which are still written, have one axis of time for all designs."""
+SCHEMA_VERSION = 4
+"""Files of version 1 have no seal. Those of version 2 have one axis of time for all designs, and those of 3 are of planar
+mechanisms alone; both are still written."""
 
-_WITH_COMMON_TIMES = 2
+_WITH_COMMON_TIMES, _PLANAR = 2, 3
 
 _BOUND = (float, str)
 """Where instants start and stop: a number, or an expression of parameters in words."""
@@ -204,6 +205,13 @@ class Plan:
         return p
 
     @property
+    def _version(self) -> int:
+        """The first version of the schema that has all of it."""
+        if self.scene.mechanism.space:
+            return SCHEMA_VERSION
+        return _WITH_COMMON_TIMES if self.task.timing.shared else _PLANAR
+
+    @property
     def description(self) -> Description:
         """The mechanism, the swept parameters at their defaults."""
         return describe(self.scene.mechanism, self.values, self.scene.laws, self.scene.weights)
@@ -212,7 +220,7 @@ class Plan:
     def identity(self) -> dict[str, Any]:
         """What all numbers of the sweep follow from, in plain words: no clock, no path, nothing of how it is run."""
         words = {
-            "schema_version": _WITH_COMMON_TIMES if self.task.timing.shared else SCHEMA_VERSION,
+            "schema_version": self._version,
             "case": self.scene.mechanism.name,
             **signature(self.scene, self.task, self.harvest.engine.provenance),
             "mechanism": self.description,

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from ..declare.density import Array
 from ..errors import NoDesignError
-from ..quantities import FORCES
+from ..instants.solution import table_of_described
 from .best import best, chosen, size
 from .columns import STATUS
 from .cut import DOTS, LINES, Cut, stays
@@ -133,8 +133,9 @@ class Along:
         mapped = there.size > LINES
         flips: dict[str, Any] = {}
         gaps = Gaps.of(sweep, np.repeat(cut[STATUS][:, None], xi.size, axis=1))
-        sheet = Sheet.of(len(FORCES), share=("all", mapped))
-        for axes, force in zip(sheet.plots, FORCES, strict=True):
+        forces = table_of_described(sweep.description).forces
+        sheet = Sheet.of(len(forces), share=("all", mapped))
+        for axes, force in zip(sheet.plots, forces, strict=True):
             column = f"peak_at:section:{self.link}:{force}"
             values = cut[column]
             if np.isnan(values).all():

@@ -9,7 +9,7 @@
      text = ${p}_mex('message', status)
 
    inputs and outputs are structs of vectors, all with a number for each instant; outputs.status is 0 where all is well, and where
-   it is not the other members are NaN. forces has matrices axial, shear and bending: a row for each instant, a column for each
+   it is not the other members are NaN. forces has matrices $matrices: a row for each instant, a column for each
    ratio; it wants the parameters that the outputs were evaluated with. parameters is a struct of numbers: what it does not name has
    its default.$rests */
 #include "${p}.h"

@@ -1,7 +1,7 @@
 static mxArray* section(const mxArray* given, const mxArray* link, const mxArray* ratios, const mxArray* parameters) {
   const mxArray* vectors[sizeof members_of_outputs/sizeof(member)];
   mxArray* found = mxCreateStructMatrix(1, 1, 0, 0);
-  double *axial, *shear, *bending;
+  double $pointers;
   ${p}_model model;
   const char* name;
   size_t i, j, many, width;
@@ -20,9 +20,7 @@ static mxArray* section(const mxArray* given, const mxArray* link, const mxArray
   prepare(&model, parameters);
   many = mxGetNumberOfElements(vectors[0]);
   width = mxGetNumberOfElements(ratios);
-  axial = added(found, "axial", many, width, mxDOUBLE_CLASS);
-  shear = added(found, "shear", many, width, mxDOUBLE_CLASS);
-  bending = added(found, "bending", many, width, mxDOUBLE_CLASS);
+$added
   for (j = 0; j < width; ++j) {
     const double xi = number(ratios, j);
     if (!(xi >= 0 && xi <= 1)) {
@@ -33,9 +31,7 @@ static mxArray* section(const mxArray* given, const mxArray* link, const mxArray
       ${p}_forces forces;
       for (k = 0; members_of_outputs[k].name; ++k) put(&outputs, members_of_outputs + k, number(vectors[k], i));
       ${p}_section(&model, &outputs, (${p}_link) number_of_link, (${p}_real) xi, &forces);
-      axial[j*many + i] = (double) forces.axial;
-      shear[j*many + i] = (double) forces.shear;
-      bending[j*many + i] = (double) forces.bending;
+$filled
     }
   }
   return found;

@@ -1,0 +1,89 @@
+"""What an exported program says of the forces inside links: the functions that give them, and the members of their struct."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ..declare.density import Density
+from ..quantities import Output
+from ..tables import ON_INBOARD, PLANE, Table
+from .contract import Contract
+from .program import Program
+from .text import template
+
+LAW = """ Those of a section law are for _section, which is all you need.
+   They mean: axial = n0 + n1 mu0 + n2 mu1, shear = f0 + f1 mu0 + f2 mu1, bending = m0 + f0 (l - xi) + f1 (mu1 - xi mu0) + f2 (mu2 -
+   xi mu1) at xi from the base, where mu0 is the mass from there to the tip, mu1 and mu2 its first and second moment about the base;
+   and then what acts on the link at stations, where something joins or loads it between its ends, beyond xi."""
+LAW_IN_SPACE = """ Those of a section law are for _section, which is all you need.
+   They mean: axial = n0 + n1 mu0 + n2 mu1, shear_y = fy0 + fy1 mu0 + fy2 mu1, shear_z = fz0 + fz1 mu0 + fz2 mu1, torsion = mx0,
+   bending_z = mz0 + fy0 (l - xi) + fy1 (mu1 - xi mu0) + fy2 (mu2 - xi mu1),
+   bending_y = my0 - fz0 (l - xi) - fz1 (mu1 - xi mu0) - fz2 (mu2 - xi mu1)
+   at xi from the base, where mu0 is the mass from there to the tip, mu1 and mu2 its first and second moment about the base;
+   and then what acts on the link at stations, where something joins or loads it between its ends, beyond xi."""
+
+
+def functions(c: Contract, program: Program, number: Callable[[float], str], root: str) -> str:
+    """The C functions that give the forces inside links."""
+    links = program.graph.scene.mechanism.links
+    shapes: list[str] = []
+    laws: list[str] = []
+    breaks: list[float] = []
+    sizes: list[int] = []
+    place = program.sizes["gapped"]
+    names = {Output.of(m.source): m.name for m in c.outputs}
+    for link in c.links:
+        density = links[link.name].mass
+        assert isinstance(density, Density)
+        lengths = [len(cell) for cell in density.cells]
+        shapes.append(f"  {{{len(lengths)}, {len(breaks)}, {len(sizes)}}}")
+        breaks += density.breaks
+        sizes += lengths
+        rows = [f"  case {link.constant}:", f"    matter_of = model->matter + {place};"]
+        rows.append(f"    stations = {len(link.stations)};")
+        rows += [f"    law[{i}] = outputs->{names[Output('law', link.name, term)]};" for i, term in enumerate(c.table.law)]
+        acting = [Output("station", link.name, term, station) for station in link.stations for term in c.table.place_first]
+        rows += [f"    acting[{i}] = outputs->{names[output]};" for i, output in enumerate(acting)]
+        laws.append("\n".join([*rows, "    break;"]))
+        place += 1 + sum(lengths)
+    words = {"p": c.prefix, "P": c.prefix.upper()}
+    tails = template(
+        "tails.c",
+        most=max(sizes),
+        breaks=", ".join(number(u) for u in breaks),
+        sizes=", ".join(map(str, sizes)),
+        shapes=",\n".join(shapes),
+    )
+    one = template(
+        "sections.c" if c.table is PLANE else "sections_in_space.c",
+        **words,
+        **({} if c.table is PLANE else {"root": root}),
+        loads=len(c.table.place_first) * max(1, *(len(link.stations) for link in c.links)),
+        laws="\n".join(laws),
+    )
+    many = template("many_sections.c", **words, indent=" " * (len(c.prefix) * 2 + 16))
+    return f"{tails}\n{one}\n{many}"
+
+
+def in_words(table: Table) -> str:
+    """All forces in words."""
+    *words, last = (table.row("section", force).long_name for force in table.forces)
+    return f"{', '.join(words)} and {last}"
+
+
+def about(table: Table, force: str) -> str:
+    """A force as the header tells it: its unit, sign and range."""
+    row = table.row("section", force)
+    sign = row.sign.removeprefix(f"{ON_INBOARD}, ").partition(f": {ON_INBOARD}")[0]
+    signed = len(table.parts("section", force)) == 1
+    return f"{row.long_name} [{row.unit}]; {sign}{'; any number' if signed else ''}"
+
+
+def comparisons(table: Table) -> str:
+    """Of the self-test: what compares each force."""
+    many = len(table.forces)
+    places = [f"{many}*i" if k == 0 else f"{many}*i + {k}" for k in range(many)]
+    return "\n".join(
+        f'      compare("{table.row("section", force).long_name}", row[{k}], (double) forces.{force}, forces_off[{place}], 0);'
+        for k, (force, place) in enumerate(zip(table.forces, places, strict=True))
+    )

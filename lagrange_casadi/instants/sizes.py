@@ -1,0 +1,34 @@
+"""The size of a vector of which each component is an array, and how it changes with these."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from ..declare.density import Array
+
+
+def size_of(components: Iterable[Array]) -> Array:
+    """The size."""
+    return np.asarray(functools.reduce(np.hypot, components))
+
+
+def growth_of_size(components: Sequence[Array], changes: Sequence[Array]) -> Array:
+    """By how much the size changes with the components; nothing of it cancels."""
+    before = size_of(components)
+    after = size_of(value + change for value, change in zip(components, changes, strict=True))
+    product = sum((2.0 * value + change) * change for value, change in zip(components, changes, strict=True))
+    return _quotient(np.asarray(product), before + after)
+
+
+def slope_of_size(components: Sequence[Array], slopes: Sequence[Array]) -> Array:
+    """The derivative of the size by those of the components; zero where the size is."""
+    product = sum(value * slope for value, slope in zip(components, slopes, strict=True))
+    return _quotient(np.asarray(product), size_of(components))
+
+
+def _quotient(product: Array, size: Array) -> Array:
+    size = np.broadcast_to(size, product.shape)
+    return np.divide(product, size, out=np.zeros(product.shape), where=size != 0.0)
