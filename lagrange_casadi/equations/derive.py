@@ -203,12 +203,11 @@ def _motion_columns(
     mechanism: Mechanism, body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]
 ) -> dict[Output, Any]:
     columns: dict[Output, Any] = {}
-    closing = {joint.name for joint in body.tree.closing} | {joint.name for bar in body.tree.bars for joint in bar.joints}
     for name, (joint, axis) in mechanism.coordinates.items():
         if name in driven:
             i = driven.index(name)
             motion = (solved.driven[i], solved.driven_rate[i], solved.driven_acceleration[i])
-        elif joint.turns > 2 and joint.name in closing:
+        elif not body.tree.measures(joint, axis):
             continue
         else:
             motion = body.motion_along(joint, axis)
