@@ -12,6 +12,7 @@ from lagrange_casadi.cli import program
 from lagrange_casadi.codegen import find_compiler
 from lagrange_casadi.quantities import QUANTITIES
 from lagrange_casadi.store.runs import SCHEMA_VERSION
+from lagrange_casadi.tables import SPATIAL_QUANTITIES
 
 pytestmark = pytest.mark.quick
 
@@ -79,16 +80,15 @@ def test_synopses_name_options_that_there_are():
         assert found[name] == options(name), name
 
 
-def rows():
+def rows(quantities, *axes):
     yield "| dataset | axes | unit | is | sign |"
     yield "| --- | --- | --- | --- | --- |"
-    yield "| /t | t | s | time | |"
-    yield "| /xi | xi | 1 | place along a link, ratio xi/l | |"
+    yield from axes
     places = {"motion": "/motion/JOINT", "pose": "/pose/BODY/", "effort": "/effort/JOINT", "reaction": "/reaction/JOINT/"}
     places |= {"multiplier": "/multiplier/NAME", "load": "/load/NAME/", "output": "/output/NAME"}
     places |= {"certificate": "/certificate/"}
     places |= {"section": "/section/LINK/", "law": "/section/LINK/law/", "station": "/section/LINK/NAME/"}
-    for q in QUANTITIES:
+    for q in quantities:
         place = places[q.group] + (f"_{q.member}" if q.group == "motion" and q.member else q.member)
         units = dict.fromkeys(q.unit_for(kind) for kind in ("angle", "slide"))
         yield f"| {place} | {', '.join(q.axes)} | {' or '.join(units)} | {q.long_name} | {q.sign} |"
@@ -98,8 +98,12 @@ def test_the_schema_lists_every_quantity(request):
     """Run pytest with --update to write the table anew."""
     page = ROOT / "docs" / "schema.md"
     text = page.read_text()
-    table = "<!-- quantities -->\n" + "\n".join(rows()) + "\n<!-- /quantities -->"
-    new = re.sub(r"<!-- quantities -->.*<!-- /quantities -->", lambda _: table, text, flags=re.DOTALL)
+    axes = ("| /t | t | s | time | |", "| /xi | xi | 1 | place along a link, ratio xi/l | |")
+    others = [quantity for quantity in SPATIAL_QUANTITIES if quantity not in QUANTITIES]
+    new = text
+    for name, lines in (("quantities", rows(QUANTITIES, *axes)), ("quantities in space", rows(others))):
+        table = f"<!-- {name} -->\n" + "\n".join(lines) + f"\n<!-- /{name} -->"
+        new = re.sub(f"<!-- {name} -->.*<!-- /{name} -->", lambda _, table=table: table, new, flags=re.DOTALL)
     if request.config.getoption("--update"):
         page.write_text(new)
     assert page.read_text() == new

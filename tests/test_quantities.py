@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lagrange_casadi.quantities import QUANTITIES, Output, quantity_of
+from lagrange_casadi.tables import PLANE, SPACE, SPATIAL_QUANTITIES
 
 pytestmark = pytest.mark.quick
 
@@ -76,3 +77,63 @@ def test_no_two_outputs_have_one_name(part, station, quantity):
     output = Output(quantity.group, part if of_part else "", quantity.member, station if of_station else "")
     assert Output.of(str(output)) == output
     assert output.quantity is quantity
+
+
+@given(part=NAMES | st.just("law"), station=NAMES | st.just("law"), quantity=st.sampled_from(SPATIAL_QUANTITIES))
+def test_no_two_outputs_have_one_name_in_space(part, station, quantity):
+    of_station, of_part = quantity.group == "station", quantity.group != "certificate"
+    output = Output(quantity.group, part if of_part else "", quantity.member, station if of_station else "")
+    assert Output.of(str(output)) == output
+    assert output.meant(SPACE) is quantity
+    assert quantity_of(str(output), space=True) is quantity
+
+
+def test_axes_and_units_are_the_same_in_the_plane_and_in_space():
+    """What differs is what a name means."""
+    keys = [(q.group, q.member) for q in SPATIAL_QUANTITIES]
+    assert len(set(keys)) == len(keys)
+    shared = [q for q in QUANTITIES if (q.group, q.member) in keys]
+    assert len(shared) > 20
+    for q in shared:
+        other = SPACE.row(q.group, q.member)
+        assert (other.axes, other.unit) == (q.axes, q.unit)
+    assert SPACE.row("section", "shear").sign == "never negative" != PLANE.row("section", "shear").sign
+
+
+@pytest.mark.parametrize("table", [PLANE, SPACE])
+def test_every_section_force_is_made_of_members_that_there_are(table):
+    components = [force for force in table.forces if table.parts("section", force) == (force,)]
+    assert set(components) == set(table.sections)
+    for force in table.forces:
+        assert set(table.parts("section", force)) <= set(table.sections)
+    used = {name for terms in table.sections.values() for name in terms.coefficients}
+    assert used == set(table.law)
+    assert {terms.acting for terms in table.sections.values()} == {*table.station} - {"station"}
+    for terms in table.sections.values():
+        if terms.arm:
+            assert table.sections[terms.shear].coefficients == terms.coefficients[1:]
+    assert set(table.place_first) == set(table.station)
+
+
+@pytest.mark.parametrize(
+    ("output", "table", "components"),
+    [
+        (Output("reaction", "A", "resultant"), PLANE, ("fx", "fy")),
+        (Output("reaction", "A", "resultant"), SPACE, ("fx", "fy", "fz")),
+        (Output("reaction", "A", "moment"), SPACE, ("mx", "my", "mz")),
+        (Output("section", "rod", "bending"), SPACE, ("bending_y", "bending_z")),
+        (Output("section", "rod", "bending"), PLANE, ("bending",)),
+        (Output("section", "rod", "torsion"), SPACE, ("torsion",)),
+    ],
+)
+def test_of_what_resultants_are_the_size(output, table, components):
+    assert tuple(component.member for component in output.components(table)) == components
+    assert {component.part for component in output.components(table)} == {output.part}
+
+
+@pytest.mark.parametrize("name", ["section:rod:law:mx0", "section:law:law:fz2", "section:rod:A:mz", "section:rod:bending_y"])
+def test_names_of_space_are_none_of_the_plane(name):
+    assert str(Output.of(name)) == name
+    assert quantity_of(name, space=True).unit
+    with pytest.raises(KeyError):
+        quantity_of(name)

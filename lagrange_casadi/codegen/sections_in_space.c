@@ -63,7 +63,8 @@ static inline casadi_real designs_monotonic(const casadi_real* c, const casadi_r
     next = lanes_less(low, next, lanes_less(next, high, next, half), half);
     moved = designs_size(next - x);
     x = next;
-    if (!lanes_where_less(DESIGNS_CLOSE, lanes_less(0, there, moved, 0))) break;
+    /* What a place is off changes a summit by the square of that. */
+    if (!lanes_where_less(64*DESIGNS_CLOSE, lanes_less(there, 0, 0, moved))) break;
   }
   *falls = lanes_less(0, there, lanes_less(0, begin, 1, 0), 0);
   return lanes_less(0, there, x, nearer);

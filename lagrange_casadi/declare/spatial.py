@@ -164,7 +164,7 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         """Hold a point of ``child`` to a point of ``parent``: coordinates ``turn_1``, ``turn_2``, ``turn_3``.
 
-        They are turns about ``axis``, about ``second``, and about the direction at right angles to both, as those before carry them:
+        They are turns about ``axis``, about ``second``, and about the direction at right angles to both, as those before carry it:
         by default x, y and z. Where the joint closes a loop it has no coordinates.
         """
         return self._spatial(name, "spherical", parent, child, axis, second, at, turned)

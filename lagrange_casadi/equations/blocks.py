@@ -209,7 +209,8 @@ def _in_order(parts: Sequence[Part], loops: Sequence[LoopEquations]) -> list[Par
 
 def _form(multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coordinate], counted: Any) -> ClosedForm | None:
     """The closed form of a part, where there is one."""
-    form = solve_loop(column(equation.gap for equation in rows), unknown, multibody.coordinates)
+    bar = all(equation.loop.bar is not None for equation in rows)
+    form = solve_loop(column(equation.gap for equation in rows), unknown, multibody.coordinates, bar=bar)
     # An angle whose turns some constraint counts must not come back from its cosine and sine.
     if form is not None and form.branch is not None and any(ca.depends_on(counted, c.value) for c in unknown):
         return None

@@ -40,10 +40,38 @@ class ClosedForm:
     branch: Any | None = None
 
 
-def solve_loop(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> ClosedForm | None:
-    """The closed form of Phi = 0 for some unknown ones of all coordinates, or None where there is none that was verified."""
-    form = _matching(phi, unknown, coordinates)
+def solve_loop(
+    phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate], *, bar: bool = False
+) -> ClosedForm | None:
+    """The closed form of Phi = 0 for some unknown ones of all coordinates, or None where there is none that was verified.
+
+    Phi of a ``bar`` is half of a square, and may be one of the unknown.
+    """
+    form = _spanned(phi, unknown, coordinates) if bar and len(unknown) == 1 else None
+    form = form or _matching(phi, unknown, coordinates)
     return form if form is not None and _solves(form, phi, unknown, coordinates) else None
+
+
+def _spanned(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> ClosedForm | None:
+    """A bar's end that turns about one axis, or slides along one: two points of a circle or a line are so far from another one."""
+    (coordinate,) = unknown
+    symbols = _pair(coordinate) if coordinate.kind == "angle" else coordinate.variables
+    curvature = ca.hessian(phi, symbols)[0]
+    if phi.numel() != 1 or ca.depends_on(curvature, coordinate.variables):
+        return None
+    branch = ca.SX.sym("branch")
+    if coordinate.kind == "angle":
+        if not vanish(ca.vertcat(curvature[0, 1], curvature[0, 0] - curvature[1, 1]), coordinates, curvature):
+            return None
+        # Where the squares of cosine and sine have one factor, they are one number.
+        straight = phi - curvature[0, 0] * (ca.sumsqr(symbols) - 1) / 2
+        slope, rest = (ca.substitute(e, symbols, ca.SX.zeros(2)) for e in (ca.jacobian(straight, symbols), straight))
+        solved = _direction_on_line(slope @ symbols + rest, coordinate, branch)
+        return solved and ClosedForm((_variables(solved[0]),), solved[1], branch)
+    slope, rest = (ca.substitute(e, symbols, 0) for e in (ca.jacobian(phi, symbols), phi))
+    # The slope of Phi at its zeros, which is the cosine between bar and slide.
+    squared = _square(slope) - 2 * curvature * rest
+    return ClosedForm(((branch * ca.sqrt(squared) - slope) / curvature,), squared, branch)
 
 
 def _matching(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> ClosedForm | None:

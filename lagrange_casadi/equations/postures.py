@@ -12,7 +12,7 @@ import casadi as ca
 from ..errors import PostureError
 from ..system.numerals import readable
 from .blocks import Block
-from .multibody import Coordinate, Multibody, place_along
+from .multibody import Coordinate, Multibody, own_coordinate, place_along
 from .substitution import Numbers
 
 
@@ -35,6 +35,8 @@ def measured(multibody: Multibody, names: Collection[str]) -> dict[str, tuple[An
             expression = _direction(multibody, name)
         else:
             joint, axis = multibody.mechanism.coordinates[name]
+            if joint.turns > 2 and own_coordinate(axis, multibody.coordinates) is None:
+                continue
             expression = ca.SX(place_along(joint, axis, multibody.frames, multibody.coordinates))
         of = (owner.get(symbol.element_hash()) for symbol in ca.symvar(expression))
         told[name] = expression, {c for c in of if c is not None}

@@ -15,12 +15,14 @@ from .vectors import AXES, Expression, Vector, cross, dot, plus, times
 class Rotation:
     """The directions ``x`` and ``y`` of turned axes, in the axes that they are turned from.
 
-    ``angle`` is there for those who count turns: that about z, of a rotation about z alone; any other has None.
+    ``angle`` is there for those who count turns: that about z, of a rotation about z alone; any other has None. ``third`` is the
+    direction of the third axis where it is known in a shorter way than from the other two.
     """
 
     x: Vector = AXES[0]
     y: Vector = AXES[1]
     angle: Expression | None = 0.0
+    third: Vector | None = None
 
     @classmethod
     def flat(cls, c: Expression, s: Expression, angle: Expression) -> Rotation:
@@ -37,8 +39,9 @@ class Rotation:
         """The rotation about an axis of length 1 by an angle [rad] with a cosine and a sine (Rodrigues)."""
         if _same(axis, AXES[2]):
             return cls.flat(c, s, angle)
-        x, y = (plus(plus(times(c, e), times(s, cross(axis, e))), times((1 - c) * dot(axis, e), axis)) for e in AXES[:2])
-        return cls(x, y, None)
+        # Linear in cosine and sine, by which loops are known that have a closed form.
+        x, y, z = (plus(plus(times(c, e), times(s, cross(axis, e))), times((1 - c) * dot(axis, e), axis)) for e in AXES)
+        return cls(x, y, None, z)
 
     @classmethod
     def of(cls, x: Vector, y: Vector) -> Rotation:
@@ -58,7 +61,7 @@ class Rotation:
     @cached_property
     def z(self) -> Vector:
         """The direction of the third axis."""
-        return AXES[2] if self.angle is not None else cross(self.x, self.y)
+        return self.third or (AXES[2] if self.angle is not None else cross(self.x, self.y))
 
     def apply(self, v: Vector) -> Vector:
         """Components in the axes turned from of a vector given in the turned axes."""
@@ -78,22 +81,22 @@ class Rotation:
         if self.angle is not None and other.angle is not None:
             c, s, _ = self.apply(other.x)
             return Rotation.flat(c, s, self.angle + other.angle)
-        return Rotation(self.apply(other.x), self.apply(other.y), None)
+        return Rotation(self.apply(other.x), self.apply(other.y), None, self.apply(other.z))
 
     def against(self, other: Rotation) -> Rotation:
         """This direction as seen from another."""
         if self.angle is not None and other.angle is not None:
             c, s, _ = other.resolve(self.x)
             return Rotation.flat(c, s, self.angle - other.angle)
-        return Rotation(other.resolve(self.x), other.resolve(self.y), None)
+        return Rotation(other.resolve(self.x), other.resolve(self.y), None, other.resolve(self.z))
 
     @property
     def inverse(self) -> Rotation:
         """The rotation back."""
         if self.angle is not None:
             return Rotation.flat(self.c, -self.s, -self.angle)
-        (xx, xy, _), (yx, yy, _), (zx, zy, _) = self.x, self.y, self.z
-        return Rotation((xx, yx, zx), (xy, yy, zy), None)
+        (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = self.x, self.y, self.z
+        return Rotation((xx, yx, zx), (xy, yy, zy), None, (xz, yz, zz))
 
 
 def direction(angle: Expression) -> tuple[Expression, Expression]:

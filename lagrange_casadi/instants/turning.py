@@ -17,7 +17,8 @@ from ..declare.density import Array
 from ..summits.polynomials import interpolation
 
 _HALVINGS = 60
-_CLOSE = 4 * float(np.finfo(float).eps)
+_CLOSE = 512 * float(np.finfo(float).eps)
+"""Where something turns: what a place is off changes a summit by the square of that."""
 
 
 def zeros_of_shear(shear: Callable[[Array], Array], low: Array, middle: Array, high: Array) -> list[Array]:
@@ -118,9 +119,12 @@ def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], Array]:
 
 def _zero(level: Array, slope: Array, a: Array, b: Array, at_a: Array, at_b: Array) -> Array:
     """The zero of what is monotonic from a to b, by Newton's method kept within what encloses it; or the nearer end."""
-    negative = at_a <= 0.0
-    none = negative == (at_b <= 0.0)
-    nearer, x = np.where(np.abs(at_a) <= np.abs(at_b), a, b), (a + b) / 2
+    found = np.where(np.abs(at_a) <= np.abs(at_b), a, b)
+    there = (at_a <= 0.0) != (at_b <= 0.0)
+    if not there.any():
+        return found
+    level, slope, a, b, negative = level[:, there], slope[:, there], a[there], b[there], at_a[there] <= 0.0
+    x = (a + b) / 2
     for _ in range(_HALVINGS):
         now = _value(level, x)
         before = (now <= 0.0) == negative
@@ -128,11 +132,11 @@ def _zero(level: Array, slope: Array, a: Array, b: Array, at_a: Array, at_b: Arr
         with np.errstate(all="ignore"):
             ahead = x - now / _value(slope, x)
         ahead = np.where((ahead > a) & (ahead < b), ahead, (a + b) / 2)
-        going = np.abs(ahead - x) > _CLOSE
-        x = ahead
-        if not np.any(going & ~none):
+        moved, x = np.abs(ahead - x), ahead
+        if not (moved > _CLOSE).any():
             break
-    return np.where(none, nearer, x)
+    found[there] = x
+    return found
 
 
 def _value(coefficients: Array, x: Array) -> Array:
