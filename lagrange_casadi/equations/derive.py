@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -26,7 +26,7 @@ from .drives import closure, pushed
 from .fingerprint import fingerprint
 from .kinematics import Start
 from .mobility import internal_forces, needed_reactions
-from .multibody import Coordinate, Multibody, column
+from .multibody import Coordinate, Multibody, column, own_coordinate
 from .own import own_outputs
 from .reciprocals import share_reciprocals
 from .scene_graph import SceneGraph
@@ -122,6 +122,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
         counted: dict[Column, Any] = {Check("turns", c.name): c.value for c in angles if c.name not in solved.loose}
         loop_angles = {output: _turns(value, loose | counted) for output, value in motions.items() if _is_angle(mechanism, output)}
         loop_angles = {output: turns for output, turns in loop_angles.items() if not loose.keys().isdisjoint(turns)}
+        loop_angles |= {output: {output: 1} for output in _within_a_turn(mechanism, body, motions)}
         whole = {check: ca.floor(value * (1 / math.tau)) for check, value in counted.items()}
         within = column(value - math.tau * whole[check] for check, value in counted.items())
         motions |= {output: ca.substitute(ca.SX(motions[output]), column(counted.values()), within) for output in loop_angles}
@@ -224,6 +225,13 @@ def _motion_columns(
         elif part.oriented:
             columns[Output("pose", part.name, "angle")] = frame.rotation.angle
     return columns
+
+
+def _within_a_turn(mechanism: Mechanism, body: Multibody, motions: Collection[Output]) -> list[Output]:
+    """The angles of joints in space that are known by a direction alone: none of them is a coordinate of the tree."""
+    angles = [axis for _, axis in mechanism.coordinates.values() if mechanism.space and axis.kind == "angle"]
+    seen = [Output("motion", axis.coordinate) for axis in angles if own_coordinate(axis, body.coordinates) is None]
+    return [output for output in seen if output in motions]
 
 
 def _known_by(coordinate: Coordinate) -> Output:

@@ -18,11 +18,13 @@ from ..declare.density import Array
 from ..declare.description import Description, density_of, drives_of
 from ..instants.solution import Solution
 from ..quantities import FORCES, Output
+from ..tables import SPACE
 from . import digits
 from .digits import LOOSE as LOOSE
 from .digits import TOLERANCE as TOLERANCE
 from .digits import blur as blur
 from .placing import Complex, Moving, axis_of, measured, oriented, place
+from .spatial_certificate import residuals as spatial_residuals
 from .written import Written
 
 NEAR = 1e3
@@ -82,6 +84,8 @@ def certify(
 
 def _residuals(solution: Solution, turned: Solution, equations: Sequence[Written] | None) -> dict[str, tuple[Array, float]]:
     """Each residual, and the largest of what it is to be compared with; ``turned`` has angles without their turns."""
+    if solution.table is SPACE:
+        return spatial_residuals(solution, turned, equations)
     description = solution.description
     joints = description["joints"]
     if any(joint["coordinate"] and Output("motion", name) not in solution.outputs for name, joint in joints.items()):
