@@ -35,6 +35,11 @@ def force_members(space: bool, *, moment: bool = True) -> tuple[str, ...]:
     return (*forces, *moments) if moment else forces
 
 
+def own_members(*, moment: bool = True) -> tuple[str, ...]:
+    """The components of a reaction in space on the joint's own axes."""
+    return ("fu", "fv", "fw", "mu", "mv", "mw") if moment else ("fu", "fv", "fw")
+
+
 _LAWS = {*PLANE.law, *SPACE.law}
 _ENDINGS = {"rate": "_rate", "acceleration": "_acceleration"}
 _COORDINATE = ".coordinate"

@@ -22,8 +22,8 @@ SPATIAL_CONVENTIONS = (
     "(xi = 0) to its tip (xi = 1), y and z are its cross-section's axes; section forces are the action of the part towards the tip "
     "on the part towards the base, resolved on the link's axes, so axial > 0 is tension, d(bending_z)/d(xi l) = -shear_y and "
     "d(bending_y)/d(xi l) = shear_z; shear and bending are the resultants of both components; a reaction is the action of the "
-    "joint's parent on its child, in ground axes, its moment about the joint's point on the child; an effort is positive along its "
-    "coordinate"
+    "joint's parent on its child, in ground axes, its moment about the joint's point on the child, and again on the joint's own "
+    "axes u, v, w, which its parent carries; an effort is positive along its coordinate"
 )
 
 CF = "CF-1.8"
@@ -144,6 +144,8 @@ SPATIAL_QUANTITIES = (
     *_REACTION,
     Quantity("reaction", "fz", ("t",), FORCE, "reaction of the joint, z", _ON_CHILD),
     *(Quantity("reaction", f"m{x}", ("t",), MOMENT, f"{_ABOUT}, {x}", _ON_CHILD) for x in "xyz"),
+    *(Quantity("reaction", f"f{u}", ("t",), FORCE, f"reaction along the joint's own axis {u}", _ON_CHILD) for u in "uvw"),
+    *(Quantity("reaction", f"m{u}", ("t",), MOMENT, f"{_ABOUT}, about its own axis {u}", _ON_CHILD) for u in "uvw"),
     _MULTIPLIER,
     *_LOAD,
     Quantity("load", "fz", ("t",), FORCE, "applied force, z", _ON_FIRST),

@@ -9,6 +9,7 @@ import casadi as ca
 import numpy as np
 import oracle
 from arithmetic import DOUBLE
+from jets import Jet
 from mechanisms import INSTANT
 
 from lagrange_casadi import derive, evaluate
@@ -26,11 +27,9 @@ def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
     values = m.values(parameters)
     graph = derive(scene)
     found, drives = columns_at(graph, t, values)
-    if any(joint not in m.joints for joint in drives):
-        # What is guided moves as the joints that drive it.
-        ends = ("", "_rate", "_acceleration")
-        drives = {joint: tuple(found[f"motion:{joint}{end}"] for end in ends) for joint in [*scene.drives][: len(drives)]}
+    drives, guides = apart(m, drives, values)
     beside = {"pushed": scene.drives and list(scene.drives)} | beside
+    beside["extras"] = [*beside.get("extras", ()), *guides]
     solved = oracle_of(m, values, **beside).solve(drives, postures(m, found, drives, nudge, rough))
     size = max((abs(x) for forces in solved.reactions.values() for x in forces), default=0.0) or 1.0
     gaps = {f"effort:{joint}": (found[f"effort:{joint}"] - effort) / size for joint, effort in solved.efforts.items()}
@@ -63,6 +62,20 @@ def columns_at(graph, t, values):
     driven = np.array([x.full().ravel() for x in graph.motion(t, p)])
     found = graph.instant(t, *driven, settle(graph, t, p, graph.scene.t[0]), p).full().ravel()
     return dict(zip(graph.names, found, strict=True)), {joint: tuple(driven[:, i]) for i, joint in enumerate(graph.driven)}
+
+
+def apart(m, drives, values, arithmetic=DOUBLE):
+    """The motions of joints, and as the oracle's extras those of points and poses: the laws hold them, and bear nothing."""
+
+    def guide(name, drive):
+        part, _, along = name.rpartition(".")
+        point = m.paths[part].point if part in m.paths else m.bodies[part].base
+        at = (point.body.name, *(arithmetic.number(m.number(x, values)) for x in (point.x, point.y)))
+        law, k = Jet(*map(arithmetic.number, drive)), ("x", "y", "angle").index(along)
+        return oracle.Extra(name, lambda place: place(at)[k] - law, None)
+
+    own = {joint: drive for joint, drive in drives.items() if joint in m.joints}
+    return own, [guide(name, drive) for name, drive in drives.items() if name not in own]
 
 
 def postures(m, found, drives, nudge, rough=()):

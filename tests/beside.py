@@ -71,10 +71,34 @@ def _jansen_leg(arithmetic, values):
     return {"loads": [lambda place: [(foot, 0, number(values["push"]), 0)]]}
 
 
+def _excavator(arithmetic, values):
+    number = arithmetic.number
+    teeth, digging = ("bucket", number(1.4), 0), number(values["digging"])
+    return {"loads": [lambda place: [(teeth, digging, 0, 0)]]}
+
+
+def _beam_pump(arithmetic, values):
+    """The bridle leaves the head's arc upright, and pays out the radius times the beam's angle."""
+    number = arithmetic.number
+    radius, fluid = number(33) / 10, number(values["fluid"])
+    rods, head, axle = ("rods", 0, 0), ("head", 0, 0), ("head", number(0.5 - 3.3), 0)
+
+    def lift(place):
+        return [(rods, 0, -fluid * (place(rods)[1].d > 0), 0)]
+
+    def gap(place):
+        return place(rods)[1] - place(axle)[1] - place(head)[2] * radius + 3
+
+    bridle = oracle.Extra("bridle", gap, lambda place: [(rods, 0, 1, 0), (axle, 0, -1, 0), (head, 0, 0, -radius)])
+    return {"loads": [lift], "extras": [bridle]}
+
+
 _CASES = {
     "engine": _engine,
     "quick_return": _quick_return,
     "andrews_squeezer": _andrews_squeezer,
     "sleigh": _sleigh,
     "jansen_leg": _jansen_leg,
+    "excavator": _excavator,
+    "beam_pump": _beam_pump,
 }

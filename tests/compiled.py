@@ -27,9 +27,17 @@ PEDANTIC = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wno-unused
 
 def columns(graph, t, language, threads=1, extra=(), precision="double"):
     """Every column by the compiled code, into arrays that held NaN."""
-    p, dtype = np.array(list(graph.scene.mechanism.values().values())), DTYPES[precision]
+    return filled(built(graph, language, extra, precision), graph, t, threads, precision)
+
+
+def built(graph, language, extra=(), precision="double"):
     stages = plain(graph) if precision == "double" else compensated(graph, precision)
-    library = codegen.load(codegen.emit(graph, stages), codegen.find_compiler(language), extra)
+    return codegen.load(codegen.emit(graph, stages), codegen.find_compiler(language), extra)
+
+
+def filled(library, graph, t, threads=1, precision="double"):
+    """The columns by a library that is built."""
+    p, dtype = np.array(list(graph.scene.mechanism.values().values())), DTYPES[precision]
     guess = np.array(graph.newton.guess if graph.newton else (), dtype)
     z, status = np.full((guess.size, t.size), np.nan, dtype), np.full(t.size, -1, dtype=np.int32)
     out = np.full((len(graph.columns), t.size), np.nan, dtype)

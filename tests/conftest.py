@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import signal
@@ -29,6 +30,13 @@ NAMES = sorted(path.parent.name for path in CASES.glob("*/case.py"))
 
 # Vector Newton-Euler on free bodies in 60-digit arithmetic, the paper's mechanism and motion; its "about" says what each entry is.
 SIXTY_DIGITS = json.loads((ROOT / "tests" / "data" / "slider_crank_60_digits.json").read_text())
+
+# Expressions are many small objects that live long: to look for circles among them often takes a twentieth of the time.
+gc.set_threshold(20_000, 50, 100)
+
+# The processes of the tests have the cores already: threads of NumPy's linear algebra beside them would mostly wait for each other.
+# NumPy reads it when it is imported, so this is for the processes that are started from here.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # For the benchmarks, which are not installed; last, so that the package is the installed one.
 sys.path.append(str(ROOT))

@@ -21,14 +21,13 @@ from lagrange_casadi.quantities import quantity_of
 
 FACTOR = 10.0
 MOST = 0.8
-# Compiled in half the time; not a bit depends on it.
 RUNGS = {
-    "lanes": {"flags": "-O1"},
-    "c": {"backend": "c", "flags": "-O1"},
-    "single": {"backend": "c", "precision": "single", "flags": "-O1"},
-    "newton 1": {"backend": "c", "newton": 1, "flags": "-O1"},
-    "newton 2": {"backend": "c", "newton": 2, "flags": "-O1"},
-    "newton 3": {"backend": "c", "newton": 3, "flags": "-O1"},
+    "lanes": {"backend": "lanes"},
+    "c": {"backend": "c"},
+    "single": {"backend": "c", "precision": "single"},
+    "newton 1": {"backend": "c", "newton": 1},
+    "newton 2": {"backend": "c", "newton": 2},
+    "newton 3": {"backend": "c", "newton": 3},
 }
 OPTIONS = {"lanes": "--backend lanes", "c": "--backend c", "single": "--backend c --precision single"}
 CASES = Path(__file__).parent.parent / "cases"

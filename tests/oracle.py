@@ -89,12 +89,12 @@ class Joint:
 class Extra:
     """Something else that holds: ``gap(place)`` of jets (None for a non-holonomic row), and what a unit of its force does.
 
-    ``effect(place)`` lists (point, fx, fy, mz) of a unit multiplier.
+    ``effect(place)`` lists (point, fx, fy, mz) of a unit multiplier; None for what only says where something goes.
     """
 
     name: str
     gap: Callable | None
-    effect: Callable
+    effect: Callable | None
 
 
 @dataclass
@@ -260,7 +260,7 @@ class Oracle:
                 pair(joint, "reaction", (0.0, 0.0), 1.0)
             if joint.name in (drives if self.pushed is None else self.pushed) and joint.name not in self.unaided:
                 pair(joint, "effort", (ax, ay) if joint.slides else (0.0, 0.0), 0.0 if joint.slides else 1.0)
-        for extra in self.extras:
+        for extra in (extra for extra in self.extras if extra.effect):
             labels.append((extra.name, "multiplier", (0.0, 0.0, 0.0)))
             unknowns.append(extra.effect(place))
         given = [part for load in self.loads for part in load(place)]

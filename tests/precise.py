@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 
 from arithmetic import Digits
-from balance import columns_at, oracle_of, postures
+from balance import apart, columns_at, oracle_of, postures
 from beside import of_case
 
 from lagrange_casadi import derive, evaluate
@@ -27,7 +27,10 @@ def precise(scene, t, drives=None, parameters=None, digits=50, beside=None, leas
     acting = (beside or functools.partial(of_case, m.name))(arithmetic, values)
     for given, declared in (("loads", [*m.loads]), ("extras", [*m.constraints, *m.rows])):
         assert bool(acting.get(given)) == bool(declared), f"'{m.name}' declares {declared}: give the oracle the same {given}"
-    solved = oracle_of(m, values, arithmetic, **acting).solve(drives or motion, postures(m, found, motion, 0.0))
+    drives, guides = apart(m, drives or motion, values, arithmetic)
+    acting = {"pushed": scene.drives and list(scene.drives)} | acting
+    acting["extras"] = [*acting.get("extras", ()), *guides]
+    solved = oracle_of(m, values, arithmetic, **acting).solve(drives, postures(m, found, motion, 0.0))
     named = _named(m, solved)
     if not graph.doubtful:
         return named

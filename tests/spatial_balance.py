@@ -2,12 +2,13 @@
 
 The unknowns are six a joint: what the parent does to the child, ground axes, its moment about the child's point. A coordinate
 without an effort passes no power: one more equation each. The effort of another is its power for a unit rate, and what that
-effort does is taken out of the reaction.
+effort does is taken out of the reaction. A coupling is one more unknown: its multiplier acts on its coordinates as efforts do.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from spatial_algebra import Factored, cross, identity, skew, vector
@@ -27,10 +28,10 @@ class Acting:
 
 @dataclass(frozen=True)
 class Wrenches:
-    """What all joints pass, ``found`` six numbers each, and the variations ``null`` of them that hold each other (in doubles)."""
+    """What all joints pass, ``found`` six numbers each, and multipliers by coupling; ``null`` (in doubles) varies them at will."""
 
-    found: dict[str, np.ndarray]
-    null: list[dict[str, np.ndarray]]
+    found: dict[str, Any]
+    null: list[dict[str, Any]]
     vague: bool
 
 
@@ -44,6 +45,11 @@ class Balance:
     pushed: frozenset
 
     @property
+    def active(self) -> set:
+        """The coordinates that pass power."""
+        return self.pushed | self.motion.coupled
+
+    @property
     def mechanism(self) -> Mechanism:
         return self.motion.mechanism
 
@@ -55,12 +61,11 @@ class Balance:
         """Of every axis, what the child's point and the child do for a unit rate: index (None for a loose turn), v, w."""
         kept = self.motion.kept(joint)
         passage = self.motion.passage(joint, self.poses[joint.parent], self.values)
-        idle = len(joint.turning) == 3 and not {(joint.name, k) for k in joint.turning} & self.pushed
-        for k, u, at in zip(kept, passage.directions, passage.places, strict=True):
+        idle = len(joint.turning) == 3 and not {(joint.name, k) for k in joint.turning} & self.active
+        for k, u in zip(kept, passage.directions, strict=True):
             axis = self.motion.axes[joint.name][k]
             if not (idle and axis.turns):
-                v = u * axis.slide
-                yield k, (v + cross(u, passage.end.r - at) if axis.turns else v), (u if axis.turns else u * 0)
+                yield k, u * axis.slide, u if axis.turns else u * 0
         if idle:
             # Three turns, whatever their axes: no moment about any, so that nothing is singular where axes meet.
             for e in identity(self.motion.arithmetic):
@@ -106,10 +111,12 @@ class Balance:
     def solve(self) -> Wrenches:
         """The wrenches of all joints. Raises :class:`spatial_algebra.InconsistentError` where no forces balance the bodies."""
         arithmetic, joints, bodies = self.motion.arithmetic, self.mechanism.joints, self.mechanism.bodies
+        couplings = self.mechanism.couplings
         nought, size = arithmetic.number(0), self.mechanism.size
         needs = {b.name: self.inertia(b) for b in bodies}
         row = {b.name: 6 * i for i, b in enumerate(bodies)}
-        matrix = arithmetic.zeros(6 * len(bodies), 6 * len(joints)) + nought
+        width = 6 * len(joints) + len(couplings)
+        matrix = arithmetic.zeros(6 * len(bodies), width) + nought
         right = np.concatenate([x for b in bodies for x in needs[b.name][:2]])
         for i, joint in enumerate(joints):
             for name, sign in ((joint.child, 1), (joint.parent, -1)):
@@ -126,34 +133,45 @@ class Balance:
         for i, joint in enumerate(joints):
             for k, v, w in self.twists(joint):
                 if (joint.name, k) not in self.pushed:
-                    line = arithmetic.zeros(6 * len(joints)) + nought
+                    line = arithmetic.zeros(width) + nought
                     line[6 * i : 6 * i + 3], line[6 * i + 3 : 6 * i + 6] = v, w
+                    for c, coupling in enumerate(couplings):
+                        line[6 * len(joints) + c] = -arithmetic.number(coupling.terms.get((joint.name, k), 0))
                     powers.append(line)
                     units.append(size if any(w) else 1.0)
         matrix = np.concatenate([matrix, *(line[None] for line in powers)])
         right = np.concatenate([right, arithmetic.zeros(len(powers)) + nought])
-        columns = np.array(([1.0] * 3 + [size] * 3) * len(joints))
+        columns = np.array(([1.0] * 3 + [size] * 3) * len(joints) + [size] * len(couplings))
         rows = np.array(([1.0] * 3 + [size] * 3) * len(bodies) + units)
         factored = Factored.of(matrix, rows, columns)
         found = factored.solve(arithmetic, right, "the spatial oracle's forces do not balance its bodies")
-        null = [{j.name: (columns * column)[6 * i : 6 * i + 6] for i, j in enumerate(joints)} for column in factored.null.T]
-        return Wrenches({j.name: found[6 * i : 6 * i + 6] for i, j in enumerate(joints)}, null, factored.vague)
 
-    def split(self, joint: Joint, wrench):
-        """The efforts of a joint's pushed axes by index, and its reaction without them, of what it passes."""
+        def named(column):
+            multipliers = {coupling.name: column[6 * len(joints) + c] for c, coupling in enumerate(couplings)}
+            return {j.name: column[6 * i : 6 * i + 6] for i, j in enumerate(joints)} | multipliers
+
+        return Wrenches(named(found), [named(columns * column) for column in factored.null.T], factored.vague)
+
+    def split(self, joint: Joint, wrenches):
+        """The efforts of a joint's pushed axes by index, and its reaction without them and couplings, of what all joints pass."""
+        wrench = wrenches[joint.name]
         force, moment, efforts = wrench[:3], wrench[3:], {}
         twists = {k: (v, w) for k, v, w in self.twists(joint) if k is not None}
         for k, (v, w) in twists.items():
-            if (joint.name, k) not in self.pushed:
+            if (joint.name, k) not in self.active:
                 continue
-            efforts[k] = wrench[:3] @ v + wrench[3:] @ w
+            power = wrench[:3] @ v + wrench[3:] @ w
+            if (joint.name, k) in self.pushed:
+                arithmetic, key = self.motion.arithmetic, (joint.name, k)
+                coupled = [arithmetic.number(c.terms.get(key, 0)) * wrenches[c.name] for c in self.mechanism.couplings]
+                efforts[k] = power - sum(coupled, arithmetic.number(0))
             if k not in joint.turning:
-                force = force - v * efforts[k]
+                force = force - v * power
             elif len(joint.turning) < 3:
-                moment = moment - w * efforts[k]
+                moment = moment - w * power
             else:
                 # A couple that does its power on this turn and none on the two others.
                 _, b, c = (twists[joint.turning[(joint.turning.index(k) + i) % 3]][1] for i in range(3))
                 across = cross(b, c)
-                moment = moment - across * (efforts[k] / (across @ w))
+                moment = moment - across * (power / (across @ w))
         return efforts, np.concatenate([force, moment])

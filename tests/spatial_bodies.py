@@ -213,14 +213,24 @@ class Spring:
 
 
 @dataclass(frozen=True)
+class Coupling:
+    """Gears and the like: the sum of coefficients times coordinates, by (joint, index), is the ``offset``."""
+
+    name: str
+    terms: dict
+    offset: Any = 0
+
+
+@dataclass(frozen=True)
 class Mechanism:
-    """Bodies, joints, gravity (m/s^2, ground axes) and what acts."""
+    """Bodies, joints, gravity (m/s^2, ground axes), what acts, and what couples coordinates."""
 
     bodies: Sequence[Rigid | Rod]
     joints: Sequence[Joint]
     gravity: Vector = (0, 0, "-9.81")
     loads: Sequence[Load] = field(default_factory=tuple)
     springs: Sequence[Spring] = field(default_factory=tuple)
+    couplings: Sequence[Coupling] = field(default_factory=tuple)
 
     def __post_init__(self) -> None:
         names = [b.name for b in self.bodies] + [GROUND]

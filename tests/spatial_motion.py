@@ -51,23 +51,26 @@ class Pose:
 
 @dataclass(frozen=True)
 class Passage:
-    """Where a joint leads from its parent: the end's pose, and of every axis its direction and place in ground axes."""
+    """Where a joint leads from its parent: the end's pose, and its axes' directions, ground axes.
+
+    Each axis of a turn passes through the end, whatever the joint.
+    """
 
     end: Pose
     directions: list
-    places: list
 
 
 class Motion:
     """The equations of a mechanism whose coordinates ``known`` (joint, index) are given; see :func:`solve_motion`.
 
-    Coordinates of ``pushed`` ones are followed, though they be not known.
+    Coordinates of ``pushed`` and coupled ones are followed, though they be not known.
     """
 
     def __init__(self, mechanism: Mechanism, known, arithmetic, pushed=()) -> None:
         self.mechanism, self.arithmetic, self.known = mechanism, arithmetic, set(known)
         self.pushed = {*pushed}
-        counted = self.known | self.pushed
+        self.coupled = {key for coupling in mechanism.couplings for key in coupling.terms}
+        counted = self.known | self.pushed | self.coupled
         self.axes = {j.name: j.axes(arithmetic) for j in mechanism.joints}
         self.at_parent = {j.name: vector(arithmetic, j.at_parent) for j in mechanism.joints}
         self.at_child = {j.name: vector(arithmetic, j.at_child) for j in mechanism.joints}
@@ -86,6 +89,9 @@ class Motion:
         ]
         self.count = 6 * len(mechanism.bodies) + len(self.free)
         self.number = {key: 6 * len(mechanism.bodies) + i for i, key in enumerate(self.free)}
+        size = mechanism.size
+        free = [1.0 if self.axes[name][k].turns else size for name, k in self.free]
+        self.units = np.array(([size] * 3 + [1.0] * 3) * len(mechanism.bodies) + free)
         nil = arithmetic.array([arithmetic.number(0)] * 3)
         self.ground = Pose(nil, identity(arithmetic), nil, nil, nil, nil)
 
@@ -101,11 +107,10 @@ class Motion:
         v = a = None
         if moving:
             v, a = parent.velocity(self.at_parent[joint.name]), parent.acceleration(self.at_parent[joint.name])
-        directions, places = [], []
+        directions = []
         for k in self.kept(joint):
             u, (q, rate, acceleration) = R @ axes[k].direction, values[joint.name, k]
             directions.append(u)
-            places.append(p)
             if axes[k].turns:
                 R = R @ turn(self.arithmetic, axes[k].direction, q)
                 if moving:
@@ -117,7 +122,7 @@ class Motion:
                 if moving:
                     v = v + cross(w, d) + speed
                     a = a + cross(alpha, d) + cross(w, cross(w, d)) + cross(w, speed) * 2 + u * (axes[k].slide * acceleration)
-        return Passage(Pose(p, R @ self.zero[joint.name], v, w, a, alpha), directions, places)
+        return Passage(Pose(p, R @ self.zero[joint.name], v, w, a, alpha), directions)
 
     def gaps(self, poses, values, kind: int):
         """Gaps (``kind`` 0), their rates (1) or their accelerations (2), a joint after another."""
@@ -132,6 +137,12 @@ class Motion:
             else:
                 pair = child.acceleration(point) - end.a, child.alpha - end.alpha
             found += pair[:1] if joint.name in self.loose else pair
+        for coupling in self.mechanism.couplings:
+            a = self.arithmetic
+            total = -a.number(0 if kind else coupling.offset)
+            for key, coefficient in coupling.terms.items():
+                total += a.number(coefficient) * values[key][kind]
+            found.append(a.array([total]))
         return np.concatenate(found) if found else self.arithmetic.zeros(0)
 
     def slope(self, poses, values):
@@ -149,22 +160,25 @@ class Motion:
                     block[:3, c : c + 3] += identity(self.arithmetic) * sign
                     block[:3, c + 3 : c + 6] += skew(point - poses[name].r) * -sign
                     block[3:, c + 3 : c + 6] += identity(self.arithmetic) * sign
-            for k, u, at in zip(self.kept(joint), passage.directions, passage.places, strict=True):
+            for k, u in zip(self.kept(joint), passage.directions, strict=True):
                 if (joint.name, k) in self.number:
                     axis, c = self.axes[joint.name][k], self.number[joint.name, k]
                     block[:3, c] = -u * axis.slide
                     if axis.turns:
-                        block[:3, c] -= cross(u, passage.end.r - at)
                         block[3:, c] = -u
             rows.append(block[:3] if joint.name in self.loose else block)
+        for coupling in self.mechanism.couplings:
+            line = self.arithmetic.zeros(1, self.count) * self.arithmetic.number(0)
+            for key in {*coupling.terms} & {*self.number}:
+                line[0, self.number[key]] = self.arithmetic.number(coupling.terms[key])
+            rows.append(line)
         return np.concatenate(rows) if rows else self.arithmetic.zeros(0, self.count)
 
     def factored(self, poses, values) -> Factored:
         size = self.mechanism.size
         rows = [u for j in self.mechanism.joints for u in ([size] * 3 if j.name in self.loose else [size] * 3 + [1.0] * 3)]
-        axes = [self.axes[name][k] for name, k in self.free]
-        columns = ([size] * 3 + [1.0] * 3) * len(self.mechanism.bodies) + [1.0 if a.turns else size for a in axes]
-        return Factored.of(self.slope(poses, values), np.array(rows), np.array(columns))
+        rows += [1.0] * len(self.mechanism.couplings)
+        return Factored.of(self.slope(poses, values), np.array(rows), self.units)
 
     def start(self, guess, drives):
         """Poses and coordinates from a guess: poses by body's name, coordinates by (joint, index); what is missing follows."""
@@ -267,7 +281,7 @@ def solve_motion(motion: Motion, drives, guess):
         turned = max((max(abs(step[c + 3 : c + 6])) for c in motion.column.values()), default=0.0)
         step = step * min(1.0, _TURN / turned if turned else 1.0)
         poses, values = motion.moved(poses, values, vector(a, step))
-        before, left = left, float(max(abs(step))) / max(1.0, motion.mechanism.size)
+        before, left = left, float(max(abs(step / motion.units)))
         if left < a.tolerance / 10 or (before <= 1e4 * float(a.tolerance) and left > before / 2):
             break
     left = max((float(abs(x)) for x in motion.gaps(poses, values, 0)), default=0.0) / motion.mechanism.size

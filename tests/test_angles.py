@@ -13,6 +13,7 @@ from lagrange_casadi.cli import main
 from lagrange_casadi.declare.angles import angle
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import polynomial
+from lagrange_casadi.sweep import Range, Sweep, Values, best, chosen, sweep
 
 pytestmark = pytest.mark.quick
 
@@ -134,6 +135,50 @@ def test_welds_and_slides_take_degrees():
         pendulum(angle="sixty")
 
 
+def geared(offset, slides=False):
+    m = Mechanism("geared")
+    arm, hand = m.link("arm", length=0.3, mass=1.0), m.link("hand", length=0.1, mass=0.5)
+    first = m.revolute("O", m.ground, arm)
+    second = m.prismatic("P", m.ground, hand, axis=(1, 0)) if slides else m.revolute("P", arm.tip, hand)
+    m.gear("mesh", first, second, ratio=2.0, offset=offset)
+    return Scene(m, {"O": polynomial(0, 1.0)}, t=(0, 1, 5))
+
+
+def test_offsets_of_gears_take_degrees():
+    told, plain = (evaluate(geared(value)).motion("P").value for value in ("60 deg", 60 / 180 * math.pi))
+    np.testing.assert_array_equal(told, plain)
+    assert told[0] == pytest.approx(math.pi / 3)
+    with pytest.raises(
+        DeclarationError, match=r"gear 'mesh': offset: expected a finite number \[rad\], or a text such as '350 deg'"
+    ):
+        geared("sixty")
+    with pytest.raises(DeclarationError, match=r"gear 'mesh': offset must be a number or an expression"):
+        geared("60 deg", slides=True)
+
+
+def test_grids_and_conditions_take_degrees(tmp_path):
+    """A sweep is the same, to the byte, however its angles were told; lengths in degrees are refused."""
+    scene, steps = pendulum(), 30 / 180 * math.pi
+    for name, axis in (("a", ("0 deg", "30 deg", 4)), ("b", (0.0, steps, 4)), ("c", Range("0deg", "30deg", 4))):
+        sweep(scene, {"tilt": axis}, out=tmp_path / f"{name}.h5", wanted=["effort"])
+    assert (tmp_path / "a.h5").read_bytes() == (tmp_path / "b.h5").read_bytes() == (tmp_path / "c.h5").read_bytes()
+    assert Values(("10 deg", 0.5)).values == (10 / 180 * math.pi, 0.5)
+    found = Sweep.open(tmp_path / "a.h5")
+    for text, numbers in (("tilt<15deg", [0, 1]), ("tilt>=20 deg", [2, 3]), ("tilt==10deg", [1])):
+        rows = np.concatenate([rows for rows, _ in chosen(found, ["tilt"], text)])
+        assert rows.tolist() == numbers
+    with pytest.raises(DeclarationError, match=r"condition on peak:effort:O: it is in N m, got an angle"):
+        best(found, minimise="peak:effort:O", where="peak:effort:O<3deg")
+    for axis in (("0 deg", "30 deg", 4), ["10 deg"]):
+        with pytest.raises(DeclarationError, match=r"grid of l: expected numbers \[m\], not angles"):
+            sweep(scene, {"l": axis}, out=tmp_path / "d.h5")
+    for axis in (("a", "b", 3), ["steep"]):
+        with pytest.raises(DeclarationError, match=r"grid of tilt: expected .*numbers"):
+            sweep(scene, {"tilt": axis}, out=tmp_path / "d.h5")
+    with pytest.raises(ParameterError, match=r"tilt = 0 to 1\.57.*, out of its range"):
+        sweep(scene, {"tilt": ("0 deg", "90 deg", 4)}, out=tmp_path / "d.h5")
+
+
 def test_the_command_line_takes_degrees(here, capfd):
     (here / "case.py").write_text(
         "from lagrange_casadi import Mechanism, Scene\nfrom lagrange_casadi.motion import polynomial\n"
@@ -154,6 +199,18 @@ def test_the_command_line_takes_degrees(here, capfd):
     sweep = ["sweep", "case.py", "--grid", "tilt=0:1:3", "--grid", "l=0.2:0.4:3", "--quiet", "--want", "effort", "--out", "s.h5"]
     assert main(sweep) == 0
     assert main([*sweep[:4], *sweep[6:-1], "t.h5", "--set", "l=2deg"]) == 2
+    degrees = ["sweep", "case.py", "--grid", "tilt=0deg:90deg:3", "--grid", "l=0.2,0.4", "--quiet", "--out", "d.h5"]
+    assert main(degrees) == 0
+    assert main([*degrees[:3], "tilt=0,45 deg,90deg", *degrees[4:-1], "e.h5"]) == 0
+    assert (here / "d.h5").read_bytes() == (here / "e.h5").read_bytes()
+    capfd.readouterr()
+    assert main(["best", "d.h5", "--minimise", "peak:effort:O", "--where", "tilt>60deg"]) == 0
+    assert "1.5708" in capfd.readouterr().out
+    assert main(["table", "d.h5", "--where", "tilt==50deg"]) == 1
+    assert main([*degrees[:3], "l=0deg:2deg:3", *degrees[6:-1], "t.h5"]) == 2
+    assert "error: grid of l: expected numbers [m], not angles" in capfd.readouterr().err
+    assert main([*degrees[:3], "tilt=0:90grad:3", *degrees[6:-1], "t.h5"]) == 2
+    assert "tilt: expected a number for STOP, got '90grad' in 0:90grad:3" in capfd.readouterr().err
     assert main(["plot", "s.h5", "--out", "one", "--over", "l", "--at", f"tilt={0.5}"]) == 0
     assert main(["plot", "s.h5", "--out", "two", "--over", "l", "--at", "tilt=28.64788975654116deg"]) == 0
     assert [p.read_bytes() for p in sorted((here / "one").iterdir())] == [p.read_bytes() for p in sorted((here / "two").iterdir())]

@@ -3,12 +3,14 @@
 import filecmp
 import os
 import sys
+from types import SimpleNamespace
 
 import pytest
 from conftest import CASES
 
 from lagrange_casadi import LagrangeCasadiError, evaluate, load_case
 from lagrange_casadi.cli import main
+from lagrange_casadi.shipped_cases import shipped_cases
 
 pytestmark = pytest.mark.quick
 
@@ -51,6 +53,22 @@ def test_without_them_it_says_so(monkeypatch, tmp_path, capfd):
     assert capfd.readouterr().err == "error: the cases were not installed with the package: they are in its repository\n"
     with pytest.raises(LagrangeCasadiError, match=r"no such file; expected a folder with a case\.py, or a Python file$"):
         load_case("four_bar")
+
+
+def test_a_clone_has_its_own_cases_not_those_of_its_installation(monkeypatch, tmp_path):
+    """Copies in the environment are as old as the installation."""
+    clone = tmp_path / "clone"
+    (clone / "cases" / "four_bar").mkdir(parents=True)
+    (clone / "cases" / "four_bar" / "case.py").write_text("")
+    monkeypatch.setattr(sys.modules["lagrange_casadi.shipped_cases"], "_IN_A_CLONE", clone / "cases")
+    installed = tmp_path / "share" / "cases" / "arm" / "case.py"
+    installed.parent.mkdir(parents=True)
+    installed.write_text("")
+    record = SimpleNamespace(locate=lambda: installed, match=lambda pattern: True)
+    monkeypatch.setattr("importlib.metadata.files", lambda name: [record])
+    assert shipped_cases() == {"arm": installed.parent}
+    (clone / "pyproject.toml").write_text("")
+    assert shipped_cases() == {"four_bar": clone / "cases" / "four_bar"}
 
 
 @pytest.mark.parametrize(

@@ -75,7 +75,7 @@ def test_of_more_drives_the_efforts_are_the_least(weights):
             m = five_bar(t=(t, t, 1))
             laws = {j: motion.polynomial(float(found.motion(j).value[i]), float(j == turning)) for j in "OC"}
             posture = {b: float(found.pose(b).angle[i]) for b in "abcd"}
-            one = evaluate(Scene(m.mechanism, laws, ["motion"], t=(0, 0, 1), posture=posture))
+            one = evaluate(Scene(m.mechanism, laws, ["motion"], t=(0, 0, 1), posture=posture), backend="vm")
             rates.append([one.motion(j).rate[0] for j in drives])
         pull = np.array([w * found.effort(j)[i] for j, w in drives.items()])
         left = pull - np.array(rates).T @ np.linalg.lstsq(np.array(rates).T, pull, rcond=None)[0]

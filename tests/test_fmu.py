@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from conftest import CASES
 from importer import Instance, refusing, robot, signals, simulated, windy
+from machines import elsewhere
+from mechanisms import sampled_cam
 from mechanisms import slider_crank as free
 
-from lagrange_casadi import evaluate, load_case
+from lagrange_casadi import derive, evaluate, load_case
 from lagrange_casadi.codegen import find_compiler
 from lagrange_casadi.export import export
 
@@ -26,7 +28,10 @@ SCENES = {
     "arm": lambda: load_case(CASES / "arm").scene,
     "windy": windy,
     "free": free,
+    "cam": sampled_cam,
+    "planetary": elsewhere,
 }
+GUIDED = {"excavator": lambda: load_case(CASES / "excavator").scene}
 
 
 @pytest.fixture(scope="session")
@@ -38,7 +43,7 @@ def unit(tmp_path_factory):
         key = (name, *sorted(how.items()))
         if key not in made:
             folder = tmp_path_factory.mktemp(name) / "out"
-            scene = SCENES[name]()
+            scene = (SCENES | GUIDED)[name]()
             made[key] = scene, folder / f"{export(scene, folder, name=name, fmu=True, **how).prefix}.fmu"
         return made[key]
 
@@ -80,6 +85,20 @@ def test_co_simulation_gives_the_numbers_of_the_api(unit, name):
     scene, path = unit(name)
     solution = evaluate(scene)
     assert_alike(simulated(path, solution, "CoSimulation", ahead=1), solution, outputs(path), slice(1, None))
+
+
+def test_the_motion_of_what_is_guided_is_an_input(unit):
+    """The pose of an excavator's bucket: place, direction, and their rates and accelerations."""
+    scene, path = unit("excavator")
+    graph, solution = derive(scene), evaluate(scene)
+    orders = [graph.motion(t, list(scene.mechanism.values().values())) for t in solution.t]
+    poses = {
+        f"motion/{name}{end}": np.array([float(order[k][i]) for order in orders])
+        for i, name in enumerate(graph.driven)
+        for k, end in enumerate(("", "_rate", "_acceleration"))
+    }
+    assert "motion/bucket.angle_rate" in poses
+    assert_alike(simulated(path, solution, **poses), solution, outputs(path))
 
 
 CHANGES = {"slider_crank": {"r": 0.08, "m3": 0.4}, "robot": {"shin": 0.29, "mass": 2.0}, "windy": {"gust": 9.0}}

@@ -5,7 +5,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from compiled import HEADER, SCENES, columns
+from compiled import HEADER, SCENES, built, columns, filled
 from mechanisms import slider_crank
 
 from lagrange_casadi import codegen, derive, evaluate
@@ -40,9 +40,10 @@ def test_packs_agree_with_scalar_c(name, precision):
 def test_a_tail_of_any_length_has_the_same_bits(name, precision):
     scene = SCENES[name]()
     graph, t = derive(scene), np.linspace(scene.t[0], scene.t[1], 80)
-    whole = columns(graph, t, "c++", precision=precision)
+    library = built(graph, "c++", precision=precision)
+    whole = filled(library, graph, t, precision=precision)
     for n in (*range(1, 19), 63, 64, 65, 72, 79):
-        assert np.array_equal(columns(graph, t[:n], "c++", precision=precision), whole[:, :n])
+        assert np.array_equal(filled(library, graph, t[:n], precision=precision), whole[:, :n])
 
 
 @pytest.mark.sampled(3)

@@ -94,7 +94,7 @@ def gaps(scene, shape, t, wind, lift):
     values = m.values()
     found, drives = columns_at(graph, t, values)
     rough, nodes = postures(m, found, drives, 0.02), np.polynomial.legendre.leggauss(4)
-    solution = evaluate(scene, t=(t, t, 1))
+    solution = evaluate(scene, t=(t, t, 1), backend="vm")
     worst = 0.0
 
     def spread(link, length, cut, at):

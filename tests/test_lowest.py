@@ -1,5 +1,7 @@
 """The lowest value of a polynomial on an interval, against values on a fine grid and known turning points."""
 
+import functools
+
 import casadi as ca
 import numpy as np
 import pytest
@@ -9,11 +11,15 @@ from hypothesis import strategies as st
 from lagrange_casadi.declare.lowest import lowest
 
 
+@functools.cache
+def function(size, start, stop):
+    """Of so many coefficients, which is how parameters go in."""
+    c = ca.SX.sym("c", size)
+    return ca.Function("f", [c], list(lowest([c[j] for j in range(size)], start, stop)))
+
+
 def found(cell, start, stop):
-    """As a function of the coefficients, which is how parameters go in."""
-    c = ca.SX.sym("c", len(cell))
-    function = ca.Function("f", [c], list(lowest([c[j] for j in range(len(cell))], start, stop)))
-    return (float(x) for x in function(list(cell)))
+    return (float(x) for x in function(len(cell), start, stop)(list(cell)))
 
 
 def at(cell, u):

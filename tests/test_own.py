@@ -198,6 +198,11 @@ def test_an_effort_where_nothing_drives_is_named():
             "expected a ratio xi/l from 0 to 1, got 1.5",
         ),
         (lambda m, p: m.results.section(m.ground, 0.5), DeclarationError, "section: 'ground' is not a link"),
+        (
+            lambda m, p: m.results.load("gas"),
+            DeclarationError,
+            "expected the load itself, as its declaration returned it, got its name 'gas'",
+        ),
         (lambda m, p: m.results.multiplier(p["rod"]), UnknownNameError, "unknown constraint of mechanism 'engine' 'rod'"),
         (
             lambda m, p: m.force("f", p["rod"], x=m.results.effort(p["main"])),

@@ -130,7 +130,10 @@ def test_a_pole_is_infinite():
     (peak,) = refine(scene, solution, ["effort:X"])
     assert math.isinf(peak.value)
     assert peak.t == pytest.approx(math.pi / 2 / 0.8, abs=1e-12)
-    assert all(0 <= row.sampled_worst < 1 for row in shortfall(scene, [50]))
+    # Of all quantities, sections would take nearly all the time.
+    efforts = [str(output) for output in solution.outputs if output.group == "effort"]
+    assert len(efforts) > 1
+    assert all(0 <= row.sampled_worst < 1 for row in shortfall(scene, [50], efforts))
 
 
 def test_angles_that_a_loop_sets_keep_their_turns():
@@ -147,6 +150,7 @@ def test_angles_that_a_loop_sets_keep_their_turns():
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", NAMES)
 def test_peaks_are_those_of_far_finer_instants(name):
+    """To rounding: an ulp of the largest quantity of the same unit, from which small ones are left over."""
     scene = load_case(CASES / name).scene
     solution = vm(scene)
     names = forces(solution)
@@ -154,15 +158,18 @@ def test_peaks_are_those_of_far_finer_instants(name):
     start, stop, count = scene.t
     step = (stop - start) / (count - 1)
     dense = vm(scene, t=(start, stop, 8 * count))
-    improved = []
+    improved, least = [], {}
+    for name in names:
+        unit = solution.unit(name)
+        least[unit] = max(least.get(unit, 1e-12), np.finfo(float).eps * abs(solution.peak(name).value))
     for k, name in enumerate(names):
-        peak, sampled = peaks[name], solution.peak(name)
+        peak, sampled, rounding = peaks[name], solution.peak(name), least[solution.unit(name)]
         assert abs(peak.value) >= abs(sampled.value)
         assert start <= peak.t <= stop
         improved.append(abs(peak.value) > abs(sampled.value))
         if math.isinf(peak.value):
             continue
-        assert abs(peak.value) >= abs(dense.peak(name).value) * (1 - 1e-13) - 1e-12, name
+        assert abs(peak.value) >= abs(dense.peak(name).value) * (1 - 1e-13) - rounding, name
         # All are compared with eight times as many instants, and some with far more about the peak.
         if k % 3:
             continue
@@ -171,8 +178,8 @@ def test_peaks_are_those_of_far_finer_instants(name):
             low, high = max(start, near - reach), min(stop, near + reach)
             fine = vm(scene, t=(low, high, 201)).peak(name)
             near, reach = fine.t, reach / 50
-        assert abs(peak.value) >= abs(fine.value) * (1 - 1e-13) - 1e-12, name
-        assert peak.value == pytest.approx(fine.value, rel=1e-10, abs=1e-12), name
+        assert abs(peak.value) >= abs(fine.value) * (1 - 1e-13) - rounding, name
+        assert peak.value == pytest.approx(fine.value, rel=1e-10, abs=rounding), name
     # Of the sleigh, which is led at one speed, most forces stand still.
     assert np.mean(improved) > (0.3 if scene.mechanism.name == "sleigh" else 0.4)
 

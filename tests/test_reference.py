@@ -34,7 +34,7 @@ def assert_within(found, expected, relative=1e-13):
 def test_the_case_is_the_references(slider_crank):
     parameters = slider_crank.scene.mechanism.values()
     assert parameters == {k: float(v) for k, v in SIXTY_DIGITS["parameters"].items() if k != "g"}
-    assert slider_crank.scene.mechanism.gravity == (0.0, -float(SIXTY_DIGITS["parameters"]["g"]))
+    assert slider_crank.scene.mechanism.gravity[:2] == (0.0, -float(SIXTY_DIGITS["parameters"]["g"]))
 
 
 def test_torque_and_reactions(instants):

@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from arithmetic import DOUBLE
 from spatial_algebra import InconsistentError, cross
-from spatial_bodies import Joint, Load, Mechanism, Rigid, Rod, Spring, second_moments, uniform
+from spatial_bodies import Coupling, Joint, Load, Mechanism, Rigid, Rod, Spring, second_moments, uniform
 from spatial_draft import direction, frame, joint
 from spatial_mechanisms import rssr, rsur
 from spatial_motion import OpenLoopError
 from spatial_oracle import solve
 from spatial_reference import Entry
+
+pytestmark = pytest.mark.quick
 
 G = 9.81
 UPRIGHT = [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]
@@ -50,6 +52,8 @@ def test_a_puck_on_an_incline():
     found = solve(Mechanism([puck], [plane]), told)
     close([found.efforts["J", k] for k in range(3)], [3 * (2 + G * 0.6), 3 * 4.0, 0.3 * 5], 10)
     close(found.reactions["J"], [*(3 * G * 0.8 * cross(up, across)), 0, 0, 0], 100)
+    close(found.poses["puck"].r, 0.1 * up + 0.2 * across)
+    close(found.poses["puck"].R[:, 0], math.cos(0.4) * up + math.sin(0.4) * across)
 
 
 def test_a_universal_joint_carries_its_second_axis():
@@ -61,6 +65,28 @@ def test_a_universal_joint_carries_its_second_axis():
     close(found.poses["top"].w, 3 * first + 7 * carried)
     close(found.reactions["J"][3:], 0.2 * 3 * 7 * np.cross(first, carried))
     close([found.efforts["J", 0], found.efforts["J", 1]], [0, 0])
+
+
+def test_gears_share_a_load_by_their_ratio():
+    """A wheel drives another of twice its teeth, on skew shafts; the second one lifts a weight by a rack."""
+    axes = [np.array([0.0, 0.6, 0.8]), np.array([1.0, 0.0, 0.0])]
+    wheels = [Rigid(f"w{i}", 1.0, inertia=np.eye(3) * inertia) for i, inertia in enumerate((0.1, 0.4))]
+    joints = [Joint(f"J{i}", "revolute", "ground", f"w{i}", (i, 0, 0), axis=axis) for i, axis in enumerate(axes)]
+    joints.append(Joint("L", "prismatic", "ground", "load"))
+    couplings = [Coupling("mesh", {("J0", 0): 1, ("J1", 0): 2}, 0.3), Coupling("rack", {("L", 0): 1, ("J1", 0): 0.05})]
+    mechanism = Mechanism([*wheels, Rigid("load", 6.0)], joints, couplings=couplings)
+    found = solve(mechanism, {("J0", 0): (1.0, 2.0, 8.0)})
+    assert not found.open
+    close(found.coordinates["J1", 0], [-0.35, -1.0, -4.0])
+    close(found.coordinates["L", 0], [0.0175, 0.05, 0.2])
+    lift = 6 * (G + 0.2)
+    close(found.multipliers["rack"], lift, 100)
+    # What turns the second wheel is its inertia and the rack: 2 mesh + 0.05 rack = 0.4 (-4).
+    mesh = (0.4 * -4 - 0.05 * lift) / 2
+    close(found.multipliers["mesh"], mesh, 100)
+    close(found.efforts["J0", 0], 0.1 * 8 - mesh, 10)
+    close(found.reactions["J1"], [0, 0, G, 0, 0, 0], 100)
+    close(found.reactions["L"], np.zeros(6), 100)
 
 
 def test_springs_and_dampers_pull_along_the_line_between_their_points():
@@ -76,10 +102,12 @@ def test_springs_and_dampers_pull_along_the_line_between_their_points():
 @pytest.mark.parametrize("turning", [False, True])
 def test_a_load_may_turn_with_its_body(turning):
     arm = uniform("arm", 2.0, 1.0)
-    load = Load("arm", (2, 0, 0), (0, 5, 0), (0, 0, 1), turning)
+    load = Load("arm", (2, 0, 0), (0, 5, 0), (2, 0, 1), turning)
     pin = Joint("J", "revolute", "ground", "arm")
     found = solve(Mechanism([arm], [pin], gravity=(0, 0, 0), loads=[load]), {("J", 0): (math.pi / 3, 0, 0)})
     close(found.efforts["J", 0], -1 - 10 * (1.0 if turning else 0.5), 10)
+    along = [1.0, math.sqrt(3)] if turning else [2.0, 0.0]
+    close(found.reactions["J"][3:], [-along[0], -along[1], 0], 10)
 
 
 def test_a_collar_loads_a_cantilever_where_it_is():

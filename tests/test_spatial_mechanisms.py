@@ -64,6 +64,12 @@ def test_efforts_do_the_power_of_any_motion(case):
             pose = poses[act.body]
             powers += [-act.force @ (pose.v + cross(pose.w, act.place - pose.r)), -act.moment @ pose.w]
         assert abs(told - sum(powers)) < 1e-11 * max(1.0, *(abs(x) for x in powers))
+        for joint in mechanism.joints:
+            # What a joint bears is what lets its own motions be.
+            at, (parent, child) = found.poses[joint.child].at(np.array(joint.at_child)), (poses[joint.parent], poses[joint.child])
+            apart = child.v + cross(child.w, at - child.r) - parent.v - cross(parent.w, at - parent.r)
+            power = found.reactions[joint.name] @ np.concatenate([apart, child.w - parent.w])
+            assert abs(power) < 1e-11 * sum(largest(found)) * (1 + np.max(np.abs(apart)) + np.max(np.abs(child.w)))
 
 
 @pytest.mark.parametrize("case", PRECISE, ids=identity)

@@ -1,7 +1,10 @@
 """The spatial oracle against numbers from elsewhere, in doubles and in many digits."""
 
+import dataclasses
+
 import numpy as np
 import pytest
+from spatial_bodies import AXES
 from spatial_oracle import solve
 from spatial_reference import NAMES, Entry, numbers
 
@@ -99,3 +102,19 @@ def test_published_forces_on_the_ground(name):
         assert all(abs(effort) < 1e-10 * (1 + np.linalg.norm(arm)) for effort in found.efforts.values())
         assert np.max(np.abs(-force - published["force"])) < 7e-4
         assert np.max(np.abs(-(moment + np.cross(arm, force)) - published["torque"])) < 7e-4 * (1 + np.linalg.norm(arm))
+
+
+@pytest.mark.parametrize("k", range(3))
+def test_a_sphere_driven_by_three_angles_moves_as_one_driven_by_its_orientation(k):
+    """The angles are those of R = Rx Ry Rz, each axis carried by the turns before."""
+    instant = Entry("sdfast_chain").instant(k)
+    q, rate, acceleration = (numbers(row) for row in instant.data["gimbal_xyz_angles"])
+    told = {("gimbal", i): (q[i], rate[i], acceleration[i]) for i in range(3)}
+    joints = [dataclasses.replace(j, orientation=AXES) if j.name == "gimbal" else j for j in instant.mechanism.joints]
+    found = solve(dataclasses.replace(instant.mechanism, joints=joints), instant.drives | told, instant.guess, 40)
+    pose = instant.data["poses"]["body3"]
+    assert np.max(np.abs(found.poses["body3"].R - numbers(pose["R"]))) < 1e-28
+    for name, given in instant.data["reactions"].items():
+        told = numbers([*given["force"], *given["moment"]])
+        assert np.max(np.abs(found.reactions[name] - told)) < 1e-25
+    assert max(abs(effort) for effort in found.efforts.values()) < 1e-25

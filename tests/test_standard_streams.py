@@ -58,6 +58,15 @@ def test_an_error_that_nobody_hears_has_its_status(here, closed):
     assert not list(here.iterdir())
 
 
+@pytest.mark.parametrize("command", [RUN + " --no-figures", "cases", "--help"])
+def test_a_reader_that_goes_early_is_no_error(here, command):
+    """As head, or a pager that is left: no line says so, and what was computed is kept."""
+    done = shell(f"{{ {PROGRAM} {command}; echo $? >status; }} | true")
+    assert done.stderr == ""
+    assert (here / "status").read_text() == "1\n"
+    assert (here / "x.h5").exists() == command.startswith("run")
+
+
 def test_a_warning_that_nobody_hears_stops_nothing(here):
     """As of a cache that cannot be written."""
     (here / "file").write_text("")

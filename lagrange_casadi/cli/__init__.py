@@ -16,6 +16,7 @@ import click
 
 from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_line
 from ..system.interrupts import SENTENCE, STATUS, interrupts
+from ..system.standard_streams import lead_nowhere
 from ..version import __version__
 from .best import best
 from .cache import cache
@@ -52,10 +53,18 @@ class _Interrupted(Exception):  # noqa: N818 - it is no error
     """Ctrl-C, taken before click turns it into a line of its own."""
 
 
+class _Unread(Exception):  # noqa: N818 - it is no error
+    """Whoever read standard output has closed it, as ``head`` does: nothing is left to be said."""
+
+
 class _Commands(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
-        with _insistent():
+        with _read(), _insistent():
             return super().invoke(ctx)
+
+    def make_context(self, *arguments: Any, **keywords: Any) -> click.Context:
+        with _read():  # help is said here
+            return super().make_context(*arguments, **keywords)
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         if args and not args[0].startswith("-") and args[0] not in self.commands:
@@ -93,6 +102,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _fail(error.format_message(), error.exit_code)
         except _Interrupted:
             return _fail(SENTENCE, STATUS)
+        except _Unread:
+            lead_nowhere()
+            return 1
         except MemoryError as error:
             return _fail(f"out of memory: {str(error) or 'fewer instants or ratios fit'}", 1)
         except OSError as error:  # of standard output, for files fail with an error of ours
@@ -102,6 +114,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except BaseException as error:  # of a case, whose functions may be called late
             return _fail(f"{type(error).__name__}: {one_line(error)}", 1)
     return result if isinstance(result, int) else 0
+
+
+@contextmanager
+def _read() -> Iterator[None]:
+    """Tell a reader that is gone before click ends the program: of standard output, for files fail with an error of ours."""
+    try:
+        yield
+    except BrokenPipeError:
+        raise _Unread from None
 
 
 @contextmanager

@@ -23,7 +23,7 @@ EVEN_POINTS = "START:STOP:COUNT"
 OVER = "JOINT=START:STOP:COUNT"
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
-Number = TypeVar("Number", int, float)
+Number = TypeVar("Number")
 
 
 def even_points(text: str) -> EvenPoints:
@@ -46,7 +46,7 @@ def steps_over(text: str) -> Over:
 
 
 def axis(text: str) -> tuple[str, Axis]:
-    """NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..."""
+    """NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,...; angles may have a unit, as 30deg."""
     name, words = (word.strip() for word in text.partition("=")[::2])
     parts = words.split(":")
     if not (name and words) or len(parts) not in (1, 3, 4):
@@ -55,8 +55,9 @@ def axis(text: str) -> tuple[str, Axis]:
         )
     try:
         if len(parts) == 1:
-            return name, Values(tuple(_read(real, "a number for each value", word, words) for word in words.split(",")))
-        start, stop = (_read(real, f"a number for {end}", word, words) for end, word in zip(("START", "STOP"), parts, strict=False))
+            return name, Values(tuple(_read(_value, "a number for each value", word, words) for word in words.split(",")))
+        ends = zip(("START", "STOP"), parts, strict=False)
+        start, stop = (_read(_value, f"a number for {end}", word, words) for end, word in ends)
         count = _read(whole, "a whole number for COUNT", parts[2], words)
         if parts[3:] not in ([], ["log"]):
             raise DeclarationError(f"expected log or nothing after COUNT, got '{parts[3]}' in {words}")
@@ -102,6 +103,14 @@ def table(text: str) -> float:
         return int(text) if re.fullmatch(r"[0-9]+", text) else real(text)
     except ValueError:
         raise click.BadParameter(f"expected a number of nodes or an accuracy, as in 128 or 1e-6, got '{text}'") from None
+
+
+def _value(word: str) -> Any:
+    """A number, or the text of an angle. Raises ``ValueError`` for anything else."""
+    with suppress(ValueError):
+        return real(word)
+    angle(word)
+    return word
 
 
 def _read(read: Callable[[str], Number], what: str, word: str, words: str) -> Number:

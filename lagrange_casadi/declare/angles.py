@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+from contextlib import suppress
+from typing import Any
 
 from ..errors import AngleError
 from ..system.numerals import real
@@ -29,3 +31,11 @@ def angle(value: object) -> float:
     if not math.isfinite(found):
         raise AngleError(f"expected a finite number [rad], or a text such as '350 deg' or '1.2 rad', got {value!r}")
     return found
+
+
+def typed(value: object) -> tuple[Any, bool]:
+    """A text of an angle with its unit as a number [rad], and that it was one; anything else as it is."""
+    with suppress(AngleError):
+        if isinstance(value, str) and value.rstrip().endswith(("deg", "rad")):
+            return angle(value), True
+    return value, False

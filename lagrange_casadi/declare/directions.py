@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,8 +12,9 @@ import casadi as ca
 from ..errors import DeclarationError
 from ..geometry.rotation import Rotation, direction
 from ..geometry.vectors import AXES, ZERO, Vector, cross, dot, minus, times
+from .expressions import typed
 from .joints import Triad
-from .parts import Expression
+from .parts import Body, Expression, Link, Point
 
 Checked = Callable[[str, Any], Expression]
 """Takes what is said of an expression, and the expression."""
@@ -24,10 +25,20 @@ _RIGHT = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """Where a body is in the reference posture: its origin, and its axes, in ground axes."""
+    """Where a body is in the reference posture: its origin, its axes, and the tip of a link, in ground axes."""
 
     origin: Vector = ZERO
     rotation: Rotation = Rotation()  # noqa: RUF009 - it is frozen
+    tip: Vector | None = None
+
+    def point(self, body: Body, place: Vector) -> Point:
+        """The body's point at a place; of a link its base or tip to the last digit, where that is the place."""
+        if isinstance(body, Link) and self.tip is not None:
+            for end, there in ((body.base, self.origin), (body.tip, self.tip)):
+                if all(_is_same(one, other) for one, other in zip(place, there, strict=True)):
+                    return end
+        x, y, z = self.local(place)
+        return Point(body, x, y, z=z)
 
     def local(self, place: Vector) -> Vector:
         """The body's point at a place."""
@@ -82,13 +93,19 @@ def across(axis: Vector) -> Vector:
     return 1 + sign * x * x * factor, sign * x * y * factor, -sign * x
 
 
-def turned_by(what: str, turns: Sequence[tuple[str, Expression]], checked: Checked) -> tuple[Vector, Vector]:
-    """The directions of the x and y axes after turns in sequence, each about an axis that those before carry."""
+def turned_by(what: str, turned: Any, checked: Checked) -> tuple[Vector, Vector]:
+    """The directions of a body's x and y axes: as told, or after turns in sequence, each about an axis that those before carry."""
+    expected = "turns about 'x', 'y' or 'z' in sequence, as [('x', '90 deg')], or the directions of the child's x and y axes"
+    if not isinstance(turned, (list, tuple)):
+        raise DeclarationError(f"{what}: turned is {expected}, got {turned!r}")
+    if len(turned) == 2 and all(isinstance(one, (tuple, list)) and len(one) == 3 for one in turned):
+        x, y, _ = triad_of(f"{what}: turned", turned[0], turned[1], checked)
+        return x, y
     found = Rotation()
-    for turn in turns:
+    for turn in turned:
         if not isinstance(turn, (tuple, list)) or len(turn) != 2 or turn[0] not in ("x", "y", "z"):
-            raise DeclarationError(f"{what}: turned is turns about 'x', 'y' or 'z' in sequence, as [('x', '90 deg')], got {turn!r}")
-        angle = checked(f"{what}: turned", turn[1])
+            raise DeclarationError(f"{what}: turned is {expected}, got {turn!r}")
+        angle = checked(f"{what}: turned", typed(what, turn[1]))
         found = found.then(Rotation.about(AXES["xyz".index(turn[0])], *direction(angle), angle))
     return found.x, found.y
 
@@ -108,7 +125,7 @@ def between(what: str, places: Any, beside: Any, checked: Checked) -> tuple[Refe
     else:
         aside = vector(f"{what}: beside", beside, checked)
         y = _unit(f"{what}: beside", minus(aside, times(dot(aside, x), x)))
-    return Reference(base, Rotation.of(x, y)), length
+    return Reference(base, Rotation.of(x, y), tip), length
 
 
 def tensor(what: str, inertia: Any, checked: Checked) -> tuple[Vector, Vector, Vector]:
@@ -123,8 +140,7 @@ def tensor(what: str, inertia: Any, checked: Checked) -> tuple[Vector, Vector, V
     for i in range(3):
         for j in range(i):
             one, other = rows[i][j], rows[j][i]
-            same = one == other if isinstance(one, float) and isinstance(other, float) else ca.is_equal(ca.SX(one), ca.SX(other), 9)
-            if not same:
+            if not _is_same(one, other):
                 raise DeclarationError(f"{told} must be symmetric, and entries ({i + 1}, {j + 1}) and ({j + 1}, {i + 1}) differ")
     return rows[0], rows[1], rows[2]
 
@@ -136,6 +152,13 @@ def rotated(moments: tuple[Vector, Vector, Vector], reference: Reference) -> tup
         tuple(dot(one, (dot(moments[0], other), dot(moments[1], other), dot(moments[2], other))) for other in axes) for one in axes
     )
     return (x[0], x[1], x[2]), (x[1], y[1], y[2]), (x[2], y[2], z[2])
+
+
+def _is_same(one: Expression, other: Expression) -> bool:
+    """Whether two expressions are one, as they are written."""
+    if isinstance(one, float) and isinstance(other, float):
+        return one == other
+    return bool(ca.is_equal(ca.SX(one), ca.SX(other), 9))
 
 
 def _unit(what: str, value: Vector) -> Vector:

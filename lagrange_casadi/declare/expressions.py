@@ -71,7 +71,7 @@ def typed(what: str, angle: Expression) -> Expression:
     try:
         return read_angle(angle) if isinstance(angle, str) else angle
     except AngleError as error:
-        raise DeclarationError(f"{what}: angle: {error}") from None
+        raise DeclarationError(f"{what}: {error}") from None
 
 
 def unit_vector(what: str, axis: Any, component: Callable[[Any], Expression]) -> tuple[Expression, Expression]:

@@ -119,15 +119,16 @@ class Joint:
         return (IN_PLANE if self.turned is None else IN_SPACE)[self.kind]
 
     @property
-    def freedoms(self) -> tuple[Freedom, ...]:
-        """What it lets free between its bodies; where one has no direction there are no turns."""
-        oriented = all(body.oriented for body in self.bodies)
-        return tuple(freedom for freedom in self.lets if oriented or freedom.move == "slide")
-
-    @property
     def axes(self) -> tuple[Axis, ...]:
-        """Its coordinates, in the sequence in which they move the child."""
-        named = [freedom for freedom in self.freedoms if freedom.name is not None]
+        """Its coordinates, in the sequence in which they move the child; without directions there are no turns to measure."""
+        return self._axes(turns=all(body.oriented for body in self.bodies))
+
+    def axes_of(self, body: Body) -> tuple[Axis, ...]:
+        """The same that place a body that hangs on it, whatever it hangs on."""
+        return self._axes(turns=body.oriented)
+
+    def _axes(self, *, turns: bool) -> tuple[Axis, ...]:
+        named = [freedom for freedom in self.lets if freedom.name is not None and (turns or freedom.move == "slide")]
         return tuple(
             Axis(
                 freedom.name or "",

@@ -16,7 +16,7 @@ import casadi as ca
 
 from ..errors import DeclarationError
 from .density import Density
-from .expressions import check_line, check_name, typed, unit_vector
+from .expressions import check_line, check_name, typed
 from .joints import Axis, Joint, JointKind
 from .kinks import refuse_kinks
 from .limits import check_connected, parameter_values
@@ -42,6 +42,7 @@ from .parts import (
     Torque,
     Vector,
 )
+from .planar_joints import in_plane
 from .possible import demands
 from .results import Asked, OwnOutput, Results
 
@@ -110,11 +111,6 @@ class Mechanism:
         return False
 
     @property
-    def reference_posture(self) -> Mapping[str, float]:
-        """Coordinates where all parts are where they were declared to be; a plane has none."""
-        return {}
-
-    @property
     def own(self) -> Ownership:
         """What belongs to the mechanism."""
         return Ownership(self)
@@ -133,7 +129,7 @@ class Mechanism:
         """Declare a parameter from ``low`` to ``high``, and return its ``casadi.SX`` symbol to build lengths and places from."""
         self.own.free("parameter", name, self.parameters)
         check_line(f"parameter '{name}': its unit", unit)
-        default, low, high = (typed(f"parameter '{name}'", x) if unit == "rad" else x for x in (default, low, high))
+        default, low, high = (typed(f"parameter '{name}': angle", x) if unit == "rad" else x for x in (default, low, high))
         parameter = Parameter(name, float(default), unit, float(low), float(high), ca.SX.sym(name))
         parameter.check(parameter.default)
         return self.parameters.setdefault(name, parameter).symbol
@@ -198,7 +194,8 @@ class Mechanism:
         return self._joint(name, "weld", parent, child, angle=angle)
 
     def gear(self, name: str, first: Joint, second: Joint, *, ratio: Expression, offset: Expression = 0.0) -> Constraint:
-        """Tie two joints: coordinate of ``second`` = ratio (coordinate of ``first``) + offset. A mesh of gears has ratio -z1/z2."""
+        """Tie two joints: coordinate of ``second`` = ratio (that of ``first``) + offset (or ``"15 deg"``); a mesh has -z1/z2."""
+        offset = offset if self.own.moving_joint(second)[1].kind == "slide" else typed(f"gear '{name}': offset", offset)
         ratio, offset = self.own.expression(f"gear '{name}': ratio", ratio), self.own.expression(f"gear '{name}': offset", offset)
         return self.constraint(name, self.coordinate(second) - ratio * self.coordinate(first) - offset)
 
@@ -301,7 +298,7 @@ class Mechanism:
         """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint, whose angle counts turns."""
         if self.own.joint(joint).coordinate != "angle":
             raise DeclarationError(f"load '{name}': joint '{joint.name}' has no angle for a torsion spring")
-        stretch, rate = self.coordinate(joint) - typed(f"load '{name}'", angle), self.rate(joint)
+        stretch, rate = self.coordinate(joint) - typed(f"load '{name}': angle", angle), self.rate(joint)
         return self.torque(name, joint.child, -(stiffness * stretch) - damping * rate, against=joint.parent)
 
     def output(self, name: str, expression: Any, *, unit: str = "1") -> OwnOutput:
@@ -391,19 +388,7 @@ class Mechanism:
         angle: Expression = 0.0,
     ) -> Joint:
         self.own.free("joint", name, self.joints)
-        what = f"joint '{name}'"
-        start, end = self.own.point(what, parent), self.own.point(what, child)
-        if start.body is end.body:
-            raise DeclarationError(f"{what} joins '{start.body.name}' to itself")
-        if kind != "revolute" and not start.body.oriented:
-            raise DeclarationError(
-                f"{what}: its parent '{start.body.name}' is a point mass and has no direction to carry "
-                f"{'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
-            )
-        unit = (1.0, 0.0) if axis is None else unit_vector(what, axis, lambda a: self.own.expression(f"{what}: axis", a))
-        joint = Joint(name, kind, start, end, unit, self.own.expression(f"{what}: angle", typed(what, angle)))
-        self.joints[name] = joint
-        return joint
+        return self.joints.setdefault(name, in_plane(self.own, name, kind, parent, child, axis, angle))
 
     def _load_point(self, name: str, place: Body | Point) -> Point:
         self.own.free("load", name, self.loads)

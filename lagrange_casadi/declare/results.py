@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import casadi as ca
 
 from ..errors import DeclarationError, UnknownNameError
-from ..quantities import FORCES, Output
+from ..quantities import Output, force_members
+from ..tables import table_of
 from .density import Density
 from .joints import Joint
 from .limits import no_sections
@@ -51,6 +52,28 @@ class Force(NamedTuple):
     mz: Any
 
 
+class SpatialForce(NamedTuple):
+    """The symbols of a force in space, in ground axes [N], and of its moment [N m], which is 0 where there is none."""
+
+    fx: Any
+    fy: Any
+    fz: Any
+    mx: Any
+    my: Any
+    mz: Any
+
+
+class SpatialSectionForces(NamedTuple):
+    """The symbols of the forces at a section in space, on the link's axes [N, N m]."""
+
+    axial: Any
+    shear_y: Any
+    shear_z: Any
+    torsion: Any
+    bending_y: Any
+    bending_z: Any
+
+
 class SectionForces(NamedTuple):
     """The symbols of the forces at a section: axial and shear force [N], bending moment [N m]."""
 
@@ -79,12 +102,12 @@ class Results:
         """The symbol of the effort of the drive at a joint, along its coordinate."""
         return self._ask(Output("effort", self.mechanism.own.moving_joint(joint)[1].coordinate))
 
-    def reaction(self, joint: Joint) -> Force:
+    def reaction(self, joint: Joint) -> Force | SpatialForce:
         """The symbols of a joint's reaction: what its parent does to its child, without the drive's effort."""
         joint = self.mechanism.own.joint(joint)
-        return self._force("reaction", joint.name, moment=joint.holds_direction)
+        return self._force("reaction", joint.name, moment=joint.bears_moment)
 
-    def load(self, load: Load) -> Force:
+    def load(self, load: Load) -> Force | SpatialForce:
         """The symbols of what a load does to the body of its first point."""
         return self._force("load", self._own("load", load, self.mechanism.loads.values()), moment=True)
 
@@ -93,7 +116,7 @@ class Results:
         own = (*self.mechanism.constraints.values(), *self.mechanism.rows.values())
         return self._ask(Output("multiplier", self._own("constraint", of, own)))
 
-    def section(self, link: Link, ratio: Expression) -> SectionForces:
+    def section(self, link: Link, ratio: Expression) -> SectionForces | SpatialSectionForces:
         """The symbols of the forces at a section of a link, at a ratio xi/l from 0 to 1; at a station, on its tip's side.
 
         The ratio is a number, or an expression of parameters.
@@ -105,11 +128,15 @@ class Results:
         ratio = mechanism.own.expression(f"section of '{body.name}': ratio", ratio)
         if not isinstance(ratio, ca.SX) and not 0.0 <= ratio <= 1.0:
             raise DeclarationError(f"section of '{body.name}': expected a ratio xi/l from 0 to 1, got {ratio:g}")
-        return SectionForces(*(self._ask(Output("section", body.name, member), ratio) for member in FORCES))
+        forces = (self._ask(Output("section", body.name, member), ratio) for member in table_of(mechanism.space).sections)
+        return SpatialSectionForces(*forces) if mechanism.space else SectionForces(*forces)
 
-    def _force(self, group: str, part: str, *, moment: bool) -> Force:
-        fx, fy = (self._ask(Output(group, part, member)) for member in ("fx", "fy"))
-        return Force(fx, fy, self._ask(Output(group, part, "mz")) if moment else 0.0)
+    def _force(self, group: str, part: str, *, moment: bool) -> Force | SpatialForce:
+        space = self.mechanism.space
+        forces = [self._ask(Output(group, part, member)) for member in force_members(space, moment=False)]
+        moments = force_members(space)[len(forces) :]
+        found = [*forces, *(self._ask(Output(group, part, member)) if moment else 0.0 for member in moments)]
+        return SpatialForce(*found) if space else Force(*found)
 
     def _ask(self, output: Output, ratio: Expression | None = None) -> Any:
         asked = self.mechanism.asked
@@ -122,6 +149,8 @@ class Results:
 
     def _own(self, kind: str, part: Any, own: Iterable[Any]) -> str:
         parts = list(own)
+        if isinstance(part, str) and part in [one.name for one in parts]:
+            raise DeclarationError(f"expected the {kind} itself, as its declaration returned it, got its name '{part}'")
         if not any(part is one for one in parts):
             name = getattr(part, "name", part)
             raise UnknownNameError(f"{kind} of mechanism '{self.mechanism.name}'", str(name), [one.name for one in parts])

@@ -11,15 +11,17 @@ from ..errors import DeclarationError
 from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
-from .expressions import typed
 from .joints import IN_SPACE, Joint, JointKind, Triad
 from .matter import matter_of
 from .measures import Measures
 from .mechanism import Mechanism
 from .parts import Body, Expression, Force, LineLoad, Link, Point, PointMass, RigidMass, Torque, Vector
 
-Turns = Sequence[tuple[str, Expression]]
-"""Turns in sequence, each about the ``"x"``, ``"y"`` or ``"z"`` axis that the turns before it carry, by an angle [rad, or text]."""
+Turns = Sequence[tuple[str, Expression]] | tuple[Vector, Vector]
+"""Turns in sequence, each about the ``"x"``, ``"y"`` or ``"z"`` axis that the turns before it carry, by an angle [rad, or text].
+
+Or the directions of the child's x and y axes, in the parent's axes.
+"""
 
 
 @dataclass(eq=False)
@@ -50,11 +52,6 @@ class SpatialMechanism(Mechanism):
     def space(self) -> bool:
         """Whether it lies in space: it does."""
         return True
-
-    @property
-    def reference_posture(self) -> dict[str, float]:
-        """Coordinates where all parts are where they were declared to be: zero, of joints that were declared at a place."""
-        return {name: 0.0 for name, (joint, _) in self.coordinates.items() if joint.name in self.hard}
 
     def link(  # type: ignore[override]
         self,
@@ -106,8 +103,7 @@ class SpatialMechanism(Mechanism):
     def at(self, body: Body, x: Expression, y: Expression, z: Expression) -> Point:
         """The point of a body that is at a place (x, y, z) [m] of the reference posture."""
         what = f"place on '{body.name}'"
-        x, y, z = self._reference(what, body).local(self._vector(what, (x, y, z)))
-        return Point(body, x, y, z=z)
+        return self._reference(what, body).point(body, self._vector(what, (x, y, z)))
 
     def revolute(
         self,
@@ -299,12 +295,10 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         self.own.free("joint", name, self.joints)
         what = f"joint '{name}'"
-        if not isinstance(turned, (list, tuple)) or isinstance(turned, str):
-            raise DeclarationError(f"{what}: turned is turns in sequence, as [('x', '90 deg')], got {turned!r}")
         directions: Triad = triad_of(what, axis, second, self.own.expression)
         if at is None:
             start, end = self.own.point(what, parent), self.own.point(what, child)
-            zero = turned_by(what, [(about, typed(what, angle)) for about, angle in turned], self.own.expression)
+            zero = turned_by(what, turned, self.own.expression)
         else:
             start, end, directions, zero = self._at_reference(what, parent, child, at, directions, turned)
         if start.body is end.body:
@@ -338,8 +332,8 @@ class SpatialMechanism(Mechanism):
             if isinstance(body, PointMass) and body.name not in self.references:
                 self.references[body.name] = Reference(place)
         first, second = self._reference(what, parent), self._reference(what, child)
-        (px, py, pz), (cx, cy, cz) = first.local(place), second.local(place)
-        return Point(parent, px, py, z=pz), Point(child, cx, cy, z=cz), first.directions(directions), first.seen(second)
+        start, end = first.point(parent, place), second.point(child, place)
+        return start, end, first.directions(directions), first.seen(second)
 
     def _reference(self, what: str, body: Body) -> Reference:
         if body.name not in self.references:
@@ -351,3 +345,9 @@ class SpatialMechanism(Mechanism):
 
     def _vector(self, what: str, value: Any) -> Vector:
         return vector(what, value, self.own.expression)
+
+
+def reference_posture(mechanism: Mechanism) -> dict[str, float]:
+    """Coordinates where all parts are where they were declared to be: zero, of joints that were declared at a place."""
+    hard = mechanism.hard if isinstance(mechanism, SpatialMechanism) else ()
+    return {name: 0.0 for name, (joint, _) in mechanism.coordinates.items() if joint.name in hard}

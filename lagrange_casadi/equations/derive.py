@@ -15,6 +15,7 @@ from ..declare.limits import told_parameters
 from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted
+from ..declare.spatial import reference_posture
 from ..errors import AssemblyError, MobilityError, PostureError
 from ..geometry.vectors import ZERO
 from ..quantities import ANGLE, Output, force_members
@@ -104,7 +105,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     values = list(mechanism.values(scene.assembly).values())
     first = [float(x) for x in ca.DM(motion(scene.span[0], values)[0]).full().ravel()]
     start = Start(scene.span[0], first, values)
-    solved = kinematics.solve(body, {**scene.mechanism.reference_posture, **scene.posture}, start, iterate=iterate)
+    solved = kinematics.solve(body, reference_posture(scene.mechanism) | dict(scene.posture), start, iterate=iterate)
     solved, swings = count_turns(body, solved, motion, scene.span, start, _seeing(body, want))
 
     columns = _beyond(body, _seeing(body, want))

@@ -196,7 +196,7 @@ def coordinates_of(mechanism: Mechanism, tree: Tree, driven: Collection[str]) ->
         if joint.holds_direction and near in turned:
             turned[far.name] = (turned[near][0] + branch.sign * joint.angle, turned[near][1])
         own: list[Coordinate] = []
-        for axis in joint.axes:
+        for axis in joint.axes_of(far):
             name, drives = axis.coordinate, axis.coordinate in driven
             q, rate, acceleration = (ca.SX.sym(f"{name}{end}") for end in ("", "_rate", "_acceleration"))
             if axis.kind == "slide":

@@ -80,7 +80,7 @@ def closing_gaps(joint: Joint, parent: Frame, child: Frame) -> tuple[Any, Any, A
     parent on the child along these gaps.
     """
     gaps = [gap for gap, _ in (*_gaps_of_place(joint, parent, child), *_gaps_of_direction(joint, parent, child))]
-    phi, phi_rate, phi_acceleration = (ca.vertcat(*column) for column in zip(*gaps, strict=True))
+    phi, phi_rate, phi_acceleration = (ca.vertcat(ca.SX(0, 1), *(gap[k] for gap in gaps)) for k in range(3))
     return phi, phi_rate, phi_acceleration
 
 
@@ -145,13 +145,13 @@ def misalignment(joint: Joint, parent: Frame, child: Frame) -> Rotation:
 
 def _gaps_of_place(joint: Joint, parent: Frame, child: Frame) -> Iterator[tuple[Gap, Vector]]:
     """Gaps between points, each with the direction in ground axes along which it is measured."""
+    plane = joint.directions is None
     speed, acceleration = gap_motion(joint, parent, child)
     slides = [f.direction for f in joint.lets if f.move == "slide"]
     if not slides:
         between = minus(child.place_of(joint.child.place), parent.place_of(joint.parent.place))
-        for k, axis in enumerate(AXES):
-            if not nil(speed[k]):
-                yield (between[k], speed[k], acceleration[k]), axis
+        for k, axis in enumerate(AXES[:2] if plane else AXES):
+            yield (between[k], speed[k], acceleration[k]), axis
         return
     distance, (u, v, w) = apart(joint, parent, child), joint.triad
     # The lines turn under what slides on them (Coriolis).
@@ -160,19 +160,19 @@ def _gaps_of_place(joint: Joint, parent: Frame, child: Frame) -> Iterator[tuple[
         rate = dot(speed, axis)
         across = cross(beside, axis)
         found = [(v, across, 2 * dot(parent.rate, beside) * rate), (w, beside, -2 * dot(parent.rate, across) * rate)]
+        found = found[:1] if plane else found
     else:
         across = parent.rotation.apply(u)
         found = [(u, across, 2 * dot(cross(parent.rate, speed), across))] if len(slides) == 2 else []
     for along, across, turning in found:
-        rate = dot(speed, across)
-        if not nil(rate):
-            yield (dot(distance, along), rate, dot(acceleration, across) - turning), across
+        yield (dot(distance, along), dot(speed, across), dot(acceleration, across) - turning), across
 
 
 def _gaps_of_direction(joint: Joint, parent: Frame, child: Frame) -> Iterator[tuple[Gap, Vector]]:
     """Gaps of directions that are held, each with the axis in ground axes about which its multiplier is a moment."""
     turns = [f.direction for f in joint.lets if f.move != "slide"]
-    if not (joint.child.body.oriented and joint.parent.body.oriented) or len(turns) > 2:
+    plane = joint.directions is None
+    if not joint.bears_moment:
         return
     base, seen = parent.rotation.then(orientation(joint)), misalignment(joint, parent, child)
     rate, angular = minus(child.rate, parent.rate), minus(child.angular, parent.angular)
@@ -183,12 +183,11 @@ def _gaps_of_direction(joint: Joint, parent: Frame, child: Frame) -> Iterator[tu
         ((first, second), (first, third)),
         ((second, first),),
     )[len(turns)]
-    for own, across in held:
+    for own, across in held[:1] if plane else held:
         there = seen.apply(own)
         speed, acceleration = turning.motion_of(there)
-        change = dot(speed, across)
-        if not nil(change):
-            yield (dot(there, across), change, dot(acceleration, across)), base.apply(cross(there, across))
+        gap = dot(there, across), dot(speed, across), dot(acceleration, across)
+        yield gap, base.apply(cross(there, across))
 
 
 def _triad(joint: Joint) -> tuple[Vector, Vector, Vector]:

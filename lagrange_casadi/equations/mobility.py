@@ -29,8 +29,8 @@ from ..declare.limits import at_end
 from ..declare.mechanism import Mechanism
 from ..declare.parts import LineLoad, Link, Point, Vector
 from ..geometry.frames import Frame, Velocities
-from ..geometry.vectors import ZERO, cross, plus, times
-from ..quantities import Output, force_members, law_members, station_members
+from ..geometry.vectors import ZERO, cross, dot, plus, times
+from ..quantities import Output, force_members, law_members, own_members, station_members
 from .checks import Check, Column
 from .drives import solve_efforts
 from .gaps import reach
@@ -104,6 +104,8 @@ def internal_forces(
     for name in reactions:
         members = force_members(multibody.mechanism.space, moment=joints[name].bears_moment)
         columns |= {Output("reaction", name, member): found[name].member(member) for member in members}
+        if multibody.mechanism.space:
+            columns |= _on_own_axes(multibody, joints[name], found[name])
     tying = {c.name: c.multipliers for c in multibody.loop_equations if c.declared}
     tying |= {graph.row.name: graph.multiplier for graph in multibody.rows}
     columns |= {Output("multiplier", name): tying[name] for name in multipliers}
@@ -325,6 +327,14 @@ def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) ->
     else:
         x, y, z, moment = action[0], action[1], 0.0, (0.0, 0.0, action[2]) if joint.bears_moment else ZERO
     return Action(*borne(joint, parent, child, (x, y, z), moment))
+
+
+def _on_own_axes(multibody: Multibody, joint: Joint, action: Action) -> dict[Column, Any]:
+    """A reaction on the axes of a joint's triad, which its parent carries: what ideal joints leave open lies along one of these."""
+    rotation = multibody.frames[joint.parent.body.name].rotation
+    values = [dot(one, rotation.resolve(vector)) for vector in (action.force, action.couple) for one in joint.triad]
+    names = own_members(moment=joint.bears_moment)
+    return {Output("reaction", joint.name, name): ca.SX(value) for name, value in zip(names, values, strict=False)}
 
 
 def stations_of(outputs: Iterable[Output], link: str) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from ..declare.parts import Link
 from ..declare.results import Asked
 from ..errors import DeclarationError
 from ..quantities import Output
+from ..tables import Table, table_of
 from .checks import Column
 from .kinematics import Kinematics
 from .mobility import stations_of
@@ -22,7 +23,7 @@ def own_outputs(body: Multibody, solved: Kinematics, found: Mapping[Column, Any]
     """The user's outputs as expressions of an instant, where ``found`` are the columns that they may be made of."""
     mechanism = body.mechanism
     asked = [asked for asked in mechanism.asked if any(asked in mechanism.outputs[name].made_of for name in body.own)]
-    values = column(_value(mechanism.links, one, found) for one in asked)
+    values = column(_value(mechanism.links, one, found, table_of(mechanism.space)) for one in asked)
     symbols = column(one.symbol for one in asked)
     placed = solved.evaluate(column(body.own.values()))
     return {
@@ -31,9 +32,9 @@ def own_outputs(body: Multibody, solved: Kinematics, found: Mapping[Column, Any]
     }
 
 
-def _value(links: Mapping[str, Link], asked: Asked, found: Mapping[Column, Any]) -> Any:
+def _value(links: Mapping[str, Link], asked: Asked, found: Mapping[Column, Any], table: Table) -> Any:
     if asked.output.group == "section":
-        return _section(links[asked.output.part], asked.output.member, asked.ratio, found)
+        return _section(links[asked.output.part], asked.output.member, asked.ratio, found, table)
     if asked.output not in found:
         drives = ", ".join(str(key.part) for key in found if isinstance(key, Output) and key.group == "effort")
         raise DeclarationError(
@@ -42,7 +43,7 @@ def _value(links: Mapping[str, Link], asked: Asked, found: Mapping[Column, Any])
     return found[asked.output]
 
 
-def _section(link: Link, force: str, ratio: Any, found: Mapping[Column, Any]) -> Any:
+def _section(link: Link, force: str, ratio: Any, found: Mapping[Column, Any], table: Table) -> Any:
     """A force of a link's law (:mod:`.mobility`) at a ratio; at a station, on its tip's side."""
     assert isinstance(link.mass, Density)
     t0, t1, t2 = link.mass.tails(ratio, link.length)
@@ -51,15 +52,19 @@ def _section(link: Link, force: str, ratio: Any, found: Mapping[Column, Any]) ->
     def law(member: str) -> Any:
         return found[Output("law", link.name, member)]
 
-    if force == "bending":
-        terms = [law("m0"), law("f0") * (l * (1 - ratio)), law("f1") * (l * t1), law("f2") * (l * l * (ratio * t1 + t2))]
+    terms = table.sections[force]
+    if terms.shear:
+        first, *others = (law(name) for name in terms.coefficients)
+        arms = (l * (1 - ratio), l * t1, l * l * (ratio * t1 + t2))
+        parts = [first, *(coefficient * (terms.arm * arm) for coefficient, arm in zip(others, arms, strict=True))]
     else:
-        names = ("n0", "n1", "n2") if force == "axial" else ("f0", "f1", "f2")
-        terms = [law(name) * factor for name, factor in zip(names, (1, t0, l * (ratio * t0 + t1)), strict=True)]
-    total = sum(terms[1:], ca.SX(terms[0]))
+        parts = [law(name) * factor for name, factor in zip(terms.coefficients, (1, t0, l * (ratio * t0 + t1)), strict=False)]
+    total = sum(parts[1:], ca.SX(parts[0]))
     for name in stations_of((key for key in found if isinstance(key, Output)), link.name):
-        place, n, f, m = (found[Output("station", link.name, member, name)] for member in ("station", "n", "f", "m"))
-        load = {"axial": n, "shear": f, "bending": m + f * (l * (place - ratio))}[force]
+        place, load = (found[Output("station", link.name, member, name)] for member in ("station", terms.acting))
+        if terms.shear:
+            across = found[Output("station", link.name, table.sections[terms.shear].acting, name)]
+            load = load + across * (terms.arm * (l * (place - ratio)))
         seen = ca.logic_or(ca.SX(ratio) < place, ca.logic_and(ca.SX(ratio) >= 1, place >= 1))
         total += ca.SX(load) if seen.is_one() else ca.SX(0) if seen.is_zero() else ca.if_else(seen, load, 0)
     return total

@@ -6,7 +6,7 @@ import hashlib
 import math
 import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, ClassVar
@@ -14,6 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from ..declare.angles import typed
 from ..declare.density import Array
 from ..declare.even_points import points
 from ..declare.limits import parameter_faults
@@ -35,6 +36,8 @@ _SHOWN = 20
 class Range:
     """``count`` values from ``start`` to ``stop``, both included: evenly spaced, or with ``log`` in equal ratios.
 
+    Ends may be texts of angles, as ``"30 deg"``; the axis is then one of angles [rad].
+
     Raises :class:`DeclarationError` for a range that is empty, reversed or not finite, or a log range that does not begin above 0.
     """
 
@@ -42,8 +45,13 @@ class Range:
     stop: float
     count: int
     log: bool = False
+    angles: bool = field(default=False, init=False, compare=False)
 
     def __post_init__(self) -> None:
+        (start, one), (stop, other) = typed(self.start), typed(self.stop)
+        if one or other:
+            for name, value in (("start", start), ("stop", stop), ("angles", True)):
+                object.__setattr__(self, name, value)
         if not all(type(x) in (int, float, np.float64) for x in (self.start, self.stop)) or type(self.count) is not int:
             raise DeclarationError(
                 f"expected numbers for START and STOP and a whole COUNT, got {self.start}:{self.stop}:{self.count}"
@@ -78,16 +86,22 @@ class Range:
 
 @dataclass(frozen=True)
 class Values:
-    """Values one by one. Raises :class:`DeclarationError` for none, for what is no finite number, and for one given twice."""
+    """Values one by one; some may be texts of angles, as ``"30 deg"``, and then they are angles [rad].
+
+    Raises :class:`DeclarationError` for none, for what is no finite number, and for one given twice.
+    """
 
     values: tuple[float, ...]
+    angles: bool = field(default=False, init=False, compare=False)
 
     def __post_init__(self) -> None:
         try:
-            numbers = tuple(float(value) for value in self.values)
+            told = [typed(value) for value in self.values]
+            numbers = tuple(float(value) for value, _ in told)
         except (TypeError, ValueError):
             raise DeclarationError(f"expected numbers, got {self.values!r}") from None
         object.__setattr__(self, "values", numbers)
+        object.__setattr__(self, "angles", any(is_angle for _, is_angle in told))
         if not numbers:
             raise DeclarationError("expected at least one value, got none")
         for value in numbers:
@@ -176,6 +190,11 @@ class Grid:
         """The values of a parameter that leave a range, in words."""
         return self.axes[name].outside(low, high)
 
+    @property
+    def angles(self) -> tuple[str, ...]:
+        """The parameters whose values are told as angles."""
+        return tuple(name for name, axis in self.axes.items() if axis.angles)
+
 
 @dataclass(frozen=True, eq=False)
 class Listed:
@@ -188,6 +207,7 @@ class Listed:
     rows: Array
     lines: Numbers | None = None
     source: str = ""
+    angles: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         rows = np.ascontiguousarray(self.rows, dtype=np.float64)
@@ -250,6 +270,9 @@ def check_designs(designs: Designs, mechanism: Mechanism, fixed: Mapping[str, fl
     for name in designs.names:
         if name in fixed:
             raise DeclarationError(f"parameter '{name}' is swept and set to {fixed[name]} as well")
+    for name in designs.angles:
+        if (unit := parameters[name].unit) != "rad":
+            raise DeclarationError(f"grid of {name}: expected numbers [{unit}], not angles")
     wrong = []
     for name in designs.names:
         parameter = parameters[name]
@@ -323,6 +346,8 @@ def _axis(name: str, given: Any) -> Axis:
             return Range(*given)
         if isinstance(given, str):
             raise TypeError
+        if isinstance(given, (tuple, list)) and any(typed(value)[1] for value in given):
+            return Values(tuple(given))
         return Values(tuple(np.atleast_1d(np.asarray(given, dtype=float)).tolist()))
     except DeclarationError as error:
         raise DeclarationError(f"grid of {name}: {error}") from None

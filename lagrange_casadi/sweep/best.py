@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ..declare.angles import angle
 from ..declare.density import Array
 from ..errors import DeclarationError
 from ..system.numerals import real
@@ -34,24 +36,28 @@ _CONDITION = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|!=|==|<|>|=)\s*([^<>=!]+?)\s*"
 class Condition:
     """A parameter or a column against a number; peaks by their size, whatever their sign.
 
-    What differs from the number by a billionth of it is equal to it, for what is computed is rounded.
+    What differs from the number by a billionth of it is equal to it, for what is computed is rounded. An ``angle`` is in rad.
     """
 
     name: str
     relation: str
     value: float
+    angle: bool = False
 
     @classmethod
     def parse(cls, text: str) -> Condition:
-        """Read ``NAME<NUMBER``, or with ``<=``, ``>``, ``>=``, ``==`` or ``!=``. Raises :class:`DeclarationError`."""
+        """Read ``NAME<NUMBER``, or with ``<=``, ``>``, ``>=``, ``==`` or ``!=``; an angle may be told as ``30deg``.
+
+        Raises :class:`DeclarationError`.
+        """
         found = _CONDITION.fullmatch(text)
         try:
             if not found:
                 raise ValueError
-            value = real(found[3])
-            if math.isnan(value):
-                raise ValueError
-            return cls(found[1], found[2], value)
+            with suppress(ValueError):
+                if not math.isnan(value := real(found[3])):
+                    return cls(found[1], found[2], value)
+            return cls(found[1], found[2], angle(found[3]), angle=True)
         except ValueError:
             raise DeclarationError(f"expected a condition like l<0.3 or peak:effort:O<=12, got '{text}'") from None
 
@@ -116,6 +122,9 @@ def chosen(
     """The designs, or rows ``along`` axes, that meet all conditions, in blocks, as :meth:`.Sweep.blocks` gives them."""
     names, conditions = names_in(names), conditions_in(where)
     asked = list(dict.fromkeys([*names, *(condition.name for condition in conditions)]))
+    for condition in conditions:
+        if condition.angle and (unit := sweep.unit(condition.name)) != "rad":
+            raise DeclarationError(f"condition on {condition.name}: it is in {unit}, got an angle")
 
     def met(numbers: npt.NDArray[np.int64], values: dict[str, Any]) -> tuple[npt.NDArray[np.int64], dict[str, Any]]:
         there = np.ones(numbers.size, bool)

@@ -165,14 +165,28 @@ def remove(entries: Iterable[Entry]) -> int:
 
 
 def _make_room(place: Path, fresh: set[str]) -> None:
-    """Remove what was used longest ago, until the rest is within the limit; what is ``fresh`` stays."""
+    """Remove what was used longest ago, until the rest is within the limit, and what was left behind; what is ``fresh`` stays."""
     with suppress(OSError):
-        kept = entries(place)
-        beyond = sum(entry.size for entry in kept.values()) - limit()
-        for name, entry in kept.items():
-            if beyond > 0 and name not in fresh:
-                beyond -= remove([entry])
-        forgotten = time.time() - _FORGOTTEN
-        for draft in place.glob(f"{_DRAFT}*"):
-            if draft.stat().st_mtime < forgotten:
-                shutil.rmtree(draft, ignore_errors=True)
+        # Sizes alone first: a folder holds thousands of files, is nearly always within its limit, and is looked at whenever
+        # something is kept.
+        size, forgotten = 0, time.time() - _FORGOTTEN
+        with os.scandir(place) as files:
+            for file in files:
+                try:
+                    if _OURS.fullmatch(file.name):
+                        size += file.stat().st_size
+                    elif file.name.startswith(_DRAFT) and file.stat().st_mtime < forgotten:
+                        shutil.rmtree(file.path, ignore_errors=True)
+                except FileNotFoundError:
+                    pass
+        if size > limit():
+            _remove_oldest(place, fresh)
+
+
+def _remove_oldest(place: Path, fresh: set[str]) -> None:
+    """Remove what was used longest ago, until the rest is within the limit. Raises ``OSError``."""
+    kept = entries(place)
+    beyond = sum(entry.size for entry in kept.values()) - limit()
+    for name, entry in kept.items():
+        if beyond > 0 and name not in fresh:
+            beyond -= remove([entry])

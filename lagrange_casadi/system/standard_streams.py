@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import sys
+from contextlib import suppress
 
 from .interrupts import is_program
 
@@ -22,6 +23,14 @@ def fill() -> None:
             os.open(os.devnull, os.O_RDWR)
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(number, "w" if number else "r", closefd=False))
+
+
+def lead_nowhere() -> None:
+    """Let standard output lead nowhere from now on, once its reader has gone: what is left in it is not an error at the end."""
+    with suppress(OSError, ValueError):  # of a test, it may be no file
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
 
 
 if is_program():
