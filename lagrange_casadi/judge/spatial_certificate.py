@@ -184,9 +184,12 @@ def _acting(solution: Solution, turned: Solution, bodies: Mapping[str, Moving]) 
         force, couple = vectors("reaction", name)
         yield _Action(joint["child"]["body"], at, force, couple, False)
         yield _Action(joint["parent"]["body"], at, -force, -couple, False)
-        for coordinate in joint["coordinates"]:
-            if Output("effort", coordinate) in solution.outputs:
-                yield from _along(turned, joint, bodies, coordinate, solution.effort(coordinate))
+        efforts = [Output("effort", coordinate) for coordinate in joint["coordinates"]]
+        found = [_along(turned, joint, bodies, one.part, solution.outputs[one]) for one in efforts if one in solution.outputs]
+        for together in zip(*found, strict=True):
+            # Near gimbal lock couples along coordinates are large, and all together what the joint needs.
+            force, couple = sum(one.force for one in together), sum(one.couple for one in together)
+            yield replace(together[0], force=np.asarray(force), couple=np.asarray(couple))
     for name, load in solution.description["loads"].items():
         force, couple = vectors("load", name)
         for point, sign in zip(load["points"], (1.0, -1.0), strict=False):
