@@ -165,6 +165,10 @@ def test_figures_show_six_maps_and_two_resultants(solution, tmp_path):
     specs = default_figures(solution)
     assert SectionMaps("section_beam", "beam") in specs
     assert not any(isinstance(spec, MechanismDrawing) for spec in specs)
+    drawn = {spec.name: spec.quantities for spec in specs if spec.name.startswith("reaction_")}
+    assert drawn["reaction_A"] == ("reaction:A:fx", "reaction:A:fy", "reaction:A:fz")
+    assert {name.partition(":")[0] for name in drawn["reaction_own_moment_A"]} == {"reaction"}
+    assert {name[-2:] for name in drawn["reaction_own_moment_A"]} <= {"mu", "mv", "mw"}
     figure = SectionMaps("section_taper", "taper").draw(solution)
     titles = [axes.get_title().partition(":")[0] for axes in figure.axes if axes.get_title()]
     assert titles == [SPACE.row("section", force).long_name for force in SPACE.forces]
