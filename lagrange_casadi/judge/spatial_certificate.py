@@ -71,6 +71,7 @@ def residuals(solution: Solution, turned: Solution, equations: Sequence[Written]
         return {}
     found = {"closure": (_closure(solution, turned, bodies, equations or ()), digits.size(solution))}
     wanted = [Output("reaction", name, "fx") for name in description["joints"]]
+    wanted += [output for output in solution.outputs if output.group == "reaction"]
     wanted += [Output("load", name, "fx") for name in description["loads"]]
     wanted += [Output("effort", name) for name in drives_of(description)]
     wanted += [Output("multiplier", name) for name in (*description["constraints"], *description["rows"])]
@@ -175,22 +176,30 @@ def _acting(solution: Solution, turned: Solution, bodies: Mapping[str, Moving]) 
     """Every force of joints, drives and loads."""
 
     def vectors(group: str, name: str) -> tuple[Array, Array]:
-        nil = np.zeros_like(solution.t)
-        found = [solution.outputs.get(Output(group, name, member), nil) for member in force_members(True)]
-        return np.stack(found[:3], axis=1), np.stack(found[3:], axis=1)
+        members = force_members(True)
+        return _vector(solution, group, name, members[:3]), _vector(solution, group, name, members[3:])
 
     for name, joint in solution.description["joints"].items():
         at = bodies[joint["child"]["body"]].point(spot(joint["child"]))[0]
         force, couple = vectors("reaction", name)
         yield _Action(joint["child"]["body"], at, force, couple, False)
         yield _Action(joint["parent"]["body"], at, -force, -couple, False)
-        for coordinate in joint["coordinates"]:
-            if Output("effort", coordinate) in solution.outputs:
-                yield from _along(turned, joint, bodies, coordinate, solution.effort(coordinate))
+        efforts = [Output("effort", coordinate) for coordinate in joint["coordinates"]]
+        found = [_along(turned, joint, bodies, one.part, solution.outputs[one]) for one in efforts if one in solution.outputs]
+        for together in zip(*found, strict=True):
+            # Near gimbal lock couples along coordinates are large, and all together what the joint needs.
+            force, couple = sum(one.force for one in together), sum(one.couple for one in together)
+            yield replace(together[0], force=np.asarray(force), couple=np.asarray(couple))
     for name, load in solution.description["loads"].items():
         force, couple = vectors("load", name)
         for point, sign in zip(load["points"], (1.0, -1.0), strict=False):
             yield _Action(point["body"], bodies[point["body"]].point(spot(point))[0], sign * force, sign * couple, True)
+
+
+def _vector(solution: Solution, group: str, name: str, members: Sequence[str]) -> Array:
+    """Three outputs of a part as vectors (t, 3); those that it has none of are zero."""
+    nil = np.zeros_like(solution.t)
+    return np.stack([solution.outputs.get(Output(group, name, member), nil) for member in members], axis=1)
 
 
 def _held(solution: Solution, turned: Solution, bodies: Mapping[str, Moving], equation: Written) -> Iterator[_Action]:
@@ -252,11 +261,24 @@ def _balance(
             worst = np.maximum(worst, _size(tally.moment.get(name, 0.0) - turning) / size)
         power = power + np.sum(speed * inertial + motion.rate * turning, axis=1)
         tally.flow = tally.flow + _size(speed) * weight + _size(motion.rate) * _size(turning)
+    worst = np.maximum(worst, _unlike(solution, bodies))
     turned, fastest, _ = _rates(solution, bodies)
     least, part = digits.least(solution), digits.coarseness(solution)
     largest = tally.size * (1.0 + part * digits.extent(solution) / size)
     flow = tally.flow + least * fastest + part * (tally.pushes * fastest + tally.twists * turned)
     return (worst, max(float(np.max(largest)), least)), (np.abs(tally.power - power), float(np.max(flow)))
+
+
+def _unlike(solution: Solution, bodies: Mapping[str, Moving]) -> Array:
+    """By how much reactions on the joints' own axes are other than those in ground axes: forces, and moments over the size."""
+    worst = np.zeros_like(solution.t)
+    for name, joint in solution.description["joints"].items():
+        if Output("reaction", name, "fu") in solution.outputs:
+            axes = bodies[joint["parent"]["body"]].axes @ np.array(joint["triad"]).T
+            for kind, arm in (("f", 1.0), ("m", digits.size(solution))):
+                there, own = (_vector(solution, "reaction", name, [kind + x for x in names]) for names in ("xyz", "uvw"))
+                worst = np.maximum(worst, _size(there - turn(axes, own)) / arm)
+    return worst
 
 
 def _rates(solution: Solution, bodies: Mapping[str, Moving]) -> tuple[Array, Array, Array]:
