@@ -13,7 +13,6 @@ from spatial_scenes import beams
 from lagrange_casadi import evaluate, load, refine, save
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.draw.figures import MechanismDrawing, SectionMaps, default_figures, draw
-from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.export import export
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.store.runs import SCHEMA, check
@@ -164,7 +163,7 @@ def test_estimates_of_errors_bound_what_single_precision_loses(scene, no_certifi
 def test_figures_show_six_maps_and_two_resultants(solution, tmp_path):
     specs = default_figures(solution)
     assert SectionMaps("section_beam", "beam") in specs
-    assert not any(isinstance(spec, MechanismDrawing) for spec in specs)
+    assert MechanismDrawing() in specs
     drawn = {spec.name: spec.quantities for spec in specs if spec.name.startswith("reaction_")}
     assert drawn["reaction_A"] == ("reaction:A:fx", "reaction:A:fy", "reaction:A:fz")
     assert {name.partition(":")[0] for name in drawn["reaction_own_moment_A"]} == {"reaction"}
@@ -172,8 +171,8 @@ def test_figures_show_six_maps_and_two_resultants(solution, tmp_path):
     figure = SectionMaps("section_taper", "taper").draw(solution)
     titles = [axes.get_title().partition(":")[0] for axes in figure.axes if axes.get_title()]
     assert titles == [SPACE.row("section", force).long_name for force in SPACE.forces]
-    with pytest.raises(DeclarationError, match="figure 'mechanism': a spatial mechanism cannot be drawn yet"):
-        list(draw(solution, [MechanismDrawing()], tmp_path))
+    drawing = [path for _, path in draw(solution, [MechanismDrawing()], tmp_path)]
+    assert drawing == [None]  # motion was not wanted
 
 
 @pytest.mark.parametrize("precision", ["double", "single"])
