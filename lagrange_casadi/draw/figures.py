@@ -22,6 +22,7 @@ from ..instants.solution import Peak, Solution
 from ..quantities import Output
 from ..store.untrusted import parsed
 from ..tables import PLANE, SPACE
+from .views import AZIMUTH, ELEVATION
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -158,11 +159,18 @@ class SectionMaps:
 
 @dataclass(frozen=True)
 class MechanismDrawing:
-    """The mechanism at ``count`` instants, evenly spread over the time of the solution."""
+    """The mechanism at ``count`` instants, evenly spread over the time of the solution.
+
+    One in space is drawn from above, from the front, from the right, and from ``azimuth`` and ``elevation`` [deg]: the angle about
+    the upward axis, and that above the level, of the direction from which it is looked at. The upward axis is the ground's axis
+    that is most against gravity.
+    """
 
     kind: ClassVar[str] = "drawing"
     name: str = "mechanism"
     count: int = 4
+    azimuth: float = AZIMUTH
+    elevation: float = ELEVATION
 
     def needs(self) -> tuple[str, ...]:
         """Full names of the quantities it draws; the poses of all bodies besides."""
@@ -171,7 +179,10 @@ class MechanismDrawing:
     def draw(self, solution: Solution) -> Figure:
         """The figure."""
         from .drawing import draw_mechanism
+        from .space_drawing import draw_in_space
 
+        if solution.table is SPACE:
+            return draw_in_space(solution, self.count, self.azimuth, self.elevation)
         return draw_mechanism(solution, self.count)
 
 
@@ -196,7 +207,7 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     for link in solution.links_with_sections:
         if solution.determined(Output("section", link, "bending")):
             specs.append(SectionMaps(f"section_{link}", link))
-    return tuple(specs) if solution.table is SPACE else (*specs, MechanismDrawing())
+    return (*specs, MechanismDrawing())
 
 
 def dump_specs(specs: Sequence[Spec]) -> str:
@@ -230,8 +241,6 @@ def draw(solution: Solution, specs: Sequence[Spec], folder: Path) -> Iterator[tu
             raise DeclarationError(f"expected specs of lagrange_casadi.figures, got {spec!r}")
         if not _FILE.fullmatch(spec.name) or sum(other.name == spec.name for other in chosen) > 1:
             raise DeclarationError(f"figure '{spec.name}': expected letters, digits, underscores and hyphens, each name once")
-        if isinstance(spec, MechanismDrawing) and solution.table is SPACE:
-            raise DeclarationError(f"figure '{spec.name}': a spatial mechanism cannot be drawn yet; leave it out")
         _check_parts(solution, spec)
     for spec in chosen:
         if not _has(solution, spec):
