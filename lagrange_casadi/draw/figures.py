@@ -199,6 +199,8 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
         drawn = output.group in ("effort", "reaction", "multiplier", "load", "output") or output == Output("motion", output.part)
         if drawn and solution.determined(output) and np.any(values):
             own = "_own" if output.member.endswith(("u", "v", "w")) else ""
+            if own and all(solution.determined(other) for other in _in_ground_axes(output)):
+                continue
             kind = f"{output.group}{own}{'_moment' if output.member.startswith('m') else ''}"
             groups.setdefault((kind, output.part), []).append(str(output))
     for (group, part), names in groups.items():
@@ -208,6 +210,11 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
         if solution.determined(Output("section", link, "bending")):
             specs.append(SectionMaps(f"section_{link}", link))
     return (*specs, MechanismDrawing())
+
+
+def _in_ground_axes(output: Output) -> Iterator[Output]:
+    """The components in ground axes of a reaction that is told on the joint's own."""
+    return (Output(output.group, output.part, output.member[0] + component) for component in "xyz")
 
 
 def dump_specs(specs: Sequence[Spec]) -> str:
