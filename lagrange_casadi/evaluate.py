@@ -12,7 +12,6 @@ import numpy as np
 
 from .arithmetic.compensated import Precision
 from .declare.density import Array
-from .declare.description import describe
 from .declare.ends import BEYOND
 from .declare.even_points import EvenPoints, points
 from .declare.motion import ends_function, refuse_kinked
@@ -20,6 +19,7 @@ from .declare.scene import Scene, checked_ratios
 from .declare.times import Over, Times, Timing, span_of
 from .equations.checks import Check
 from .equations.derive import assembled, derive
+from .equations.described import described
 from .equations.scene_graph import SceneGraph
 from .errors import CertificateWarning, DeclarationError
 from .instants.backends import Evaluated
@@ -115,7 +115,7 @@ def evaluate(
     left_open += undetermined(graph, out, p, rung)
     within = phases(graph, out, times, p) if certificate else {}
     outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
-    description = describe(scene.mechanism, values, scene.laws, scene.weights)
+    description = described(scene, values)
     ordered = in_order(outputs, description)
     solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open, over=instants.over)
     solution = replace(solution, tolerance=tolerance(solution))

@@ -10,9 +10,10 @@ from typing import Any
 import click
 
 from ..case import load_case
-from ..declare.description import Description, describe
+from ..declare.description import Description, coordinates_of
 from ..declare.scene import Scene, kinds, outputs
 from ..equations.derive import derive
+from ..equations.described import described
 from ..instants.solution import Solution
 from ..store import runs as store
 from ..sweep import Sweep, is_sweep
@@ -47,7 +48,7 @@ def info(target: Path, want: tuple[str, ...]) -> None:
 def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
     mechanism = scene.mechanism
     graph = derive(scene, want or None)
-    _describe_mechanism(describe(mechanism, mechanism.values(), scene.laws, scene.weights))
+    _describe_mechanism(described(scene, mechanism.values()))
     for line in scene_lines(scene):
         click.echo(line)
     timing = scene.timing()
@@ -89,7 +90,7 @@ def _describe_sweep(identity: Mapping[str, Any]) -> None:
     for name, words in identity["grid"].items():
         click.echo(f"swept {name}: {words}")
     asked, xi = identity["t"][:4], identity["xi"]
-    click.echo(asked_line(asked, len(asked) > 3 and identity["mechanism"]["joints"][asked[3]]["coordinate"] == "slide"))
+    click.echo(asked_line(asked, len(asked) > 3 and coordinates_of(identity["mechanism"])[asked[3]] == "slide"))
     if xi:
         click.echo(f"xi/l: {xi[0]:g} to {xi[1]:g}, {xi[2]} points")
     click.echo(f"backend: {identity['backend']}, {identity['precision']} {identity['compiler']} {identity['flags']}".rstrip())

@@ -3,46 +3,72 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any
 
 import casadi as ca
 
+from ..geometry.vectors import cross
 from .density import NumericDensity
+from .joints import Joint
 from .mechanism import Mechanism
-from .parts import Link, Point, PointMass, RigidMass
+from .parts import Link, Load, Point, PointMass, RigidMass
 
 Description = dict[str, Any]
 
 _PLACE = {"body": str, "x": float, "y": float}
-_BODY = {"length": float, "mass": float}
-SHAPE = {
-    "name": str,
-    "parameters": {str: {"value": float, "unit": str, "low": float, "high": float}},
-    "gravity": [float],
-    "bodies": {
-        str: (
-            {"length": None, "mass": float},
-            _BODY | {"centre": {"x": float, "y": float, "inertia": float}},
-            _BODY | {"density": {"breaks": [float], "cells": [[float]]}},
-        )
-    },
-    "joints": {
-        str: {
-            "kind": str,
-            "coordinate": (str, None),
-            "driven": bool,
-            "parent": _PLACE,
-            "child": _PLACE,
-            "axis": [float],
-            "angle": float,
-        }
-    },
-    "loads": {str: {"kind": str, "points": [_PLACE]}},
-    "rows": {str: str},
-    "constraints": [str],
-}
-"""What every description is like, in the words of :mod:`.untrusted`."""
+_VECTOR = [float, float, float]
+_MATRIX = [_VECTOR, _VECTOR, _VECTOR]
+
+
+def _shape(place: Any, centre: Any, gravity: Any, joint: Any, load: Any) -> dict[str, Any]:
+    body = {"length": float, "mass": float}
+    return {
+        "name": str,
+        "parameters": {str: {"value": float, "unit": str, "low": float, "high": float}},
+        "gravity": gravity,
+        "bodies": {
+            str: (
+                {"length": None, "mass": float},
+                body | {"centre": centre},
+                body | {"density": {"breaks": [float], "cells": [[float]]}},
+            )
+        },
+        "joints": {str: {"kind": str, "parent": place, "child": place} | joint},
+        "loads": {str: {"kind": str, "points": [place]} | load},
+        "rows": {str: str},
+        "constraints": [str],
+    }
+
+
+IN_PLANE = _shape(
+    place=_PLACE,
+    centre={"x": float, "y": float, "inertia": float},
+    gravity=[float],
+    joint={"coordinate": (str, None), "driven": bool, "axis": [float], "angle": float},
+    load={},
+)
+"""What every description of a planar mechanism is like, in the words of :mod:`.untrusted`."""
+
+IN_SPACE = _shape(
+    place=_PLACE | {"z": float},
+    centre={"x": float, "y": float, "z": float, "inertia": _MATRIX},
+    gravity=_VECTOR,
+    joint={"coordinates": {str: str}, "driven": [str], "axes": [_VECTOR], "turned": _MATRIX, "pitch": float},
+    load={"turning": bool},
+) | {"bars": [str], "unmeasured": [str]}
+"""The same of a mechanism in space."""
+
+
+def in_space(description: Description) -> bool:
+    """Whether a described mechanism lies in space: its gravity has a z."""
+    return len(description["gravity"]) > 2
+
+
+def shape_of(value: Any) -> dict[str, Any]:
+    """What a description is like: that of a planar mechanism, or that of one in space."""
+    gravity = value.get("gravity") if isinstance(value, dict) else None
+    return IN_SPACE if isinstance(gravity, list) and len(gravity) > 2 else IN_PLANE
 
 
 def density_of(body: Description) -> NumericDensity:
@@ -50,11 +76,32 @@ def density_of(body: Description) -> NumericDensity:
     return NumericDensity(tuple(body["density"]["breaks"]), tuple(tuple(cell) for cell in body["density"]["cells"]))
 
 
+def coordinates_of(description: Description) -> dict[str, str]:
+    """The coordinates of all joints, with their kinds: "angle" or "slide"."""
+    if not in_space(description):
+        return {name: joint["coordinate"] for name, joint in description["joints"].items() if joint["coordinate"]}
+    return {name: kind for joint in description["joints"].values() for name, kind in joint["coordinates"].items()}
+
+
+def measured_of(description: Description) -> list[str]:
+    """The coordinates whose motion is told: all but the angles of joints with three turns that close loops."""
+    return [name for name in coordinates_of(description) if name not in description.get("unmeasured", ())]
+
+
+def _driven(description: Description) -> list[str]:
+    joints = description["joints"].items()
+    if not in_space(description):
+        return [name for name, joint in joints if joint["driven"]]
+    return [name for _, joint in joints for name in joint["driven"]]
+
+
 def drives_of(description: Description) -> list[str]:
-    """The joints whose efforts make the motion."""
-    driven = [name for name, joint in description["joints"].items() if joint["driven"] and name not in description["rows"].values()]
+    """The coordinates whose efforts make the motion."""
     drives = description.get("drives")
-    return driven if drives is None else [name for name in drives if name in description["joints"]]
+    if drives is None:
+        return [name for name in _driven(description) if name not in description["rows"].values()]
+    known = coordinates_of(description)
+    return [name for name in drives if name in known]
 
 
 def parts_of(description: Description) -> list[str]:
@@ -68,7 +115,9 @@ def describe(
 ) -> Description:
     """Bodies with their length [m] (None for a point mass) and mass [kg], and joints with the places they join.
 
-    ``driven`` are the joints whose motion is given, ``drives`` those whose efforts make it, where these are others.
+    ``driven`` are the coordinates whose motion is given, ``drives`` those whose efforts make it, where these are others. A joint in
+    space has the kinds of its coordinates in sequence, and their ``axes`` in the parent's axes where all are zero; ``turned`` are
+    the child's axes there, a row each, in the parent's axes.
     """
     numbers = iter(_numbers(mechanism)([values[name] for name in mechanism.parameters]).full().ravel().tolist())
     found = _described(mechanism, values, driven, lambda _: next(numbers))
@@ -88,7 +137,8 @@ def _kind(mechanism: Mechanism, name: str) -> str:
 
 def motions_of(description: Description) -> dict[str, str]:
     """The coordinates whose motion is given, of joints and of guides, with their kinds: "angle" or "slide"."""
-    driven = {name: joint["coordinate"] for name, joint in description["joints"].items() if joint["driven"]}
+    kinds = coordinates_of(description)
+    driven = {name: kinds[name] for name in _driven(description)}
     return driven | {str(name): str(kind) for name, kind in description.get("motions", {}).items()}
 
 
@@ -109,16 +159,22 @@ def _described(
     mechanism: Mechanism, values: Mapping[str, float], driven: Collection[str], number: Callable[[Any], float]
 ) -> Description:
     def place(point: Point) -> Description:
-        return {"body": point.body.name, "x": number(point.x), "y": number(point.y)}
+        found = {"body": point.body.name, "x": number(point.x), "y": number(point.y)}
+        return found | {"z": number(point.z)} if mechanism.space else found
+
+    def vector(components: Iterable[Any]) -> list[float]:
+        return [number(component) for component in components]
+
+    def centre(mass: RigidMass) -> Description:
+        found = dict(zip("xyz", vector(mass.centre), strict=False))
+        return found | {"inertia": [vector(row) for row in mass.inertia] if mechanism.space else number(mass.inertia)}
 
     def matter(body: Link | PointMass) -> Description:
         if isinstance(body, PointMass):
             return {"length": None, "mass": number(body.mass)}
         length = number(body.length)
         if isinstance(body.mass, RigidMass):
-            x, y = body.mass.centre
-            mass, centre = number(body.mass.mass), {"x": number(x), "y": number(y), "inertia": number(body.mass.inertia)}
-            return {"length": length, "mass": mass, "centre": centre}
+            return {"length": length, "mass": number(body.mass.mass), "centre": centre(body.mass)}
         density = body.mass.at(number, length)
         return {
             "length": length,
@@ -126,23 +182,29 @@ def _described(
             "density": {"breaks": list(density.breaks), "cells": [list(c) for c in density.cells]},
         }
 
-    bodies = {body.name: matter(body) for body in mechanism.moving}
-    loads = {
-        name: {"kind": type(load).__name__.lower(), "points": [place(point) for point in load.points]}
-        for name, load in mechanism.loads.items()
-    }
-    joints = {
-        joint.name: {
-            "kind": joint.kind,
-            "coordinate": joint.coordinate,
-            "driven": joint.name in driven,
+    def freedoms(joint: Joint) -> Description:
+        if joint.turned is None:
+            told: Description = {"coordinate": joint.coordinate, "driven": joint.name in driven}
+            ends = {"parent": place(joint.parent), "child": place(joint.child)}
+            return told | ends | {"axis": vector(joint.axis), "angle": number(joint.angle)}
+        x, y = joint.turned
+        return {
+            "coordinates": {axis.coordinate: axis.kind for axis in joint.axes},
+            "driven": [axis.coordinate for axis in joint.axes if axis.coordinate in driven],
             "parent": place(joint.parent),
             "child": place(joint.child),
-            "axis": [number(component) for component in joint.axis],
-            "angle": number(joint.angle),
+            "axes": [vector(axis.direction) for axis in joint.axes],
+            "turned": [vector(direction) for direction in (x, y, cross(x, y))],
+            "pitch": number(joint.pitch),
         }
-        for joint in mechanism.joints.values()
-    }
+
+    def load_of(load: Load) -> Description:
+        found = {"kind": type(load).__name__.lower(), "points": [place(point) for point in load.points]}
+        return found | {"turning": getattr(load, "turning", False)} if mechanism.space else found
+
+    bodies = {body.name: matter(body) for body in mechanism.moving}
+    loads = {name: load_of(load) for name, load in mechanism.loads.items()}
+    joints = {joint.name: {"kind": joint.kind} | freedoms(joint) for joint in mechanism.joints.values()}
     parameters = {
         name: {"value": values[name], "unit": parameter.unit, "low": parameter.low, "high": parameter.high}
         for name, parameter in mechanism.parameters.items()
@@ -151,7 +213,7 @@ def _described(
     return {
         "name": mechanism.name,
         "parameters": parameters,
-        "gravity": [number(component) for component in mechanism.gravity[: 3 if mechanism.space else 2]],
+        "gravity": vector(mechanism.gravity[: 3 if mechanism.space else 2]),
         "bodies": bodies,
         "joints": joints,
         "loads": loads,

@@ -192,7 +192,7 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
             groups.setdefault((kind, output.part), []).append(str(output))
     for (group, part), names in groups.items():
         what = part if group == "output" else f"{group.replace('_', ' ')} of {part}"
-        specs.append(TimePlot(f"{group}_{part}", tuple(names), f"{solution.case}: {what}"))
+        specs.append(TimePlot(f"{group}_{part.replace(':', '-')}", tuple(names), f"{solution.case}: {what}"))
     for link in solution.links_with_sections:
         if solution.determined(Output("section", link, "bending")):
             specs.append(SectionMaps(f"section_{link}", link))
@@ -248,7 +248,7 @@ def _check_parts(solution: Solution, spec: Spec) -> None:
     parts = parts_of(solution.description)
     for name in spec.needs():
         part = Output.of(name).part
-        if part not in parts:
+        if part.partition(":")[0] not in parts:
             raise UnknownNameError(f"part in figure '{spec.name}'", part, parts)
 
 

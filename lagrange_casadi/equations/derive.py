@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -27,7 +27,7 @@ from .drives import closure, pushed
 from .fingerprint import fingerprint
 from .kinematics import Start
 from .mobility import internal_forces, needed_reactions
-from .multibody import Coordinate, Multibody, column
+from .multibody import Coordinate, Multibody, column, own_coordinate
 from .own import own_outputs
 from .reciprocals import share_reciprocals
 from .scene_graph import SceneGraph
@@ -123,6 +123,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
         counted: dict[Column, Any] = {Check("turns", c.name): c.value for c in angles if c.name not in solved.loose}
         loop_angles = {output: _turns(value, loose | counted) for output, value in motions.items() if _is_angle(mechanism, output)}
         loop_angles = {output: turns for output, turns in loop_angles.items() if not loose.keys().isdisjoint(turns)}
+        loop_angles |= {output: {output: 1} for output in _within_a_turn(mechanism, body, motions)}
         whole = {check: ca.floor(value * (1 / math.tau)) for check, value in counted.items()}
         within = column(value - math.tau * whole[check] for check, value in counted.items())
         motions |= {output: ca.substitute(ca.SX(motions[output]), column(counted.values()), within) for output in loop_angles}
@@ -204,12 +205,11 @@ def _motion_columns(
     mechanism: Mechanism, body: Multibody, solved: kinematics.Kinematics, driven: Sequence[str]
 ) -> dict[Output, Any]:
     columns: dict[Output, Any] = {}
-    closing = {joint.name for joint in body.tree.closing} | {joint.name for bar in body.tree.bars for joint in bar.joints}
     for name, (joint, axis) in mechanism.coordinates.items():
         if name in driven:
             i = driven.index(name)
             motion = (solved.driven[i], solved.driven_rate[i], solved.driven_acceleration[i])
-        elif joint.turns > 2 and joint.name in closing:
+        elif not body.tree.measures(joint, axis):
             continue
         else:
             motion = body.motion_along(joint, axis)
@@ -226,6 +226,13 @@ def _motion_columns(
         elif part.oriented:
             columns[Output("pose", part.name, "angle")] = frame.rotation.angle
     return columns
+
+
+def _within_a_turn(mechanism: Mechanism, body: Multibody, motions: Collection[Output]) -> list[Output]:
+    """The angles of joints in space that are known by a direction alone: none of them is a coordinate of the tree."""
+    angles = [axis for _, axis in mechanism.coordinates.values() if mechanism.space and axis.kind == "angle"]
+    seen = [Output("motion", axis.coordinate) for axis in angles if own_coordinate(axis, body.coordinates) is None]
+    return [output for output in seen if output in motions]
 
 
 def _known_by(coordinate: Coordinate) -> Output:

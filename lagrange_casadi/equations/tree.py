@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from ..declare.joints import Joint
+from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Body, Point
 from ..errors import DeclarationError
@@ -51,6 +51,10 @@ class Tree:
     branches: tuple[Branch, ...]
     closing: tuple[Joint, ...]
     bars: tuple[Bar, ...] = ()
+
+    def measures(self, joint: Joint, axis: Axis) -> bool:
+        """Whether the motion of a joint along an axis is told: not the angles of one with three turns that closes a loop."""
+        return axis.kind == "slide" or joint.turns < 3 or any(branch.joint is joint for branch in self.branches)
 
 
 def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.description import Description, density_of, parts_of
+from ..declare.description import Description, coordinates_of, density_of, in_space, parts_of
 from ..declare.limits import no_sections
 from ..declare.notes import notes
 from ..declare.times import DriveAxis
@@ -63,7 +63,7 @@ class Peak:
 
 def table_of_described(description: Description) -> Table:
     """The table of the quantities of a described mechanism: that of planar ones, or that of spatial ones, whose gravity has a z."""
-    return table_of(len(description["gravity"]) > 2)
+    return table_of(in_space(description))
 
 
 def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[Output, Array]:
@@ -234,7 +234,7 @@ class Solution:
             self._of_section(output)
         if output.group == "output":
             return str(self.description["outputs"][output.part])
-        kind = self.description["joints"].get(output.part, {}).get("coordinate") or "angle"
+        kind = coordinates_of(self.description).get(output.part, "angle")
         return output.quantity.unit_for(kind if output.group in ("motion", "effort") else "angle")
 
     def array(self, name: str | Output) -> Array:

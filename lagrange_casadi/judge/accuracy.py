@@ -21,7 +21,7 @@ from ..instants.backends import Evaluated
 from ..instants.cycle_table import CycleTable
 from ..instants.solution import Solution
 from ..quantities import Output
-from .certificate import blur
+from .digits import blur
 from .disturbed import Instants, effects, openness
 
 INSTANTS = 48

@@ -14,12 +14,17 @@ from typing import Any
 
 import numpy as np
 
-from ..arithmetic.compensated import DTYPES, ROUNDING, Precision
 from ..declare.density import Array
 from ..declare.description import Description, density_of, drives_of
 from ..instants.solution import Solution
 from ..quantities import FORCES, Output
+from ..tables import SPACE
+from . import digits
+from .digits import LOOSE as LOOSE
+from .digits import TOLERANCE as TOLERANCE
+from .digits import blur as blur
 from .placing import Complex, Moving, axis_of, measured, oriented, place
+from .spatial_certificate import residuals as spatial_residuals
 from .written import Written
 
 NEAR = 1e3
@@ -28,9 +33,7 @@ _BLOCK = 1 << 14
 _Matter = tuple[float, complex, float]
 _Action = tuple[str, Complex, Any, Any, bool]
 
-_TURNED, _ROUNDINGS = 100.0, 4.0
-TOLERANCE, LOOSE = 1e-9, 1e-3
-"""A residual above it means that the solution is wrong, not that it is rounded; in doubles, and where less was asked for."""
+_TURNED = 100.0
 
 
 @dataclass(eq=False)
@@ -81,6 +84,8 @@ def certify(
 
 def _residuals(solution: Solution, turned: Solution, equations: Sequence[Written] | None) -> dict[str, tuple[Array, float]]:
     """Each residual, and the largest of what it is to be compared with; ``turned`` has angles without their turns."""
+    if solution.table is SPACE:
+        return spatial_residuals(solution, turned, equations)
     description = solution.description
     joints = description["joints"]
     if any(joint["coordinate"] and Output("motion", name) not in solution.outputs for name, joint in joints.items()):
@@ -88,7 +93,7 @@ def _residuals(solution: Solution, turned: Solution, equations: Sequence[Written
     bodies = place(turned, equations or ())
     if len(bodies) < len(description["bodies"]) + 1:
         return {}
-    found = {"closure": (_closure(solution, bodies, equations or ()), _size(solution))}
+    found = {"closure": (_closure(solution, bodies, equations or ()), digits.size(solution))}
     wanted = [Output("reaction", name, "fx") for name in joints] + [Output("load", name, "fx") for name in description["loads"]]
     wanted += [Output("effort", name) for name in drives_of(description)]
     wanted += [Output("multiplier", name) for name in (*description["constraints"], *description["rows"])]
@@ -110,19 +115,6 @@ def tolerance(solution: Solution) -> float:
         word in solution.provenance.rung for word in ("--newton", "--table")
     )
     return min(LOOSE, max(TOLERANCE, _TURNED * blur(solution))) if exact else LOOSE
-
-
-def blur(solution: Solution) -> float:
-    """What the reported angles leave open of a phase: one rounding of the largest of them [rad]."""
-    joints = solution.description["joints"]
-    angles = [Output("motion", name) for name, joint in joints.items() if joint["coordinate"] == "angle"]
-    angles += [Output("pose", name, "angle") for name in solution.description["bodies"]]
-    reported = (solution.outputs[angle] for angle in angles if angle in solution.outputs)
-    return _rounding(solution) * max((float(np.max(np.abs(values))) for values in reported), default=0.0)
-
-
-def _rounding(solution: Solution) -> float:
-    return ROUNDING["single" if solution.provenance.precision == "single" else "double"]
 
 
 def failure(solution: Solution) -> str:
@@ -151,29 +143,6 @@ def _matter(body: Description) -> _Matter:
     return mass, middle * length + 0j, (second - first * middle) * length**2
 
 
-def _size(solution: Solution) -> float:
-    return sum(body["length"] or 0.0 for body in solution.description["bodies"].values()) or 1.0
-
-
-def _extent(solution: Solution) -> float:
-    """The size of the mechanism, and how far from the origin it stands: the largest of places."""
-    joints = solution.description["joints"].values()
-    points = [joint[side] for joint in joints for side in ("parent", "child")]
-    points += [point for load in solution.description["loads"].values() for point in load["points"]]
-    return _size(solution) + max((abs(p[k]) for p in points if p["body"] == "ground" for k in "xy"), default=0.0)
-
-
-def _least(solution: Solution) -> float:
-    """The force beside which what underflows is as small as a rounding."""
-    precision: Precision = "single" if solution.provenance.precision == "single" else "double"
-    return float(np.finfo(DTYPES[precision]).tiny) / ROUNDING[precision]
-
-
-def _coarseness(solution: Solution) -> float:
-    """What a rounding is of the least that fails."""
-    return _ROUNDINGS * _rounding(solution) / (LOOSE if solution.provenance.precision == "single" else TOLERANCE)
-
-
 def _closure(solution: Solution, bodies: dict[str, Moving], equations: Sequence[Written]) -> Array:
     """Gaps of all joints, of the reported poses, and of the users' equations: over their slopes, times the length of all links."""
     worst = np.zeros_like(solution.t)
@@ -184,23 +153,22 @@ def _closure(solution: Solution, bodies: dict[str, Moving], equations: Sequence[
         worst = np.maximum(worst, np.abs(across if slides else b - a))
         if joint["kind"] in ("prismatic", "weld") and oriented(solution.description, joint["child"]["body"]):
             turned = bodies[joint["child"]["body"]].angle - bodies[joint["parent"]["body"]].angle - joint["angle"]
-            worst = np.maximum(worst, np.abs(np.exp(1j * turned) - 1.0) * _size(solution))
+            worst = np.maximum(worst, np.abs(np.exp(1j * turned) - 1.0) * digits.size(solution))
     for name in solution.description["bodies"]:
         pose = solution.pose(name)
         worst = np.maximum(worst, np.abs(pose.x + 1j * pose.y - bodies[name].at))
         if pose.angle is not None:
             # An angle of many turns is reported to so many digits only.
-            off = np.abs(np.exp(1j * (pose.angle - bodies[name].angle)) - 1.0) - _ROUNDINGS * _rounding(solution) * np.abs(
-                pose.angle
-            )
-            worst = np.maximum(worst, off * _size(solution))
+            known = digits.ROUNDINGS * digits.rounding(solution) * np.abs(pose.angle)
+            off = np.abs(np.exp(1j * (pose.angle - bodies[name].angle)) - 1.0) - known
+            worst = np.maximum(worst, off * digits.size(solution))
     for equation in equations:
         motion = [measured(solution, bodies, entry) for entry in equation.entries]
-        units = [1.0 if entry.kind in ("direction", "coordinate") else _size(solution) for entry in equation.entries]
+        units = [1.0 if entry.kind in ("direction", "coordinate") else digits.size(solution) for entry in equation.entries]
         moving = [unit + np.abs(entry[1 if equation.row else 0]) for unit, entry in zip(units, motion, strict=True)]
         scale = np.sum(np.abs(equation.slopes_at(motion, solution.t)) * moving, axis=0)
         missed = np.abs(equation.at(motion, solution.t)[0])
-        worst = np.maximum(worst, np.divide(missed, scale, out=missed.copy(), where=scale > 0.0) * _size(solution))
+        worst = np.maximum(worst, np.divide(missed, scale, out=missed.copy(), where=scale > 0.0) * digits.size(solution))
     return worst
 
 
@@ -256,7 +224,7 @@ def _tally(solution: Solution, bodies: dict[str, Moving], acting: Sequence[_Acti
         moment = (np.conj(at - middle) * force).imag + couple
         tally.force[body] = tally.force.get(body, 0j) + force
         tally.moment[body] = tally.moment.get(body, 0.0) + moment
-        tally.bear(np.abs(force), np.abs(couple), _size(solution))
+        tally.bear(np.abs(force), np.abs(couple), digits.size(solution))
         if works:
             local = (at - motion.at) * np.exp(-1j * motion.angle)
             speed = motion.point(local.real, local.imag)[1]
@@ -279,7 +247,7 @@ def _balance(
     And beside what reported digits leave open: those of places, which give arms, and of the joints' rates, of which the rates of
     bodies are sums and differences.
     """
-    gravity, size = complex(*solution.description["gravity"]), _size(solution)
+    gravity, size = complex(*solution.description["gravity"]), digits.size(solution)
     worst, power = np.zeros_like(solution.t), np.zeros_like(solution.t)
     for name, body in solution.description["bodies"].items():
         mass, centre, inertia = matter[name]
@@ -295,8 +263,8 @@ def _balance(
         power = power + (np.conj(speed) * inertial).real + turning * motion.rate
         tally.flow = tally.flow + np.abs(speed) * weight + np.abs(turning * motion.rate)
     turned, fastest = _rates(solution, bodies)
-    least, part = _least(solution), _coarseness(solution)
-    largest = tally.size * (1.0 + part * _extent(solution) / size)
+    least, part = digits.least(solution), digits.coarseness(solution)
+    largest = tally.size * (1.0 + part * digits.extent(solution) / size)
     flow = tally.flow + least * fastest + part * (tally.pushes * fastest + tally.twists * turned)
     return (worst, max(float(np.max(largest)), least)), (np.abs(tally.power - power), float(np.max(flow)))
 
@@ -308,7 +276,7 @@ def _rates(solution: Solution, bodies: dict[str, Moving]) -> tuple[Array, Array]
         if joint["coordinate"] == "angle":
             turning.append(np.abs(solution.motion(name).rate))
     turned = np.max(turning, axis=0)
-    return turned, np.max([np.abs(motion.speed) for motion in bodies.values()], axis=0) + turned * _extent(solution)
+    return turned, np.max([np.abs(motion.speed) for motion in bodies.values()], axis=0) + turned * digits.extent(solution)
 
 
 def _ends(
@@ -318,8 +286,8 @@ def _ends(
 
     And beside what the rounding of places leaves open, which turns short links most.
     """
-    worst, scale = np.zeros_like(solution.t), _least(solution)
-    size, blurred = _size(solution), _coarseness(solution) * _extent(solution)
+    worst, scale = np.zeros_like(solution.t), digits.least(solution)
+    size, blurred = digits.size(solution), digits.coarseness(solution) * digits.extent(solution)
     base = np.zeros((solution.t.size, 1))
     for link in solution.links_with_sections:
         law = solution.section(link).law

@@ -14,18 +14,17 @@ import casadi as ca
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Point
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One number that an equation measures: a joint's coordinate, x or y of a point of a body, or a link's direction."""
+    """One number that an equation measures: a joint's coordinate, x, y or z of a point of a body, or a link's direction."""
 
-    kind: Literal["coordinate", "x", "y", "direction"]
+    kind: Literal["coordinate", "x", "y", "z", "direction"]
     part: str
-    point: tuple[float, float] = (0.0, 0.0)
+    point: tuple[float, ...] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,12 +84,14 @@ def _entries(mechanism: Mechanism, values: Mapping[str, float]) -> Iterator[tupl
     for measure in mechanism.measures.asked:
         of = measure.of
         if isinstance(of, Point):
-            point = mechanism.number(of.x, values), mechanism.number(of.y, values)
-            yield Entry("x", of.body.name, point), measure.places[0], measure.rates[0]
-            yield Entry("y", of.body.name, point), measure.places[1], measure.rates[1]
+            point = tuple(mechanism.number(x, values) for x in of.place[: len(measure.places)])
+            components: tuple[Literal["x", "y", "z"], ...] = ("x", "y", "z")
+            for component, place, rate in zip(components, measure.places, measure.rates, strict=False):
+                yield Entry(component, of.body.name, point), place, rate
+        elif measure.axis is not None:
+            yield Entry("coordinate", measure.axis.coordinate), measure.places[0], measure.rates[0]
         else:
-            kind: Literal["coordinate", "direction"] = "coordinate" if isinstance(of, Joint) else "direction"
-            yield Entry(kind, of.name), measure.places[0], measure.rates[0]
+            yield Entry("direction", of.name), measure.places[0], measure.rates[0]
 
 
 def _stacked(motion: Sequence[tuple[Array, Array, Array]], t: Array) -> list[Array]:

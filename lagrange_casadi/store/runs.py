@@ -21,8 +21,7 @@ import h5py
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.description import SHAPE as DESCRIPTION
-from ..declare.description import Description, motions_of
+from ..declare.description import Description, motions_of, shape_of
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
 from ..errors import DeclarationError, PathError, StoreError, one_line
@@ -307,7 +306,7 @@ def _create(file: h5py.File, scales: Scales, solution: Solution, output: Output,
 
 def _read(file: h5py.File) -> Solution:
     check_links(file)
-    description = parsed(file.attrs["mechanism"], DESCRIPTION, "mechanism")
+    description = parsed(file.attrs["mechanism"], shape_of, "mechanism")
     t, xi = (_numbers(file[axis]) for axis in _AXES)
     if t.ndim != 1 or xi.ndim != 1 or not t.size or not xi.size:
         raise ValueError(f"t and xi have the shapes {t.shape} and {xi.shape}")

@@ -10,6 +10,7 @@ import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from types import FunctionType
 from typing import Any
 
 import h5py
@@ -19,7 +20,7 @@ from ..errors import LagrangeCasadiError, StoreError, one_line
 Shape = Any
 """``str``, ``int``, ``float`` or ``bool``, or None for null; a tuple of shapes, any of which will do; ``[shape]`` for a list, and
 ``[shape, shape, ...]`` for one of so many; ``{str: shape}`` for a mapping of any names, ``{"name": shape, ...}`` for one that has
-these, at least."""
+these, at least; or a function that tells the shape by the value."""
 
 
 @contextmanager
@@ -90,6 +91,8 @@ def check_chunks(dataset: h5py.Dataset) -> None:
 
 def _misfit(value: Any, shape: Shape, place: str) -> str:
     """The first place where a value has another shape; nothing where none has."""
+    if isinstance(shape, FunctionType):
+        return _misfit(value, shape(value), place)
     if isinstance(shape, tuple):
         return "" if any(not _misfit(value, one, place) for one in shape) else place
     if isinstance(shape, list):

@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.description import SHAPE as DESCRIPTION
-from ..declare.description import Description, describe
+from ..declare.description import Description, shape_of
 from ..declare.even_points import EvenPoints, points
 from ..declare.scene import Scene, Wanted, checked_ratios, outputs
 from ..declare.times import Over, Times, Timing
 from ..designs.engine import DesignEngine
 from ..equations.derive import derive
+from ..equations.described import described
 from ..equations.fingerprint import fingerprint, sources
 from ..errors import AssemblyError, DeclarationError, MobilityError, ParameterError, SizeError
 from ..instants.rung import Rung
@@ -50,7 +50,7 @@ IDENTITY = {
     "wanted": {},
     "t": ([float, float, int], [_BOUND, _BOUND, int], [_BOUND, _BOUND, int, str, _BOUND]),
     "xi": (None, [float, float, int]),
-    "mechanism": DESCRIPTION,
+    "mechanism": shape_of,
     "grid": {str: str},
 }
 """The shape of :attr:`Plan.identity`, in the words of :mod:`.untrusted`."""
@@ -214,7 +214,7 @@ class Plan:
     @property
     def description(self) -> Description:
         """The mechanism, the swept parameters at their defaults."""
-        return describe(self.scene.mechanism, self.values, self.scene.laws, self.scene.weights)
+        return described(self.scene, self.values)
 
     @cached_property
     def identity(self) -> dict[str, Any]:

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
+from ..declare.description import coordinates_of
 from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, one_line
 from ..quantities import ANGLE, LENGTH
 from ..store.runs import opened_file, schema_of
@@ -241,7 +242,7 @@ class Sweep:
     def _units(self) -> dict[str, str]:
         """The units of the axes of columns, those of instants first."""
         joint = self.identity["t"][3] if len(self.identity["t"]) > 3 else ""
-        slides = joint and self.description["joints"][joint]["coordinate"] == "slide"
+        slides = joint and coordinates_of(self.description)[joint] == "slide"
         return {"t": "s", OVER: LENGTH if slides else ANGLE, CYCLE: "1", "xi": "1"}
 
     @cached_property

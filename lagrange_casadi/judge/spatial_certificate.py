@@ -1,0 +1,313 @@
+"""The residuals of a spatial solution, by the same meaning as those of a planar one (:mod:`.certificate`), in plain vectors.
+
+What acts along a joint's coordinate does no work along the others: along a slide a force at the joint's point on the child, about
+one of several axes a couple at right angles to the other axes. Multipliers act along what stands in their equation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..declare.density import Array
+from ..declare.description import Description, density_of, drives_of, measured_of
+from ..instants.solution import Solution
+from ..quantities import Output, force_members
+from . import digits
+from .spatial_placing import Moving, measured, oriented, relative, resolve, spot, told, turn
+from .spatial_rest import axes_of, gaps_of, place_all
+from .written import Written
+
+_EDGE = 1e-9
+_FORCES, _MOMENTS = ("axial", "shear_y", "shear_z"), ("torsion", "bending_y", "bending_z")
+_Matter = tuple[float, Array, Array]
+
+
+@dataclass(frozen=True, eq=False)
+class _Action:
+    """A force and a couple on a body at a place, each (t, 3), and whether they do work."""
+
+    body: str
+    at: Array
+    force: Array
+    couple: Array
+    works: bool
+
+    @property
+    def pushes(self) -> tuple[Array, Array]:
+        """The sizes of both."""
+        return _size(self.force), _size(self.couple)
+
+
+@dataclass(eq=False)
+class _Tally:
+    """What forces sum to by body, and about its centre, their power, and how large all these are, none against another."""
+
+    force: dict[str, Array] = field(default_factory=dict)
+    moment: dict[str, Array] = field(default_factory=dict)
+    size: Array | float = 0.0
+    pushes: Array | float = 0.0
+    twists: Array | float = 0.0
+    power: Array | float = 0.0
+    flow: Array | float = 0.0
+
+    def bear(self, push: Array, twist: Array, size: float) -> None:
+        """Take a force and a couple into the sizes; ``size`` is the mechanism's."""
+        self.size = np.maximum(self.size, push + twist / size)
+        self.pushes, self.twists = self.pushes + push, self.twists + twist
+
+
+def residuals(solution: Solution, turned: Solution, equations: Sequence[Written] | None) -> dict[str, tuple[Array, float]]:
+    """Each residual, and the largest of what it is to be compared with; ``turned`` has angles without their turns."""
+    description = solution.description
+    if any(Output("motion", name) not in solution.outputs for name in measured_of(description)):
+        return {}
+    if any(Output("pose", name, "z") not in solution.outputs for name in description["bodies"]):
+        return {}
+    bodies = place_all(turned, equations or ())
+    if len(bodies) < len(description["bodies"]) + 1:
+        return {}
+    found = {"closure": (_closure(solution, turned, bodies, equations or ()), digits.size(solution))}
+    wanted = [Output("reaction", name, "fx") for name in description["joints"]]
+    wanted += [Output("load", name, "fx") for name in description["loads"]]
+    wanted += [Output("effort", name) for name in drives_of(description)]
+    wanted += [Output("multiplier", name) for name in (*description["constraints"], *description["rows"])]
+    known = equations is not None or not (description["constraints"] or description["rows"])
+    if known and all(output in solution.outputs and np.isfinite(solution.outputs[output]).all() for output in wanted):
+        matter = {name: _matter(body) for name, body in description["bodies"].items()}
+        acting = [*_acting(solution, turned, bodies)]
+        acting += [push for equation in equations or () for push in _held(solution, turned, bodies, equation)]
+        tally = _tally(solution, bodies, acting, matter)
+        found["balance"], found["power"] = _balance(solution, bodies, tally, matter)
+        if solution.links_with_sections:
+            found["ends"] = _ends(solution, bodies, acting, matter)
+    return found
+
+
+def _size(vectors: Array) -> Array:
+    return np.asarray(np.sqrt(np.sum(vectors * vectors, axis=-1)))
+
+
+def _matter(body: Description) -> _Matter:
+    """Mass, centre in the body's axes, and inertia about the centre."""
+    mass, length = body["mass"], body["length"]
+    if length is None or (mass == 0.0 and "centre" not in body):
+        return mass, np.zeros(3), np.zeros((3, 3))
+    if "centre" in body:
+        return mass, spot(body["centre"]), np.array(body["centre"]["inertia"])
+    _, first, second = (float(tail[0]) for tail in density_of(body).tails(np.zeros(1)))
+    middle = first / mass
+    across = (second - first * middle) * length**2
+    return mass, np.array([middle * length, 0.0, 0.0]), np.diag([0.0, across, across])
+
+
+def _closure(solution: Solution, turned: Solution, bodies: Mapping[str, Moving], equations: Sequence[Written]) -> Array:
+    """Gaps of all joints, of the reported poses, and of the users' equations: over their slopes, times the length of all links.
+
+    A joint's gap is how far its child is from where, and from how, its reported motion puts it; so too of rates and accelerations,
+    over the largest that there are.
+    """
+    worst, size = np.zeros_like(solution.t), digits.size(solution)
+    _, fastest, most = _rates(solution, bodies)
+    for joint in solution.description["joints"].values():
+        near, far, motion = bodies[joint["parent"]["body"]], bodies[joint["child"]["body"]], relative(turned, joint)
+        apart = near.under(far.point(spot(joint["child"]))[0]) - spot(joint["parent"]) - motion.slide[0]
+        worst = np.maximum(worst, _size(apart))
+        if told(solution.description, joint):
+            off = np.swapaxes(near.axes, 1, 2) @ far.axes - motion.turned
+            worst = np.maximum(worst, np.abs(off).max(axis=(1, 2)) * size)
+        for gap, scale in zip(gaps_of(turned, joint, bodies), (fastest, fastest / size, most, most / size), strict=True):
+            largest = float(np.max(scale))
+            worst = np.maximum(worst, _size(gap) * (size / largest if largest > 0.0 else 0.0))
+    for name in measured_of(solution.description):
+        # An angle of many turns is reported to so many digits only.
+        told_as, meant = solution.motion(name).value, turned.motion(name).value
+        if told_as is not meant:
+            known = digits.ROUNDINGS * digits.rounding(solution) * np.abs(told_as)
+            worst = np.maximum(worst, (np.abs(np.exp(1j * (told_as - meant)) - 1.0) - known) * size)
+    for name in solution.description["bodies"]:
+        pose, body = solution.pose(name), bodies[name]
+        place = np.stack([pose.x, pose.y, pose.z], axis=1)  # type: ignore[list-item]
+        worst = np.maximum(worst, _size(place - body.at))
+        if oriented(solution.description, name):
+            axes = axes_of(solution, name)
+            crooked = np.swapaxes(axes, 1, 2) @ axes - np.eye(3), axes - body.axes
+            worst = np.maximum(worst, np.abs(crooked).max(axis=(0, 2, 3)) * size)
+            worst = np.maximum(worst, _size(np.cross(axes[:, :, 0], axes[:, :, 1]) - axes[:, :, 2]) * size)
+    for equation in equations:
+        entries = [measured(solution, bodies, entry) for entry in equation.entries]
+        units = [1.0 if entry.kind == "coordinate" else size for entry in equation.entries]
+        moving = [unit + np.abs(entry[1 if equation.row else 0]) for unit, entry in zip(units, entries, strict=True)]
+        scale = np.sum(np.abs(equation.slopes_at(entries, solution.t)) * moving, axis=0)
+        missed = np.abs(equation.at(entries, solution.t)[0])
+        worst = np.maximum(worst, np.divide(missed, scale, out=missed.copy(), where=scale > 0.0) * size)
+    return worst
+
+
+def _along(turned: Solution, joint: Description, bodies: Mapping[str, Moving], name: str, effort: Array) -> Iterator[_Action]:
+    """What an effort along a joint's coordinate does to its child, and the opposite to its parent, at the point on the child."""
+    near, child = bodies[joint["parent"]["body"]], joint["child"]
+    at, nil = bodies[child["body"]].point(spot(child))[0], np.zeros((effort.size, 3))
+    names = [*joint["coordinates"]]
+    if joint["coordinates"][name] == "slide":
+        force, couple = effort[:, None] * turn(near.axes, joint["axes"][names.index(name)]), nil
+    else:
+        number = [one for one in names if joint["coordinates"][one] == "angle"].index(name)
+        about = [turn(near.axes, axis) for axis in relative(turned, joint).about]
+        force, couple = nil, effort[:, None] * _reciprocal(about, number)
+    yield _Action(child["body"], at, force, couple, True)
+    yield _Action(joint["parent"]["body"], at, -force, -couple, True)
+
+
+def _reciprocal(axes: Sequence[Array], number: int) -> Array:
+    """The couple that does a unit of work for a turn about one of axes, and none for turns about the others."""
+    if len(axes) < 3:
+        return axes[number]
+    first, second, third = (axes[(number + k) % 3] for k in range(3))
+    across = np.cross(second, third)
+    with np.errstate(all="ignore"):
+        return np.asarray(across / np.sum(first * across, axis=1)[:, None])
+
+
+def _acting(solution: Solution, turned: Solution, bodies: Mapping[str, Moving]) -> Iterator[_Action]:
+    """Every force of joints, drives and loads."""
+
+    def vectors(group: str, name: str) -> tuple[Array, Array]:
+        nil = np.zeros_like(solution.t)
+        found = [solution.outputs.get(Output(group, name, member), nil) for member in force_members(True)]
+        return np.stack(found[:3], axis=1), np.stack(found[3:], axis=1)
+
+    for name, joint in solution.description["joints"].items():
+        at = bodies[joint["child"]["body"]].point(spot(joint["child"]))[0]
+        force, couple = vectors("reaction", name)
+        yield _Action(joint["child"]["body"], at, force, couple, False)
+        yield _Action(joint["parent"]["body"], at, -force, -couple, False)
+        for coordinate in joint["coordinates"]:
+            if Output("effort", coordinate) in solution.outputs:
+                yield from _along(turned, joint, bodies, coordinate, solution.effort(coordinate))
+    for name, load in solution.description["loads"].items():
+        force, couple = vectors("load", name)
+        for point, sign in zip(load["points"], (1.0, -1.0), strict=False):
+            yield _Action(point["body"], bodies[point["body"]].point(spot(point))[0], sign * force, sign * couple, True)
+
+
+def _held(solution: Solution, turned: Solution, bodies: Mapping[str, Moving], equation: Written) -> Iterator[_Action]:
+    """What the multiplier of an equation does: along whatever stands in it."""
+    motion = [measured(solution, bodies, entry) for entry in equation.entries]
+    forces = solution.multiplier(equation.name) * equation.slopes_at(motion, solution.t)
+    joints = {name: joint for joint in solution.description["joints"].values() for name in joint["coordinates"]}
+    for entry, force in zip(equation.entries, forces, strict=True):
+        if entry.kind == "coordinate":
+            yield from _along(turned, joints[entry.part], bodies, entry.part, force)
+        else:
+            push = force[:, None] * np.eye(3)["xyz".index(entry.kind)]
+            yield _Action(entry.part, bodies[entry.part].point(np.array(entry.point))[0], push, np.zeros_like(push), True)
+
+
+def _tally(solution: Solution, bodies: Mapping[str, Moving], acting: Sequence[_Action], matter: Mapping[str, _Matter]) -> _Tally:
+    tally = _Tally()
+    for act in acting:
+        if act.body == "ground":
+            continue
+        motion = bodies[act.body]
+        middle = motion.point(matter[act.body][1])[0]
+        moment = np.cross(act.at - middle, act.force) + act.couple
+        tally.force[act.body] = tally.force.get(act.body, 0.0) + act.force
+        tally.moment[act.body] = tally.moment.get(act.body, 0.0) + moment
+        push, twist = act.pushes
+        tally.bear(push, twist, digits.size(solution))
+        if act.works:
+            speed = motion.speed + np.cross(motion.rate, act.at - motion.at)
+            tally.power = tally.power + np.sum(speed * act.force + motion.rate * act.couple, axis=1)
+            tally.flow = tally.flow + _size(speed) * push + _size(motion.rate) * twist
+    return tally
+
+
+def _weight(solution: Solution, motion: Moving, mass: float, reach: float) -> Array:
+    """The inertia of a body and its weight [N], none against another: of its origin, and of what turns about it."""
+    turning = _size(motion.rate) ** 2 + _size(motion.acceleration)
+    return np.asarray(mass * (_size(motion.change) + turning * reach + float(_size(np.array(solution.description["gravity"])))))
+
+
+def _balance(
+    solution: Solution, bodies: Mapping[str, Moving], tally: _Tally, matter: Mapping[str, _Matter]
+) -> tuple[tuple[Array, float], tuple[Array, float]]:
+    """Newton-Euler for every body, beside the largest force; and power, beside all that flows, and what digits leave open."""
+    gravity, size = np.array(solution.description["gravity"]), digits.size(solution)
+    worst, power = np.zeros_like(solution.t), np.zeros_like(solution.t)
+    for name in solution.description["bodies"]:
+        mass, centre, inertia = matter[name]
+        motion = bodies[name]
+        _, speed, change = motion.point(centre)
+        inertial = mass * (change - gravity)
+        spin = turn(motion.axes, turn(inertia, resolve(motion.axes, motion.rate)))
+        gains = turn(motion.axes, turn(inertia, resolve(motion.axes, motion.acceleration)))
+        turning = gains + np.cross(motion.rate, spin)
+        weight = _weight(solution, motion, mass, float(_size(centre)))
+        tally.bear(weight, _size(gains) + _size(motion.rate) * _size(spin), size)
+        worst = np.maximum(worst, _size(tally.force.get(name, 0.0) - inertial))
+        if oriented(solution.description, name):
+            worst = np.maximum(worst, _size(tally.moment.get(name, 0.0) - turning) / size)
+        power = power + np.sum(speed * inertial + motion.rate * turning, axis=1)
+        tally.flow = tally.flow + _size(speed) * weight + _size(motion.rate) * _size(turning)
+    turned, fastest, _ = _rates(solution, bodies)
+    least, part = digits.least(solution), digits.coarseness(solution)
+    largest = tally.size * (1.0 + part * digits.extent(solution) / size)
+    flow = tally.flow + least * fastest + part * (tally.pushes * fastest + tally.twists * turned)
+    return (worst, max(float(np.max(largest)), least)), (np.abs(tally.power - power), float(np.max(flow)))
+
+
+def _rates(solution: Solution, bodies: Mapping[str, Moving]) -> tuple[Array, Array, Array]:
+    """The largest rate of turning at each instant, of joints too; and a speed and an acceleration that none exceeds."""
+    turning = [_size(motion.rate) for motion in bodies.values()]
+    gaining = [_size(motion.acceleration) for motion in bodies.values()]
+    for joint in solution.description["joints"].values():
+        for name, kind in joint["coordinates"].items():
+            if kind == "angle" and name not in solution.description["unmeasured"]:
+                motion = solution.motion(name)
+                turning.append(np.abs(motion.rate))
+                gaining.append(np.abs(motion.acceleration))
+    turned, extent = np.max(turning, axis=0), digits.extent(solution)
+    fastest = np.max([_size(motion.speed) for motion in bodies.values()], axis=0) + turned * extent
+    changes = np.max([_size(motion.change) for motion in bodies.values()], axis=0)
+    return turned, fastest, changes + (np.max(gaining, axis=0) + turned**2) * extent
+
+
+def _ends(
+    solution: Solution, bodies: Mapping[str, Moving], acting: Sequence[_Action], matter: Mapping[str, _Matter]
+) -> tuple[Array, float]:
+    """A link's section at its base is the opposite of all that acts on it there; beside the largest force on a link.
+
+    And beside what the rounding of places leaves open, which turns short links most.
+    """
+    worst, scale = np.zeros_like(solution.t), digits.least(solution)
+    size, blurred = digits.size(solution), digits.coarseness(solution) * digits.extent(solution)
+    base = np.zeros((solution.t.size, 1))
+    for link in solution.links_with_sections:
+        law = solution.section(link).law
+        # What slides over the base just now counts as at the base, here and there.
+        law = replace(law, loads=tuple(replace(x, station=np.where(np.abs(x.station) < _EDGE, 0.0, x.station)) for x in law.loads))
+        inside, twisted = (np.concatenate([law.at(name, base) for name in names], axis=1) for names in (_FORCES, _MOMENTS))
+        own = [act for act in acting if act.body == link]
+        force, moment = _before(bodies[link], own, _EDGE * law.length)
+        flow = _weight(solution, bodies[link], matter[link][0], law.length)
+        for act in own:
+            push, twist = act.pushes
+            flow = np.maximum(flow, push + twist / size)
+        worst = np.maximum(worst, _size(force + inside) / (1.0 + blurred / law.length))
+        worst = np.maximum(worst, _size(moment + twisted) / (size + blurred))
+        scale = max(scale, float(np.max(flow)))
+    return worst, scale
+
+
+def _before(motion: Moving, acting: Sequence[_Action], edge: float) -> tuple[Array, Array]:
+    """The force in a link's axes, and the moment about its base, of all that acts at its base or before it."""
+    force, moment = np.zeros_like(motion.at), np.zeros_like(motion.at)
+    for act in acting:
+        arm, push = motion.under(act.at), resolve(motion.axes, act.force)
+        here = arm[:, :1] <= edge
+        force = force + np.where(here, push, 0.0)
+        moment = moment + np.where(here, np.cross(arm, push) + resolve(motion.axes, act.couple), 0.0)
+    return force, moment
