@@ -27,6 +27,10 @@ if os.environ.get("CI"):
 ROOT = Path(__file__).parent.parent
 CASES = ROOT / "cases"
 NAMES = sorted(path.parent.name for path in CASES.glob("*/case.py"))
+SPATIAL = [name for name in NAMES if "SpatialMechanism(" in (CASES / name / "case.py").read_text()]
+PLANAR = [name for name in NAMES if name not in SPATIAL]
+# Of those in space the ones with few outputs: for what takes long of each output.
+SMALL = ["cardan_shaft", "rssr", "spatial_slider_crank"]
 
 # Vector Newton-Euler on free bodies in 60-digit arithmetic, the paper's mechanism and motion; its "about" says what each entry is.
 SIXTY_DIGITS = json.loads((ROOT / "tests" / "data" / "slider_crank_60_digits.json").read_text())

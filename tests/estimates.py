@@ -17,7 +17,7 @@ from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.arithmetic.compensated import DTYPES, ROUNDING
 from lagrange_casadi.declare.even_points import points
 from lagrange_casadi.errors import AssemblyError
-from lagrange_casadi.quantities import quantity_of
+from lagrange_casadi.quantities import Output
 
 FACTOR = 10.0
 MOST = 0.8
@@ -44,7 +44,7 @@ def exactly(scene, parameters=None):
 def kind(name):
     """What is measured by one peak: motions alone, else all of a group that have a unit in common."""
     group, *_ = name.split(":")
-    return name if group.startswith(("motion", "_")) else (group, quantity_of(name).unit)
+    return name if group.startswith(("motion", "_")) else (group, Output.of(name).quantity.unit)
 
 
 def ratios(solution, exact):

@@ -11,7 +11,7 @@ import casadi as ca
 import kinds
 import numpy as np
 import pytest
-from conftest import CASES, NAMES
+from conftest import CASES, PLANAR
 from estimates import COUNT, FACTOR, RUNGS, assert_near, exactly, ratios
 from mechanisms import chain, sampled, six_bar, slider_crank, truss_platform
 from truth import true_errors, truth
@@ -36,7 +36,7 @@ def case(name):
 
 @pytest.mark.sampled(8)
 @pytest.mark.parametrize("rung", RUNGS)
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", PLANAR)
 def test_cases(name, rung):
     scene, exact = case(name)
     assert_near(ratios(evaluate(scene, **RUNGS[rung]), exact))

@@ -1,4 +1,4 @@
-"""Every case: against vector Newton-Euler at several instants, its certificate, its page, its figures."""
+"""Every case: its certificate, its page; planar ones: against vector Newton-Euler at several instants, their figures."""
 
 import math
 
@@ -8,7 +8,7 @@ import pytest
 from arithmetic import DOUBLE
 from balance import compare
 from beside import of_case
-from conftest import CASES, NAMES
+from conftest import CASES, NAMES, PLANAR
 
 from lagrange_casadi import LagrangeSystem, evaluate, load_case
 from lagrange_casadi.draw import figures
@@ -17,6 +17,11 @@ pytestmark = pytest.mark.usefixtures("released")
 
 
 @pytest.mark.parametrize("name", NAMES)
+def test_those_in_space_are_told_from_planar_ones(name):
+    assert load_case(CASES / name).scene.mechanism.space == (name not in PLANAR)
+
+
+@pytest.mark.parametrize("name", PLANAR)
 def test_against_newton_euler(name):
     scene = load_case(CASES / name).scene
     start, stop, _ = scene.t
@@ -37,7 +42,7 @@ def test_certificate_is_at_rounding_level(name):
 
 
 @pytest.mark.sampled(9)
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", PLANAR)
 def test_every_figure_can_be_drawn(name, tmp_path):
     case = load_case(CASES / name)
     drawn = list(figures.draw(evaluate(case.scene, t=(*case.scene.t[:2], 41), xi=(0, 1, 21)), case.figures, tmp_path))

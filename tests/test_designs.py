@@ -6,7 +6,7 @@ import subprocess
 import numpy as np
 import pytest
 from compiled import PEDANTIC, SCENES
-from conftest import CASES
+from conftest import CASES, PLANAR
 from design_rows import DENSITIES, alone, around, assert_refined, loaded, peaks_of, scales, values
 from mechanisms import crank_and_rod, four_bar, parallelogram, pendulum, slider_crank
 from parametric import declared
@@ -20,13 +20,12 @@ from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.study.peaks import refine
 
-NAMES = sorted(path.name for path in CASES.iterdir() if (path / "case.py").exists())
 INSTANTS = 128
 FIELDS = ("status", "value", "t", "xi", "mean", "rms")
 
 
 @pytest.mark.sampled(9)
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", PLANAR)
 def test_designs_are_their_own_evaluations(name):
     """Every number of a case a parameter."""
     scene = declared(CASES / name)

@@ -11,7 +11,7 @@ import casadi as ca
 import mpmath
 import numpy as np
 import pytest
-from conftest import CASES, NAMES
+from conftest import CASES, PLANAR
 from mechanisms import truss_platform
 from parametric import declared, meant
 from precise import precise
@@ -34,7 +34,7 @@ PARTS = {"engine": (340 / 720, 371.5 / 720, 397 / 720)}
 
 
 @pytest.mark.sampled(3)
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", PLANAR)
 def test_formulas_to_forty_digits(name, monkeypatch):
     monkeypatch.setattr("lagrange_casadi.judge.reference.arithmetic", lambda: EXACT)
     scene = declared(CASES / name)

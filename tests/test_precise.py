@@ -8,7 +8,7 @@ import numpy as np
 import oracle
 import pytest
 from arithmetic import DOUBLE, Digits
-from conftest import CASES, NAMES, SIXTY_DIGITS
+from conftest import CASES, PLANAR, SIXTY_DIGITS
 from mechanisms import parallelogram, slider_crank
 from precise import precise
 
@@ -44,7 +44,7 @@ def peaks(solution):
 
 
 @pytest.mark.sampled(3)
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", PLANAR)
 def test_double_graphs_agree_with_50_digits(name):
     solution, instants = solved(name)
     size = peaks(solution)
@@ -65,7 +65,7 @@ def test_double_graphs_agree_with_50_digits(name):
             assert max(map(abs, gaps)) < 1e-12 * size[kind(quantity)], quantity
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", PLANAR)
 def test_30_digits_are_the_first_of_50(name):
     solution, instants = solved(name)
     size = peaks(solution)

@@ -1,18 +1,15 @@
-"""Mechanisms in space, evaluated: all is as the oracle has it, and their certificate sees what is wrong."""
+"""Mechanisms in space, evaluated: all is as the oracle has it, in every way of evaluating them, and files hold it."""
 
-import functools
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from spatial_bridge import coordinate, declared, plain, postures
 from spatial_mechanisms import FAMILIES
 from spatial_oracle import REACTION, SECTION
+from spatial_solutions import RATIOS, evaluated, residuals
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, load, load_case, motion, save
-from lagrange_casadi.judge.certificate import certify
-from lagrange_casadi.judge.written import written
 from lagrange_casadi.quantities import Output
 from lagrange_casadi.store.runs import check
 
@@ -22,17 +19,6 @@ CASES += [(name, seed) for name in FAMILIES if name not in ("tree", "loop", "arm
 OVER_CONSTRAINED = ("planar_four_bar", "planar_slider_crank", "bennett", "bricard")
 ROUNDING = 1e-12
 SOME = (1, 4, 8)
-RATIOS = 5
-
-
-@functools.cache
-def evaluated(name, seed):
-    drawn = plain(FAMILIES[name](seed))
-    return drawn, evaluate(declared(drawn), xi=(0, 1, RATIOS))
-
-
-def residuals(certificate):
-    return {name: float(values.max()) for name, values in certificate.items() if name != "condition"}
 
 
 def near(value, other, size):
@@ -119,106 +105,6 @@ def spun(forces):
     return np.array([axial, math.hypot(y, z), torsion, math.hypot(about_y, about_z)])
 
 
-def disturbed(solution, name, change):
-    """The residuals of a solution one of whose arrays is otherwise."""
-    output = Output.of(name)
-    return residuals(certify(replace(solution, outputs={**solution.outputs, output: change(solution.outputs[output])})))
-
-
-def off(values):
-    return values + 1e-2 * (np.abs(values).max() + 1.0)
-
-
-WRONG = [
-    ("reaction:A:fx", {"balance", "ends"}),
-    ("reaction:O:my", {"balance"}),
-    ("effort:O", {"balance", "power"}),
-    ("load:force0:fz", {"balance", "power"}),
-    ("pose:crank:z", {"closure"}),
-    ("pose:crank:xy", {"closure"}),
-    ("pose:rocker:zz", {"closure"}),
-    ("motion:Q", {"closure"}),
-    ("motion:Q_rate", {"closure"}),
-    ("motion:Q_acceleration", {"closure"}),
-    ("motion:B:turn_1", {"closure"}),
-    ("motion:B:turn_2_rate", {"closure"}),
-    ("motion:B:turn_2_acceleration", {"closure"}),
-    *((f"section:coupler:law:{member}", {"ends"}) for member in ("n0", "fy0", "fz0", "mx0", "my0", "mz0")),
-    *((f"section:crank:law:{member}", {"ends"}) for member in ("n1", "n2", "fy1", "fy2", "fz1", "fz2")),
-]
-
-
-@pytest.mark.parametrize(("name", "wrong"), WRONG, ids=[name for name, _ in WRONG])
-def test_what_is_wrong_is_seen(name, wrong):
-    """By the residual that says what is wrong; in a four-bar of skew axes, a universal joint closes it."""
-    _, solution = evaluated("rsur", 0)
-    clean = residuals(certify(solution))
-    assert max(clean.values()) < 1e-13
-    found = disturbed(solution, name, off)
-    assert all(found[kind] > 1e-5 for kind in wrong), found
-
-
-@pytest.mark.parametrize(
-    "name", ["pose:bar2:y", "pose:bar2:xx", "pose:bar2:yz", "reaction:H2:fy", "effort:travel:slide_3", "pose:hub:xz"]
-)
-def test_what_is_wrong_of_bars_is_seen(name):
-    _, solution = evaluated("suspension", 0)
-    assert max(disturbed(solution, name, off).values()) > 1e-5
-
-
-def test_mirrored_axes_are_seen():
-    """Of a bar too, of which nothing but what is reported tells how its cross-section is turned."""
-    _, solution = evaluated("suspension", 0)
-    axes = {Output("pose", "bar1", f"z{x}"): -solution.outputs[Output("pose", "bar1", f"z{x}")] for x in "xyz"}
-    found = residuals(certify(replace(solution, outputs={**solution.outputs, **axes})))
-    assert found["closure"] > 0.1
-
-
-def test_several_turns_of_a_drive_have_couples_that_are_reciprocal():
-    """A spherical joint whose three turns are driven: its effort about one axis does no work about the others."""
-    m = SpatialMechanism("top")
-    body = m.link("top", length=0.4, mass=1.2, centre=(0.2, 0.01, 0.02), inertia=(0.01, 0.03, 0.025))
-    m.spherical("S", m.ground, body, axis=(0, 0, 1), second=(1, 0, 0))
-    laws = [motion.polynomial(0.2, 3.0), motion.harmonic(0.4, 0.3, 1.0), motion.polynomial(0.0, -5.0, 1.0)]
-    solution = evaluate(Scene(m, {"S": laws}, t=(0, 1, 21)))
-    assert set(residuals(solution.certificate)) == {"closure", "balance", "power"}
-    assert max(residuals(solution.certificate).values()) < 1e-14
-    assert disturbed(solution, "effort:S:turn_3", off)["balance"] > 1e-5
-
-
-def constrained():
-    """A universal joint's turns in proportion, a screw's angle by a point's height, and a spring to a point mass on a slide."""
-    m = SpatialMechanism("constrained")
-    arm, nut = (
-        m.link("arm", length=0.5, mass=1.0),
-        m.link("nut", length=0.1, mass=0.7, centre=(0, 0.02, 0), inertia=(2e-3, 1e-3, 2e-3)),
-    )
-    bead = m.point_mass("bead", 0.3)
-    joint = m.universal("U", m.ground, arm, axis=(0, 0, 1), second=(0, 1, 0))
-    screw = m.screw("N", m.ground.at(0, 1, 0), nut, axis=(0, 0.6, 0.8), lead=0.05)
-    m.prismatic("P", arm, bead, axis=(1, 0, 0))
-    m.constraint("tie", m.coordinate(joint, "turn_2") - 0.4 * m.coordinate(joint, "turn_1") - 0.1)
-    m.constraint("follow", m.coordinate(screw) - 4.0 * m.place(arm.tip)[2] - m.time)
-    m.spring("spring", bead, nut.at(0.1, 0, 0), stiffness=50.0, length=0.2, damping=3.0)
-    m.torque("twist", arm, x=1.0, z=2.0, turning=True)
-    return Scene(
-        m,
-        {"U:turn_1": motion.polynomial(0.1, 1.0), "P": motion.harmonic(0.3, 0.1, 1.0)},
-        t=(0, 1, 21),
-        posture={"U:turn_2": 0.2, "N": 0.0},
-    )
-
-
-@pytest.mark.parametrize("name", ["multiplier:tie", "multiplier:follow", "load:twist:mx", "load:spring:fy", "effort:P"])
-def test_equations_springs_and_point_masses_are_balanced(name):
-    scene = constrained()
-    solution = evaluate(scene)
-    assert set(residuals(solution.certificate)) == WHOLE
-    assert max(residuals(solution.certificate).values()) < 1e-13
-    hidden = {Output.of(name): off(solution.array(name))}
-    assert residuals(certify(solution, written(scene.mechanism, {}), hidden))["balance"] > 1e-5
-
-
 @pytest.mark.parametrize(
     "case", [("tree", 3), ("rssr", 1), ("suspension", 0), ("bennett", 0), ("stewart", 0)], ids=lambda case: case[0]
 )
@@ -292,3 +178,15 @@ def test_estimates_bound_what_rounding_does():
         gap = np.abs(exact.array(name) - single.array(name)).max()
         assert exact.errors[name] <= 1e-9 * (np.abs(exact.array(name)).max() + 1.0), name
         assert gap <= 10 * single.errors[name] + 1e-30, name
+
+
+def test_a_point_that_slides_off_its_link_is_noted():
+    """By a screw as by a slide; and by its motion, where no section tells."""
+    m = SpatialMechanism("off")
+    beam, nut = m.link("beam", length=0.5, mass=1.0), m.link("nut", length=0.05, mass=0.2)
+    m.revolute("A", m.ground, beam, axis=(0, 0, 1))
+    m.screw("N", beam.at(0.4), nut, axis=(1, 0, 0), lead=0.1)
+    scene = Scene(m, {"A": motion.polynomial(0.1), "N": motion.polynomial(0.0, math.tau)}, t=(0, 2, 5))
+    for wanted in (["all"], ["motion"]):
+        (told,) = evaluate(scene, wanted=wanted).notes
+        assert told.startswith("joint 'N' leaves link 'beam' at t = 1.5 s (xi/l from 0.8 to 1.2)")

@@ -137,8 +137,7 @@ def _section_gaps(matter, looked, i, columns, link):
 
 
 def _is_angle(solution, name):
-    group, part, *member = name.split(":")
-    return member == ["angle"] or (group == "motion" and solution.description["joints"].get(part, {}).get("coordinate") == "angle")
+    return name.endswith(":angle") or (name.startswith("motion:") and solution.unit(name) == "rad")
 
 
 def _gap(true, mine, angle):

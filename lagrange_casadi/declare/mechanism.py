@@ -1,8 +1,7 @@
 """The declaration of a mechanism: parameters, links and point masses, joints, loads, constraints and gravity.
 
 A :class:`Mechanism` is filled part by part and freezes when a scene is made of it. What a number can tell is checked when a part
-is declared, what depends on the whole when the mechanism freezes, and what depends on the parameters' values by
-:meth:`Mechanism.values`.
+is declared, what depends on the whole when it freezes, and what depends on the parameters' values by :meth:`Mechanism.values`.
 """
 
 from __future__ import annotations
@@ -299,7 +298,10 @@ class Mechanism:
         if self.own.joint(joint).coordinate != "angle":
             raise DeclarationError(f"load '{name}': joint '{joint.name}' has no angle for a torsion spring")
         stretch, rate = self.coordinate(joint) - typed(f"load '{name}': angle", angle), self.rate(joint)
-        return self.torque(name, joint.child, -(stiffness * stretch) - damping * rate, against=joint.parent)
+        return self._turn_back(name, joint, -(stiffness * stretch) - damping * rate)
+
+    def _turn_back(self, name: str, joint: Joint, value: Expression) -> Torque:
+        return self.torque(name, joint.child, value, against=joint.parent)
 
     def output(self, name: str, expression: Any, *, unit: str = "1") -> OwnOutput:
         """Declare an output of one's own, ``output:NAME``, with its unit: an expression of what loads see and of `results`."""

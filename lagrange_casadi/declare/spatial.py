@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..errors import DeclarationError
+from ..geometry.rotation import Rotation
+from ..geometry.vectors import times
 from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
@@ -267,6 +269,11 @@ class SpatialMechanism(Mechanism):
         found = Torque(name, load.point, load.value, load.against, across, turning)
         self.loads[name] = found
         return found
+
+    def _turn_back(self, name: str, joint: Joint, value: Expression) -> Torque:
+        assert joint.turned is not None
+        x, y, z = times(value, Rotation.of(*joint.turned).resolve(joint.triad[0]))
+        return self.torque(name, joint.child, x=x, y=y, z=z, against=joint.parent, turning=True)
 
     def line_load(self, name: str, link: Link, *, x: Any = 0.0, y: Any = 0.0, turning: bool = False) -> LineLoad:
         """Not yet: a load along a link of a mechanism in space."""

@@ -54,8 +54,10 @@ def failures(scene: Scene, p: Array, t: Array, rung: Rung, outputs: Sequence[Out
     agreement = _agreement(whole, compiled, {})
     if not agreement <= allowed:
         # What is nothing but rounding has no size of its own to be compared with.
-        graph_rows = table if graph.newton is None else replace(table, out=rows, iterated=table.iterated[:, some])
-        rounded = estimate(graph, graph_rows, whole, p)
+        looked_at = table
+        if graph.newton is not None:
+            looked_at = replace(table, out=rows, status=table.status[some], iterated=table.iterated[:, some])
+        rounded = estimate(graph, looked_at, whole, p)
         coarser = ROUNDING[rung.precision] / ROUNDING["double"]
         agreement = _agreement(whole, compiled, {output: _ROUNDINGS * coarser * error for output, error in rounded.items()})
     return failed if agreement <= allowed else failed | {"agreement": agreement}

@@ -16,7 +16,7 @@ from ..declare.description import Description, density_of, drives_of, measured_o
 from ..instants.solution import Solution
 from ..quantities import Output, force_members
 from . import digits
-from .spatial_placing import Moving, measured, oriented, relative, resolve, spot, told, turn
+from .spatial_placing import Moving, Reported, measured, oriented, relative, resolve, spot, told, turn
 from .spatial_rest import axes_of, gaps_of, place_all
 from .written import Written
 
@@ -66,10 +66,11 @@ def residuals(solution: Solution, turned: Solution, equations: Sequence[Written]
         return {}
     if any(Output("pose", name, "z") not in solution.outputs for name in description["bodies"]):
         return {}
-    bodies = place_all(turned, equations or ())
+    reported = Reported(solution, turned)
+    bodies = place_all(reported, equations or ())
     if len(bodies) < len(description["bodies"]) + 1:
         return {}
-    found = {"closure": (_closure(solution, turned, bodies, equations or ()), digits.size(solution))}
+    found = {"closure": (_closure(reported, bodies, equations or ()), digits.size(solution))}
     wanted = [Output("reaction", name, "fx") for name in description["joints"]]
     wanted += [output for output in solution.outputs if output.group == "reaction"]
     wanted += [Output("load", name, "fx") for name in description["loads"]]
@@ -78,8 +79,8 @@ def residuals(solution: Solution, turned: Solution, equations: Sequence[Written]
     known = equations is not None or not (description["constraints"] or description["rows"])
     if known and all(output in solution.outputs and np.isfinite(solution.outputs[output]).all() for output in wanted):
         matter = {name: _matter(body) for name, body in description["bodies"].items()}
-        acting = [*_acting(solution, turned, bodies)]
-        acting += [push for equation in equations or () for push in _held(solution, turned, bodies, equation)]
+        acting = [*_acting(reported, bodies)]
+        acting += [push for equation in equations or () for push in _held(reported, bodies, equation)]
         tally = _tally(solution, bodies, acting, matter)
         found["balance"], found["power"] = _balance(solution, bodies, tally, matter)
         if solution.links_with_sections:
@@ -104,22 +105,23 @@ def _matter(body: Description) -> _Matter:
     return mass, np.array([middle * length, 0.0, 0.0]), np.diag([0.0, across, across])
 
 
-def _closure(solution: Solution, turned: Solution, bodies: Mapping[str, Moving], equations: Sequence[Written]) -> Array:
+def _closure(reported: Reported, bodies: Mapping[str, Moving], equations: Sequence[Written]) -> Array:
     """Gaps of all joints, of the reported poses, and of the users' equations: over their slopes, times the length of all links.
 
     A joint's gap is how far its child is from where, and from how, its reported motion puts it; so too of rates and accelerations,
     over the largest that there are.
     """
+    solution, turned = reported.solution, reported.turned
     worst, size = np.zeros_like(solution.t), digits.size(solution)
     _, fastest, most = _rates(solution, bodies)
     for joint in solution.description["joints"].values():
-        near, far, motion = bodies[joint["parent"]["body"]], bodies[joint["child"]["body"]], relative(turned, joint)
+        near, far, motion = bodies[joint["parent"]["body"]], bodies[joint["child"]["body"]], relative(reported, joint)
         apart = near.under(far.point(spot(joint["child"]))[0]) - spot(joint["parent"]) - motion.slide[0]
         worst = np.maximum(worst, _size(apart))
         if told(solution.description, joint):
             off = np.swapaxes(near.axes, 1, 2) @ far.axes - motion.turned
             worst = np.maximum(worst, np.abs(off).max(axis=(1, 2)) * size)
-        for gap, scale in zip(gaps_of(turned, joint, bodies), (fastest, fastest / size, most, most / size), strict=True):
+        for gap, scale in zip(gaps_of(reported, joint, bodies), (fastest, fastest / size, most, most / size), strict=True):
             largest = float(np.max(scale))
             worst = np.maximum(worst, _size(gap) * (size / largest if largest > 0.0 else 0.0))
     for name in measured_of(solution.description):
@@ -147,7 +149,7 @@ def _closure(solution: Solution, turned: Solution, bodies: Mapping[str, Moving],
     return worst
 
 
-def _along(turned: Solution, joint: Description, bodies: Mapping[str, Moving], name: str, effort: Array) -> Iterator[_Action]:
+def _along(reported: Reported, joint: Description, bodies: Mapping[str, Moving], name: str, effort: Array) -> Iterator[_Action]:
     """What an effort along a joint's coordinate does to its child, and the opposite to its parent, at the point on the child."""
     near, child = bodies[joint["parent"]["body"]], joint["child"]
     at, nil = bodies[child["body"]].point(spot(child))[0], np.zeros((effort.size, 3))
@@ -156,7 +158,7 @@ def _along(turned: Solution, joint: Description, bodies: Mapping[str, Moving], n
         force, couple = effort[:, None] * turn(near.axes, joint["axes"][names.index(name)]), nil
     else:
         number = [one for one in names if joint["coordinates"][one] == "angle"].index(name)
-        about = [turn(near.axes, axis) for axis in relative(turned, joint).about]
+        about = [turn(near.axes, axis) for axis in relative(reported, joint).about]
         force, couple = nil, effort[:, None] * _reciprocal(about, number)
     yield _Action(child["body"], at, force, couple, True)
     yield _Action(joint["parent"]["body"], at, -force, -couple, True)
@@ -172,8 +174,9 @@ def _reciprocal(axes: Sequence[Array], number: int) -> Array:
         return np.asarray(across / np.sum(first * across, axis=1)[:, None])
 
 
-def _acting(solution: Solution, turned: Solution, bodies: Mapping[str, Moving]) -> Iterator[_Action]:
+def _acting(reported: Reported, bodies: Mapping[str, Moving]) -> Iterator[_Action]:
     """Every force of joints, drives and loads."""
+    solution = reported.solution
 
     def vectors(group: str, name: str) -> tuple[Array, Array]:
         members = force_members(True)
@@ -185,7 +188,7 @@ def _acting(solution: Solution, turned: Solution, bodies: Mapping[str, Moving]) 
         yield _Action(joint["child"]["body"], at, force, couple, False)
         yield _Action(joint["parent"]["body"], at, -force, -couple, False)
         efforts = [Output("effort", coordinate) for coordinate in joint["coordinates"]]
-        found = [_along(turned, joint, bodies, one.part, solution.outputs[one]) for one in efforts if one in solution.outputs]
+        found = [_along(reported, joint, bodies, one.part, solution.outputs[one]) for one in efforts if one in solution.outputs]
         for together in zip(*found, strict=True):
             # Near gimbal lock couples along coordinates are large, and all together what the joint needs.
             force, couple = sum(one.force for one in together), sum(one.couple for one in together)
@@ -202,14 +205,15 @@ def _vector(solution: Solution, group: str, name: str, members: Sequence[str]) -
     return np.stack([solution.outputs.get(Output(group, name, member), nil) for member in members], axis=1)
 
 
-def _held(solution: Solution, turned: Solution, bodies: Mapping[str, Moving], equation: Written) -> Iterator[_Action]:
+def _held(reported: Reported, bodies: Mapping[str, Moving], equation: Written) -> Iterator[_Action]:
     """What the multiplier of an equation does: along whatever stands in it."""
+    solution = reported.solution
     motion = [measured(solution, bodies, entry) for entry in equation.entries]
     forces = solution.multiplier(equation.name) * equation.slopes_at(motion, solution.t)
     joints = {name: joint for joint in solution.description["joints"].values() for name in joint["coordinates"]}
     for entry, force in zip(equation.entries, forces, strict=True):
         if entry.kind == "coordinate":
-            yield from _along(turned, joints[entry.part], bodies, entry.part, force)
+            yield from _along(reported, joints[entry.part], bodies, entry.part, force)
         else:
             push = force[:, None] * np.eye(3)["xyz".index(entry.kind)]
             yield _Action(entry.part, bodies[entry.part].point(np.array(entry.point))[0], push, np.zeros_like(push), True)
