@@ -31,7 +31,7 @@ def every_kind():
     m.screw("screw", sleeve.tip, nut, axis=(1, 0, 0), lead=0.1)
     m.planar("planar", m.ground.at(0.5, 0.0, 0.0), plate, axis=(0, 0, 1))
     m.slot("slot", plate, bead, axis=(1, 0, 0))
-    m.universal("universal", arm.tip, cross, axis=(0, 0, 1), second=(0, 1, 0))
+    m.universal("universal", arm.tip, cross, axis=(0, 0, 1), second=(0, 1, 0), turned=[("x", "40 deg"), ("y", "20 deg")])
     m.spherical("spherical", cross.tip, ball)
     m.revolute("pin", ball.tip, bob)
     m.free("free", m.ground, flyer)

@@ -17,10 +17,10 @@ load brake: torque on rocker against ground
     , x = (-(0.48*brake)) N m, y = (-(0.8*brake)) N m, z = (-(0.36*brake)) N m, in ground axes
 """,
     "stewart_gough": """
-  universal joint U1: ground (-0.154508, 0.475528, 0) - cylinder1 (0, 0, 0)
+  universal joint U1: ground (-0.1545, 0.4755, 0) - cylinder1 (0, 0, 0)
     , turn_1 about (1, 0, 0) of ground, turn_2 about (0, 1, 0)
   prismatic joint P0: cylinder0 (0, 0, 0) - piston0 (0, 0, 0), along (1, 0, 0) of cylinder0, driven
-  spherical joint S5: piston5 (0.45, 0, 0) - platform (0.200739, -0.222943, 0)
+  spherical joint S5: piston5 (0.45, 0, 0) - platform (0.2007, -0.2229, 0)
     , closes a loop: its angles are not measured
 freedoms: 6, driven at P0, P1, P2, P3, P4, P5
 """,

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lagrange_casadi.draw.labels import apart, placed
@@ -19,6 +19,7 @@ def overlaps(corners, sizes):
     return both[~np.eye(len(corners), dtype=bool)].max(initial=0.0)
 
 
+@settings(deadline=None)
 @given(
     anchors=st.lists(st.tuples(st.floats(10, 390), st.floats(10, 290)), min_size=1, max_size=9),
     width=st.floats(5, 60),

@@ -21,19 +21,47 @@ def test_points_are_where_joints_hold_them(name):
         np.testing.assert_allclose(away, 0.0, atol=1e-9 * size)
 
 
-def test_the_cross_of_a_universal_joint_is_square():
+@pytest.mark.parametrize("instant", [0, 1, 3])
+def test_the_cross_of_a_universal_joint_is_square(instant):
     """One pair of pins is on the parent, the other on the child: they turn with these, and stay at right angles."""
     solution = moved("cardan_shaft")
-    now = solution.during(slice(2, 3))
+    now = solution.during(slice(instant, instant + 1))
     lines = [line.points[1] - line.points[0] for line in axes_of(now, solution, 1.0)]
     bearing, first, second, *others = (line / np.linalg.norm(line) for line in lines)
-    assert bearing == pytest.approx([1, 0, 0])
-    assert first @ second == pytest.approx(0.0, abs=1e-9)
-    assert abs(first @ bearing) == pytest.approx(0.0, abs=1e-9)
     tube = place_of(now, {"body": "tube", "x": 0.5, "y": 0, "z": 0})[0] - place_of(now, {"body": "tube", "x": 0, "y": 0, "z": 0})[0]
-    assert second @ tube == pytest.approx(0.0, abs=1e-9)
-    assert others[0] @ others[1] == pytest.approx(0.0, abs=1e-9)
-    assert others[1] @ tube == pytest.approx(0.0, abs=1e-9)
+    assert bearing == pytest.approx([1, 0, 0])
+    for one, other in (
+        (first, bearing),
+        (first, second),
+        (second, tube),
+        (others[0], bearing),
+        (others[0], others[1]),
+        (others[1], tube),
+    ):
+        assert one @ other == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_cross_of_a_leg_that_stands_upright_at_zero():
+    """The first axis stays on the ground; the second is that of the leg that is level."""
+    solution = moved("stewart_gough").during(slice(1, 2))
+    crosses = [line.points[1] - line.points[0] for line in axes_of(solution, solution, 1.0) if line.style == "-"]
+    for k in range(6):
+        first, second = crosses[2 * k : 2 * k + 2]
+        assert first / np.linalg.norm(first) == pytest.approx([1, 0, 0])
+        np.testing.assert_allclose(second / np.linalg.norm(second), solution.pose(f"cylinder{k}").axes[0, 1], atol=1e-9)
+
+
+def test_the_second_axis_of_a_cross_is_where_the_turn_about_the_first_puts_it():
+    """By Rodrigues' formula from the reported turn, where the child is turned at zero."""
+    solution = every_kind().during(slice(3, 4))
+    parent, angle = solution.pose("arm").axes[0], solution.motion("universal:turn_1").value[0]
+    first, second = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
+    expected = (np.cos(angle) * second + np.sin(angle) * np.cross(first, second)) @ parent
+    tip = place_of(solution, {"body": "arm", "x": 0.3, "y": 0.0, "z": 0.0})[0]
+    found = [line.points for line in axes_of(solution, solution, 1.0) if np.allclose(line.points.mean(axis=0), tip)]
+    assert len(found) == 2
+    for points, direction in zip(found, (first @ parent, expected), strict=True):
+        np.testing.assert_allclose(np.diff(points, axis=0)[0] / np.linalg.norm(points[1] - points[0]), direction, atol=1e-12)
 
 
 def test_a_line_of_a_slide_reaches_as_far_as_it_goes():
