@@ -115,3 +115,29 @@ def test_motions_of_points_drives_elsewhere_and_own_outputs(tmp_path, capsys):
     assert "load wind: line load on arm, x = 0 N/m, y = 0 to -40 N/m, in ground axes\n" in told
     assert "output power [W]: (effort:swing*swing_rate)\n" in told
     assert "nan" not in told
+
+
+IN_SPACE = """
+from lagrange_casadi import Scene, SpatialMechanism, motion
+
+def scene():
+    m = SpatialMechanism("in_space")
+    crank, rod, ram = (m.link(name, length=l, mass=1.0) for name, l in (("crank", 0.1), ("rod", 0.5), ("ram", 0.1)))
+    m.revolute("O", m.ground.at(0, 0, 0.2), crank, axis=(0, 0, 1))
+    m.spherical("A", crank.tip, rod)
+    m.spherical("B", rod.tip, ram)
+    m.screw("N", m.ground.at(0.4, 0.1, 0), ram, axis=(0.6, 0, 0.8), lead=0.3)
+    m.torque("brake", ram, x=1.0, z=-2.0, turning=True)
+    return Scene(m, {"O": motion.polynomial(0, 1)}, t=(0, 0.1, 3), posture={"N": 0.2})
+"""
+
+
+def test_info_says_how_joints_in_space_move(tmp_path, capsys):
+    (tmp_path / "case.py").write_text(IN_SPACE)
+    assert main(["info", str(tmp_path / "case.py")]) == 0
+    told = capsys.readouterr().out
+    assert "  revolute joint O: ground (0, 0, 0.2) - crank (0, 0, 0), about (0, 0, 1) of ground, driven\n" in told
+    assert "  spherical joint A: crank (0.1, 0, 0) - rod (0, 0, 0)\n" in told
+    assert "  screw joint N: ground (0.4, 0.1, 0) - ram (0, 0, 0), about (0.6, 0, 0.8) of ground (0.3 m a turn)\n" in told
+    assert "  bars, whose spin about their own axis is idle: rod\n" in told
+    assert "load brake: torque on ram against ground, x = 1 N m, y = 0 N m, z = -2 N m, in the axes of ram\n" in told

@@ -55,7 +55,7 @@ def test_a_second_process_derives_nothing(fresh_cache, tmp_path):
 
 def pendulum(length=0.5, mass=1.2, gravity=9.81, load=3.0, place=0.2, law=None, name="pendulum", wanted=("all",), **keywords):
     m = Mechanism(name)
-    m.gravity = (0.0, -gravity)
+    m.gravity = (0.0, -gravity, 0.0)
     k = m.parameter("k", 2.0, "N")
     arm = m.link("arm", length=length, mass=mass)
     pin = m.revolute("pin", m.ground, arm)

@@ -326,8 +326,13 @@ def test_calls_out_of_order_and_what_is_not_there_are_errors(unit, instances):
 
 
 def test_a_unit_of_another_description_is_not_made(unit, tmp_path):
+    """With a logger of its own: FMPy's usual one is that of whichever unit was made last, which may be gone."""
     path = unit("slider_crank")[1]
+    callbacks = fmi2.fmi2CallbackFunctions()
+    callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(fmi2.printLogMessage)
+    callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmi2.calloc)
+    callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmi2.free)
     fmpy.extract(str(path), str(tmp_path))
     fmu = fmi2.FMU2Model(guid="{other}", unzipDirectory=str(tmp_path), modelIdentifier="slider_crank", instanceName="it")
     with pytest.raises(Exception, match="instantiate"):
-        fmu.instantiate()
+        fmu.instantiate(callbacks=callbacks)

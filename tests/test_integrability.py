@@ -46,6 +46,15 @@ def turning(q, qd):
     return ca.vertcat(skew[2, 1], skew[0, 2], skew[1, 0]), change
 
 
+def test_what_is_nothing_but_rounding_is_not_taken_for_a_rate():
+    """Across its own axis a body that turns about that does not move: what is left of two products is one rounding."""
+    q, qd, qdd = symbols(2)
+    c, s, a = ca.cos(q[0]), ca.sin(q[0]), ca.cos(q[1])
+    nothing = qd[1] * c * (s * a + (1 - a) * s) - qd[1] * s * (c * a + (1 - a) * c)
+    assert wrong(ca.vertcat(nothing, qd[0], ca.jtimes(q[0] * s, q, qd)), q, qd, qdd) == []
+    assert wrong(ca.vertcat(nothing, qd[0], q[0] * qd[1]), q, qd, qdd) == [2]
+
+
 def test_rates_of_places_are_told_from_others_by_number():
     q, qd, qdd = symbols(2)
     place = ca.vertcat(q[0] * ca.cos(q[1]), q[0] * ca.sin(q[1]))

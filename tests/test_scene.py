@@ -140,7 +140,7 @@ def test_a_link_known_by_its_inertia_has_no_section():
 @pytest.mark.parametrize(
     ("keywords", "says"),
     [
-        ({"motion": {"X": polynomial(0)}}, "unknown joint, path or body in motion 'X'; valid: O, A, B, guide, crank"),
+        ({"motion": {"X": polynomial(0)}}, "unknown joint, path or body in motion 'X'; valid: O, A, guide, crank"),
         ({"motion": {"B": polynomial(0)}}, "joint 'B' cannot be driven"),
         ({"motion": {"O": 3.0}}, "motion of joint 'O': expected a law"),
         ({"posture": {"stick": 1.0}}, "unknown link or joint in posture 'stick'; valid: crank, rod, O, A, guide"),

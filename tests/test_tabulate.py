@@ -185,7 +185,7 @@ def test_nodes_are_where_the_motion_goes():
 def test_what_rounding_alone_makes_is_no_term():
     """An arm in the plane of no gravity: its torque goes with the acceleration alone."""
     scene = arm()
-    scene.mechanism.gravity = (0.0, 0.0)
+    scene.mechanism.gravity = (0.0, 0.0, 0.0)
     table = made(scene, 1e-12, ["effort"], rates=(50.0, 0.0))
     assert table.nodes == 16
     assert table.terms == (("effort:pin", "acceleration"),)

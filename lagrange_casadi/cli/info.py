@@ -118,13 +118,32 @@ def _describe_mechanism(description: Description) -> None:
         size = "point mass" if body["length"] is None else f"link of {body['length']:g} m,"
         click.echo(f"  {size} {name}: {body['mass']:g} kg".replace("  point mass", "  point mass"))
     for name, joint in description["joints"].items():
-        ends = " - ".join(f"{p['body']} ({p['x'] + 0.0:g}, {p['y'] + 0.0:g})" for p in (joint["parent"], joint["child"]))
-        along = ""
-        if joint["kind"] in ("prismatic", "slot"):
-            along = f", along {_vector(joint['axis'])} of {joint['parent']['body']}"
-        turned = f", at {joint['angle']:g} rad ({math.degrees(joint['angle']):g} deg)" if joint["angle"] else ""
-        click.echo(f"  {joint['kind']} joint {name}: {ends}{along}{turned}{', driven' if joint['driven'] else ''}")
+        points = [[p[k] for k in "xyz" if k in p] for p in (joint["parent"], joint["child"])]
+        ends = " - ".join(f"{p['body']} {_vector(at)}" for p, at in zip((joint["parent"], joint["child"]), points, strict=True))
+        moves = _in_space(joint, description["unmeasured"]) if "coordinates" in joint else _in_plane(joint)
+        click.echo(f"  {joint['kind']} joint {name}: {ends}{moves}")
     click.echo(f"  gravity: {_vector(description['gravity'])} m/s^2")
+    if description.get("bars"):
+        click.echo(f"  bars, whose spin about their own axis is idle: {', '.join(description['bars'])}")
+
+
+def _in_plane(joint: Description) -> str:
+    """How a joint of a plane moves."""
+    along = f", along {_vector(joint['axis'])} of {joint['parent']['body']}" if joint["kind"] in ("prismatic", "slot") else ""
+    turned = f", at {joint['angle']:g} rad ({math.degrees(joint['angle']):g} deg)" if joint["angle"] else ""
+    return f"{along}{turned}{', driven' if joint['driven'] else ''}"
+
+
+def _in_space(joint: Description, unmeasured: Sequence[str]) -> str:
+    """How a joint in space moves: about or along which axis by each of its coordinates that are told, and whether it is driven."""
+    told = ""
+    for (name, kind), axis in zip(joint["coordinates"].items(), joint["axes"], strict=True):
+        if name not in unmeasured:
+            own = name.partition(":")[2]
+            lead = f" ({joint['pitch'] * math.tau:g} m a turn)" if joint["pitch"] else ""
+            word = f"{'along' if kind == 'slide' else 'about'} {_vector(axis)}{'' if told else ' of ' + joint['parent']['body']}"
+            told += f", {own + ' ' if own else ''}{word}{lead}{', driven' if name in joint['driven'] else ''}"
+    return told
 
 
 def _vector(components: Sequence[float]) -> str:

@@ -24,7 +24,7 @@ def scene_lines(scene: Scene) -> Iterator[str]:
     symbol, word = ca.SX.sym("t"), "drive" if scene.weights is None else "motion"
     for joint, law in scene.laws.items():
         yield f"  {word} {joint}: {_law(law, symbol)}; {_course(scene, joint)}"
-    yield from (f"load {name}: {_load(load)}" for name, load in mechanism.loads.items())
+    yield from (f"load {name}: {_load(load, space=mechanism.space)}" for name, load in mechanism.loads.items())
     yield from (f"constraint {name}: 0 = {_short(constraint.phi)}" for name, constraint in mechanism.constraints.items())
     for name, row in mechanism.rows.items():
         yield f"non-holonomic constraint {name}: 0 = {_short(row.expression)}; it moves joint {row.replaces}, without an effort"
@@ -56,20 +56,27 @@ def _course(scene: Scene, joint: str) -> str:
     return words.replace(f"{joint} = ", "") + ("" if inside else f", within {' and '.join(ends)}")
 
 
-def _load(load: Load) -> str:
+def _load(load: Load, *, space: bool) -> str:
     first = load.points[0].body.name
     if isinstance(load, Force):
-        axes = f"in the axes of {first}" if load.turning else "in ground axes"
-        return f"force on {first}, x = {_short(load.x)} N, y = {_short(load.y)} N, {axes}"
+        return f"force on {first}, {_components(load, 'N', space)}"
     if isinstance(load, LineLoad):
         axes = f"in the axes of {first}" if load.turning else "in ground axes"
         along = [" to ".join(dict.fromkeys(_short(end) for end in ends)) for ends in (load.x, load.y)]
         return f"line load on {first}, x = {along[0]} N/m, y = {along[1]} N/m, {axes}"
     second = load.points[1].body.name
     if isinstance(load, Torque):
+        if space:
+            return f"torque on {first} against {second}, {_components(load, 'N m', space)}"
         return f"torque on {first} against {second}, {_short(load.value)} N m"
     words = f"stiffness {_short(load.stiffness)} N/m, free length {_short(load.length)} m, damping {_short(load.damping)} N s/m"
     return f"spring between {first} and {second}, {words}"
+
+
+def _components(load: Force | Torque, unit: str, space: bool) -> str:
+    """The components of a load, and in which axes they are."""
+    told = [f"{x} = {_short(value)} {unit}" for x, value in zip("xyz" if space else "xy", load.components, strict=False)]
+    return f"{', '.join(told)}, in {f'the axes of {load.point.body.name}' if load.turning else 'ground axes'}"
 
 
 def _short(expression: Any) -> str:

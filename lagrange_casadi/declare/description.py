@@ -54,7 +54,7 @@ IN_SPACE = _shape(
     place=_PLACE | {"z": float},
     centre={"x": float, "y": float, "z": float, "inertia": _MATRIX},
     gravity=_VECTOR,
-    joint={"coordinates": {str: str}, "driven": [str], "axes": [_VECTOR], "turned": _MATRIX, "pitch": float},
+    joint={"coordinates": {str: str}, "driven": [str], "axes": [_VECTOR], "triad": _MATRIX, "turned": _MATRIX, "pitch": float},
     load={"turning": bool},
 ) | {"bars": [str], "unmeasured": [str]}
 """The same of a mechanism in space."""
@@ -116,8 +116,8 @@ def describe(
     """Bodies with their length [m] (None for a point mass) and mass [kg], and joints with the places they join.
 
     ``driven`` are the coordinates whose motion is given, ``drives`` those whose efforts make it, where these are others. A joint in
-    space has the kinds of its coordinates in sequence, and their ``axes`` in the parent's axes where all are zero; ``turned`` are
-    the child's axes there, a row each, in the parent's axes.
+    space has its coordinates in sequence, with their kinds; their ``axes`` and how the child's axes are ``turned``, both where all
+    coordinates are zero; and its own axes, the ``triad``. Directions are in the parent's axes, a row each.
     """
     numbers = iter(_numbers(mechanism)([values[name] for name in mechanism.parameters]).full().ravel().tolist())
     found = _described(mechanism, values, driven, lambda _: next(numbers))
@@ -194,6 +194,7 @@ def _described(
             "parent": place(joint.parent),
             "child": place(joint.child),
             "axes": [vector(axis.direction) for axis in joint.axes],
+            "triad": [vector(direction) for direction in joint.triad],
             "turned": [vector(direction) for direction in (x, y, cross(x, y))],
             "pitch": number(joint.pitch),
         }

@@ -25,12 +25,12 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description) -
         told = f"{len(drives)} drives ({', '.join(drives)}) make {moved} motion{'s' if moved > 1 else ''}"
         yield f"{told}: of all efforts that do, these have the least weighted sum of squares"
     for name, joint in description["joints"].items():
-        body = description["bodies"].get(joint["parent"]["body"], {})
-        if joint["kind"] not in ("prismatic", "slot") or "density" not in body:
+        body, ways = description["bodies"].get(joint["parent"]["body"], {}), _along(name, joint)
+        if not ways or "density" not in body:
             continue
-        ratio, motion = outputs.get(Output("station", joint["parent"]["body"], "station", name)), Output("motion", name)
-        if ratio is None and motion in outputs:
-            ratio = (joint["parent"]["x"] + joint["axis"][0] * outputs[motion]) / body["length"]
+        ratio = outputs.get(Output("station", joint["parent"]["body"], "station", name))
+        if ratio is None and ways.keys() <= outputs.keys():
+            ratio = (joint["parent"]["x"] + sum(way * outputs[motion] for motion, way in ways.items())) / body["length"]
         if ratio is None:
             continue
         away = np.flatnonzero((ratio < -_EDGE) | (ratio > 1.0 + _EDGE))
@@ -40,3 +40,12 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description) -
                 f"joint '{name}' leaves link '{joint['parent']['body']}' at t = {t[away[0]]:.6g} s (xi/l from {low:.4g} to "
                 f"{high:.4g}): beyond its ends it loads the link as through a bracket"
             )
+
+
+def _along(name: str, joint: Description) -> dict[Output, float]:
+    """How far a joint's point goes along its parent's axis, by the motions that move it; nothing where it does not slide."""
+    if "coordinates" not in joint:
+        return {Output("motion", name): joint["axis"][0]} if joint["kind"] in ("prismatic", "slot") else {}
+    each = zip(joint["coordinates"].items(), joint["axes"], strict=True)
+    found = {Output("motion", own): axis[0] * (1.0 if kind == "slide" else joint["pitch"]) for (own, kind), axis in each}
+    return {motion: way for motion, way in found.items() if way}

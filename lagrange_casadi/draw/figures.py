@@ -22,6 +22,7 @@ from ..instants.solution import Peak, Solution
 from ..quantities import Output
 from ..store.untrusted import parsed
 from ..tables import PLANE, SPACE
+from .views import AZIMUTH, ELEVATION
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -158,11 +159,18 @@ class SectionMaps:
 
 @dataclass(frozen=True)
 class MechanismDrawing:
-    """The mechanism at ``count`` instants, evenly spread over the time of the solution."""
+    """The mechanism at ``count`` instants, evenly spread over the time of the solution.
+
+    One in space is drawn from above, from the front, from the right, and from ``azimuth`` and ``elevation`` [deg]: the angle about
+    the upward axis, and that above the level, of the direction from which it is looked at. The upward axis is the ground's axis
+    that is most against gravity.
+    """
 
     kind: ClassVar[str] = "drawing"
     name: str = "mechanism"
     count: int = 4
+    azimuth: float = AZIMUTH
+    elevation: float = ELEVATION
 
     def needs(self) -> tuple[str, ...]:
         """Full names of the quantities it draws; the poses of all bodies besides."""
@@ -171,7 +179,10 @@ class MechanismDrawing:
     def draw(self, solution: Solution) -> Figure:
         """The figure."""
         from .drawing import draw_mechanism
+        from .space_drawing import draw_in_space
 
+        if solution.table is SPACE:
+            return draw_in_space(solution, self.count, self.azimuth, self.elevation)
         return draw_mechanism(solution, self.count)
 
 
@@ -188,6 +199,8 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
         drawn = output.group in ("effort", "reaction", "multiplier", "load", "output") or output == Output("motion", output.part)
         if drawn and solution.determined(output) and np.any(values):
             own = "_own" if output.member.endswith(("u", "v", "w")) else ""
+            if own and all(solution.determined(other) for other in _in_ground_axes(output)):
+                continue
             kind = f"{output.group}{own}{'_moment' if output.member.startswith('m') else ''}"
             groups.setdefault((kind, output.part), []).append(str(output))
     for (group, part), names in groups.items():
@@ -196,7 +209,12 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     for link in solution.links_with_sections:
         if solution.determined(Output("section", link, "bending")):
             specs.append(SectionMaps(f"section_{link}", link))
-    return tuple(specs) if solution.table is SPACE else (*specs, MechanismDrawing())
+    return (*specs, MechanismDrawing())
+
+
+def _in_ground_axes(output: Output) -> Iterator[Output]:
+    """The components in ground axes of a reaction that is told on the joint's own."""
+    return (Output(output.group, output.part, output.member[0] + component) for component in "xyz")
 
 
 def dump_specs(specs: Sequence[Spec]) -> str:
@@ -230,8 +248,6 @@ def draw(solution: Solution, specs: Sequence[Spec], folder: Path) -> Iterator[tu
             raise DeclarationError(f"expected specs of lagrange_casadi.figures, got {spec!r}")
         if not _FILE.fullmatch(spec.name) or sum(other.name == spec.name for other in chosen) > 1:
             raise DeclarationError(f"figure '{spec.name}': expected letters, digits, underscores and hyphens, each name once")
-        if isinstance(spec, MechanismDrawing) and solution.table is SPACE:
-            raise DeclarationError(f"figure '{spec.name}': a spatial mechanism cannot be drawn yet; leave it out")
         _check_parts(solution, spec)
     for spec in chosen:
         if not _has(solution, spec):

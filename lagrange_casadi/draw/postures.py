@@ -23,8 +23,9 @@ def draw_postures(scene: Scene, file: BinaryIO) -> int:
     """
     from matplotlib.figure import Figure
 
-    from .drawing import draw_into
+    from . import drawing, space_drawing
 
+    draw_into = space_drawing.draw_into if scene.mechanism.space else drawing.draw_into
     found = list(assemblies(scene)) if len(scene.mechanism.moving) <= _LARGE else []
     if not found:
         return 0

@@ -17,7 +17,7 @@ from ..declare.density import Array
 from ..errors import DeclarationError
 
 _POINTS, _TRIALS = 3, 1000
-_SAME = 1e-8
+_SAME, _NOTHING = 1e-8, 1e-13
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +91,9 @@ def no_rates(graphs: Any, course: Course, mobilities: Any, mobility_rates: Any) 
         if not all(np.isfinite(x).all() for x in values):
             continue
         sizes = np.abs(values[-1].ravel())
-        weighted = generator.uniform(0.5, 1.5, k) / np.where(sizes > 0.0, sizes, 1.0)
+        # What is nothing but rounding beside the others must not be made as large as they are.
+        sizes = np.where(sizes > _NOTHING * sizes.max(), sizes, sizes.max() or 1.0)
+        weighted = generator.uniform(0.5, 1.5, k) / sizes
         together, *alone = broken(at, fixed, weighted)
         found |= {i for i in range(k) if alone[i]}
         if together:

@@ -132,7 +132,7 @@ def off(joint: Joint, parent: Frame, child: Frame) -> Expression | None:
     if not turns:
         # Of a plane the trace is 1 + 2 cos.
         return 1 - seen.c if seen.angle is not None else 1 - (seen.x[0] + seen.y[1] + seen.z[2] - 1) / 2
-    if len(turns) > 1 or seen.angle is not None:
+    if len(turns) > 1 or joint.turned is None:
         return None
     axis = _at_zero(joint, joint.triad[turns[0].direction])
     return 1 - dot(axis, seen.apply(axis))

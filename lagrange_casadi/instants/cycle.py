@@ -308,11 +308,11 @@ def _sizes(graph: SceneGraph, peaks: Array) -> Array:
 
 
 def _kind(graph: SceneGraph, column: Column) -> str | Column:
-    """What columns are compared by: their unit, or, where that says nothing, themselves."""
+    """What columns are compared by: their unit, or, where that says nothing, themselves; directions with each other."""
     if isinstance(column, Check):
         return ANGLE if column.kind == "turns" else column
     unit = column.unit(graph.scene.mechanism)
-    return column if unit == "1" else unit
+    return column.group if column.group == "pose" and unit == "1" else column if unit == "1" else unit
 
 
 def _listed(columns: Collection[Column]) -> str:

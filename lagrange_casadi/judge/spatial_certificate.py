@@ -16,7 +16,7 @@ from ..declare.description import Description, density_of, drives_of, measured_o
 from ..instants.solution import Solution
 from ..quantities import Output, force_members
 from . import digits
-from .spatial_placing import Moving, measured, oriented, relative, resolve, spot, told, turn
+from .spatial_placing import Moving, Reported, measured, oriented, relative, resolve, spot, told, turn
 from .spatial_rest import axes_of, gaps_of, place_all
 from .written import Written
 
@@ -66,19 +66,21 @@ def residuals(solution: Solution, turned: Solution, equations: Sequence[Written]
         return {}
     if any(Output("pose", name, "z") not in solution.outputs for name in description["bodies"]):
         return {}
-    bodies = place_all(turned, equations or ())
+    reported = Reported(solution, turned)
+    bodies = place_all(reported, equations or ())
     if len(bodies) < len(description["bodies"]) + 1:
         return {}
-    found = {"closure": (_closure(solution, turned, bodies, equations or ()), digits.size(solution))}
+    found = {"closure": (_closure(reported, bodies, equations or ()), digits.size(solution))}
     wanted = [Output("reaction", name, "fx") for name in description["joints"]]
+    wanted += [output for output in solution.outputs if output.group == "reaction"]
     wanted += [Output("load", name, "fx") for name in description["loads"]]
     wanted += [Output("effort", name) for name in drives_of(description)]
     wanted += [Output("multiplier", name) for name in (*description["constraints"], *description["rows"])]
     known = equations is not None or not (description["constraints"] or description["rows"])
     if known and all(output in solution.outputs and np.isfinite(solution.outputs[output]).all() for output in wanted):
         matter = {name: _matter(body) for name, body in description["bodies"].items()}
-        acting = [*_acting(solution, turned, bodies)]
-        acting += [push for equation in equations or () for push in _held(solution, turned, bodies, equation)]
+        acting = [*_acting(reported, bodies)]
+        acting += [push for equation in equations or () for push in _held(reported, bodies, equation)]
         tally = _tally(solution, bodies, acting, matter)
         found["balance"], found["power"] = _balance(solution, bodies, tally, matter)
         if solution.links_with_sections:
@@ -103,22 +105,23 @@ def _matter(body: Description) -> _Matter:
     return mass, np.array([middle * length, 0.0, 0.0]), np.diag([0.0, across, across])
 
 
-def _closure(solution: Solution, turned: Solution, bodies: Mapping[str, Moving], equations: Sequence[Written]) -> Array:
+def _closure(reported: Reported, bodies: Mapping[str, Moving], equations: Sequence[Written]) -> Array:
     """Gaps of all joints, of the reported poses, and of the users' equations: over their slopes, times the length of all links.
 
     A joint's gap is how far its child is from where, and from how, its reported motion puts it; so too of rates and accelerations,
     over the largest that there are.
     """
+    solution, turned = reported.solution, reported.turned
     worst, size = np.zeros_like(solution.t), digits.size(solution)
     _, fastest, most = _rates(solution, bodies)
     for joint in solution.description["joints"].values():
-        near, far, motion = bodies[joint["parent"]["body"]], bodies[joint["child"]["body"]], relative(turned, joint)
+        near, far, motion = bodies[joint["parent"]["body"]], bodies[joint["child"]["body"]], relative(reported, joint)
         apart = near.under(far.point(spot(joint["child"]))[0]) - spot(joint["parent"]) - motion.slide[0]
         worst = np.maximum(worst, _size(apart))
         if told(solution.description, joint):
             off = np.swapaxes(near.axes, 1, 2) @ far.axes - motion.turned
             worst = np.maximum(worst, np.abs(off).max(axis=(1, 2)) * size)
-        for gap, scale in zip(gaps_of(turned, joint, bodies), (fastest, fastest / size, most, most / size), strict=True):
+        for gap, scale in zip(gaps_of(reported, joint, bodies), (fastest, fastest / size, most, most / size), strict=True):
             largest = float(np.max(scale))
             worst = np.maximum(worst, _size(gap) * (size / largest if largest > 0.0 else 0.0))
     for name in measured_of(solution.description):
@@ -146,7 +149,7 @@ def _closure(solution: Solution, turned: Solution, bodies: Mapping[str, Moving],
     return worst
 
 
-def _along(turned: Solution, joint: Description, bodies: Mapping[str, Moving], name: str, effort: Array) -> Iterator[_Action]:
+def _along(reported: Reported, joint: Description, bodies: Mapping[str, Moving], name: str, effort: Array) -> Iterator[_Action]:
     """What an effort along a joint's coordinate does to its child, and the opposite to its parent, at the point on the child."""
     near, child = bodies[joint["parent"]["body"]], joint["child"]
     at, nil = bodies[child["body"]].point(spot(child))[0], np.zeros((effort.size, 3))
@@ -155,7 +158,7 @@ def _along(turned: Solution, joint: Description, bodies: Mapping[str, Moving], n
         force, couple = effort[:, None] * turn(near.axes, joint["axes"][names.index(name)]), nil
     else:
         number = [one for one in names if joint["coordinates"][one] == "angle"].index(name)
-        about = [turn(near.axes, axis) for axis in relative(turned, joint).about]
+        about = [turn(near.axes, axis) for axis in relative(reported, joint).about]
         force, couple = nil, effort[:, None] * _reciprocal(about, number)
     yield _Action(child["body"], at, force, couple, True)
     yield _Action(joint["parent"]["body"], at, -force, -couple, True)
@@ -171,36 +174,46 @@ def _reciprocal(axes: Sequence[Array], number: int) -> Array:
         return np.asarray(across / np.sum(first * across, axis=1)[:, None])
 
 
-def _acting(solution: Solution, turned: Solution, bodies: Mapping[str, Moving]) -> Iterator[_Action]:
+def _acting(reported: Reported, bodies: Mapping[str, Moving]) -> Iterator[_Action]:
     """Every force of joints, drives and loads."""
+    solution = reported.solution
 
     def vectors(group: str, name: str) -> tuple[Array, Array]:
-        nil = np.zeros_like(solution.t)
-        found = [solution.outputs.get(Output(group, name, member), nil) for member in force_members(True)]
-        return np.stack(found[:3], axis=1), np.stack(found[3:], axis=1)
+        members = force_members(True)
+        return _vector(solution, group, name, members[:3]), _vector(solution, group, name, members[3:])
 
     for name, joint in solution.description["joints"].items():
         at = bodies[joint["child"]["body"]].point(spot(joint["child"]))[0]
         force, couple = vectors("reaction", name)
         yield _Action(joint["child"]["body"], at, force, couple, False)
         yield _Action(joint["parent"]["body"], at, -force, -couple, False)
-        for coordinate in joint["coordinates"]:
-            if Output("effort", coordinate) in solution.outputs:
-                yield from _along(turned, joint, bodies, coordinate, solution.effort(coordinate))
+        efforts = [Output("effort", coordinate) for coordinate in joint["coordinates"]]
+        found = [_along(reported, joint, bodies, one.part, solution.outputs[one]) for one in efforts if one in solution.outputs]
+        for together in zip(*found, strict=True):
+            # Near gimbal lock couples along coordinates are large, and all together what the joint needs.
+            force, couple = sum(one.force for one in together), sum(one.couple for one in together)
+            yield replace(together[0], force=np.asarray(force), couple=np.asarray(couple))
     for name, load in solution.description["loads"].items():
         force, couple = vectors("load", name)
         for point, sign in zip(load["points"], (1.0, -1.0), strict=False):
             yield _Action(point["body"], bodies[point["body"]].point(spot(point))[0], sign * force, sign * couple, True)
 
 
-def _held(solution: Solution, turned: Solution, bodies: Mapping[str, Moving], equation: Written) -> Iterator[_Action]:
+def _vector(solution: Solution, group: str, name: str, members: Sequence[str]) -> Array:
+    """Three outputs of a part as vectors (t, 3); those that it has none of are zero."""
+    nil = np.zeros_like(solution.t)
+    return np.stack([solution.outputs.get(Output(group, name, member), nil) for member in members], axis=1)
+
+
+def _held(reported: Reported, bodies: Mapping[str, Moving], equation: Written) -> Iterator[_Action]:
     """What the multiplier of an equation does: along whatever stands in it."""
+    solution = reported.solution
     motion = [measured(solution, bodies, entry) for entry in equation.entries]
     forces = solution.multiplier(equation.name) * equation.slopes_at(motion, solution.t)
     joints = {name: joint for joint in solution.description["joints"].values() for name in joint["coordinates"]}
     for entry, force in zip(equation.entries, forces, strict=True):
         if entry.kind == "coordinate":
-            yield from _along(turned, joints[entry.part], bodies, entry.part, force)
+            yield from _along(reported, joints[entry.part], bodies, entry.part, force)
         else:
             push = force[:, None] * np.eye(3)["xyz".index(entry.kind)]
             yield _Action(entry.part, bodies[entry.part].point(np.array(entry.point))[0], push, np.zeros_like(push), True)
@@ -252,11 +265,24 @@ def _balance(
             worst = np.maximum(worst, _size(tally.moment.get(name, 0.0) - turning) / size)
         power = power + np.sum(speed * inertial + motion.rate * turning, axis=1)
         tally.flow = tally.flow + _size(speed) * weight + _size(motion.rate) * _size(turning)
+    worst = np.maximum(worst, _unlike(solution, bodies))
     turned, fastest, _ = _rates(solution, bodies)
     least, part = digits.least(solution), digits.coarseness(solution)
     largest = tally.size * (1.0 + part * digits.extent(solution) / size)
     flow = tally.flow + least * fastest + part * (tally.pushes * fastest + tally.twists * turned)
     return (worst, max(float(np.max(largest)), least)), (np.abs(tally.power - power), float(np.max(flow)))
+
+
+def _unlike(solution: Solution, bodies: Mapping[str, Moving]) -> Array:
+    """By how much reactions on the joints' own axes are other than those in ground axes: forces, and moments over the size."""
+    worst = np.zeros_like(solution.t)
+    for name, joint in solution.description["joints"].items():
+        if Output("reaction", name, "fu") in solution.outputs:
+            axes = bodies[joint["parent"]["body"]].axes @ np.array(joint["triad"]).T
+            for kind, arm in (("f", 1.0), ("m", digits.size(solution))):
+                there, own = (_vector(solution, "reaction", name, [kind + x for x in names]) for names in ("xyz", "uvw"))
+                worst = np.maximum(worst, _size(there - turn(axes, own)) / arm)
+    return worst
 
 
 def _rates(solution: Solution, bodies: Mapping[str, Moving]) -> tuple[Array, Array, Array]:

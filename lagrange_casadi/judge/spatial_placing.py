@@ -72,10 +72,28 @@ class Relative:
     about: tuple[Array, ...]
 
 
-def place(solution: Solution) -> dict[str, Moving]:
+@dataclass(frozen=True, eq=False)
+class Reported:
+    """What a solution reports of motion, and angles in ``turned`` without their turns, which are known more closely."""
+
+    solution: Solution
+    turned: Solution
+
+    @property
+    def count(self) -> int:
+        """The number of instants."""
+        return int(self.solution.t.size)
+
+    @property
+    def description(self) -> Description:
+        """The mechanism."""
+        return self.solution.description
+
+
+def place(reported: Reported) -> dict[str, Moving]:
     """The motion of every body that the reported motions of joints place, the ground's included."""
-    bodies = {"ground": Moving.at_rest(solution.t.size)}
-    waiting = dict(solution.description["joints"])
+    bodies = {"ground": Moving.at_rest(reported.count)}
+    waiting = dict(reported.description["joints"])
     moved = True
     while waiting and moved:
         moved = False
@@ -83,7 +101,7 @@ def place(solution: Solution) -> dict[str, Moving]:
             parent, child = joint["parent"]["body"], joint["child"]["body"]
             if (parent in bodies) == (child in bodies):
                 continue
-            found = _hang(solution, joint, bodies)
+            found = _hang(reported, joint, bodies)
             if found is not None:
                 bodies[child if parent in bodies else parent] = found
                 del waiting[name]
@@ -91,9 +109,9 @@ def place(solution: Solution) -> dict[str, Moving]:
     return bodies
 
 
-def relative(solution: Solution, joint: Description) -> Relative:
-    """How a joint moves, by its reported motions; of what is not told, nothing."""
-    count = solution.t.size
+def relative(reported: Reported, joint: Description) -> Relative:
+    """How a joint moves, by its reported motions; of what is not told, nothing. A screw slides by its turns too."""
+    count, solution = reported.count, reported.solution
     nil = np.zeros((count, 3))
     slide, speed, change, turned, rate, acceleration = nil, nil, nil, np.broadcast_to(np.eye(3), (count, 3, 3)), nil, nil
     about: list[Array] = []
@@ -112,7 +130,7 @@ def relative(solution: Solution, joint: Description) -> Relative:
         # Each turn is carried by those before it.
         acceleration = acceleration + motion.acceleration[:, None] * axis + np.cross(rate, motion.rate[:, None] * axis)
         rate = rate + motion.rate[:, None] * axis
-        turned = turned @ _rotation(direction, motion.value)
+        turned = turned @ _rotation(direction, reported.turned.motion(name).value)
     return Relative((slide, speed, change), turned @ np.array(joint["turned"]).T, rate, acceleration, tuple(about))
 
 
@@ -152,10 +170,10 @@ def measured(solution: Solution, bodies: Mapping[str, Moving], entry: Entry) -> 
     return place, speed, change
 
 
-def _hang(solution: Solution, joint: Description, bodies: Mapping[str, Moving]) -> Moving | None:
+def _hang(reported: Reported, joint: Description, bodies: Mapping[str, Moving]) -> Moving | None:
     """The motion of the body of a joint that is not placed yet, or None where the joint does not give it."""
-    description, parent, child = solution.description, joint["parent"], joint["child"]
-    whole, motion = told(description, joint), relative(solution, joint)
+    description, parent, child = reported.description, joint["parent"], joint["child"]
+    whole, motion = told(description, joint), relative(reported, joint)
     at, speed, change = motion.slide
     if parent["body"] in bodies:
         base = bodies[parent["body"]]
@@ -165,7 +183,7 @@ def _hang(solution: Solution, joint: Description, bodies: Mapping[str, Moving]) 
         slides = turn(base.axes, speed)
         moves, changes = moves + slides, changes + 2.0 * np.cross(base.rate, slides) + turn(base.axes, change)
         if not whole:
-            return Moving.holding((place, moves, changes), spot(child), *_undirected(solution))
+            return Moving.holding((place, moves, changes), spot(child), *_undirected(reported.count))
         spin = turn(base.axes, motion.rate)
         gains = turn(base.axes, motion.acceleration) + np.cross(base.rate, spin)
         axes, rate, acceleration = base.axes @ motion.turned, base.rate + spin, base.acceleration + gains
@@ -175,7 +193,7 @@ def _hang(solution: Solution, joint: Description, bodies: Mapping[str, Moving]) 
     if not whole:
         if oriented(description, parent["body"]):
             return None
-        return Moving.holding((place, moves, changes), spot(parent), *_undirected(solution))
+        return Moving.holding((place, moves, changes), spot(parent), *_undirected(reported.count))
     axes = far.axes @ np.swapaxes(motion.turned, 1, 2)
     spin, slides = turn(axes, motion.rate), turn(axes, speed)
     rate = far.rate - spin
@@ -184,9 +202,9 @@ def _hang(solution: Solution, joint: Description, bodies: Mapping[str, Moving]) 
     return Moving.holding(under, spot(parent) + at, axes, rate, acceleration)
 
 
-def _undirected(solution: Solution) -> tuple[Array, Array, Array]:
+def _undirected(count: int) -> tuple[Array, Array, Array]:
     """Axes and their rates of what has none."""
-    still = Moving.at_rest(solution.t.size)
+    still = Moving.at_rest(count)
     return still.axes, still.rate, still.acceleration
 
 

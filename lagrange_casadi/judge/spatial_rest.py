@@ -13,20 +13,20 @@ from typing import Any, Literal
 import numpy as np
 
 from ..declare.density import Array
+from ..declare.description import Description
 from ..instants.solution import Solution
-from .spatial_placing import Moving, measured, oriented, place, relative, spot, told, turn
+from .spatial_placing import Moving, Reported, measured, oriented, place, relative, spot, told, turn
 from .written import Written
 
 _LEAST = 1e-12
 """Of the largest: what is smaller decides nothing."""
 
 
-def place_all(solution: Solution, written: Sequence[Written] = ()) -> dict[str, Moving]:
+def place_all(reported: Reported, written: Sequence[Written] = ()) -> dict[str, Moving]:
     """The motion of every body, the ground's included; of those alone that are placed, where joints do not decide the others."""
-    bodies = place(solution)
-    for names in _together(solution, bodies, written):
-        found = _Rest(solution, bodies, names, written).motions()
-        bodies |= found
+    bodies = place(reported)
+    for names in _together(reported.solution, bodies, written):
+        bodies |= _Rest(reported, bodies, names, written).motions()
     return bodies
 
 
@@ -55,10 +55,15 @@ class _Rest:
     What joints and equations leave of velocities is affine in those of the bodies, so its slopes are differences.
     """
 
-    solution: Solution
+    reported: Reported
     bodies: dict[str, Moving]
     names: list[str]
     written: Sequence[Written]
+
+    @property
+    def solution(self) -> Solution:
+        """What is reported."""
+        return self.reported.solution
 
     def motions(self) -> dict[str, Moving]:
         """The motions of the bodies; none where their joints do not decide them."""
@@ -108,7 +113,7 @@ class _Rest:
         for joint in self.solution.description["joints"].values():
             near, far = joint["parent"]["body"], joint["child"]["body"]
             if (near in trial or far in trial) and near in bodies and far in bodies:
-                for gap in gaps_of(self.solution, joint, bodies)[2 * order - 2 : 2 * order]:
+                for gap in gaps_of(self.reported, joint, bodies)[2 * order - 2 : 2 * order]:
                     found += [*gap.T]
         for name in self.names:
             if name in self.solution.description["bars"]:
@@ -122,18 +127,18 @@ class _Rest:
         return np.array(found).reshape(len(found), self.solution.t.size)
 
 
-def gaps_of(solution: Solution, joint: Any, bodies: Mapping[str, Moving]) -> tuple[Array, Array, Array, Array]:
+def gaps_of(reported: Reported, joint: Description, bodies: Mapping[str, Moving]) -> tuple[Array, Array, Array, Array]:
     """What a joint leaves of velocities and angular velocities, and of both their changes: what moves otherwise than is reported.
 
     Each is (t, 3), in ground axes; those of turning are nil where it is not told how the joint turns.
     """
-    near, far, motion = bodies[joint["parent"]["body"]], bodies[joint["child"]["body"]], relative(solution, joint)
+    near, far, motion = bodies[joint["parent"]["body"]], bodies[joint["child"]["body"]], relative(reported, joint)
     own = far.point(spot(joint["child"]))
     under = near.point(near.under(own[0]))
     speed = own[1] - under[1]
     change = own[2] - under[2] - 2.0 * np.cross(near.rate, speed) - turn(near.axes, motion.slide[2])
     spin, gains = far.rate - near.rate, far.acceleration - near.acceleration
-    if told(solution.description, joint):
+    if told(reported.description, joint):
         about = spin - turn(near.axes, motion.rate), gains - np.cross(near.rate, spin) - turn(near.axes, motion.acceleration)
     else:
         about = np.zeros_like(spin), np.zeros_like(spin)

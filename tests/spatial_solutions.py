@@ -1,0 +1,22 @@
+"""Solutions of drawn mechanisms in space, each made once, and what their certificates say."""
+
+import functools
+
+from spatial_bridge import declared, plain
+from spatial_mechanisms import FAMILIES
+
+from lagrange_casadi import evaluate
+
+RATIOS = 5
+
+
+@functools.cache
+def evaluated(name, seed):
+    """What was drawn, and its solution."""
+    drawn = plain(FAMILIES[name](seed))
+    return drawn, evaluate(declared(drawn), xi=(0, 1, RATIOS))
+
+
+def residuals(certificate):
+    """The largest of each residual."""
+    return {name: float(values.max()) for name, values in certificate.items() if name != "condition"}

@@ -1,0 +1,192 @@
+"""Mechanisms in space, evaluated: all is as the oracle has it, in every way of evaluating them, and files hold it."""
+
+import math
+
+import numpy as np
+import pytest
+from spatial_bridge import coordinate, declared, plain, postures
+from spatial_mechanisms import FAMILIES
+from spatial_oracle import REACTION, SECTION
+from spatial_solutions import RATIOS, evaluated, residuals
+
+from lagrange_casadi import Scene, SpatialMechanism, evaluate, load, load_case, motion, save
+from lagrange_casadi.quantities import Output
+from lagrange_casadi.store.runs import check
+
+WHOLE = {"closure", "balance", "power", "ends"}
+CASES = [("tree", seed) for seed in range(12)] + [("loop", seed) for seed in range(8)] + [("arm", 0)]
+CASES += [(name, seed) for name in FAMILIES if name not in ("tree", "loop", "arm") for seed in range(2)]
+OVER_CONSTRAINED = ("planar_four_bar", "planar_slider_crank", "bennett", "bricard")
+ROUNDING = 1e-12
+SOME = (1, 4, 8)
+
+
+def near(value, other, size):
+    return abs(value - float(other)) <= ROUNDING * size
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, case)))
+def test_all_is_as_the_oracle_has_it_and_certified(case):
+    drawn, solution = evaluated(*case)
+    rods = {*drawn.rods}
+    found = residuals(solution.certificate)
+    assert set(found) == (WHOLE if rods else WHOLE - {"ends"})
+    assert max(found.values()) < ROUNDING
+    assert solution.certified
+    true = {k: drawn.solve(float(solution.t[k])) for k in SOME}
+    force = max(1.0, *(float(np.abs(x[:3].astype(float)).max()) for one in true.values() for x in one.reactions.values()))
+    twist = max(float(np.abs(x[3:].astype(float)).max()) for one in true.values() for x in one.reactions.values())
+    moment = max(1.0, twist, force * drawn.solve(0.0).size)
+    for k, one in true.items():
+        compare_motion(drawn, solution, k, one)
+        for (joint, number), effort in one.efforts.items():
+            own = solution.effort(coordinate(drawn.mechanism.joint(joint), number))
+            assert near(own[k], effort, moment), joint
+        for joint, reaction in one.reactions.items():
+            for i, member in enumerate(REACTION):
+                own = solution.outputs.get(Output("reaction", joint, member), np.zeros_like(solution.t))
+                if (joint, member) in one.open:
+                    assert np.isnan(own).all(), (joint, member)
+                elif np.isfinite(own).all():
+                    assert near(own[k], reaction[i], force if i < 3 else moment), (joint, member)
+                else:
+                    # What is open at any instant is told at none.
+                    assert any((joint, member) in drawn.solve(float(t)).open for t in solution.t), (joint, member)
+        for rod in rods:
+            compare_sections(drawn, solution, k, one, rod, force, moment)
+    assert bool(solution.left_open) == (case[0] in OVER_CONSTRAINED)
+
+
+def compare_motion(drawn, solution, k, one):
+    places = postures(drawn, float(solution.t[k]))
+    fast = max(1.0, *(abs(float(x)) for _, rate, change in one.coordinates.values() for x in (rate, change)))
+    for name, value in places.items():
+        if name in solution.description["unmeasured"]:
+            continue
+        gap = solution.motion(name).value[k] - value
+        angle = solution.unit(f"motion:{name}") == "rad"
+        assert abs(gap - (math.tau * round(gap / math.tau) if angle else 0.0)) < 1e-11, name
+    for (joint, number), (_, rate, change) in one.coordinates.items():
+        name = coordinate(drawn.mechanism.joint(joint), number)
+        if name not in solution.description["unmeasured"]:
+            own = solution.motion(name)
+            assert near(own.rate[k], rate, 10 * fast), name
+            assert near(own.acceleration[k], change, 100 * fast), name
+    for body, pose in one.poses.items():
+        told = solution.pose(body)
+        assert np.allclose([told.x[k], told.y[k], told.z[k]], pose.r.astype(float), rtol=0, atol=1e-12), body
+        spun = body in solution.description["bars"]
+        axes = np.array(pose.R, float).T
+        assert np.allclose(told.axes[k][: 1 if spun else 3], axes[: 1 if spun else 3], rtol=0, atol=1e-12), body
+
+
+def compare_sections(drawn, solution, k, one, rod, force, moment):
+    section = solution.section(rod)
+    for i, xi in enumerate(solution.xi):
+        told, shut = one.sections[rod].at(float(xi)).astype(float), ~np.array(one.open_section(rod, float(xi)))
+        own = np.array([getattr(section, name)[k, i] for name in SECTION])
+        if rod in solution.description["bars"]:
+            # A bar's cross-section has axes of its own: its spin is anyone's.
+            own, told, shut = spun(own), spun(told), np.ones(4, bool)
+        sizes = (force, force, force, moment, moment, moment) if len(own) > 4 else (force, force, moment, moment)
+        for value, other, determined, size in zip(own, told, shut, sizes, strict=True):
+            if np.isnan(value):
+                assert drawn.idle == 0
+                assert any(any(one.open_section(rod, float(x))) for x in solution.xi)
+            else:
+                assert determined, rod
+                assert near(value, other, size), rod
+
+
+def spun(forces):
+    """What of a section's forces a spin about the axis does not change."""
+    axial, y, z, torsion, about_y, about_z = forces
+    return np.array([axial, math.hypot(y, z), torsion, math.hypot(about_y, about_z)])
+
+
+@pytest.mark.parametrize(
+    "case", [("tree", 3), ("rssr", 1), ("suspension", 0), ("bennett", 0), ("stewart", 0)], ids=lambda case: case[0]
+)
+def test_a_file_holds_it_all(case, tmp_path):
+    _, solution = evaluated(*case)
+    save(solution, tmp_path / "space.h5")
+    assert check(tmp_path / "space.h5") == []
+    again = load(tmp_path / "space.h5")
+    assert again.description == solution.description
+    assert again.certified
+    assert list(again.series) == list(solution.series)
+
+
+def turning_crank(turns=3, **options):
+    """A slider-crank whose crank and rod are joined so that they slide too, along the pin: that joint closes the loop."""
+    m = SpatialMechanism("crank")
+    crank, rod, ram = (
+        m.link("crank", length=0.1, mass=1.0),
+        m.link("rod", length=0.4, mass=1.5),
+        m.link("ram", length=0.1, mass=2.0),
+    )
+    m.revolute("O", m.ground, crank, axis=(0, 0, 1))
+    m.cylindrical("A", crank.tip, rod, axis=(0, 0, 1))
+    m.revolute("B", rod.tip, ram, axis=(0, 0, 1))
+    m.prismatic("Q", m.ground, ram, axis=(1, 0, 0))
+    posture = {"A:turn": -0.3, "A:slide": 0.0, "B": 0.1, "Q": 0.45}
+    return Scene(m, {"O": motion.polynomial(0.2, 6.0)}, t=(0, turns * math.tau / 6.0, 60 * turns + 1), posture=posture, **options)
+
+
+def test_angles_that_loops_set_go_on():
+    """Whether they are coordinates or are measured: over turns each grows by what its rate gives."""
+    solution = evaluate(turning_crank())
+    assert solution.certified
+    for name in ("A:turn", "B"):
+        own = solution.motion(name)
+        assert np.abs(np.diff(own.value)).max() < 1.0, name
+        steps = np.diff(solution.t) * (own.rate[1:] + own.rate[:-1]) / 2
+        assert np.abs(np.diff(own.value) - steps).max() < 1e-2, name
+    assert solution.motion("A:turn").value[-1] - solution.motion("A:turn").value[0] == pytest.approx(-3 * math.tau, abs=1e-9)
+    assert solution.motion("B").value[-1] == pytest.approx(solution.motion("B").value[0], abs=1e-9)
+
+
+@pytest.mark.parametrize("made", [turning_crank, lambda: load_case("rssr").scene], ids=["planar", "skew"])
+def test_a_table_of_the_cycle_gives_the_same(made):
+    scene = made()
+    exact, found = evaluate(scene), evaluate(scene, table=1e-6)
+    assert found.certified
+    assert found.undetermined == exact.undetermined
+    assert set(residuals(found.certificate)) == ({"closure"} if found.left_open else WHOLE)
+    for name in exact.names():
+        if exact.determined(name):
+            like = [other for other in exact.names() if exact.unit(other) == exact.unit(name) and exact.determined(other)]
+            size = max(np.abs(exact.array(other)).max() for other in like)
+            assert np.abs(found.array(name) - exact.array(name)).max() <= 2e-6 * size, name
+
+
+@pytest.mark.parametrize(("options", "limit"), [({"newton": 3}, 1e-9), ({"backend": "vm"}, 1e-12), ({"precision": "single"}, 1e-3)])
+def test_other_ways_to_evaluate_are_certified_too(options, limit):
+    drawn = plain(FAMILIES["rsup"](1))
+    solution = evaluate(declared(drawn), xi=(0, 1, RATIOS), **options)
+    assert set(residuals(solution.certificate)) == WHOLE
+    assert solution.certified
+    assert max(residuals(solution.certificate).values()) < limit
+
+
+def test_estimates_bound_what_rounding_does():
+    """Of every output: what single precision is off, beside what it is estimated to be."""
+    drawn = plain(FAMILIES["rsur"](1))
+    exact, single = (evaluate(declared(drawn), xi=(0, 1, RATIOS), precision=p) for p in ("double", "single"))
+    for name in exact.names():
+        gap = np.abs(exact.array(name) - single.array(name)).max()
+        assert exact.errors[name] <= 1e-9 * (np.abs(exact.array(name)).max() + 1.0), name
+        assert gap <= 10 * single.errors[name] + 1e-30, name
+
+
+def test_a_point_that_slides_off_its_link_is_noted():
+    """By a screw as by a slide; and by its motion, where no section tells."""
+    m = SpatialMechanism("off")
+    beam, nut = m.link("beam", length=0.5, mass=1.0), m.link("nut", length=0.05, mass=0.2)
+    m.revolute("A", m.ground, beam, axis=(0, 0, 1))
+    m.screw("N", beam.at(0.4), nut, axis=(1, 0, 0), lead=0.1)
+    scene = Scene(m, {"A": motion.polynomial(0.1), "N": motion.polynomial(0.0, math.tau)}, t=(0, 2, 5))
+    for wanted in (["all"], ["motion"]):
+        (told,) = evaluate(scene, wanted=wanted).notes
+        assert told.startswith("joint 'N' leaves link 'beam' at t = 1.5 s (xi/l from 0.8 to 1.2)")
