@@ -120,7 +120,7 @@ def _describe_mechanism(description: Description) -> None:
     for name, joint in description["joints"].items():
         points = [[p[k] for k in "xyz" if k in p] for p in (joint["parent"], joint["child"])]
         ends = " - ".join(f"{p['body']} {_vector(at)}" for p, at in zip((joint["parent"], joint["child"]), points, strict=True))
-        moves = _in_space(joint, description["unmeasured"]) if "coordinates" in joint else _in_plane(joint)
+        moves = _in_space(joint, description) if "coordinates" in joint else _in_plane(joint)
         click.echo(f"  {joint['kind']} joint {name}: {ends}{moves}")
     click.echo(f"  gravity: {_vector(description['gravity'])} m/s^2")
     if description.get("bars"):
@@ -134,16 +134,25 @@ def _in_plane(joint: Description) -> str:
     return f"{along}{turned}{', driven' if joint['driven'] else ''}"
 
 
-def _in_space(joint: Description, unmeasured: Sequence[str]) -> str:
-    """How a joint in space moves: about or along which axis by each of its coordinates that are told, and whether it is driven."""
-    told = ""
+def _in_space(joint: Description, description: Description) -> str:
+    """How a joint in space moves: about or along which axis by each of its coordinates that are told, and what drives it."""
+    told, unmeasured = "", set(description["unmeasured"])
     for (name, kind), axis in zip(joint["coordinates"].items(), joint["axes"], strict=True):
         if name not in unmeasured:
             own = name.partition(":")[2]
             lead = f" ({joint['pitch'] * math.tau:g} m a turn)" if joint["pitch"] else ""
             word = f"{'along' if kind == 'slide' else 'about'} {_vector(axis)}{'' if told else ' of ' + joint['parent']['body']}"
-            told += f", {own + ' ' if own else ''}{word}{lead}{', driven' if name in joint['driven'] else ''}"
-    return told
+            told += f", {own + ' ' if own else ''}{word}{lead}{_driven(name, joint, description)}"
+    barred = {joint["parent"]["body"], joint["child"]["body"]} & set(description["bars"])
+    return told if barred or not unmeasured & set(joint["coordinates"]) else f"{told}, closes a loop: its angles are not measured"
+
+
+def _driven(coordinate: str, joint: Description, description: Description) -> str:
+    """Whether an effort drives a coordinate, and whether its motion is given, where the two are not the same."""
+    given, drives = coordinate in joint["driven"], description.get("drives")
+    if drives is None:
+        return ", driven" if given else ""
+    return f"{', driven' if coordinate in drives else ''}{', its motion is given' if given else ''}"
 
 
 def _vector(components: Sequence[float]) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from ..declare.motion import Motion, motion_function
 from ..declare.parts import Force, LineLoad, Load, Torque
 from ..declare.scene import Scene
+from ..declare.spatial import reference_posture
 from ..equations.kinematics import describe_coordinate
 
 _LONG, _LOOKS = 200, 1001
@@ -29,8 +30,10 @@ def scene_lines(scene: Scene) -> Iterator[str]:
     for name, row in mechanism.rows.items():
         yield f"non-holonomic constraint {name}: 0 = {_short(row.expression)}; it moves joint {row.replaces}, without an effort"
     yield from (f"output {name} [{own.unit}]: {_short(own.expression)}" for name, own in mechanism.outputs.items())
-    slides = [name for name, joint in mechanism.joints.items() if joint.slides]
-    postures = (describe_coordinate(name, "slide" if name in slides else "angle", rough) for name, rough in scene.posture.items())
+    slides = [name for name, (_, axis) in mechanism.coordinates.items() if axis.kind == "slide"]
+    postures = [describe_coordinate(name, "slide" if name in slides else "angle", rough) for name, rough in scene.posture.items()]
+    if any(name not in scene.posture for name in reference_posture(mechanism)):
+        postures.append(f"{'else ' if postures else ''}that of reference, in which the parts are declared")
     yield f"posture: {', '.join(postures) or 'none'}"
     if scene.assembly:
         yield f"assembled first with: {', '.join(f'{name} = {value:g}' for name, value in scene.assembly.items())}"
