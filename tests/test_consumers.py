@@ -3,23 +3,27 @@
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from conftest import CASES, PLANAR, SPATIAL
 from exported import CONSUMERS, FEW, RATIOS, by_c99, compare, expected, exported, instants, run, solve, values
 from mechanisms import DRAG_LINK, bracket, sampled_cam, slider_crank, spline_arm, sprung, truss_platform
 
 from lagrange_casadi import export, load_case
 
-CASES = Path(__file__).parents[1] / "cases"
-SCENES = {case.name: (lambda case=case: load_case(case).scene) for case in sorted(CASES.iterdir()) if case.is_dir()}
-SCENES |= {
+
+def cases(names):
+    return {name: (lambda name=name: load_case(CASES / name).scene) for name in names}
+
+
+SCENES = cases(PLANAR) | {
     "truss_platform": truss_platform,
     "spline_arm": spline_arm,
     "sprung": lambda: sprung("AC", **DRAG_LINK),
     "bracket": bracket,
     "cam": sampled_cam,
 }
+SCENES |= cases(SPATIAL)
 
 
 @pytest.mark.sampled(5)

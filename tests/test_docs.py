@@ -17,7 +17,7 @@ from lagrange_casadi.tables import SPATIAL_QUANTITIES
 pytestmark = pytest.mark.quick
 
 ROOT = Path(__file__).parent.parent
-PAGES = ["README.md", "docs/method.md", "docs/declaring.md", "docs/machines.md", "docs/sweeps.md"]
+PAGES = ["README.md", "docs/method.md", "docs/declaring.md", "docs/machines.md", "docs/space.md", "docs/sweeps.md"]
 PROSE = ["README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md"))]
 LINKING = [*PROSE, "cases/slider_crank/README.md"]
 

@@ -1,4 +1,4 @@
-"""Loads of mechanisms in space, against closed forms."""
+"""Loads and rows of mechanisms in space, against closed forms."""
 
 import math
 
@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
+from lagrange_casadi.errors import DeclarationError, ParameterError
 
 pytestmark = pytest.mark.quick
 
@@ -38,3 +39,49 @@ def test_a_torsion_spring_turns_back_about_its_joints_axis(joint):
     assert np.max(np.abs(np.array(reactions[1]) - reactions[0])) < 1e-13
     size = np.sqrt(sum(found.series[f"load:coil:m{axis}"] ** 2 for axis in "xyz"))
     assert np.max(np.abs(size - np.abs(added))) < 1e-13
+
+
+def test_a_wheel_that_rolls_takes_no_effort_and_is_pushed_at_its_rim():
+    m, radius = SpatialMechanism("barrow"), 0.2
+    carrier = m.link("carrier", length=0.3, mass=5.0, centre=(0.0, 0.0, 0.0), inertia=(0.1, 0.1, 0.1))
+    pull = m.prismatic("pull", m.ground.at(0, 0, radius), carrier, axis=(1.0, 0.0, 0.0))
+    wheel = m.link("wheel", length=radius, mass=3.0, centre=(0.0, 0.0, 0.0), inertia=(0.01, 0.02, 0.01))
+    shaft = m.revolute("shaft", carrier, wheel, axis=(0.0, 1.0, 0.0))
+    m.nonholonomic("rolling", m.rate(pull) - radius * m.rate(shaft), replaces=shaft)
+    laws = {"pull": motion.polynomial(0.0, 1.0, 2.0), "shaft": motion.polynomial(0.0, 1.0 / radius, 2.0 / radius)}
+    found = evaluate(Scene(m, laws, t=(0, 1, 11)))
+    assert found.certified
+    assert "effort:shaft" not in found.series
+    assert np.max(np.abs(found.effort("pull") - (8.0 + 0.02 / radius**2) * 4.0)) < 1e-12
+
+
+@pytest.mark.parametrize("station", [-0.2, 0.7])
+def test_a_station_beyond_an_end_is_refused_with_lines_that_weld_on_what_reaches_there(station):
+    def flag(point=None):
+        m = SpatialMechanism("flag")
+        m.set_gravity(0.0, 0.0, 0.0)
+        pole = m.link("pole", length=0.5, mass=1.0)
+        m.revolute("hinge", m.ground, pole, axis=(1.0, 0.0, 0.0))
+        m.force("wind", pole.at(station) if point is None else point(m), y=2.0)
+        return evaluate(Scene(m, {"hinge": motion.polynomial(0.0, 1.0)}, t=(0, 1, 3)))
+
+    with pytest.raises(ParameterError, match=r"is outside link 'pole', 0 to 0\.5 m; what lies beyond") as refused:
+        flag()
+    tail, weld = str(refused.value).partition("of its own: ")[2].split("; ")[:2]
+
+    def point(m):
+        names = {"m": m}
+        exec(f"{tail}\n{weld.removeprefix('and ')}", names)
+        return names["tail"].tip
+
+    found = flag(point)
+    assert found.certified
+    assert found.reaction("hinge").mz[0] == pytest.approx(-2.0 * station, abs=1e-14)
+
+
+def test_a_row_replaces_one_drive():
+    m = SpatialMechanism("disc")
+    disc = m.link("disc", length=0.1, mass=1.0, centre=(0.0, 0.0, 0.0), inertia=(0.002, 0.001, 0.001))
+    pose = m.free("pose", m.ground, disc)
+    with pytest.raises(DeclarationError, match=r"those of joint 'pose' are pose:slide_1, .*; take a chain of joints of one"):
+        m.nonholonomic("rolling", m.velocity(disc)[0] - 0.1 * m.rate(pose, "turn_2"), replaces=pose)

@@ -89,13 +89,13 @@ def _of(mechanism: Mechanism, precision: Precision) -> Demands:
         found.append(_some_mass(mechanism.name, masses))
     for joint in mechanism.joints.values():
         for point in (joint.parent, joint.child):
-            found += _of_station(f"joint '{joint.name}'", point, precision)
+            found += _of_station(f"joint '{joint.name}'", point, precision, space=mechanism.space)
     for load in mechanism.loads.values():
         if isinstance(load, LineLoad):
             found.append(_carrying(load))
             continue
         for point in load.points:
-            found += _of_station(f"load '{load.name}'", point, precision)
+            found += _of_station(f"load '{load.name}'", point, precision, space=mechanism.space)
     return Demands(mechanism.symbols, tuple(found))
 
 
@@ -217,11 +217,13 @@ def _surely_positive(mass: Expression) -> bool:
     return bool(constant.is_constant() and 0.0 < float(constant) < math.inf)
 
 
-def _of_station(what: str, point: Any, precision: Precision) -> list[Demand]:
+def _of_station(what: str, point: Any, precision: Precision, *, space: bool) -> list[Demand]:
+    back = ", turned=[('z', '180 deg')]" if space else ", angle='180 deg'"
+
     def refusal(number: Evaluator) -> str:
         x, length, link = number(point.x), number(point.body.length), point.body.name
         there = f"station {readable(x, 0.0, length)} m is outside link '{link}', 0 to {readable(length, x)} m"
-        end, beyond, turned = ("", -x, ", angle='180 deg'") if x < 0.0 else (".tip", x - length, "")
+        end, beyond, turned = ("", -x, back) if x < 0.0 else (".tip", x - length, "")
         if not math.isfinite(beyond):
             return f"{what}: {there}"
         tail = f"tail = m.link('{link}_tail', length={readable(beyond)}, mass=0.0)"

@@ -17,7 +17,7 @@ from .joints import IN_SPACE, Joint, JointKind, Triad
 from .matter import matter_of
 from .measures import Measures
 from .mechanism import Mechanism
-from .parts import Body, Expression, Force, LineLoad, Link, Point, PointMass, RigidMass, Torque, Vector
+from .parts import Body, Expression, Force, LineLoad, Link, Point, PointMass, RigidMass, Row, Torque, Vector
 
 Turns = Sequence[tuple[str, Expression]] | tuple[Vector, Vector]
 """Turns in sequence, each about the ``"x"``, ``"y"`` or ``"z"`` axis that the turns before it carry, by an angle [rad, or text].
@@ -269,6 +269,16 @@ class SpatialMechanism(Mechanism):
         found = Torque(name, load.point, load.value, load.against, across, turning)
         self.loads[name] = found
         return found
+
+    def nonholonomic(self, name: str, expression: Any, *, replaces: Joint) -> Row:
+        """Declare a non-holonomic constraint, as in a plane; ``replaces`` is a driven joint of one coordinate."""
+        if self.own.joint(replaces).coordinate is None:
+            found = ", ".join(axis.coordinate for axis in replaces.axes) or "none"
+            raise DeclarationError(
+                f"non-holonomic constraint '{name}': it replaces the drive of a joint of one coordinate, and those of joint "
+                f"'{replaces.name}' are {found}; take a chain of joints of one coordinate each"
+            )
+        return super().nonholonomic(name, expression, replaces=replaces)
 
     def _turn_back(self, name: str, joint: Joint, value: Expression) -> Torque:
         assert joint.turned is not None
