@@ -1,9 +1,9 @@
 """The spanning tree of a mechanism: which joints carry the coordinates, and which close loops.
 
 The tree is grown from the ground, always by the joint of the highest rank in reach, then the one nearest the ground, then the
-one declared first. Driven joints rank first, so that a driven motion is a coordinate of its own; then joints that hold a
-direction, so that directions tied together stay one coordinate; then pins; a point mass on a line last, since opening it
-leaves a single equation.
+one declared first. Driven joints rank first, so that a driven motion is a coordinate of its own; then screws, whose turns nothing
+else counts; then joints that hold a direction, so that directions tied together stay one coordinate; then pins; a point mass on a
+line last, since opening it leaves a single equation.
 """
 
 from __future__ import annotations
@@ -103,6 +103,12 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
             raise DeclarationError(
                 f"the drive of joint '{joint.name}' is redundant: the motions of the other driven joints already place its bodies"
             )
+        if joint.kind == "screw":
+            # Where its bodies are does not tell how often it has turned.
+            raise DeclarationError(
+                f"joint '{joint.name}' is a screw between bodies that drives and other screws place already; drive the screw "
+                "itself, or let it go and tie their coordinates by a constraint"
+            )
     return Tree(tuple(branches), tuple(waiting), bars)
 
 
@@ -117,10 +123,12 @@ def _can_carry(joint: Joint, reverse: bool) -> bool:
 
 def _rank(joint: Joint, driven: Collection[str]) -> int:
     if joint.name in driven:
+        return 4
+    if joint.kind == "screw":
         return 3
     if joint.holds_direction:
         return 2
     if joint.directions is not None:
-        # What lets more free is rather cut: fewer equations close it. Nothing closes a screw.
-        return 1 - len(joint.lets) if joint.kind != "screw" else 2
+        # What lets more free is rather cut: fewer equations close it.
+        return 1 - len(joint.lets)
     return 0 if joint.slides else 1
