@@ -79,7 +79,7 @@ def closing_gaps(joint: Joint, parent: Frame, child: Frame) -> tuple[Any, Any, A
     Phi are gaps in ground axes or across slides, and of directions where they are held; its multipliers are the action of the
     parent on the child along these gaps.
     """
-    gaps = [gap for gap, _ in (*_gaps_of_place(joint, parent, child), *_gaps_of_direction(joint, parent, child))]
+    gaps = [*_gaps_of_place(joint, parent, child), *_gaps_of_direction(joint, parent, child)]
     phi, phi_rate, phi_acceleration = (ca.vertcat(ca.SX(0, 1), *(gap[k] for gap in gaps)) for k in range(3))
     return phi, phi_rate, phi_acceleration
 
@@ -88,12 +88,14 @@ def reaction(joint: Joint, parent: Frame, child: Frame, multipliers: Any) -> tup
     """Force and moment of the parent on the child at a joint that closes a loop, in ground axes, by its multipliers."""
     force: Vector = (0.0, 0.0, 0.0)
     moment: Vector = (0.0, 0.0, 0.0)
-    places = [way for _, way in _gaps_of_place(joint, parent, child)]
-    directions = [way for _, way in _gaps_of_direction(joint, parent, child)]
+    places = [way for _, way in _across(joint, parent)]
     for k, way in enumerate(places):
         force = plus(force, times(multipliers[k], way))
-    for k, way in enumerate(directions, len(places)):
-        moment = plus(moment, times(multipliers[k], way))
+    held = _held(joint)
+    if held:
+        base, seen = parent.rotation.then(orientation(joint)), misalignment(joint, parent, child)
+        for k, (own, across) in enumerate(held, len(places)):
+            moment = plus(moment, times(multipliers[k], base.apply(cross(seen.apply(own), across))))
     return force, moment
 
 
@@ -143,51 +145,66 @@ def misalignment(joint: Joint, parent: Frame, child: Frame) -> Rotation:
     return child.rotation.against(parent.rotation.then(orientation(joint)))
 
 
-def _gaps_of_place(joint: Joint, parent: Frame, child: Frame) -> Iterator[tuple[Gap, Vector]]:
-    """Gaps between points, each with the direction in ground axes along which it is measured."""
+def _across(joint: Joint, parent: Frame) -> list[tuple[Vector, Vector]]:
+    """The directions along which a joint holds its points together: in the parent's axes, if it slides, and in ground axes."""
     plane = joint.directions is None
-    speed, acceleration = gap_motion(joint, parent, child)
-    slides = [f.direction for f in joint.lets if f.move == "slide"]
+    slides = sum(freedom.move == "slide" for freedom in joint.lets)
     if not slides:
-        between = minus(child.place_of(joint.child.place), parent.place_of(joint.parent.place))
-        for k, axis in enumerate(AXES[:2] if plane else AXES):
-            yield (between[k], speed[k], acceleration[k]), axis
-        return
-    distance, (u, v, w) = apart(joint, parent, child), joint.triad
-    # The lines turn under what slides on them (Coriolis).
-    if len(slides) == 1:
+        return [(axis, axis) for axis in (AXES[:2] if plane else AXES)]
+    u, v, w = joint.triad
+    if slides == 1:
         axis, beside = parent.rotation.apply(u), parent.rotation.apply(w)
-        rate = dot(speed, axis)
-        across = cross(beside, axis)
-        found = [(v, across, 2 * dot(parent.rate, beside) * rate), (w, beside, -2 * dot(parent.rate, across) * rate)]
-        found = found[:1] if plane else found
-    else:
-        across = parent.rotation.apply(u)
-        found = [(u, across, 2 * dot(cross(parent.rate, speed), across))] if len(slides) == 2 else []
-    for along, across, turning in found:
-        yield (dot(distance, along), dot(speed, across), dot(acceleration, across) - turning), across
+        found = [(v, cross(beside, axis)), (w, beside)]
+        return found[:1] if plane else found
+    return [(u, parent.rotation.apply(u))] if slides == 2 else []
 
 
-def _gaps_of_direction(joint: Joint, parent: Frame, child: Frame) -> Iterator[tuple[Gap, Vector]]:
-    """Gaps of directions that are held, each with the axis in ground axes about which its multiplier is a moment."""
-    turns = [f.direction for f in joint.lets if f.move != "slide"]
-    plane = joint.directions is None
+def _held(joint: Joint) -> tuple[tuple[Vector, Vector], ...]:
+    """Pairs of directions that a joint holds at right angles, of its child and of its parent, where coordinates are zero."""
     if not joint.bears_moment:
+        return ()
+    first, second, third = AXES if not joint.turns else (_at_zero(joint, direction) for direction in _triad(joint))
+    if joint.directions is None:
+        return ((first, second),)
+    return (
+        ((first, second), (second, third), (third, first)),
+        ((first, second), (first, third)),
+        ((second, first),),
+    )[joint.turns]
+
+
+def _gaps_of_place(joint: Joint, parent: Frame, child: Frame) -> Iterator[Gap]:
+    """Gaps between points."""
+    speed, acceleration = gap_motion(joint, parent, child)
+    slides = sum(freedom.move == "slide" for freedom in joint.lets)
+    if not slides:
+        distance, many = minus(child.place_of(joint.child.place), parent.place_of(joint.parent.place)), len(_across(joint, parent))
+        yield from zip(distance[:many], speed[:many], acceleration[:many], strict=True)
+        return
+    distance, held = apart(joint, parent, child), _across(joint, parent)
+    # The lines turn under what slides on them (Coriolis).
+    if slides == 1:
+        beside = parent.rotation.apply(joint.triad[2])
+        rate = dot(speed, parent.rotation.apply(joint.triad[0]))
+        turning = [2 * dot(parent.rate, beside) * rate, -2 * dot(parent.rate, held[0][1]) * rate]
+    else:
+        turning = [2 * dot(cross(parent.rate, speed), across) for _, across in held]
+    for (along, across), turned in zip(held, turning, strict=False):
+        yield dot(distance, along), dot(speed, across), dot(acceleration, across) - turned
+
+
+def _gaps_of_direction(joint: Joint, parent: Frame, child: Frame) -> Iterator[Gap]:
+    """Gaps of directions that are held."""
+    held = _held(joint)
+    if not held:
         return
     base, seen = parent.rotation.then(orientation(joint)), misalignment(joint, parent, child)
     rate, angular = minus(child.rate, parent.rate), minus(child.angular, parent.angular)
     turning = Frame(rate=base.resolve(rate), angular=base.resolve(minus(angular, cross(parent.rate, rate))))
-    first, second, third = AXES if not turns else (_at_zero(joint, direction) for direction in _triad(joint))
-    held = (
-        ((first, second), (second, third), (third, first)),
-        ((first, second), (first, third)),
-        ((second, first),),
-    )[len(turns)]
-    for own, across in held[:1] if plane else held:
+    for own, across in held:
         there = seen.apply(own)
         speed, acceleration = turning.motion_of(there)
-        gap = dot(there, across), dot(speed, across), dot(acceleration, across)
-        yield gap, base.apply(cross(there, across))
+        yield dot(there, across), dot(speed, across), dot(acceleration, across)
 
 
 def _triad(joint: Joint) -> tuple[Vector, Vector, Vector]:
