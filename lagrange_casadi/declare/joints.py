@@ -113,6 +113,10 @@ class Joint:
         """Parent and child."""
         return self.parent.body, self.child.body
 
+    def on(self, body: Body) -> Point:
+        """Its point on one of its bodies."""
+        return self.child if self.child.body is body else self.parent
+
     @property
     def lets(self) -> tuple[Freedom, ...]:
         """The freedoms of its kind."""

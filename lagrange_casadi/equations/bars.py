@@ -35,7 +35,7 @@ class Bar:
 
     def own(self, joint: Joint) -> Point:
         """A joint's point on the bar."""
-        return joint.child if joint.child.body is self.link else joint.parent
+        return joint.on(self.link)
 
     def other(self, joint: Joint) -> Point:
         """A joint's point on the other body."""
@@ -82,7 +82,7 @@ def bars_of(mechanism: Mechanism, driven: Collection[str]) -> tuple[Bar, ...]:
         joints = ends.get(link, [])
         if len(joints) != 2 or not isinstance(link.mass, Density):
             continue
-        points = [joint.child if joint.child.body is link else joint.parent for joint in joints]
+        points = [joint.on(link) for joint in joints]
         others = [body for joint in joints for body in joint.bodies if body is not link]
         balls = all(joint.kind == "spherical" and joint.name not in seen | told for joint in joints)
         if not balls or not all(_on_axis(point) for point in points) or any(body in found for body in others):
@@ -152,5 +152,4 @@ def _on_axis(point: Point) -> bool:
 
 
 def _place(mechanism: Mechanism, joint: Joint, link: Link, values: Mapping[str, float]) -> float:
-    point = joint.child if joint.child.body is link else joint.parent
-    return mechanism.number(point.x, values)
+    return mechanism.number(joint.on(link).x, values)
