@@ -7,7 +7,7 @@ the users' equations leave it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -17,6 +17,7 @@ import numpy.typing as npt
 from ..declare.density import Array
 from ..declare.description import Description
 from ..instants.solution import Solution
+from .affine import rates_and_changes
 from .written import Entry, Written
 
 Complex = npt.NDArray[np.complexfloating[Any, Any]]
@@ -158,11 +159,12 @@ class _Rest:
 
     def motions(self) -> dict[str, Moving]:
         """The motions of the bodies; none where their joints do not decide them."""
-        rates = self._solve(lambda x: self._gaps(self._trial(x, None), 1))
-        if rates is None:
-            return {}
-        accelerations = self._solve(lambda x: self._gaps(self._trial(rates, x), 2))
-        return {} if accelerations is None else self._trial(rates, accelerations)
+        found = rates_and_changes(self._left, sum(self._sizes), self.solution.t.size, lambda r: np.abs(np.linalg.det(r)) > 0.0)
+        return {} if found is None else self._trial(*found)
+
+    def _left(self, rates: Array | None, x: Array) -> Array:
+        """What is left of velocities ``x``; or of accelerations ``x``, where the rates are known."""
+        return self._gaps(self._trial(x, None), 1) if rates is None else self._gaps(self._trial(rates, x), 2)
 
     @property
     def _sizes(self) -> list[int]:
@@ -180,19 +182,6 @@ class _Rest:
             found[name] = Moving(pose.x + 1j * pose.y, own[0] + 1j * own[1], more[0] + 1j * more[1], angle, *turning)
             start += size
         return found
-
-    def _solve(self, gaps: Callable[[Array], Array]) -> Array | None:
-        """The unknowns (unknowns, t) at which gaps (gaps, t) are zero, by least squares; None where there are too few."""
-        count, n = sum(self._sizes), self.solution.t.size
-        rest = gaps(np.zeros((count, n)))
-        if len(rest) < count:
-            return None
-        ones = (np.broadcast_to(row[:, None], (count, n)) for row in np.eye(count))
-        slopes = np.stack([gaps(one) - rest for one in ones], axis=1)
-        q, r = np.linalg.qr(np.moveaxis(slopes, -1, 0))
-        if not (np.abs(np.linalg.det(r)) > 0.0).all():
-            return None
-        return np.asarray(np.linalg.solve(r, np.swapaxes(q, 1, 2) @ -rest.T[..., None])[..., 0].T)
 
     def _gaps(self, trial: dict[str, Moving], order: Literal[1, 2]) -> Array:
         """What joints and equations leave of velocities (1), or of accelerations (2)."""

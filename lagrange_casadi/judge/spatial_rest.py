@@ -6,7 +6,7 @@ about its own axis is idle, and none is taken.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -15,6 +15,7 @@ import numpy as np
 from ..declare.density import Array
 from ..declare.description import Description
 from ..instants.solution import Solution
+from .affine import rates_and_changes
 from .spatial_placing import Moving, Reported, measured, oriented, place, relative, spot, told, turn
 from .written import Written
 
@@ -67,11 +68,12 @@ class _Rest:
 
     def motions(self) -> dict[str, Moving]:
         """The motions of the bodies; none where their joints do not decide them."""
-        rates = self._solve(lambda x: self._gaps(self._trial(x, None), 1))
-        if rates is None:
-            return {}
-        accelerations = self._solve(lambda x: self._gaps(self._trial(rates, x), 2))
-        return {} if accelerations is None else self._trial(rates, accelerations)
+        found = rates_and_changes(self._left, sum(self._sizes), self.solution.t.size, _decided)
+        return {} if found is None else self._trial(*found)
+
+    def _left(self, rates: Array | None, x: Array) -> Array:
+        """What is left of velocities ``x``; or of accelerations ``x``, where the rates are known."""
+        return self._gaps(self._trial(x, None), 1) if rates is None else self._gaps(self._trial(rates, x), 2)
 
     @property
     def _sizes(self) -> list[int]:
@@ -92,20 +94,6 @@ class _Rest:
             start += size
         return found
 
-    def _solve(self, gaps: Callable[[Array], Array]) -> Array | None:
-        """The unknowns (unknowns, t) at which gaps (gaps, t) are zero, by least squares; None where there are too few."""
-        count, n = sum(self._sizes), self.solution.t.size
-        rest = gaps(np.zeros((count, n)))
-        if len(rest) < count:
-            return None
-        ones = (np.broadcast_to(row[:, None], (count, n)) for row in np.eye(count))
-        slopes = np.stack([gaps(one) - rest for one in ones], axis=1)
-        q, r = np.linalg.qr(np.moveaxis(slopes, -1, 0))
-        sizes = np.abs(np.diagonal(r, axis1=1, axis2=2))
-        if not (sizes.min(axis=1) > _LEAST * sizes.max(axis=1)).all():
-            return None
-        return np.asarray(np.linalg.solve(r, np.swapaxes(q, 1, 2) @ -rest.T[..., None])[..., 0].T)
-
     def _gaps(self, trial: dict[str, Moving], order: Literal[1, 2]) -> Array:
         """What joints and equations leave of velocities (1), or of accelerations (2)."""
         bodies = self.bodies | trial
@@ -125,6 +113,12 @@ class _Rest:
                 motion = [measured(self.solution, bodies, entry) for entry in equation.entries]
                 found.append(equation.at(motion, self.solution.t)[order])
         return np.array(found).reshape(len(found), self.solution.t.size)
+
+
+def _decided(triangle: Array) -> Array:
+    """Whether a triangle (t, n, n) is one of full rank, (t,)."""
+    sizes = np.abs(np.diagonal(triangle, axis1=1, axis2=2))
+    return np.asarray(sizes.min(axis=1) > _LEAST * sizes.max(axis=1))
 
 
 def gaps_of(reported: Reported, joint: Description, bodies: Mapping[str, Moving]) -> tuple[Array, Array, Array, Array]:
