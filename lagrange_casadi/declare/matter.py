@@ -14,11 +14,14 @@ def matter_of(
     what: str,
     mass: Expression,
     density: Density | None,
-    centre: tuple[Expression, Expression] | None,
-    inertia: Expression,
+    centre: tuple[Expression, ...] | None,
+    inertia: Any,
     checked: Callable[[str, Expression], Expression],
+    rigid: Callable[[Any, Any], tuple[tuple[Expression, ...], Any]] | None = None,
 ) -> Density | RigidMass:
     """The mass of a link by one of the three ways; ``checked`` takes what is said of an expression, and the expression.
+
+    ``rigid`` reads a centre and moments of inertia; by default those of a plane, two places and one moment.
 
     Raises :class:`DeclarationError` for none of the ways, or more than one.
     """
@@ -32,6 +35,9 @@ def matter_of(
         cells = tuple(tuple(checked(f"{what}: density", c) for c in cell) for cell in density.cells)
         return Density(density.breaks, cells, density.per_length)
     if centre is not None:
+        if rigid is not None:
+            place, moments = rigid(centre, inertia)
+            return RigidMass(checked(f"{what}: mass", mass), place, moments)
         x, y = (checked(f"{what}: centre", c) for c in centre)
         return RigidMass(checked(f"{what}: mass", mass), (x, y), checked(f"{what}: inertia", inertia))
     return uniform(checked(f"{what}: mass", mass))

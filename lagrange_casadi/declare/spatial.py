@@ -17,7 +17,7 @@ from .joints import IN_SPACE, Joint, JointKind, Triad
 from .matter import matter_of
 from .measures import Measures
 from .mechanism import Mechanism
-from .parts import Body, Expression, Force, LineLoad, Link, Point, PointMass, RigidMass, Row, Torque, Vector
+from .parts import Body, Expression, Force, LineLoad, Link, Point, PointMass, Row, Torque, Vector
 
 Turns = Sequence[tuple[str, Expression]] | tuple[Vector, Vector]
 """Turns in sequence, each about the ``"x"``, ``"y"`` or ``"z"`` axis that the turns before it carry, by an angle [rad, or text].
@@ -84,18 +84,12 @@ class SpatialMechanism(Mechanism):
         reference = None
         if between is not None:
             reference, length = lying(what, between, beside, self.own.expression)
-        if (centre is None) != (inertia is None):
-            raise DeclarationError(f"{what}: centre and inertia go together, and with a mass")
-        matter: Density | RigidMass
-        if centre is not None:
-            if mass is None or density is not None:
-                raise DeclarationError(f"{what}: centre and inertia go with a mass, and without a density")
+
+        def rigid(centre: Any, inertia: Any) -> tuple[Vector, Any]:
             place, moments = self._vector(f"{what}: centre", centre), tensor(what, inertia, self.own.expression)
-            if reference is not None:
-                place, moments = reference.local(place), rotated(moments, reference)
-            matter = RigidMass(self.own.expression(f"{what}: mass", mass), place, moments)
-        else:
-            matter = matter_of(what, mass, density, None, None, self.own.expression)
+            return (place, moments) if reference is None else (reference.local(place), rotated(moments, reference))
+
+        matter = matter_of(what, mass, density, centre, inertia, self.own.expression, rigid)
         link = Link(name, self.own.expression(f"{what}: length", length), matter)
         self.bodies[name] = link
         if reference is not None:
