@@ -43,7 +43,7 @@ def test_coupled_loops_fall_apart_into_dyads():
     scene = truss(60)
     blocks = blocks_of(scene)
     assert [len(block.unknown) for block in blocks] == [2] * 60
-    assert all(block.form is not None for block in blocks)
+    assert all(block.forms for block in blocks)
     solved = set()
     for block in blocks:
         assert {c for e in block.equations for c in e.present} <= solved | set(block.unknown)

@@ -22,14 +22,14 @@ INSTANT = {
     "beam_pump": 480,
     "rssr": 781,
     "spatial_slider_crank": 451,
-    "stewart_gough": 5927,
+    "stewart_gough": 5923,
     "arm6": 1888,
     "cardan_shaft": 730,
     "five_link_suspension": 2512,
     "delta": 4440,
     "bricard": 2125,
 }
-LOOPS = {"rrr3": 239, "beam_pump": 50, "spatial_slider_crank": 53, "stewart_gough": 893, "cardan_shaft": 62}
+LOOPS = {"rrr3": 239, "beam_pump": 50, "spatial_slider_crank": 53, "cardan_shaft": 62}
 LOOPS |= {"five_link_suspension": 772, "delta": 1142, "bricard": 338}
 
 

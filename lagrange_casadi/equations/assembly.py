@@ -84,6 +84,7 @@ def assemble(
         held=tuple(held),
         efforts=efforts,
         along={name: resting.along(joint, axis) for name, (joint, axis) in mechanism.coordinates.items() if joint not in open_},
+        axes=resting.turning,
         own=outputs,
         turned=tuple(resting.turned.values()),
         kinetic=kinetic,

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..declare.density import Array
 from ..errors import MobilityError
+from .legs import solve_leg
 from .loops import ClosedForm, solve_loop
 from .multibody import Coordinate, LoopEquations, Multibody, column
 from .sampling import drawn
@@ -51,11 +52,14 @@ class Equation:
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """Equations solved together for ``unknown``; more equations than unknowns where the mechanism is over-constrained."""
+    """Equations solved together for ``unknown``; more equations than unknowns where the mechanism is over-constrained.
+
+    ``forms`` solve them one after another; there are none where the block is iterated.
+    """
 
     equations: tuple[Equation, ...]
     unknown: tuple[Coordinate, ...]
-    form: ClosedForm | None
+    forms: tuple[ClosedForm, ...]
 
     @property
     def gap(self) -> Any:
@@ -119,7 +123,7 @@ def solving_order(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block
         parts = [piece for part in parts for piece in _pieces(part)]
     counted = column(loop.gap for loop in multibody.loop_equations if loop.declared)
     ordered = _in_order(parts, multibody.loop_equations)
-    return tuple(Block(tuple(rows), tuple(columns), _form(multibody, rows, columns, counted)) for rows, columns in ordered)
+    return tuple(Block(tuple(rows), tuple(columns), _forms(multibody, rows, columns, counted)) for rows, columns in ordered)
 
 
 def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equation]:
@@ -207,14 +211,17 @@ def _in_order(parts: Sequence[Part], loops: Sequence[LoopEquations]) -> list[Par
     return found
 
 
-def _form(multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coordinate], counted: Any) -> ClosedForm | None:
-    """The closed form of a part, where there is one."""
-    bar = all(equation.loop.bar is not None for equation in rows)
-    form = solve_loop(column(equation.gap for equation in rows), unknown, multibody.coordinates, bar=bar)
+def _forms(multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coordinate], counted: Any) -> tuple[ClosedForm, ...]:
+    """The closed forms that solve a part one after another, where there are any."""
+    bar, phi = all(equation.loop.bar is not None for equation in rows), column(equation.gap for equation in rows)
+    form = solve_loop(phi, unknown, multibody.coordinates, bar=bar)
+    forms: tuple[ClosedForm, ...] = (form,) if form is not None else ()
+    if not forms and len(unknown) in (2, 3) and len({equation.loop for equation in rows}) == 1 and rows[0].loop.joint is not None:
+        forms = solve_leg(phi, rows[0].loop.joint, unknown, multibody)
     # An angle whose turns some constraint counts must not come back from its cosine and sine.
-    if form is not None and form.branch is not None and any(ca.depends_on(counted, c.value) for c in unknown):
-        return None
-    return form
+    if any(form.branch is not None for form in forms) and any(ca.depends_on(counted, c.value) for c in unknown):
+        return ()
+    return forms
 
 
 def _require_freedom(multibody: Multibody, equations: int, parts: Sequence[Part], start: Mapping[str, Any]) -> None:

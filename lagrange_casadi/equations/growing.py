@@ -30,7 +30,7 @@ class Grown:
         self.frames: dict[str, Frame] = {mechanism.ground.name: ground}
         self.mobilities: dict[str, Any] = {}
         self.turned: dict[str, Turned] = {}
-        self._turning: dict[str, Vector] = {}
+        self.turning: dict[str, Vector] = {}
 
     def ends(self, joint: Joint) -> tuple[Frame, Frame]:
         """The frames of a joint's parent and child."""
@@ -161,8 +161,8 @@ class Grown:
             direction = coordinate.axis.direction
             c, s, angle = ca.vertsplit(coordinate.variables)
             own = Rotation.about(direction, c, s, angle)
-            self._turning[coordinate.name] = rotation.apply(direction)
-            axis = times(branch.sign, self._turning[coordinate.name])
+            self.turning[coordinate.name] = rotation.apply(direction)
+            axis = times(branch.sign, self.turning[coordinate.name])
             angular = plus(angular, plus(times(coordinate.acceleration, axis), cross(times(coordinate.rate, rate), axis)))
             rate = plus(rate, times(coordinate.rate, axis))
             rotation = rotation.then(own.inverse if branch.reverse else own)
@@ -178,7 +178,7 @@ class Grown:
         if len(turns) < 3:
             return turning_axes(joint, parent, child)[number]
         # The first axis and the last one are not at right angles: each couple is at right angles to the other two axes.
-        first, second, last = (self._turning[name] for name in turns)
+        first, second, last = (self.turning[name] for name in turns)
         if number == 1:
             return second
         own, other = (first, last) if number == 0 else (last, first)

@@ -173,38 +173,46 @@ class _Solver:
 
     def close(self, block: Block) -> None:
         """Solve a block for its variables."""
-        form = block.form
-        if form is not None and self.undecided.lacking:
+        if block.forms and self.undecided.lacking:
             return  # it hangs on what cannot be placed
-        if form is None:
+        if not block.forms:
             rough = self._rough(block.unknown)
             if missing := [c for c in block.unknown if c not in rough]:
                 self.undecided.note_lacking(block, missing)
             elif block.unknown and not self.undecided.lacking:
                 self._iterate(block, rough)
-        elif form.branch is None:
-            for coordinate, value in zip(block.unknown, form.variables, strict=True):
-                self.numbers.note(coordinate.variables, self.numbers.of(value))
-                self._know(coordinate, self.found.put_into(value))
-            if form.closure is not None:
-                self._judge(block, self.found.put_into(form.closure))
-        else:
-            closure = self.found.put_into(form.closure)
-            sign, values = self._branch(block, form, form.branch)
-            if self.iterate:
-                self.dyads[block] = closure
-                self._iterate(block, _numbers(block.unknown, values))
-                return
-            self.numbers.note(column(c.variables for c in block.unknown), values)
-            for coordinate, value in zip(block.unknown, form.variables, strict=True):
-                self._know(coordinate, self.found.put_into(ca.substitute(value, form.branch, ca.SX(sign))))
-            self.loose |= {c.name for c in block.unknown if c.kind == "angle"}
-            self._judge(block, closure)
+            return
+        left_to_newton = self.iterate and any(form.branch is not None for form in block.forms)
+        known, closures = dict(self.known), [self._solved(block, form) for form in block.forms]
+        if left_to_newton:
+            self.dyads[block] = ca.mmin(column(closure for closure in closures if closure is not None))
+            values = {c: self.numbers.of(self.known[c])[-1] for c in block.unknown}
+            self.known = known
+            self._iterate(block, values)
+            return
+        for form, closure in zip(block.forms, closures, strict=True):
+            if form.branch is not None:
+                self.loose |= {c.name for c in form.unknown if c.kind == "angle"}
+            if closure is not None:
+                self._judge(block, closure)
+
+    def _solved(self, block: Block, form: ClosedForm) -> Any | None:
+        """Take note of what one closed form of a block solves, on the branch that is nearest to the posture; its closure."""
+        closure, variables = form.closure, form.variables
+        if closure is not None:
+            closure = self.found.put_into(closure)
+        if form.branch is not None:
+            sign = ca.SX(self._branch(block, form, form.branch))
+            variables = tuple(ca.substitute(value, form.branch, sign) for value in variables)
+        for coordinate, value in zip(form.unknown, variables, strict=True):
+            self.numbers.note(coordinate.variables, self.numbers.of(value))
+            self._know(coordinate, self.found.put_into(value))
+        return closure
 
     def _judge(self, block: Block, closure: Any) -> None:
         """Note how far a block is from a dead centre: of blocks that one joint closes, the one that is nearest."""
         # What iterates has the sine for its measure, a closed form its square.
-        sine = block.form is None
+        sine = not block.forms
         before = self.closures.get(block.name)
         if before is not None:
             both = (before, (closure, sine))
@@ -212,33 +220,32 @@ class _Solver:
             closure = ca.fmin(*(ca.sqrt(value) if sine and not is_sine else value for value, is_sine in both))
         self.closures[block.name] = closure, sine
 
-    def _branch(self, block: Block, form: ClosedForm, branch: Any) -> tuple[int, list[float]]:
-        """The sign of the branch that is nearest to the posture, and the variables on it at the start."""
+    def _branch(self, block: Block, form: ClosedForm, branch: Any) -> int:
+        """The sign of the branch that is nearest to the posture."""
         (closure,) = self.numbers.of(form.closure)
         if not closure > 0.0:
             what = "is at a dead centre" if closure == 0.0 else "cannot be closed"
             raise AssemblyError(f"the loop closed by {block.joints} {what} at the start of the motion{self._where()}")
         variables = column(form.variables)
         values = {sign: self.numbers.of(ca.substitute(variables, branch, ca.SX(sign))) for sign in (1, -1)}
-        distance = {sign: self._distance(block, found) for sign, found in values.items()}
+        distance = {sign: self._distance(form, found) for sign, found in values.items()}
         if abs(distance[1] - distance[-1]) <= 1e-6 * (1.0 + distance[1]):
             # Taken for now, so that the loops after it are looked at too.
             number = len(self.undecided.ways)
             signs = (1, -1) if number >= len(self.ways) or not self.ways[number] else (-1, 1)
-            ways = [_numbers(block.unknown, values[sign]) for sign in signs]
+            ways = [_numbers(form.unknown, values[sign]) for sign in signs]
             words = [_describe(way) for way in ways]
             self.undecided.note_ways(block, ways, words, self.numbers.of(self.length)[0])
-            return signs[0], values[signs[0]]
-        nearest = min(distance, key=lambda sign: distance[sign])
-        return nearest, values[nearest]
+            return signs[0]
+        return min(distance, key=lambda sign: distance[sign])
 
-    def _distance(self, block: Block, values: Sequence[float]) -> float:
-        """How far a solution is from the posture, by all that the posture says of what the block places."""
+    def _distance(self, form: ClosedForm, values: Sequence[float]) -> float:
+        """How far a solution is from the posture, by all that the posture says of what it places."""
         (size,) = self.numbers.of(self.length)
-        total, placed = 0.0, {*self.known, *block.unknown}
-        self.numbers.note(column(c.variables for c in block.unknown), values)
+        total, placed = 0.0, {*self.known, *form.unknown}
+        self.numbers.note(column(c.variables for c in form.unknown), values)
         for name, (place, of) in self._told_of.items():
-            if of & set(block.unknown) and of <= placed:
+            if of & set(form.unknown) and of <= placed:
                 gap = self.numbers.of(place)[0] - self.posture[name]
                 total += abs(math.remainder(gap, 2.0 * math.pi)) if turns(self.multibody, name) else abs(gap) / size
         return total
@@ -349,7 +356,7 @@ class _Solver:
         bounded = correction * (_LARGEST_STEP / ca.fmax(relative, _LARGEST_STEP))
         inputs = [iterated, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
         step = ca.Function("loops", inputs, [bounded, relative], ["z", "t", "d", "p"], ["correction", "size"], {"cse": True})
-        names = tuple(block.name for block in self.residuals if block.form is None)
+        names = tuple(block.name for block in self.residuals if not block.forms)
         joints = ", ".join(block.joints for block in self.residuals)
         return NewtonLoop(step, tuple(self.guess), tuple(self.turning), names, joints)
 

@@ -18,7 +18,8 @@ applied where its pattern was verified, coefficient by coefficient, and what it 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import casadi as ca
@@ -30,7 +31,7 @@ from .sampling import vanish
 
 @dataclass(frozen=True, eq=False)
 class ClosedForm:
-    """Solved variables, one column a coordinate, as expressions in what is known and in ``branch`` (+1 or -1).
+    """Solved variables of ``unknown`` coordinates, one column each, as expressions in what is known and in ``branch`` (+1 or -1).
 
     ``branch`` is None where the solution is unique; ``closure`` is None where it cannot fail but by a division by zero.
     """
@@ -38,6 +39,7 @@ class ClosedForm:
     variables: tuple[Any, ...]
     closure: Any | None = None
     branch: Any | None = None
+    unknown: tuple[Coordinate, ...] = ()
 
 
 def solve_loop(
@@ -49,7 +51,16 @@ def solve_loop(
     """
     form = _spanned(phi, unknown, coordinates) if bar and len(unknown) == 1 else None
     form = form or _matching(phi, unknown, coordinates)
-    return form if form is not None and _solves(form, phi, unknown, coordinates) else None
+    if form is None:
+        return None
+    form = replace(form, unknown=tuple(unknown))
+    return form if solves((form,), phi, coordinates) else None
+
+
+def solve_one(phi: Any, coordinate: Coordinate, coordinates: Sequence[Coordinate]) -> ClosedForm | None:
+    """The closed form of one equation, which may be half of a square; the solution is not put back."""
+    form = _matching(phi, (coordinate,), coordinates) or _spanned(phi, (coordinate,), coordinates)
+    return form and replace(form, unknown=(coordinate,))
 
 
 def _spanned(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> ClosedForm | None:
@@ -92,17 +103,19 @@ def _matching(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coo
     return _slides(phi, unknown) if set(kinds) == {"s"} else None
 
 
-def _solves(form: ClosedForm, phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> bool:
-    """Whether the solution is one, on both branches."""
-    symbols, values = column(c.variables for c in unknown), column(form.variables)
+def solves(forms: Sequence[ClosedForm], phi: Any, coordinates: Sequence[Coordinate]) -> bool:
+    """Whether solutions, each of which may hold what those before it solved, are ones of Phi = 0 on all branches."""
+    symbols = column(c.variables for form in forms for c in form.unknown)
     # The size of what is added up in an equation: its slopes times what they are slopes of.
     size = ca.mmax(ca.fabs(ca.jacobian(phi, symbols)) @ ca.fabs(symbols))
-    left, size = ca.vertsplit(ca.substitute(ca.vertcat(phi, size), symbols, values), [0, phi.numel(), phi.numel() + 1])
-    directions = [c[0] * c[0] + c[1] * c[1] - 1 for c in form.variables if c.numel() > 1]
-    left = ca.vertcat(left, *(size * off for off in directions))
-    if form.branch is not None:
-        left, size = (ca.vertcat(*(ca.substitute(e, form.branch, ca.SX(sign)) for sign in (1, -1))) for e in (left, size))
-    return vanish(left, coordinates, size)
+    left = ca.vertcat(phi, size)
+    for form in reversed(forms):
+        directions = [c[0] * c[0] + c[1] * c[1] - 1 for c in form.variables if c.numel() > 1]
+        left = ca.vertcat(left[:-1], *(left[-1] * off for off in directions), left[-1])
+        left = ca.substitute(left, column(c.variables for c in form.unknown), column(form.variables))
+    branches = column(form.branch for form in forms if form.branch is not None)
+    ways = [ca.substitute(left, branches, ca.SX(ca.DM(signs))) for signs in product((1, -1), repeat=branches.numel())]
+    return vanish(column(way[:-1] for way in ways), coordinates, column(way[-1] for way in ways))
 
 
 def _affine(phi: Any, symbols: Any, all_unknown: Any) -> tuple[Any, Any] | None:

@@ -152,8 +152,8 @@ class Multibody:
 
     ``frames`` are without mobilities; ``felt`` are with them, and their accelerations are less that of gravity, as matter feels
     them. ``efforts`` are the symbols of efforts along other coordinates than those whose motion is given, and ``along``
-    what a unit of effort does to a joint's child, in ground axes, both by coordinate; ``own`` are the user's outputs, in symbols of
-    results too.
+    what a unit of effort does to a joint's child, in ground axes, both by coordinate; ``axes`` are the directions in ground axes
+    about which turns relative to a body turn, by coordinate; ``own`` are the user's outputs, in symbols of results too.
     """
 
     mechanism: Mechanism
@@ -169,6 +169,7 @@ class Multibody:
     turned: tuple[Turned, ...]
     efforts: dict[str, Any]
     along: dict[str, Vector]
+    axes: dict[str, Vector]
     own: dict[str, Any]
     kinetic: Any
     velocities: Velocities

@@ -94,7 +94,7 @@ class Undecided:
             gap = first[coordinate] - second[coordinate]
             return abs(math.remainder(gap, math.tau)) if coordinate.kind == "angle" else abs(gap) / length
 
-        chosen = max(block.unknown, key=apart)
+        chosen = max(first, key=apart)
         name = posture_name(chosen)
         self.ways.append((block.joints, {name: first[chosen]}, {name: second[chosen]}))
         self.words.append(

@@ -1,0 +1,113 @@
+"""Closed forms of legs in space: two ends that meet, one of which turns about an axis that is known.
+
+A turn about an axis u through A keeps two numbers of the end X that it turns: how far it is from A, and its height along the axis.
+So of X = P two equations are free of the turn,
+
+    |X - A|^2 = |P - A|^2    and    u . (X - P) = 0,
+
+and where one of them holds a single freedom, the two are solved one after another; the turn is then what leads X to P. So
+the slide of a leg with a universal joint at its foot (UPS) is known by the distance and its second turn by the height; the same way
+go a leg that bends (URS), a link between a turn and a slide, and a point in cylindrical coordinates. Across the axis, where heights
+meet already, the distance alone is left: so go dyads whose plane lies in the ground's axes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from typing import Any
+
+import casadi as ca
+
+from ..declare.joints import Joint
+from ..geometry.vectors import Vector, cross, dot, minus, times
+from .loops import ClosedForm, solve_one, solves
+from .multibody import Coordinate, Multibody, column
+from .sampling import vanish
+
+
+def solve_leg(phi: Any, joint: Joint, unknown: Sequence[Coordinate], multibody: Multibody) -> tuple[ClosedForm, ...]:
+    """The closed forms, one after another, by which the two points of a joint meet; none where no pattern was verified."""
+    if not multibody.mechanism.space or joint.slides or phi.numel() != len(unknown):
+        return ()
+    for first in unknown:
+        if first.name in multibody.axes:
+            forms = _leg(joint, first, [c for c in unknown if c is not first], multibody)
+            if forms and solves(forms, phi, multibody.coordinates):
+                return forms
+    return ()
+
+
+def _leg(joint: Joint, first: Coordinate, later: Sequence[Coordinate], multibody: Multibody) -> tuple[ClosedForm, ...]:
+    branch = next(branch for branch in multibody.tree.branches if first.name in [one.coordinate for one in branch.joint.axes])
+    foot = multibody.frames[branch.near.body.name].place_of(branch.near.place)
+    axis = times(branch.sign, multibody.axes[first.name])
+    ends = [multibody.frames[point.body.name].place_of(point.place) for point in (joint.parent, joint.child)]
+    ends.sort(key=lambda end: not _held(end, (first,)))
+    head, target = (minus(end, foot) for end in ends)
+    if _held((*target, *foot), (first,)) or _held(axis, (first, *later)):
+        return ()
+    if len(later) == 1:
+        head, target = cross(axis, head), cross(axis, target)
+    equations = []
+    for of_head, of_target, squared in ((dot(head, head), dot(target, target), True), (dot(axis, head), dot(axis, target), False)):
+        plain = _in_fewest(of_head, later, multibody.coordinates)
+        if plain is None:
+            return ()
+        if squared and not _held((plain,), later):
+            length = ca.sqrt(plain)
+            equations.append((length - of_target / length) / 2)
+        elif squared and not _held((of_target,), later):
+            length = ca.sqrt(of_target)
+            equations.append((plain / length - length) / 2)
+        elif squared:
+            return ()
+        else:
+            equations.append(plain - of_target)
+    equations = sorted(equations[: len(later)], key=lambda equation: len(_held((equation,), later)))
+    forms, rest = [], list(later)
+    for equation in equations:
+        found = _held((equation,), rest)
+        form = solve_one(equation, found[0], multibody.coordinates) if len(found) == 1 else None
+        if form is None:
+            return ()
+        forms.append(form)
+        rest.remove(found[0])
+    return (*forms, _turned(first, axis, head, target, held=len(later) == 1))
+
+
+def _in_fewest(expression: Any, later: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> Any | None:
+    """An expression with all coordinates at rest but as few of the ``later`` ones as change it; None where others change it too."""
+    for count in range(len(later) + 1):
+        for kept in combinations(later, count):
+            plain = _at_rest(expression, [c for c in coordinates if c not in kept])
+            if vanish(expression - plain, coordinates, expression):
+                return plain
+    return None
+
+
+def _turned(first: Coordinate, axis: Vector, head: Vector, target: Vector, *, held: bool) -> ClosedForm:
+    """The turn about an axis that leads from where the head is without it to the target; where ``held``, both are across the axis.
+
+    A target on the axis tells no turn: the closure is the square of the sine between the two.
+    """
+    x, y, z = ca.vertsplit(_at_rest(ca.vertcat(*head), (first,)))
+    start, across = (x, y, z), cross(axis, target)
+    cosine = dot(start, target) - (0 if held else dot(axis, start) * dot(axis, target))
+    sine = -dot(start, across)
+    length = ca.sqrt(cosine * cosine + sine * sine)
+    variables = ca.vertcat(cosine / length, sine / length, ca.atan2(sine, cosine))
+    closure = None if held else dot(across, across) / dot(target, target)
+    return ClosedForm((variables,), closure, None, (first,))
+
+
+def _at_rest(expression: Any, coordinates: Sequence[Coordinate]) -> Any:
+    """An expression with coordinates that are zero."""
+    symbols = column(c.variables for c in coordinates)
+    return ca.substitute(expression, symbols, column([1, 0, 0] if c.kind == "angle" else [0] for c in coordinates))
+
+
+def _held(expressions: Sequence[Any], coordinates: Sequence[Coordinate]) -> list[Coordinate]:
+    """The coordinates that expressions hold."""
+    parts = ca.vertcat(*map(ca.SX, expressions))
+    return [c for c in coordinates if ca.depends_on(parts, c.variables)]
