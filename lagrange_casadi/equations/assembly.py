@@ -10,7 +10,7 @@ import casadi as ca
 
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
-from ..geometry.frames import Frame, Velocities
+from ..geometry.frames import Carried, Frame, Velocities
 from ..geometry.vectors import times
 from .applied import applied_by, held_by, push, work
 from .growing import Grown, coordinates_of
@@ -37,8 +37,9 @@ def assemble(
     Gravity is an acceleration of the ground, upward, in the frames that matter is weighed in (d'Alembert).
     """
     carried = coordinates_of(mechanism, tree, driven)
-    resting = Grown(mechanism, carried, Frame())
-    felt = Grown(mechanism, carried, Frame(acceleration=times(-1, mechanism.gravity)))
+    upward = times(-1, mechanism.gravity)
+    weighed = Carried(acceleration=upward, own=Frame(acceleration=upward)) if mechanism.space else Frame(acceleration=upward)
+    resting, felt = Grown(mechanism, carried, Frame()), Grown(mechanism, carried, weighed)
     for branch in tree.branches:
         resting.hang(branch, displace=False)
         felt.hang(branch, displace=branch.joint.name in reactions)

@@ -11,7 +11,7 @@ import casadi as ca
 from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link, Point, Vector
-from ..geometry.frames import Frame
+from ..geometry.frames import Carried, Frame
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import AXES, ZERO, cross, dot, minus, plus, times
 from .bars import Bar, bar_frame
@@ -115,30 +115,21 @@ class Grown:
 
     def _undisplaced(self, branch: Branch, coordinates: Sequence[Coordinate]) -> Frame:
         """The frame of the body that hangs on a branch, anchored at the joint's point on its child."""
-        near, far = branch.near, branch.far
-        base = self.frames[near.body.name]
+        base = self.frames[branch.near.body.name]
         rotation, rate, angular = self._turn(branch, coordinates, base)
-        point, anchor = near.place, far.place
-        slides = [
-            (times(c.axis.pitch, c.axis.direction) if c.axis.move == "screw" else c.axis.direction, c)
-            for c in coordinates
-            if c.axis.move != "turn"
-        ]
-        for direction, coordinate in slides:
-            along = times(coordinate.value, direction)
-            if branch.reverse:
-                anchor = plus(anchor, along)
-            else:
-                point = plus(point, along)
+        slides = _slides(coordinates)
+        point, anchor = _ends(branch, slides)
         speed, acceleration = base.motion_of(point)
         carrier, turning = (rotation, rate) if branch.reverse else (base.rotation, base.rate)
+        moved = Frame(speed=speed, acceleration=acceleration, rate=turning)
         for direction, coordinate in slides:
-            axis = carrier.apply(times(branch.sign, direction))
-            speed = plus(speed, times(coordinate.rate, axis))
-            # The line turns under what slides on it (Coriolis).
-            spin = times(coordinate.rate, times(2, turning))
-            acceleration = plus(acceleration, plus(times(coordinate.acceleration, axis), cross(spin, axis)))
-        return Frame(base.place_of(point), speed, acceleration, rotation, rate, angular, anchor)
+            moved = _slid(moved, carrier.apply(times(branch.sign, direction)), coordinate)
+        place, (speed, acceleration) = base.place_of(point), (moved.speed, moved.acceleration)
+        if isinstance(base, Carried):
+            own = replace(_own(branch, coordinates, base), anchor=anchor)
+            turns = base.turns + sum(coordinate.kind == "angle" for coordinate in coordinates)
+            return Carried(place, speed, acceleration, rotation, rate, angular, anchor, own, turns)
+        return Frame(place, speed, acceleration, rotation, rate, angular, anchor)
 
     def _turn(self, branch: Branch, coordinates: Sequence[Coordinate], base: Frame) -> tuple[Rotation, Vector, Vector]:
         """Direction, angular velocity and its change of the body that hangs on a branch."""
@@ -212,3 +203,65 @@ def coordinates_of(mechanism: Mechanism, tree: Tree, driven: Collection[str]) ->
             own.append(Coordinate(name, far.name, axis, drives, variables, change, rate, acceleration, turn, relative=relative))
         found[joint.name] = tuple(own)
     return found
+
+
+def _slides(coordinates: Sequence[Coordinate]) -> list[tuple[Vector, Coordinate]]:
+    """The coordinates along which a joint slides, each with how far and where a unit of it leads."""
+    return [
+        (times(c.axis.pitch, c.axis.direction) if c.axis.move == "screw" else c.axis.direction, c)
+        for c in coordinates
+        if c.axis.move != "turn"
+    ]
+
+
+def _ends(branch: Branch, slides: Sequence[tuple[Vector, Coordinate]]) -> tuple[Vector, Vector]:
+    """The point of the body near the ground, and that of the one that hangs on it, that are at one place."""
+    near, far = branch.near.place, branch.far.place
+    for direction, coordinate in slides:
+        along = times(coordinate.value, direction)
+        near, far = (near, plus(far, along)) if branch.reverse else (plus(near, along), far)
+    return near, far
+
+
+def _slid(motion: Frame, axis: Vector, coordinate: Coordinate) -> Frame:
+    """A motion with that along an axis, which turns at the motion's rate under what slides on it (Coriolis)."""
+    spin = times(coordinate.rate, times(2, motion.rate))
+    change = plus(times(coordinate.acceleration, axis), cross(spin, axis))
+    speed = plus(motion.speed, times(coordinate.rate, axis))
+    return replace(motion, speed=speed, acceleration=plus(motion.acceleration, change))
+
+
+def _own(branch: Branch, coordinates: Sequence[Coordinate], base: Carried) -> Frame:
+    """The motion of the body that hangs on a branch, in its own axes: handed on from axes to axes, each turned from the last."""
+    slides = _slides(coordinates)
+    speed, acceleration = base.own.motion_of(_ends(branch, slides)[0])
+    motion = Frame(speed=speed, acceleration=acceleration, rate=base.own.rate, angular=base.own.angular)
+    if not branch.far.body.oriented:
+        # A point has no axes of its own: the ground's.
+        motion = replace(_seen_from(motion, base.rotation.inverse), rate=ZERO, angular=ZERO)
+        for direction, coordinate in slides:
+            motion = _slid(motion, base.rotation.apply(direction), coordinate)
+        return motion
+    zero, turns = orientation(branch.joint), [c for c in coordinates if c.kind == "angle"]
+    if branch.reverse:
+        motion = _seen_from(motion, zero.inverse)
+    else:
+        for direction, coordinate in slides:
+            motion = _slid(motion, direction, coordinate)
+    for coordinate in reversed(turns) if branch.reverse else turns:
+        turn = Rotation.about(coordinate.axis.direction, *ca.vertsplit(coordinate.variables))
+        axis = times(branch.sign, coordinate.axis.direction)
+        change = plus(times(coordinate.acceleration, axis), cross(times(coordinate.rate, motion.rate), axis))
+        motion = replace(motion, rate=plus(motion.rate, times(coordinate.rate, axis)), angular=plus(motion.angular, change))
+        motion = _seen_from(motion, turn.inverse if branch.reverse else turn)
+    if not branch.reverse:
+        return _seen_from(motion, zero)
+    for direction, coordinate in slides:
+        motion = _slid(motion, times(-1, direction), coordinate)
+    return motion
+
+
+def _seen_from(motion: Frame, turn: Rotation) -> Frame:
+    """A motion in axes that are turned."""
+    speed, acceleration, rate, angular = map(turn.resolve, (motion.speed, motion.acceleration, motion.rate, motion.angular))
+    return Frame(speed=speed, acceleration=acceleration, rate=rate, angular=angular)

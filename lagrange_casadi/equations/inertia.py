@@ -37,13 +37,13 @@ def _rigid(matter: Any, frame: Frame, velocities: Velocities, *, space: bool, sp
     """A rigid body, or a point mass."""
     if not isinstance(matter, RigidMass):
         return (
-            matter * ca.sumsqr(velocities.vector(frame.motion_of(frame.anchor))) / 2
+            matter * ca.sumsqr(velocities.vector(frame.shortest.motion_of(frame.anchor))) / 2
             if space
             else _flat([(matter, ZERO)], 0.0, frame, velocities, spun=False)
         )
     if not space:
         return _flat([(matter.mass, (matter.centre[0], matter.centre[1], 0.0))], matter.inertia, frame, velocities, spun=spun)
-    x, y, z = matter.centre
+    (x, y, z), frame = matter.centre, frame.shortest
     energy = matter.mass * ca.sumsqr(velocities.vector(frame.motion_of((x, y, z)))) / 2
     moments = second_moments(matter.inertia)
     axes = {i: velocities.vector(_direction(frame, AXES[i])) for i in range(3) if not all(nil(moment) for moment in moments[i])}
@@ -57,7 +57,7 @@ def _rigid(matter: Any, frame: Frame, velocities: Velocities, *, space: bool, sp
 
 def _slender(points: list[tuple[Any, Vector]], inertia: Any, frame: Frame, velocities: Velocities) -> Any:
     """A slender link, by the velocity of one of its points and of its axis: of the joint that holds it, or of its base."""
-    x, y, z = frame.anchor
+    (x, y, z), frame = frame.anchor, frame.shortest
     held = x if nil(y) and nil(z) else 0.0
     base = velocities.vector(frame.motion_of((held, 0.0, 0.0)))
     axis = velocities.vector(frame.course if isinstance(frame, BarFrame) else _direction(frame, AXES[0]))

@@ -77,7 +77,7 @@ def internal_forces(
 
     ``weights`` are those of the drives, where these are others than the joints whose motion is given.
     """
-    along, across = multibody.system.terms()
+    along, across = multibody.terms()
     along = kinematics.evaluate(along)
     unknowns, values, free = _multipliers(multibody, kinematics, along)
 

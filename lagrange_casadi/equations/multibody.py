@@ -194,10 +194,15 @@ class Multibody:
         """The rates of all extra mobilities, one column."""
         return column(self.mobilities.values())
 
-    @property
-    def system(self) -> LagrangeSystem:
-        """The Lagrange system of the whole."""
-        return LagrangeSystem(
+    def terms(self) -> tuple[Any, Any]:
+        """What the Lagrange system of the whole says along the coordinates and along the mobilities.
+
+        In space velocities are along axes that rest, and lie along the bodies' own at the instant: so what these axes and the
+        levers in them depend on is put in at the end, by symbols that are ``still`` until then.
+        """
+        still = ca.SX.sym("still", self.variables.numel() if self.mechanism.space else 0)
+        moving = self.variables if self.mechanism.space else still
+        system = LagrangeSystem(
             kinetic=self.kinetic,
             force_function=ca.SX(0),
             coordinates=self.variables,
@@ -206,11 +211,13 @@ class Multibody:
             tangent=ca.jacobian(column(c.change for c in self.coordinates), self.rates),
             mobility_rates=self.mobility_rates,
             velocities=column(self.velocities.symbols),
-            velocity_graphs=column(self.velocities.graphs),
+            velocity_graphs=ca.substitute(column(self.velocities.graphs), moving, still),
             velocity_rates=column(self.velocities.rates),
             velocity_forces=column(self.velocities.forces),
             time=self.mechanism.time,
         )
+        along, across = (ca.substitute(ca.SX(term), still, moving) for term in system.terms())
+        return along, across
 
     def motion_along(self, joint: Joint, axis: Axis) -> tuple[Any, Any, Any]:
         """Coordinate, rate and acceleration of any joint along one of its axes, on the tree or closing a loop.

@@ -54,6 +54,11 @@ class Frame:
         """This frame displaced at the anchor, by the rates of a translation and of a rotation."""
         return replace(self, speed=plus(self.speed, translation), rate=plus(self.rate, turning))
 
+    @property
+    def shortest(self) -> Frame:
+        """The motion of the body in those axes at rest in which it is shortest."""
+        return self
+
     def about_anchor(self) -> Frame:
         """The body as it turns about its anchor, which rests."""
         return replace(self, at=ZERO, speed=ZERO, acceleration=ZERO)
@@ -87,6 +92,36 @@ class Frame:
                 c - ((ay - zx) * r[0] - (ax + yz) * r[1] + zc * r[2]),
             ),
         )
+
+
+@dataclass(frozen=True, eq=False)
+class Carried(Frame):
+    """A frame in space whose motion is also known in its own axes, where levers are short and a turn keeps a component.
+
+    ``own`` is the motion in axes at rest that lie along the body's own at the instant, by the same anchor; ``turns`` lead to it
+    from the ground. After a single one, about an axis of the ground's, the motion is as short in the ground's axes, where others
+    want it too.
+    """
+
+    own: Frame = field(default_factory=Frame)
+    turns: int = 0
+
+    @property
+    def shortest(self) -> Frame:
+        """The motion of the body in those axes at rest in which it is shortest."""
+        return self.own if self.turns > 1 else self
+
+    def displaced(self, translation: Vector, turning: Vector) -> Carried:
+        """This frame displaced at the anchor, by the rates of a translation and of a rotation."""
+        own = self.own.displaced(self.rotation.resolve(translation), self.rotation.resolve(turning))
+        return replace(self, speed=plus(self.speed, translation), rate=plus(self.rate, turning), own=own)
+
+    def along_axis(self) -> Frame:
+        """The body at its origin, seen in axes at rest that lie along its own at the instant."""
+        if self.shortest is not self.own:
+            return super().along_axis()
+        speed, acceleration = self.own.motion_of(ZERO)
+        return Frame(speed=speed, acceleration=acceleration, rate=self.own.rate, angular=self.own.angular)
 
 
 @dataclass(frozen=True, eq=False)
