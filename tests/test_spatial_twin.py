@@ -7,9 +7,12 @@ from spatial_bridge import instants
 from spatial_draft import orientation
 from spatial_twin import planar, twin
 
-from lagrange_casadi import load_case
+from lagrange_casadi import derive, load_case
 
 NAMES = ("slider_crank", "engine", "four_bar", "quick_return", "six_bar", "andrews_squeezer", "rrr3", "arm", "jansen_leg")
+DYADS = ("slider_crank", "engine", "four_bar", "six_bar", "andrews_squeezer")
+"""Those that are made of dyads alone, with no slot."""
+
 ROUNDING = 1e-12
 
 
@@ -48,3 +51,10 @@ def test_a_planar_mechanism_is_the_same_in_space(name, seed):
             if f"section:{link}:law:{other}" in flat:
                 one = flat[f"section:{link}:law:{other}"]
                 assert found[f"section:{link}:law:{own}"] == pytest.approx(one, abs=ROUNDING * max(size, abs(one)))
+
+
+@pytest.mark.parametrize("name", DYADS)
+def test_dyads_need_no_iteration_however_their_plane_lies(name):
+    scene = load_case(CASES / name).scene
+    t = scene.span[0] + 0.37 * (scene.span[1] - scene.span[0])
+    assert derive(twin(scene, t, planar(scene, t), orientation(np.random.default_rng(1)))).newton is None

@@ -119,8 +119,11 @@ def solving_order(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block
     equations = _equations(multibody, unknown)
     parts = _decomposed(equations, unknown)
     if any(len(rows) != len(columns) for rows, columns in parts):
-        _require_freedom(multibody, len(equations), parts, start)
+        slopes = _require_freedom(multibody, len(equations), parts, _slopes(multibody, start))
         parts = [piece for part in parts for piece in _pieces(part)]
+        if multibody.mechanism.space:
+            at = {equation: k for k, equation in enumerate(equations)}, {c: k for k, c in enumerate(multibody.coordinates)}
+            parts = [piece for part in parts for piece in _peeled(part, slopes, *at)]
     counted = column(loop.gap for loop in multibody.loop_equations if loop.declared)
     ordered = _in_order(parts, multibody.loop_equations)
     return tuple(Block(tuple(rows), tuple(columns), _forms(multibody, rows, columns, counted)) for rows, columns in ordered)
@@ -188,6 +191,29 @@ def _pieces(part: Part) -> list[Part]:
     return [(equations, [c for c in columns if c in shared]) for equations, shared in groups]
 
 
+def _peeled(part: Part, slopes: Array, row: Mapping[Equation, int], of: Mapping[Coordinate, int]) -> list[Part]:
+    """A part that has too many equations, loop by loop: in space a planar loop has, but says all of what it leaves no other.
+
+    A loop that tells its coordinates by the rank of its own equations is solved by itself, the fewest coordinates first.
+    """
+    rows, columns = part
+    found: list[Part] = []
+    while len(rows) > len(columns):
+        loops: dict[LoopEquations, list[Equation]] = {}
+        for equation in rows:
+            loops.setdefault(equation.loop, []).append(equation)
+        for own in sorted(loops.values(), key=lambda own: len(frozenset().union(*(e.present for e in own)).intersection(columns))):
+            told = [c for c in columns if any(c in equation.present for equation in own)]
+            block = slopes[np.ix_([row[e] for e in own], [of[c] for c in told])]
+            if told and len(own) < len(rows) and _rank(block) == len(told):
+                found.append((own, told))
+                rows, columns = [e for e in rows if e not in own], [c for c in columns if c not in told]
+                break
+        else:
+            break
+    return [*found, (rows, columns)]
+
+
 def _in_order(parts: Sequence[Part], loops: Sequence[LoopEquations]) -> list[Part]:
     """The parts in an order in which each stands on the ones before; next the one that fewest joints close, then as declared."""
     owner = {c: i for i, (_, columns) in enumerate(parts) for c in columns}
@@ -224,17 +250,18 @@ def _forms(multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coo
     return forms
 
 
-def _require_freedom(multibody: Multibody, equations: int, parts: Sequence[Part], start: Mapping[str, Any]) -> None:
-    """Raise :class:`MobilityError` unless the drives are as many as the freedoms, and no part is loose."""
+def _require_freedom(multibody: Multibody, equations: int, parts: Sequence[Part], slopes: Array | None) -> Array:
+    """The slopes; raise :class:`MobilityError` unless the drives are as many as the freedoms, and no part is loose."""
     driven = sum(c.driven for c in multibody.coordinates)
-    ranks, how = _ranks(multibody, start), "by the rank of its loops at the start"
-    if ranks is None:
+    how = "by the rank of its loops at the start"
+    if slopes is None:
         freedom = len(multibody.coordinates) - equations
         how = "counted by joints; it could not be assembled to count by rank"
     else:
-        freedom = len(multibody.coordinates) - ranks[0]
-        if freedom == driven == len(multibody.coordinates) - ranks[1] and all(len(rows) >= len(columns) for rows, columns in parts):
-            return
+        freedom = len(multibody.coordinates) - _rank(slopes)
+        undriven = _rank(slopes[:, [k for k, c in enumerate(multibody.coordinates) if not c.driven]])
+        if freedom == driven == len(multibody.coordinates) - undriven and all(len(rows) >= len(columns) for rows, columns in parts):
+            return slopes
     movable = list(multibody.mechanism.coordinates)
     advice = f"drive {freedom} of the joints {', '.join(movable)}" if freedom > 0 else "take a joint, a constraint or a link away"
     if freedom == driven:
@@ -244,8 +271,8 @@ def _require_freedom(multibody: Multibody, equations: int, parts: Sequence[Part]
     )
 
 
-def _ranks(multibody: Multibody, start: Mapping[str, Any]) -> tuple[int, int] | None:
-    """The ranks of the loops' Jacobian, by all coordinates and by the undriven ones, in a posture near the rough one.
+def _slopes(multibody: Multibody, start: Mapping[str, Any]) -> Array | None:
+    """The loops' Jacobian by all coordinates, in a posture near the rough one.
 
     Drives are free to give way in it, for there may be too many. None where no posture is found.
     """
@@ -261,8 +288,7 @@ def _ranks(multibody: Multibody, start: Mapping[str, Any]) -> tuple[int, int] | 
         step = np.linalg.lstsq(slope, -gap.ravel(), rcond=1e-10)[0] if u.size else u
         u = u + step * min(1.0, 0.5 / (np.max(np.abs(step), initial=0.0) + 1e-300))
         if np.max(np.abs(gap), initial=0.0) < _CLOSED:
-            undriven = [k for k, c in enumerate(coordinates) if not c.driven]
-            return _rank(slope), _rank(slope[:, undriven])
+            return np.asarray(slope)
     return None
 
 

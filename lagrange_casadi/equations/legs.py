@@ -8,7 +8,7 @@ So of X = P two equations are free of the turn,
 and where one of them holds a single freedom, the two are solved one after another; the turn is then what leads X to P. So
 the slide of a leg with a universal joint at its foot (UPS) is known by the distance and its second turn by the height; the same way
 go a leg that bends (URS), a link between a turn and a slide, and a point in cylindrical coordinates. Across the axis, where heights
-meet already, the distance alone is left: so go dyads whose plane lies in the ground's axes.
+meet already, the distance alone is left: so go planar dyads, however their plane lies.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .sampling import vanish
 
 def solve_leg(phi: Any, joint: Joint, unknown: Sequence[Coordinate], multibody: Multibody) -> tuple[ClosedForm, ...]:
     """The closed forms, one after another, by which the two points of a joint meet; none where no pattern was verified."""
-    if not multibody.mechanism.space or joint.slides or phi.numel() != len(unknown):
+    if not multibody.mechanism.space or joint.slides or phi.numel() < len(unknown):
         return ()
     for first in unknown:
         if first.name in multibody.axes:
@@ -49,8 +49,8 @@ def _leg(joint: Joint, first: Coordinate, later: Sequence[Coordinate], multibody
         return ()
     if len(later) == 1:
         head, target = cross(axis, head), cross(axis, target)
-    equations = []
-    for of_head, of_target, squared in ((dot(head, head), dot(target, target), True), (dot(axis, head), dot(axis, target), False)):
+    equations, kept = [], [(dot(head, head), dot(target, target), True), (dot(axis, head), dot(axis, target), False)]
+    for of_head, of_target, squared in kept[: len(later)]:
         plain = _in_fewest(of_head, later, multibody.coordinates)
         if plain is None:
             return ()
@@ -64,7 +64,7 @@ def _leg(joint: Joint, first: Coordinate, later: Sequence[Coordinate], multibody
             return ()
         else:
             equations.append(plain - of_target)
-    equations = sorted(equations[: len(later)], key=lambda equation: len(_held((equation,), later)))
+    equations = sorted(equations, key=lambda equation: len(_held((equation,), later)))
     forms, rest = [], list(later)
     for equation in equations:
         found = _held((equation,), rest)
