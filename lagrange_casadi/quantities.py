@@ -7,6 +7,7 @@ in the package takes a name apart.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -41,6 +42,7 @@ def own_members(*, moment: bool = True) -> tuple[str, ...]:
 
 
 _LAWS = {*PLANE.law, *SPACE.law}
+_SPREAD = re.compile(rf"(?:({'|'.join((*PLANE.spread, *SPACE.spread))})(0|[1-9]\d*)|(width|end))")
 _ENDINGS = {"rate": "_rate", "acceleration": "_acceleration"}
 _COORDINATE = ".coordinate"
 
@@ -62,13 +64,14 @@ class Output:
     """One output of a mechanism: what it is of its ``part``.
 
     ``group`` and ``member`` are those of its :class:`Quantity`. The certificate is of no ``part``. ``station`` names what acts on a
-    link at a station.
+    link at a station, or along it; what acts along it has members for each ``power`` of the place.
     """
 
     group: str
     part: str
     member: str = ""
     station: str = ""
+    power: int | None = None
 
     @classmethod
     def of(cls, name: str | Output) -> Output:
@@ -84,20 +87,26 @@ class Output:
             return cls(group, text)
         if group == "section" and len(rest) == 2:
             station, member = rest
-            return cls("law", part, member) if station == "law" and member in _LAWS else cls("station", part, member, station)
+            if station == "law" and member in _LAWS:
+                return cls("law", part, member)
+            if found := _SPREAD.fullmatch(member):
+                direction, power, end = found.groups()
+                return cls("spread", part, end or direction, station, None if end else int(power))
+            return cls("station", part, member, station)
         if group == "certificate" and not rest:
             return cls(group, "", part)
         if len(rest) > 1:
             raise KeyError(name)
-        return cls(group, part, *rest)
+        return cls(group, part, "".join(rest))
 
     def __str__(self) -> str:
         """The full name."""
         if self.group == "motion":
             plain = _COORDINATE if self.part.endswith(tuple(_ENDINGS.values())) else ""
             return f"motion:{self.part}{_ENDINGS.get(self.member, plain)}"
-        if self.group in ("law", "station"):
-            return f"section:{self.part}:{self.station or 'law'}:{self.member}"
+        if self.along:
+            power = "" if self.power is None else self.power
+            return f"section:{self.part}:{self.station or 'law'}:{self.member}{power}"
         return ":".join(word for word in (self.group, self.part, self.member) if word)
 
     @property
@@ -120,7 +129,7 @@ class Output:
     @property
     def along(self) -> bool:
         """Whether it goes into the section forces of a link."""
-        return self.group in ("law", "station")
+        return self.group in ("law", "station", "spread")
 
     def unit(self, mechanism: Declared) -> str:
         """The unit in a mechanism."""

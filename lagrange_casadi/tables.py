@@ -101,6 +101,18 @@ _AXIAL_LAW = (
 )
 _STATION_N = Quantity("station", "n", ("t",), FORCE, "force on the link at a station, along the axis")
 _STATION = Quantity("station", "station", ("t",), "1", "place of the station, ratio xi/l")
+_SPREAD = (
+    Quantity("spread", "width", ("t",), "1", "on how much of the link the load along it acts, as a ratio to l"),
+    Quantity("spread", "end", ("t",), "1", "where the load along the link ends, ratio xi/l"),
+)
+
+
+def _spread(member: str, direction: str) -> Quantity:
+    meaning = f"load along the link {direction}: coefficient of a power of (end - xi/l)/width"
+    return Quantity("spread", member, ("t",), "N/m", meaning)
+
+
+_SPREAD_N = _spread("qn", "in the direction of the axis")
 
 
 def _shear_law(prefix: str, force: str) -> tuple[Quantity, ...]:
@@ -132,6 +144,9 @@ QUANTITIES = (
     Quantity("station", "f", ("t",), FORCE, "force on the link at a station, 90 deg counter-clockwise of the axis"),
     Quantity("station", "m", ("t",), MOMENT, "moment on the link at a station"),
     _STATION,
+    *_SPREAD,
+    _SPREAD_N,
+    _spread("qf", "90 deg counter-clockwise of the axis"),
 )  # fmt: skip
 
 SPATIAL_QUANTITIES = (
@@ -171,6 +186,10 @@ SPATIAL_QUANTITIES = (
     Quantity("station", "my", ("t",), MOMENT, "moment on the link at a station, about the link's y"),
     Quantity("station", "mz", ("t",), MOMENT, "moment on the link at a station, about the link's z"),
     _STATION,
+    *_SPREAD,
+    _SPREAD_N,
+    _spread("qfy", "in the direction of the link's y"),
+    _spread("qfz", "in the direction of the link's z"),
 )  # fmt: skip
 
 RESULTANT = Quantity("reaction", "resultant", ("t",), FORCE, "resultant of the joint's reaction")
@@ -186,11 +205,12 @@ class Terms:
 
     The ``coefficients`` are those of functions along the link: of 1, mu0 and mu1 for a force, of 1 alone for torsion. A bending
     moment has a ``shear``, another section force, whose coefficients are those behind its first one:
-    d(bending)/d(xi) = -``arm`` shear, with ``arm`` 1 or -1.
+    d(bending)/d(xi) = -``arm`` shear, with ``arm`` 1 or -1. ``spread`` is what a load along the link adds, beside powers along it.
     """
 
     coefficients: tuple[str, ...]
     acting: str
+    spread: str = ""
     shear: str = ""
     arm: int = 0
 
@@ -231,6 +251,12 @@ class Table:
         return self._members("station")
 
     @cached_property
+    def spread(self) -> tuple[str, ...]:
+        """The members of a load along a link that come once for each power of the place: its directions, that of the axis first."""
+        ends = {row.member for row in _SPREAD}
+        return tuple(member for member in self._members("spread") if member not in ends)
+
+    @cached_property
     def place_first(self) -> tuple[str, ...]:
         """The same as ``station``, in the order in which emitted C and the loads of a law take them."""
         return (_STATION.member, *(member for member in self.station if member != _STATION.member))
@@ -264,7 +290,7 @@ PLANE = Table(
     CONVENTIONS,
     QUANTITIES,
     ((RESULTANT, ("fx", "fy")),),
-    {"axial": Terms(_N, "n"), "shear": Terms(_F, "f"), "bending": Terms(("m0", *_F), "m", "shear", 1)},
+    {"axial": Terms(_N, "n", "qn"), "shear": Terms(_F, "f", "qf"), "bending": Terms(("m0", *_F), "m", "qf", "shear", 1)},
 )
 SPACE = Table(
     SPATIAL_CONVENTIONS,
@@ -279,12 +305,12 @@ SPACE = Table(
         ),
     ),
     {
-        "axial": Terms(_N, "n"),
-        "shear_y": Terms(_FY, "fy"),
-        "shear_z": Terms(_FZ, "fz"),
+        "axial": Terms(_N, "n", "qn"),
+        "shear_y": Terms(_FY, "fy", "qfy"),
+        "shear_z": Terms(_FZ, "fz", "qfz"),
         "torsion": Terms(("mx0",), "mx"),
-        "bending_y": Terms(("my0", *_FZ), "my", "shear_z", -1),
-        "bending_z": Terms(("mz0", *_FY), "mz", "shear_y", 1),
+        "bending_y": Terms(("my0", *_FZ), "my", "qfz", "shear_z", -1),
+        "bending_z": Terms(("mz0", *_FY), "mz", "qfy", "shear_y", 1),
     },
 )
 

@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from arithmetic import DOUBLE, Digits, Double
 from jets import Jet
+from spread import forces
 
 _LEAST = 1e-9
 LEAST_STEADY = 1e-7
@@ -121,7 +122,8 @@ class Result:
 
 @dataclass(frozen=True)
 class Oracle:
-    """A mechanism of bodies and joints; ``gravity`` in m/s^2; ``loads`` list (point, fx, fy, mz) from a posture.
+    """A mechanism of bodies and joints; ``gravity`` in m/s^2; ``loads`` list (point, fx, fy, mz) from a posture, ``spreads`` those
+    along bodies.
 
     ``unaided`` are driven joints that bear no effort; ``pushed`` the joints that do, where these are not the driven ones.
     """
@@ -134,6 +136,7 @@ class Oracle:
     unaided: Sequence[str] = ()
     arithmetic: Double | Digits = DOUBLE
     pushed: Sequence[str] | None = None
+    spreads: Sequence[Callable] = ()
 
     def solve(self, drives: dict[str, tuple[float, float, float]], guess: dict[str, tuple[float, float, float]]) -> Result:
         """The instant at which the driven joints have the given (coordinate, rate, acceleration), from a rough posture."""
@@ -170,7 +173,7 @@ class Oracle:
             scaled = self.scaled(slope)
             left, values, right = np.linalg.svd(scaled, full_matrices=False)
             if scaled.shape[0] >= scaled.shape[1]:
-                result.steadiness, result.vague = float(values[-1]), _vague(values)
+                result.steadiness, result.vague = float(values[-1]), bool(np.any((values > _VAGUE[0]) & (values < _VAGUE[1])))
                 result.softest = (scaled, left[:, -1], right[-1])
         return result
 
@@ -263,13 +266,13 @@ class Oracle:
         for extra in (extra for extra in self.extras if extra.effect):
             labels.append((extra.name, "multiplier", (0.0, 0.0, 0.0)))
             unknowns.append(extra.effect(place))
-        given = [part for load in self.loads for part in load(place)]
+        given, spread = ([part for load in loads for part in load(place)] for loads in (self.loads, self.spreads))
         matrix = np.column_stack([self._on_bodies(frames, parts) for parts in unknowns])
         inertia = []
         for b in self.bodies:
             cx, cy, phi = place_in(frames, (b.name, *b.centre))
             inertia += [b.mass * (cx.a - self.gravity[0]), b.mass * (cy.a - self.gravity[1]), b.inertia * phi.a]
-        right = self.arithmetic.array(inertia) - self._on_bodies(frames, given)
+        right = self.arithmetic.array(inertia) - self._on_bodies(frames, given + forces(spread, self.arithmetic))
         keep = np.array([b.oriented or k < 2 for b in self.bodies for k in range(3)])
         matrix, right = matrix[keep], right[keep]
         found = self.arithmetic.solve(matrix, right, 1e-11)
@@ -284,11 +287,10 @@ class Oracle:
         acting = _times(unknowns, found)
         for b in self.bodies:
             if b.density is not None:
-                result.sections[b.name] = self._section(frames, b, acting + given)
+                result.sections[b.name] = self._section(frames, b, acting + given, spread)
         if self.arithmetic is DOUBLE:
-            self._find_open(
-                result, frames, labels, unknowns, matrix / np.array([1.0, 1.0, self.size] * len(self.bodies))[keep, None]
-            )
+            scales = np.array([1.0, 1.0, self.size] * len(self.bodies))[keep, None]
+            self._find_open(result, frames, labels, unknowns, matrix / scales)
 
     def _find_open(self, result, frames, labels, unknowns, matrix):
         """What the null space of the balance changes: forces and moments that hold each other, whatever is given."""
@@ -296,7 +298,7 @@ class Oracle:
         lengths[lengths == 0.0] = 1.0
         _, values, basis = np.linalg.svd(matrix / lengths)
         values = np.concatenate([values, np.zeros(basis.shape[0] - values.size)])
-        result.vague |= _vague(values)
+        result.vague |= bool(np.any((values > _VAGUE[0]) & (values < _VAGUE[1])))
         null = (basis[values < _LEAST] / lengths).T
         own: dict[str, np.ndarray] = {}
         for (name, label, parts), row in zip(labels, null, strict=True):
@@ -329,7 +331,7 @@ class Oracle:
             stacked[row[name] : row[name] + 3] += [fx, fy, arm[0] * fy - arm[1] * fx + mz]
         return stacked
 
-    def _section(self, frames, body, acting, weight=1):
+    def _section(self, frames, body, acting, spread=(), weight=1):
         """Action of the piece towards the tip on the piece towards the base: (axial, shear, bending) at a ratio xi/l.
 
         With no ``weight`` the piece's own matter is left out.
@@ -340,12 +342,13 @@ class Oracle:
             phi, c, s = frames[body.name][2], frames[body.name][3].v, frames[body.name][4].v
             cut = place_in(frames, (body.name, ratio * l, 0.0))
             fx = fy = mz = 0.0  # what acts on the piece towards the tip
-            for (name, px, py), gx, gy, couple in acting:
-                # At the very tip of the link what acts there still acts beyond the section.
-                if name == body.name and (px > ratio * l + near or (ratio == 1 and abs(px - l) < near)):
-                    point = place_in(frames, (name, px, py))
-                    arm = (point[0].v - cut[0].v, point[1].v - cut[1].v)
-                    fx, fy, mz = fx + gx, fy + gy, mz + arm[0] * gy - arm[1] * gx + couple
+            # At the very tip of the link what acts there still acts beyond the section.
+            own = [p for p in acting if p[0][0] == body.name]
+            seen = [p for p in own if p[0][1] > ratio * l + near or (ratio == 1 and abs(p[0][1] - l) < near)]
+            for place, gx, gy, couple in seen + forces(spread, self.arithmetic, body.name, ratio * l):
+                point = place_in(frames, place)
+                arm = (point[0].v - cut[0].v, point[1].v - cut[1].v)
+                fx, fy, mz = fx + gx, fy + gy, mz + arm[0] * gy - arm[1] * gx + couple
             mass, first, second = _moments(self.arithmetic, body.density, body.breaks, ratio)
             if mass and weight:
                 middle = first / mass
@@ -365,10 +368,6 @@ def passed(before: Result, after: Result) -> bool:
         return False
     (_, left, right), (slope, *_) = before.softest, after.softest
     return bool(left @ slope @ right <= 0.0)
-
-
-def _vague(values):
-    return bool(np.any((values > _VAGUE[0]) & (values < _VAGUE[1])))
 
 
 def _times(unknowns, values):

@@ -50,6 +50,7 @@ class Draft:
         self.constraints: dict[str, Formula] = {}
         self.rows: dict[str, tuple[Formula, str]] = {}
         self.loads: dict[str, Callable] = {}
+        self.spreads: dict[str, Callable] = {}
         self.gravity: Place = (0.0, -9.81)
         self.stations: dict[str, list[float]] = {}
         self.limited: set[str] = set()  # links whose stations must lie on them
@@ -359,7 +360,8 @@ class Draft:
         loads = [lambda place, load=load: load(place, t) for load in self.loads.values()]
         unaided = [joint for _, joint in self.rows.values()]
         joints, bodies = list(self.joints.values()), list(self.bodies.values())
-        return oracle.Oracle(bodies, joints, self.gravity, loads, extras, unaided, arithmetic)
+        spreads = [lambda place, one=one: one(place, t) for one in self.spreads.values()]
+        return oracle.Oracle(bodies, joints, self.gravity, loads, extras, unaided, arithmetic, spreads=spreads)
 
     def drives(self, t: float) -> dict[str, tuple[float, float, float]]:
         """Coordinate, rate and acceleration of the driven joints."""

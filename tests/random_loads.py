@@ -5,10 +5,12 @@ from __future__ import annotations
 import functools
 import math
 
+import numpy as np
 import oracle
 from random_draft import Draft, Spot
 from random_formula import Formula, joint_coordinate
 from random_growth import anything
+from spread import Spread
 
 
 def load(d: Draft) -> None:
@@ -52,6 +54,48 @@ def load(d: Draft) -> None:
         d.lines.append(f'm.torsion_spring("{name}", {joint}, {numbers})')
         numbers = {"stiffness": stiffness, "angle": angle, "damping": damping}
         d.loads[name] = functools.partial(_coil, joint=d.joints[joint], **numbers)
+
+
+def line_load(d: Draft, rng: np.random.Generator) -> None:
+    """A load along a link, or a part of it: even, linear, or a polynomial of the distance; by a generator of its own."""
+    links = [name for name, body in d.bodies.items() if body.length]
+    drawn, d.rng = d.rng, rng
+    if links and d.chance(0.4):
+        link, size = d.choose(*links), 10.0 ** d.choose(0, 1, 2, 4)
+        length, turns, name = d.bodies[link].length, d.chance(0.4), d.new("f")
+        start, end = (0.0, length) if d.chance(0.4) else (d.between(0.0, 0.4) * length, d.between(0.5, 0.95) * length)
+        part = "" if end == length else f", between=({start!r}, {end!r})"
+        shapes = [_shape(d, size / length, start, end) for _ in "xy"]
+        texts = [text.format(amount.text) for text, amount, _ in shapes]
+        d.lines.append(f'm.line_load("{name}", {link}, x={texts[0]}, y={texts[1]}{part}{", turning=True" if turns else ""})')
+        parts = [(amount, powers) for _, amount, powers in shapes]
+        d.spreads[name] = functools.partial(_spread, link=link, start=start, end=end, parts=parts, turns=turns)
+    d.rng = drawn
+
+
+def _shape(d: Draft, size: float, start: float, end: float):
+    """How a component is written around its amount, the amount, and coefficients of what it is times, by powers of the distance."""
+    kind, amount = d.choose("even", "linear", "power"), _amount(d, size)
+    if kind == "even":
+        return "{0}", amount, [1.0]
+    if kind == "linear":
+        first, last = d.between(-1, 1), d.between(-1, 1)
+        slope = (last - first) / (end - start)
+        return f"({first!r} * ({{0}}), {last!r} * ({{0}}))", amount, [first - slope * start, slope]
+    powers = [d.between(-1, 1) / end**k for k in range(d.choose(3, 4, 6))]
+    return f"lambda x: ({{0}}) * ({' + '.join(f'{c!r} * x**{k}' for k, c in enumerate(powers))})", amount, powers
+
+
+def _spread(place, t, link, start, end, parts, turns):
+    (ax, px), (ay, py) = parts
+    sizes, phi = (ax.jet(place, t).v, ay.jet(place, t).v), place((link, 0.0, 0.0))[2].v
+    c, s = (math.cos(phi), math.sin(phi)) if turns else (1.0, 0.0)
+
+    def at(x):
+        fx, fy = (size * sum(p * x**k for k, p in enumerate(powers)) for size, powers in zip(sizes, (px, py), strict=True))
+        return c * fx - s * fy, s * fx + c * fy
+
+    return [Spread(link, start, end, at)]
 
 
 def _amount(d: Draft, size: float) -> Formula:

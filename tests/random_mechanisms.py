@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from random_draft import Draft
 from random_growth import LEAST, attempt, close, dyad, freedom, hang, twice, values
-from random_loads import load
+from random_loads import line_load, load
 from random_path import Path, follow
 from random_patterns import PATTERNS
 
@@ -22,6 +22,7 @@ _HEAD = """import casadi as ca
 from casadi import cos, sin, sqrt
 from lagrange_casadi import Mechanism, Scene, curve, density, evaluate, motion, table
 """
+_ALONG = 1
 SPACING = 0.4
 """Of the samples of a motion [s]."""
 
@@ -205,6 +206,7 @@ def _finish(seed: int, d: Draft) -> Drawn:
         d.lines.append(f"m.set_gravity({x.text}, {y.text})")
     for _ in range(d.choose(0, 1, 2, 4)):
         load(d)
+    line_load(d, np.random.default_rng((seed, _ALONG)))
     duration = d.choose(d.between(0.3, 1.0), d.between(0.8, 2.5), weights=[2, 1])
     scene_grid = (d.start, d.start + duration, d.choose(5, 21, 61, 121))
     moves = scene_grid[2] - 1

@@ -87,9 +87,15 @@ def rows(quantities, *axes):
     places = {"motion": "/motion/JOINT", "pose": "/pose/BODY/", "effort": "/effort/JOINT", "reaction": "/reaction/JOINT/"}
     places |= {"multiplier": "/multiplier/NAME", "load": "/load/NAME/", "output": "/output/NAME"}
     places |= {"certificate": "/certificate/"}
-    places |= {"section": "/section/LINK/", "law": "/section/LINK/law/", "station": "/section/LINK/NAME/"}
+    places |= {
+        "section": "/section/LINK/",
+        "law": "/section/LINK/law/",
+        "station": "/section/LINK/NAME/",
+        "spread": "/section/LINK/NAME/",
+    }
     for q in quantities:
         place = places[q.group] + (f"_{q.member}" if q.group == "motion" and q.member else q.member)
+        place += "J" if q.group == "spread" and q.member.startswith("q") else ""  # the power
         units = dict.fromkeys(q.unit_for(kind) for kind in ("angle", "slide"))
         yield f"| {place} | {', '.join(q.axes)} | {' or '.join(units)} | {q.long_name} | {q.sign} |"
 

@@ -175,23 +175,50 @@ def test_sweeps_find_the_peaks_along_the_links():
 
 def test_what_bears_no_line_load_is_refused_by_name():
     m = Mechanism("refused")
-    tapered = m.link("tapered", length=1.0, density=density.polynomial(1.0, 2.0))
-    body = m.link("body", length=1.0, mass=1.0, centre=(0.5, 0.1), inertia=0.1)
-    even, ball = m.link("even", length=1.0, mass=m.parameter("mass", 1.0, "kg")), m.point_mass("ball", 1.0)
-    for place in (tapered, body, ball, m.ground):
-        with pytest.raises(DeclarationError, match="load 'wind': a line load needs a link whose mass lies evenly along it"):
+    rod, ball, low = m.link("rod", length=1.0, mass=1.0), m.point_mass("ball", 1.0), m.parameter("low", 0.2, "m")
+    for place in (ball, m.ground):
+        with pytest.raises(DeclarationError, match=r"load 'wind': a line load acts along a link, and '\w+' is none; take a force"):
             m.line_load("wind", place, y=1.0)
-    with pytest.raises(DeclarationError, match="load 'wind': expected one value, or two"):
-        m.line_load("wind", even, y=(1.0, 2.0, 3.0))
+    expected_one = r"load 'wind': expected one value, two, where it begins and where it ends, or a function of the distance .*, got"
+    for value in ((1.0, 2.0, 3.0), ()):
+        with pytest.raises(DeclarationError, match=expected_one):
+            m.line_load("wind", rod, y=value)
     with pytest.raises(DeclarationError, match="load 'wind' must be a number or an expression"):
-        m.line_load("wind", even, y="strong")
-    with pytest.raises(DeclarationError, match="load 'wind' depends on 'foreign'"):
-        m.line_load("wind", even, y=ca.SX.sym("foreign"))
-    m.line_load("wind", even, y=1.0)
+        m.line_load("wind", rod, y="strong")
+    for foreign in (ca.SX.sym("foreign"), lambda xi: xi * ca.SX.sym("foreign")):
+        with pytest.raises(DeclarationError, match="load 'wind' depends on 'foreign'"):
+            m.line_load("wind", rod, y=foreign)
+    no_polynomial = "load 'wind' must be a polynomial of the distance from the base, of degree 7 at most; take one"
+    shape = curve([0.0, 0.3, 0.6, 1.0], [1.0, 2.0, 1.5, 0.0])
+    wrong = (ca.sin, ca.fabs, shape, lambda xi: xi**8, lambda xi: 1 / (1 + xi), lambda xi: ca.if_else(xi < 0.5, 1.0, 2.0))
+    for function in (*wrong, lambda xi: xi**0.5, lambda xi: 2**xi, lambda xi: low**xi, lambda xi: ca.fmax(xi, low)):
+        with pytest.raises(DeclarationError, match=no_polynomial):
+            m.line_load("wind", rod, y=function)
+    with pytest.raises(DeclarationError, match="load 'wind': its function of the distance fails: ZeroDivisionError"):
+        m.line_load("wind", rod, y=lambda xi: xi * (1 / 0))
+    with pytest.raises(DeclarationError, match="load 'wind': its function of the distance fails: a symbol is neither true"):
+        m.line_load("wind", rod, y=lambda xi: xi if xi > 0 else 0)
+    with pytest.raises(DeclarationError, match=r"load 'wind' must be a scalar, got one of shape \(2, 1\)"):
+        m.line_load("wind", rod, y=lambda xi: ca.vertcat(xi, xi))
+    with pytest.raises(DeclarationError, match="load 'wind': between must be two distances from the base of 'rod'"):
+        m.line_load("wind", rod, y=1.0, between=0.3)
+    with pytest.raises(DeclarationError, match="load 'wind': between depends on 't', not a parameter"):
+        m.line_load("wind", rod, y=1.0, between=(0.0, m.time))
+    with pytest.raises(DeclarationError, match=r"load 'wind': between must be two distances from the base that rise, got 0\.5"):
+        m.line_load("wind", rod, y=1.0, between=(0.5, 0.5))
+    m.line_load("wind", rod, y=1.0, between=(low, 0.6))
     with pytest.raises(DeclarationError, match="load 'wind' is declared twice"):
-        m.line_load("wind", even, y=1.0)
-    for k, link in enumerate((tapered, body, even, ball)):
-        m.revolute(f"J{k}", m.ground, link)
-    scene = Scene(m, {f"J{k}": motion.polynomial(0.0) for k in range(3)}, t=(0, 1, 3))
-    with pytest.raises(ParameterError, match=r"load 'wind': a line load needs a link with mass, .* 'even' has 0 kg/m"):
-        evaluate(scene, parameters={"mass": 0.0})
+        m.line_load("wind", rod, y=1.0)
+    m.revolute("J", m.ground, rod)
+    m.weld("W", rod.tip, ball)
+    scene = Scene(m, {"J": motion.polynomial(0.0)}, t=(0, 1, 3))
+    told = r"load 'wind': it acts between {} and 0.6 m, but link 'rod' is from 0 to 1 m"
+    with pytest.raises(ParameterError, match=told.format("-0.1")):
+        evaluate(scene, parameters={"low": -0.1})
+    with pytest.raises(ParameterError, match=r"load 'wind': it acts between 0\.7 and 0\.6 m; it must end beyond where it begins"):
+        evaluate(scene, parameters={"low": 0.7})
+    engine = DesignEngine.of(scene, rung=Rung("vm"))
+    assert engine.evaluate(np.array([[0.2], [-0.1], [0.6], [0.7]])).status.tolist() == [
+        Status.OK,
+        *[Status.IMPOSSIBLE] * 3,
+    ]

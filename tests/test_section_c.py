@@ -78,7 +78,7 @@ def program(links):
         body += f"""  {{
     static const double breaks_of[] = {{{numbers(edges)}}}, matter[] = {{{numbers(matter_of(along, length, cells))}}};
     static const double law[] = {{{numbers(law)}}}, loads[] = {{{numbers(acting or [0.0])}}};
-    const designs_link link = {{{len(cells)}, {terms}, {len(loads)}, breaks_of, matter, law, loads}};
+    const designs_link link = {{{len(cells)}, {terms}, {len(loads)}, breaks_of, matter, law, loads, 0, 0, 0, 0, 0}};
     print_both(&link, {k});
   }}
 """
@@ -99,6 +99,8 @@ def program(links):
         shapes=",\n".join(shapes),
         loads=4 * max(len(link[-1]) for link in links),
         laws=cases,
+        declared="",
+        spread="",
         indent="",
     )
     types = EXPORTED.replace("MATTER", str(len(matter))).replace("OUTPUTS", str(len(outputs)))

@@ -54,7 +54,6 @@ def arm(**kwargs):
         ),
         (lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0), inertia=1.0), "link 'b': inertia must be three moments"),
         (lambda m, a: m.direction(a), "a link in space has no single angle"),
-        (lambda m, a: m.line_load("q", a, y=1.0), "load 'q': a load along a link is for planar mechanisms"),
         (lambda m, a: m.coordinate(m.cylindrical("J", m.ground, a, axis=Z)), "joint 'J' has no coordinate ''; valid: slide, turn"),
         (lambda m, a: m.coordinate(m.revolute("J", m.ground, a), "turn"), "joint 'J' has no coordinate 'turn'"),
     ],

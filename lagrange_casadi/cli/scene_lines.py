@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import casadi as ca
@@ -65,8 +65,9 @@ def _load(load: Load, *, space: bool) -> str:
         return f"force on {first}, {_components(load, 'N', space)}"
     if isinstance(load, LineLoad):
         axes = f"in the axes of {first}" if load.turning else "in ground axes"
-        along = [" to ".join(dict.fromkeys(_short(end) for end in ends)) for ends in (load.x, load.y)]
-        return f"line load on {first}, x = {along[0]} N/m, y = {along[1]} N/m, {axes}"
+        told = [f"{x} = {_along(getattr(load, x))} N/m" for x in ("xyz" if space else "xy")]
+        part = "" if load.whole else f" between {_short(load.between[0])} and {_short(load.between[1])} m"
+        return f"line load on {first}{part}, {', '.join(told)}, {axes}"
     second = load.points[1].body.name
     if isinstance(load, Torque):
         if space:
@@ -74,6 +75,14 @@ def _load(load: Load, *, space: bool) -> str:
         return f"torque on {first} against {second}, {_short(load.value)} N m"
     words = f"stiffness {_short(load.stiffness)} N/m, free length {_short(load.length)} m, damping {_short(load.damping)} N s/m"
     return f"spring between {first} and {second}, {words}"
+
+
+def _along(powers: Sequence[Any]) -> str:
+    """A load along a link: what it is where it begins and where it ends, and its degree where it is not straight between."""
+    first, last = sum(powers[1:], powers[0]), powers[0]
+    words = " to ".join(dict.fromkeys((_short(first), _short(last))))
+    degree = max((j for j, power in enumerate(powers) if not (isinstance(power, float) and power == 0.0)), default=0)
+    return words if degree < 2 else f"{words}, a polynomial of degree {degree},"
 
 
 def _components(load: Force | Torque, unit: str, space: bool) -> str:

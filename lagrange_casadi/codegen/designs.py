@@ -19,7 +19,7 @@ from ..summits import search as summits
 from ..summits.sharpness import Kind, Watch
 from .calls import Call
 from .emit import FOLLOW, Parts, dump, emit, following, in_single, work
-from .link_curves import Along, along, in_space
+from .link_curves import Along, along, turning
 from .stages import Stages
 
 DESIGNS, BEGIN = "lagrange_casadi_designs", "lagrange_casadi_begin"
@@ -140,7 +140,7 @@ def emit_designs(graph: SceneGraph, stages: Stages, newton: int | None, reductio
         text += following(graph, stages, None, parts.sizes | {"follow": BEGIN})
     text = emit(graph, stages, newton) + (in_single(text) if single else text)
     text += CALL.text(parts.sizes["real"]) + _defined(_macros(graph, stages, newton, reduction, parts))
-    text += _tables(reduction) + _source("sections.c") + in_space(reduction.links)
+    text += _tables(reduction) + _source("sections.c") + turning(reduction.links)
     text += _WORK.format(**parts.sizes | work("", *parts.wide, *parts.narrow, reduction.matter), drive=parts.drive)
     text += _curves(reduction)
     return text + "".join(_source(name) for name in _FILES)

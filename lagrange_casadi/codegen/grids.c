@@ -7,7 +7,6 @@
 #endif
 
 #define TILE 2048
-#define MOST 8
 
 /* Put a tile into memory without reading first what it replaces, nor turning other data out of the cache. */
 static void stream(double* out, const double* tile, long long n) {
@@ -24,10 +23,11 @@ static void stream(double* out, const double* tile, long long n) {
   memcpy(out + i, tile + i, (size_t) (n - i)*sizeof(double));
 }
 
-/* One row: sum of c[m]*basis[m][j] over one, three or four terms, in this order. */
+/* One row: sum of c[m]*basis[m][j] over one, three, four or more terms, in this order. */
 static void combine(long long n, int terms, const double* c, const double* const* basis, double* restrict row) {
   const double c0 = c[0], *b0 = basis[0];
   long long j;
+  int m;
   if (terms == 1) {
     for (j = 0; j < n; ++j) row[j] = c0*b0[j];
   } else if (terms == 3) {
@@ -36,6 +36,10 @@ static void combine(long long n, int terms, const double* c, const double* const
   } else {
     const double c1 = c[1], c2 = c[2], c3 = c[3], *b1 = basis[1], *b2 = basis[2], *b3 = basis[3];
     for (j = 0; j < n; ++j) row[j] = ((c0*b0[j] + c1*b1[j]) + c2*b2[j]) + c3*b3[j];
+  }
+  for (m = 4; m < terms; ++m) {
+    const double cm = c[m], *bm = basis[m];
+    for (j = 0; j < n; ++j) row[j] = row[j] + cm*bm[j];
   }
 }
 

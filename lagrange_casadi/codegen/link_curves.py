@@ -17,13 +17,17 @@ from ..tables import SPACE
 class Along:
     """A link's part in the columns: its coefficients, what acts at each station, place first; and how its mass lies.
 
-    The coefficients are those of a planar link, or those of a link in space.
+    The coefficients are those of a planar link, or those of a link in space. ``spreads`` are loads along it: the width of each,
+    where it ends, and of each direction the coefficients of all powers. ``marks`` are places at which these begin or end: a column,
+    or one less another; or at which the density jumps: numbers.
     """
 
     law: tuple[int, ...]
     stations: tuple[tuple[int, ...], ...]
     breaks: tuple[float, ...]
     terms: int
+    spreads: tuple[tuple[int, ...], ...] = ()
+    marks: tuple[tuple[int, ...] | float, ...] = ()
 
     @property
     def space(self) -> bool:
@@ -33,12 +37,27 @@ class Along:
     @property
     def uniform(self) -> bool:
         """Whether nothing but its own even mass acts between its ends."""
-        return not self.space and not self.stations and len(self.breaks) == 2 and self.terms == 1
+        return not self.space and not self.stations and not self.spreads and len(self.breaks) == 2 and self.terms == 1
+
+    @property
+    def parted(self) -> int:
+        """How many places it is parted at: stations, and where loads along it begin and end."""
+        return len(self.stations) + len(self.marks)
+
+    @property
+    def directions(self) -> int:
+        """In how many directions loads along it act."""
+        return 3 if self.space else 2
+
+    @property
+    def powers(self) -> tuple[int, ...]:
+        """How many powers each load along it has."""
+        return tuple((len(spread) - 2) // self.directions for spread in self.spreads)
 
     @property
     def places(self) -> tuple[tuple[int | str, ...], ...]:
         """Of each curve of each force, where along the link it is: a row of places, ``BASE`` or ``TIP``. See ``sections.c``."""
-        parts, stations = len(self.stations) + 1, len(self.stations)
+        parts, stations = self.parted + 1, self.parted
         turns = self._turns
         ends: tuple[int | str, ...] = ("BASE", "TIP", *(sum(turns) * parts + k for k in range(stations) for _ in range(2)))
         firsts = itertools.accumulate(turns, initial=0)
@@ -47,35 +66,66 @@ class Along:
     @property
     def rows(self) -> int:
         """How many rows of places there are."""
-        return sum(self._turns) * (len(self.stations) + 1) + len(self.stations)
+        return sum(self._turns) * (self.parted + 1) + self.parted
 
     @property
-    def degrees(self) -> tuple[int, int]:
-        """Of the polynomials that are zero where the resultants of shear and of bending turn: see :mod:`.section_law`."""
-        return self.terms + 2, 2 * self.terms + 3
+    def degrees(self) -> tuple[int, ...]:
+        """Of the polynomials that are zero where forces turn: see :mod:`.section_law`.
+
+        In space first of the resultants of shear and of bending. With loads along the link of the axial force and the shear too,
+        and of the bending moment.
+        """
+        highest = max([self.terms, *(many - 1 for many in self.powers)])
+        sizes = (2 * highest + 1 if self.spreads else highest + 2, 2 * highest + 3)
+        return (sizes if self.space else ()) + ((highest, highest + 1) if self.spreads else ())
 
     @property
     def _turns(self) -> tuple[int, ...]:
         """Of each section force, in the order of its table: how often it may turn between two stations."""
+        if self.spreads:
+            return (2, 2, 2, 0, 2, 2, 2, 2) if self.space else (2, 2, 2)
         return (1, 1, 1, 0, 2, 2, 2, 2) if self.space else (1, 1, 2)
 
 
 def along(number: int, link: Along, into: str, offset: int) -> str:
     """What makes the curves of a link of columns y."""
-    loads = [column for station in link.stations for column in station]
+    loads = [f"y[{column}]" for station in link.stations for column in station]
+    for mark in link.marks:
+        place = f"(DESIGNS_REAL) {mark:.17g}" if isinstance(mark, float) else " - ".join(f"y[{column}]" for column in mark)
+        loads += [place, *["0"] * (6 if link.space else 3)]
+    spread = [f"y[{column}]" for load in link.spreads for column in load]
     taken = "".join(f"    law[{i}] = y[{column}];\n" for i, column in enumerate(link.law))
-    taken += "".join(f"    loads[{i}] = y[{column}];\n" for i, column in enumerate(loads))
-    if link.space:
-        inner = _along_in_space(number, link, taken, offset, into)
-    elif link.uniform:
+    taken += "".join(f"    loads[{i}] = {value};\n" for i, value in enumerate(loads))
+    taken += "".join(f"    spread[{i}] = {value};\n" for i, value in enumerate(spread))
+    if link.uniform:
         inner = f"    casadi_real law[7];\n{taken}    designs_uniform(matter + {offset}, law, {into});\n"
+        return f"  if (need >> {min(number, 63)} & 1) {{\n{inner}  }}\n"
+    sizes, room = f"{len(link.breaks) - 1}, {link.terms}, {link.parted}", ""
+    nodes = [f"&designs_nodes{degree}" for degree in link.degrees]
+    along_it = f", {len(link.spreads)}, {link.directions}, 1, powers, spread" if link.spreads else ", 0, 0, 0, 0, 0"
+    if link.space:
+        room = f", room[{_room(link)}]"
+        call = f"designs_along_in_space(&link, nodes, marks, room, {into});"
+        tables = f"    const designs_nodes* const nodes[] = {{{', '.join(nodes)}}};\n"
+    elif link.spreads:
+        call, tables = f"designs_along_loaded(&link, {', '.join(nodes)}, marks, {into});", ""
     else:
-        sizes = f"{len(link.breaks) - 1}, {link.terms}, {len(link.stations)}"
-        inner = f"""    casadi_real law[7], loads[{max(1, len(loads))}], marks[{len(link.stations) + 1}];
-    const designs_link link = {{{sizes}, designs_breaks{number}, matter + {offset}, law, loads}};
-{taken}    designs_along(&link, marks, {into});
+        call, tables = f"designs_along(&link, marks, {into});", ""
+    if link.spreads:
+        room += f", spread[{len(spread)}]"
+        tables += f"    const int powers[] = {{{', '.join(map(str, link.powers))}}};\n"
+    inner = f"""    casadi_real law[{len(link.law)}], loads[{max(1, len(loads))}], marks[{link.parted + 1}]{room};
+{tables}    const designs_link link = {{{sizes}, designs_breaks{number}, matter + {offset}, law, loads{along_it}}};
+{taken}    {call}
 """
     return f"  if (need >> {min(number, 63)} & 1) {{\n{inner}  }}\n"
+
+
+def _room(link: Along) -> int:
+    """What both planes of a link in space need: a law, loads, values and places."""
+    stations, parts = link.parted, link.parted + 1
+    turns = 2 * parts if link.spreads else parts
+    return 2 * (7 + 4 * stations + 3 * (2 + 2 * stations) + 4 * turns + 4 * parts + stations)
 
 
 def matter_of(link: Along, length: Any, cells: Sequence[Sequence[Any]]) -> list[Any]:
@@ -106,25 +156,14 @@ def matter_of(link: Along, length: Any, cells: Sequence[Sequence[Any]]) -> list[
     return [length, *(value for cell in reversed(found) for value in cell)]
 
 
-def _along_in_space(number: int, link: Along, taken: str, offset: int, into: str) -> str:
-    stations, parts = len(link.stations), len(link.stations) + 1
-    ends = 2 + 2 * stations
-    room = 2 * (7 + 4 * stations + 3 * ends + 8 * parts + stations)
-    shear, bending = link.degrees
-    sizes = f"{len(link.breaks) - 1}, {link.terms}, {stations}"
-    return f"""    casadi_real law[12], loads[{max(1, 7 * stations)}], marks[{parts}], room[{room}];
-    const designs_link link = {{{sizes}, designs_breaks{number}, matter + {offset}, law, loads}};
-{taken}    designs_along_in_space(&link, &designs_nodes{shear}, &designs_nodes{bending}, marks, room, {into});
-"""
-
-
-def in_space(links: Sequence[Along]) -> str:
-    """The C of links in space, and its tables; nothing where there are none."""
-    degrees = sorted({degree for link in links if link.space for degree in link.degrees})
+def turning(links: Sequence[Along]) -> str:
+    """The C of links in space and of links with loads along them, and its tables; nothing where there are none."""
+    degrees = sorted({degree for link in links for degree in link.degrees})
     if not degrees:
         return ""
     text = f"#define DESIGNS_DEGREE {degrees[-1]}\n"
-    text += "\n" + resources.files(__package__).joinpath("sections_in_space.c").read_text()
+    files = ["turning.c", *(["sections_in_space.c"] if any(link.space for link in links) else [])]
+    text += "".join("\n" + resources.files(__package__).joinpath(name).read_text() for name in files)
     for degree in degrees:
         nodes, weights = interpolation(degree)
         for name, values in (("nodes_at", nodes), ("weights", weights.ravel())):

@@ -61,11 +61,15 @@ DESIGNS_INLINE void designs_uniform(const casadi_real* matter, const casadi_real
 
 /* A link with a cell of density between each two breaks, and with what acts at stations. Its matter is its length and, a cell, the
    moments T0, T1, T2 of what is beyond it, and the density as a polynomial of the distance from the end that is nearer to the tip.
-   loads holds station, n, f, m of each station. */
+   loads holds station, n, f, m of each station. spread holds of each load along the link its width and where it ends, and then, for each of
+   so many directions, so many powers; the one that acts across is told. Where they begin and end are stations at which nothing acts. */
 typedef struct {
   int cells, terms, stations;
   const DESIGNS_REAL* breaks;
   const casadi_real *matter, *law, *loads;
+  int spreads, directions, across;
+  const int* powers;
+  const casadi_real* spread;
 } designs_link;
 
 DESIGNS_INLINE const casadi_real* designs_cell(const designs_link* link, int cell) {
@@ -96,6 +100,30 @@ DESIGNS_INLINE casadi_real designs_shear(const designs_link* link, int cell, cas
   return law[3] + law[4]*tail[0] + law[5]*(link->matter[0]*(u*tail[0] + tail[1]));
 }
 
+/* What sections at a ratio feel of loads along the link: see equations/spreads.py. */
+static inline void designs_spread(const designs_link* link, casadi_real u, casadi_real* force) {
+  const casadi_real *load = link->spread, l = link->matter[0];
+  casadi_real x, reach, lever, power, share;
+  int s, j;
+  for (s = 0; s < link->spreads; ++s) {
+    const int many = link->powers[s];
+    const casadi_real *along = load + 2, *across = along + link->across*many;
+    x = designs_on_link((load[1] - u)/load[0]);
+    reach = l*load[0];
+    lever = load[1] - load[0] - u;
+    lever = l*lanes_less(0, lever, lever, 0);
+    power = x;
+    for (j = 0; j < many; ++j) {
+      share = reach*power*((DESIGNS_REAL) 1/(j + 1));
+      force[0] = force[0] + along[j]*share;
+      force[1] = force[1] + across[j]*share;
+      force[2] = force[2] + across[j]*(share*(reach*x*((DESIGNS_REAL) 1/(j + 2)) + lever));
+      power = power*x;
+    }
+    load += 2 + link->directions*many;
+  }
+}
+
 /* All forces at a ratio, but for what acts at stations. */
 static inline void designs_smooth(const designs_link* link, casadi_real u, casadi_real* force) {
   const casadi_real l = link->matter[0], *law = link->law;
@@ -108,6 +136,7 @@ static inline void designs_smooth(const designs_link* link, casadi_real u, casad
   }
   for (k = 0; k < 2; ++k) force[k] = law[3*k] + law[3*k + 1]*tail[0] + law[3*k + 2]*(l*(u*tail[0] + tail[1]));
   force[2] = law[6] + law[3]*(l*(1 - u)) + law[4]*(l*tail[1]) + law[5]*(l*l*(u*tail[1] + tail[2]));
+  designs_spread(link, u, force);
 }
 
 /* And what a load does at a ratio, if it is seen there. */
@@ -191,11 +220,24 @@ static inline casadi_real designs_zero_between(const designs_link* link, casadi_
   return zero;
 }
 
-/* Of any link. */
+/* Put places in order. */
+static inline void designs_sort(casadi_real* marks, int count) {
+  casadi_real swap;
+  int k, s;
+  for (s = count - 1; s > 0; --s) {
+    for (k = 0; k < s; ++k) {
+      swap = lanes_less(marks[k + 1], marks[k], marks[k + 1], marks[k]);
+      marks[k + 1] = lanes_less(marks[k + 1], marks[k], marks[k], marks[k + 1]);
+      marks[k] = swap;
+    }
+  }
+}
+
+/* Of any link without loads along it. */
 static inline void designs_along(const designs_link* link, casadi_real* marks, casadi_real* value, casadi_real* place) {
   const casadi_real *law = link->law, l = link->matter[0];
   const int count = link->stations, parts = count + 1, many = 3 + 3*count;
-  casadi_real *bending = value + 2*many, sides[2][3], force[3], swap, low, high, middle, acting, zero[2], ends[4], turn[2], u, rises;
+  casadi_real *bending = value + 2*many, sides[2][3], force[3], low, high, middle, acting, zero[2], ends[4], turn[2], u, rises;
   int k, j, s;
   for (s = -2; s < count; ++s) {
     u = s == -2 ? 0 : 1;
@@ -206,13 +248,7 @@ static inline void designs_along(const designs_link* link, casadi_real* marks, c
     }
   }
   for (k = 0; k < 2; ++k) turn[k] = designs_on_link(-law[3*k + 1]/(law[3*k + 2]*l));
-  for (s = count - 1; s > 0; --s) {
-    for (k = 0; k < s; ++k) {
-      swap = lanes_less(marks[k + 1], marks[k], marks[k + 1], marks[k]);
-      marks[k + 1] = lanes_less(marks[k + 1], marks[k], marks[k], marks[k + 1]);
-      marks[k] = swap;
-    }
-  }
+  designs_sort(marks, count);
   for (s = 0; s < parts; ++s) {
     low = 0;
     high = 1;

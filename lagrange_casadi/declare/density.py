@@ -39,6 +39,11 @@ class Density:
         """Whether it is one constant."""
         return len(self.cells) == len(self.cells[0]) == 1
 
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """The breaks at which it may jump, as far as numbers tell."""
+        return _jumps(self.breaks, self.cells)
+
     def ends(self, length: Any) -> tuple[Any, Any, Any]:
         """Masses at the base and at the tip, and a moment of inertia, that together move just as the link does.
 
@@ -82,6 +87,11 @@ class NumericDensity:
     def uniform(self) -> bool:
         """Whether it is one constant."""
         return len(self.cells) == 1 and len(self.cells[0]) == 1
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """The breaks at which it jumps."""
+        return _jumps(self.breaks, self.cells)
 
     @property
     def mass(self) -> float:
@@ -152,6 +162,21 @@ def along(curve: Curve) -> Density:
         powers = [sum(Fraction(c) * math.comb(j, k) * (-about) ** (j - k) for j, c in enumerate(cell) if j >= k) for k in range(4)]
         cells.append(tuple(float(power) for power in powers))
     return Density((*curve.starts, 1.0), tuple(cells), per_length=True)
+
+
+def _jumps(breaks: Sequence[float], cells: Sequence[Sequence[Any]]) -> tuple[float, ...]:
+    """The inner breaks at which neighbouring cells have two values, or values that numbers do not tell."""
+    found = []
+    for u, before, after in zip(breaks[1:], cells, cells[1:], strict=False):
+        known = not any(isinstance(c, ca.SX) for c in (*before, *after))
+        values = [sum(c * u**j for j, c in enumerate(cell)) for cell in (before, after)] if known else []
+        sizes = [sum(np.abs(c) for c in cell) for cell in (before, after)] if known else []
+        if not known or np.any(np.abs(values[1] - values[0]) > _SAME * np.maximum(*sizes)):
+            found.append(u)
+    return tuple(found)
+
+
+_SAME = 1e-9
 
 
 def _differences(high: Any, low: Any, count: int) -> list[Any]:

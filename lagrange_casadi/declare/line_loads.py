@@ -1,30 +1,95 @@
-"""Loads along a link: what may be declared as one."""
+"""Loads along a link: what may be declared as one, and the polynomials along the link that it is kept as."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TypeAlias
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias
+
+import casadi as ca
 
 from ..errors import DeclarationError
-from .density import Density
-from .parts import Body, Expression, LineLoad, Link
+from .expressions import told
+from .ownership import Ownership
+from .parts import Expression, LineLoad, Link
+from .powers import powers
 
-Spread: TypeAlias = "Expression | tuple[Expression, Expression]"
-"""A value along a link: one throughout, or one at its base and one at its tip."""
+Spread: TypeAlias = "Expression | tuple[Expression, Expression] | Callable[[Any], Expression]"
+"""A value along a link: one throughout, a pair for where it begins and ends, or a polynomial of the distance from the base."""
+
+Between: TypeAlias = "tuple[Expression, Expression] | None"
+"""Distances from the base of a link [m], between which a load acts; None is the whole link."""
+
+HIGHEST = 7
+"""The highest power of the distance that a load may have."""
 
 
-def line_load(name: str, body: Body, x: Spread, y: Spread, turning: bool, checked: Callable[[Expression], Expression]) -> LineLoad:
-    """A load along a link; ``checked`` takes an expression.
+def line_load(own: Ownership, name: str, link: Link, components: Sequence[Spread], between: Between, turning: bool) -> LineLoad:
+    """A load along a link of a mechanism, of so many ``components``.
 
-    Raises :class:`DeclarationError` for a body whose mass does not lie evenly along it, and for more than two values.
+    Raises :class:`DeclarationError` for what is no link, for ends that are no pair, and for what is no polynomial along the link.
     """
-    if not (isinstance(body, Link) and isinstance(body.mass, Density) and body.mass.even):
+    own.free("load", name, own.mechanism.loads)
+    what = f"load '{name}'"
+    body = own.point(what, link).body
+    if not isinstance(body, Link):
+        raise DeclarationError(f"{what}: a line load acts along a link, and '{body.name}' is none; take a force at a point")
+
+    def checked(value: Expression) -> Expression:
+        return own.expression(what, value, moving=True)
+
+    if between is None:
+        start: Expression = 0.0
+        end = body.length
+    else:
+        if not isinstance(between, tuple | list) or len(between) != 2:
+            raise DeclarationError(f"{what}: between must be two distances from the base of '{body.name}' [m], got {between!r}")
+        start, end = (own.expression(f"{what}: between", place) for place in between)
+        if isinstance(start, float) and isinstance(end, float) and not start < end:
+            raise DeclarationError(f"{what}: between must be two distances from the base that rise, got {start:g} and {end:g} m")
+    found = [_powers(what, value, start, end, checked) for value in components]
+    many = max(map(len, found))
+    x, y, *z = ((*coefficients, *[0.0] * (many - len(coefficients))) for coefficients in found)
+    return LineLoad(name, body, (start, end), x, y, z[0] if z else (0.0,) * many, turning)
+
+
+def _powers(
+    what: str, value: Spread, start: Expression, end: Expression, checked: Callable[[Expression], Expression]
+) -> list[Expression]:
+    """Coefficients by powers of (end - xi)/(end - start)."""
+    if callable(value):
+        return _of_function(what, value, start, end, checked)
+    pair = tuple(value) if isinstance(value, tuple | list) else (value,)
+    if len(pair) > 2 or not pair:
         raise DeclarationError(
-            f"load '{name}': a line load needs a link whose mass lies evenly along it, and '{body.name}' is none; give the link "
-            "its mass alone, or take forces at several of its stations"
+            f"{what}: expected one value, two, where it begins and where it ends, or a function of the distance from the base [m], "
+            f"got {value!r}"
         )
-    pairs = [tuple(value) if isinstance(value, tuple | list) else (value, value) for value in (x, y)]
-    if any(len(pair) != 2 for pair in pairs):
-        raise DeclarationError(f"load '{name}': expected one value, or two, at the base and at the tip, got {x!r} and {y!r}")
-    (x0, x1), (y0, y1) = ((checked(first), checked(last)) for first, last in pairs)
-    return LineLoad(name, body, (x0, x1), (y0, y1), turning)
+    first, last = checked(pair[0]), checked(pair[-1])
+    return [last, first - last] if len(pair) == 2 else [last]
+
+
+def _of_function(
+    what: str,
+    function: Callable[[Any], Expression],
+    start: Expression,
+    end: Expression,
+    checked: Callable[[Expression], Expression],
+) -> list[Expression]:
+    """The same of a polynomial of the distance xi."""
+    distance = ca.SX.sym("xi")
+    try:
+        value = function(distance)
+    except Exception as error:  # whatever a user's function raises
+        raise DeclarationError(f"{what}: its function of the distance fails: {told(error)}") from error
+    if not isinstance(value, ca.SX):
+        return [checked(value)]
+    if value.numel() != 1:
+        raise DeclarationError(f"{what} must be a scalar, got one of shape {value.shape}")
+    # With numbers for ends the polynomial is rounded once; a symbol that is foreign is told by the coefficients.
+    found = powers(value, distance, (ca.SX(end), ca.SX(start - end)))
+    if found is None or len(found) > HIGHEST + 1:
+        raise DeclarationError(
+            f"{what} must be a polynomial of the distance from the base, of degree {HIGHEST} at most; take one load for each part "
+            "of the link on which it is one"
+        )
+    return [checked(coefficient) for coefficient in found]

@@ -19,7 +19,7 @@ from .expressions import check_line, check_name, typed
 from .joints import Axis, Joint, JointKind
 from .kinks import refuse_kinks
 from .limits import check_connected, parameter_values
-from .line_loads import Spread, line_load
+from .line_loads import Between, Spread, line_load
 from .matter import matter_of
 from .measures import Measures
 from .ownership import Ownership
@@ -262,14 +262,14 @@ class Mechanism:
         self.loads[name] = load
         return load
 
-    def line_load(self, name: str, link: Link, *, x: Spread = 0.0, y: Spread = 0.0, turning: bool = False) -> LineLoad:
-        """Apply a load [N/m] along a link of even mass: one value, or one at its base and one at its tip, linear between.
+    def line_load(
+        self, name: str, link: Link, *, x: Spread = 0.0, y: Spread = 0.0, between: Between = None, turning: bool = False
+    ) -> LineLoad:
+        """Apply a load [N/m] along a link: a value, a pair for its two ends, or a polynomial as a function of the distance xi [m].
 
-        In ground axes, or in the link's own where ``turning``: see :class:`.LineLoad`.
+        It acts ``between`` two distances from the base, else along the whole link: :class:`.LineLoad`.
         """
-        load = line_load(name, self._load_point(name, link).body, x, y, turning, lambda value: self._load(name, value))
-        self.loads[name] = load
-        return load
+        return cast(LineLoad, self.loads.setdefault(name, line_load(self.own, name, link, (x, y), between, turning)))
 
     def spring(
         self,

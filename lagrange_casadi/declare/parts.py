@@ -222,29 +222,46 @@ class Spring:
 
 @dataclass(frozen=True, eq=False)
 class LineLoad:
-    """A load [N/m] along the whole axis of a link, linear from its base to its tip: ``x`` and ``y`` there and there.
+    """A load [N/m] along a link, ``between`` two distances from its base [m]: a polynomial of the place.
 
-    In ground axes, or where ``turning`` in the link's own.
+    ``x``, ``y``, ``z`` are coefficients of rising powers of (end - xi)/(end - start), as many of each: where it ends the first of
+    them acts, where it begins their sum. In ground axes, or where ``turning`` in the link's own.
     """
 
     name: str
     link: Link
-    x: tuple[Expression, Expression]
-    y: tuple[Expression, Expression]
+    between: tuple[Expression, Expression]
+    x: tuple[Expression, ...]
+    y: tuple[Expression, ...]
+    z: tuple[Expression, ...]
     turning: bool
-    z: tuple[Expression, Expression] = (0.0, 0.0)
+
+    @property
+    def whole(self) -> bool:
+        """Whether it acts from the base to the tip."""
+        start, end = self.between
+        return isinstance(start, float) and start == 0.0 and end is self.link.length
+
+    @property
+    def reach(self) -> Expression:
+        """The length of the part on which it acts [m]."""
+        return self.link.length if self.whole else self.between[1] - self.between[0]
+
+    @property
+    def width(self) -> Expression:
+        """The length of the part on which it acts, as a ratio to that of the link."""
+        return 1.0 if self.whole else self.reach / self.link.length
+
+    @property
+    def end(self) -> Expression:
+        """Where it ends, as a ratio xi/l."""
+        return 1.0 if self.whole else self.between[1] / self.link.length
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """Where its resultant is told: the middle of the link."""
-        return (self.link.at(self.link.length / 2),)
-
-    @property
-    def matter(self) -> Expression:
-        """The mass of the link per length [kg/m], which is the same all along it."""
-        assert isinstance(self.link.mass, Density)
-        mass = self.link.mass.cells[0][0]
-        return mass if self.link.mass.per_length else mass / self.link.length
+        """Where its resultant is told: the middle of the part on which it acts."""
+        start, end = self.between
+        return (self.link.at(end / 2 if self.whole else (start + end) / 2),)
 
 
 Load = Force | Torque | Spring | LineLoad

@@ -92,7 +92,7 @@ def _of(mechanism: Mechanism, precision: Precision) -> Demands:
             found += _of_station(f"joint '{joint.name}'", point, precision, space=mechanism.space)
     for load in mechanism.loads.values():
         if isinstance(load, LineLoad):
-            found.append(_carrying(load))
+            found += _of_part(load, precision)
             continue
         for point in load.points:
             found += _of_station(f"load '{load.name}'", point, precision, space=mechanism.space)
@@ -116,7 +116,8 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
         places = [number for point in (joint.parent, joint.child) for number in point.place]
         yield f"joint '{joint.name}'", [*places, *joint.axis, joint.angle]
     for load in mechanism.loads.values():
-        yield f"load '{load.name}'", [number for point in load.points for number in point.place]
+        at_points = [number for point in load.points for number in point.place]
+        yield f"load '{load.name}'", [*load.between] if isinstance(load, LineLoad) else at_points
     yield "gravity", [*mechanism.gravity]
 
 
@@ -128,10 +129,21 @@ def _of_curves(what: str, expressions: list[Expression]) -> list[Demand]:
     return [Demand(BEYOND["double"] - far, False, lambda _: told) for far in found]
 
 
-def _carrying(load: LineLoad) -> Demand:
-    """A load along a link is told in units of the link's matter."""
-    what = f"load '{load.name}': a line load needs a link with mass, for it is told by that"
-    return Demand(load.matter, True, lambda n: f"{what}; '{load.link.name}' has {n(load.matter):.17g} kg/m")
+def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:
+    """The part on which a load acts is on its link, and has a length."""
+    (start, end), link = load.between, load.link
+    if load.whole:
+        return []
+
+    def told(number: Evaluator) -> str:
+        return f"load '{load.name}': it acts between {readable(number(start))} and {readable(number(end))} m"
+
+    def beyond(number: Evaluator) -> str:
+        return f"{told(number)}, but link '{link.name}' is from 0 to {readable(number(link.length))} m"
+
+    margins = (start + END[precision] * link.length, (link.length - end) + END[precision] * link.length)
+    rising = Demand(load.reach, True, lambda number: f"{told(number)}; it must end beyond where it begins")
+    return [*(Demand(margin, False, beyond) for margin in margins), rising]
 
 
 def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, list[Demand]]:

@@ -14,6 +14,7 @@ from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
 from .joints import IN_SPACE, Joint, JointKind, Triad
+from .line_loads import Between, Spread, line_load
 from .matter import matter_of
 from .measures import Measures
 from .mechanism import Mechanism
@@ -279,9 +280,20 @@ class SpatialMechanism(Mechanism):
         x, y, z = times(value, Rotation.of(*joint.turned).resolve(joint.triad[0]))
         return self.torque(name, joint.child, x=x, y=y, z=z, against=joint.parent, turning=True)
 
-    def line_load(self, name: str, link: Link, *, x: Any = 0.0, y: Any = 0.0, turning: bool = False) -> LineLoad:
-        """Not yet: a load along a link of a mechanism in space."""
-        raise DeclarationError(f"load '{name}': a load along a link is for planar mechanisms; in space apply forces at its points")
+    def line_load(
+        self,
+        name: str,
+        link: Link,
+        *,
+        x: Spread = 0.0,
+        y: Spread = 0.0,
+        z: Spread = 0.0,
+        between: Between = None,
+        turning: bool = False,
+    ) -> LineLoad:
+        """Apply a load [N/m] along a link, as in a plane, in ground axes, or in the link's own where ``turning``."""
+        self.loads[name] = load = line_load(self.own, name, link, (x, y, z), between, turning)
+        return load
 
     def set_gravity(self, x: Expression, y: Expression, z: Expression = 0.0) -> None:
         """Set the acceleration of gravity [m/s^2], in ground axes; numbers or expressions in parameters."""

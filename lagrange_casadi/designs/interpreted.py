@@ -81,10 +81,11 @@ def _signals(
     """Some quantities that are kept of a design, as curves over time."""
     mechanism, reduction = graph.scene.mechanism, kept.reduction
     table = table_of(mechanism.space)
+    columns = [{o: k for o, k in graph.outputs.items() if o.along and o.part == link} for link in kept.links]
     matter = _matter(kept, mechanism, dict(zip(mechanism.parameters, p.tolist(), strict=True)))
     sections = [
-        SectionForce(force, table, along.law, along.stations, length, density)
-        for along, (length, density) in zip(reduction.links, matter, strict=True)
+        SectionForce(force, link, own, length, density)
+        for link, own, (length, density) in zip(kept.links, columns, matter, strict=True)
         for force in table.forces
     ]
     quantities: list[Quantity] = [*reduction.quantities, *sections]

@@ -15,12 +15,13 @@ from ..codegen.link_curves import Along, matter_of
 from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array, Density
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Link
+from ..declare.parts import LineLoad, Link
 from ..declare.possible import demands
 from ..equations.gaps import extent
 from ..equations.kinematics import NEAR
 from ..equations.mobility import stations_of
 from ..equations.scene_graph import SceneGraph
+from ..equations.spreads import spreads_of
 from ..errors import DeclarationError
 from ..instants.refusal import Status
 from ..instants.rules import rules
@@ -88,10 +89,10 @@ class KeptOutputs:
         units = tuple(output.unit(mechanism) for output in names)
         numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
         efforts = tuple(name for name in names if name.group in ("effort", "output"))
-        along = tuple(_along(link, at, table) for link in links)
+        along = tuple(_along(mechanism, link, at, table) for link in links)
         matter, positive, margins = _matter(mechanism, links, along, rung.precision)
         columns = {column for columns in chosen.values() for column in columns}
-        columns |= {column for link in along for column in (*link.law, *(k for station in link.stations for k in station))}
+        columns |= {k for link in along for k in (*link.law, *(k for part in (*link.stations, *link.spreads) for k in part))}
         sharpness = Sharpness.of(graph, sorted(columns))
         checks = _checks(graph, rung)
         doubted = {k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")}
@@ -115,14 +116,27 @@ class KeptOutputs:
         return cls(tuple(names), units, efforts, tuple(link.name for link in links), reduction, sharpness)
 
 
-def _along(link: Link, at: dict[Output, int], table: Table) -> Along:
+def _along(mechanism: Mechanism, link: Link, at: dict[Output, int], table: Table) -> Along:
     assert isinstance(link.mass, Density)
-    stations = stations_of(at, link.name)
+    stations, spreads = stations_of(at, link.name), list[tuple[int, ...]]()
+    marks: list[tuple[int, ...] | float] = []
+    for name, powers in spreads_of(at, link.name).items():
+        load = mechanism.loads[name]
+        assert isinstance(load, LineLoad)
+        width, end = (at[Output("spread", link.name, member, name)] for member in ("width", "end"))
+        if not load.whole:
+            marks += [(end, width), (end,)]
+        terms = (at[Output("spread", link.name, member, name, power)] for member in table.spread for power in range(powers))
+        spreads.append((width, end, *terms))
+    if spreads:
+        marks += link.mass.jumps
     return Along(
         tuple(at[Output("law", link.name, member)] for member in table.law),
         tuple(tuple(at[Output("station", link.name, member, station)] for member in table.place_first) for station in stations),
         link.mass.breaks,
         max(len(cell) for cell in link.mass.cells),
+        tuple(spreads),
+        tuple(marks),
     )
 
 

@@ -10,7 +10,7 @@ import casadi as ca
 from ..declare.joints import Axis, Joint
 from ..declare.parts import Force, LineLoad, Link, Load, Point, Spring, Torque, Vector
 from ..geometry.frames import Velocities
-from ..geometry.vectors import AXES, cross, dot, minus, nil, plus, times
+from ..geometry.vectors import AXES, ZERO, cross, dot, minus, nil, plus, times
 from .growing import Grown
 from .joints import gap_motion, reaction, slide
 from .multibody import Applied, LoopEquations, RowGraph
@@ -101,13 +101,20 @@ def _vector(resting: Grown, components: Vector) -> Vector:
 
 
 def _along(load: LineLoad, resting: Grown) -> Applied:
-    """A load along a link: what it is at the ends, and its resultant at the middle of the link."""
-    rotation, length = resting.frames[load.link.name].rotation, load.link.length
-    ends = [_vector(resting, (x, y, z)) for x, y, z in zip(load.x, load.y, load.z, strict=True)]
-    base, tip = ends if load.turning else (rotation.resolve(end) for end in ends)
-    whole = times(length / 2, plus(*ends))
-    couple = times(length * length / 12, cross(AXES[0], minus(tip, base)))
-    return Applied(load.name, load.points[0], rotation.apply(whole) if load.turning else whole, rotation.apply(couple), (base, tip))
+    """A load along a link: its coefficients on the link's axes, and its resultant at the middle of the part on which it acts.
+
+    For a power j of s = (end - xi)/(end - start) the integrals of s^j and of s^j (1/2 - s) from 0 to 1 tell force and couple.
+    """
+    rotation, reach = resting.frames[load.link.name].rotation, load.reach
+    told = [_vector(resting, (x, y, z)) for x, y, z in zip(load.x, load.y, load.z, strict=True)]
+    own = told if load.turning else [rotation.resolve(one) for one in told]
+    whole, couple = ZERO, ZERO
+    for power, (there, here) in enumerate(zip(told, own, strict=True)):
+        whole = plus(whole, times(reach / (power + 1), there))
+        turning = cross(AXES[0], here) if power else ZERO
+        couple = plus(couple, times(-(reach * reach) * (power / (2 * (power + 1) * (power + 2))), turning))
+    force = rotation.apply(whole) if load.turning else whole
+    return Applied(load.name, load.points[0], force, rotation.apply(couple), tuple(own))
 
 
 def _along_coordinate(resting: Grown, name: str, joint: Joint, axis: Axis, force: Any) -> Iterator[Applied]:

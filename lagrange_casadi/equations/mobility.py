@@ -10,7 +10,7 @@ material from the section to the tip,
 Energy is linear in the moments, so n1, n2, f1, f2 are derivatives of the section mobility's Lagrange terms by the moments (paper
 eq. 20): n2 and f2 are the square of the link's rate and less its change. They repeat in bending because d(bending)/d(xi) = -shear,
 the equilibrium of an element. n0, f0, m0 are what acts on the tip: the reactions, efforts and loads there. What acts at a station
-between base and tip is seen by the sections on its base side.
+between base and tip is seen by the sections on its base side. What acts along the link has terms of its own (:mod:`.spreads`).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from ..declare.density import Density
 from ..declare.joints import Joint
 from ..declare.limits import at_end
 from ..declare.mechanism import Mechanism
-from ..declare.parts import LineLoad, Link, Point, Vector
+from ..declare.parts import Link, Point, Vector
 from ..geometry.frames import Frame, Velocities
 from ..geometry.vectors import ZERO, cross, dot, plus, times
 from ..quantities import Output, force_members, law_members, own_members, station_members
@@ -38,6 +38,7 @@ from .joints import borne, reaction, slide
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
 from .multibody import Multibody, column
+from .spreads import spreads
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,20 +163,12 @@ def _section_law(multibody: Multibody, name: str, found: Mapping[str, Action], d
         assert isinstance(link.mass, Density)
         _, first, inertia = link.mass.ends(link.length)
         at_tip[1] = -(by_mass[1] * first + by_moment[1] * (first * link.length + inertia / link.length))
-    for part in multibody.applied:
-        if part.spread is not None and part.point.body is link:
-            # Mass lies evenly there, so that a load that is linear along the link goes by it as weight does.
-            load = multibody.mechanism.loads[part.source]
-            assert isinstance(load, LineLoad)
-            for k, (base, end) in enumerate(zip(*part.spread, strict=True)):
-                if k < len(by_mass):
-                    by_mass[k] += base / load.matter
-                    by_moment[k] += (end - base) / (load.matter * link.length)
     along, beside, *above = zip(at_tip, by_mass, by_moment, strict=False)
     law = [*along, *beside, about[2]]
     for plane in above:
         law += [*plane, about[1], about[0]]
-    return {Output("law", name, member): ca.SX(value) for member, value in zip(law_members(space), law, strict=True)} | stations
+    own = {Output("law", name, member): ca.SX(value) for member, value in zip(law_members(space), law, strict=True)}
+    return own | stations | spreads(multibody, link)
 
 
 def _by_plane(acting: Action, space: bool) -> tuple[Any, ...]:
@@ -339,4 +332,4 @@ def _on_own_axes(multibody: Multibody, joint: Joint, action: Action) -> dict[Col
 
 def stations_of(outputs: Iterable[Output], link: str) -> tuple[str, ...]:
     """The stations of a link that outputs name, in their order."""
-    return tuple(dict.fromkeys(output.station for output in outputs if output.station and output.part == link))
+    return tuple(dict.fromkeys(output.station for output in outputs if output.group == "station" and output.part == link))

@@ -101,14 +101,14 @@ class Applied:
     """What a load, or the multiplier of a constraint or row, does at a point of a body, as expressions of the state.
 
     Force [N] and couple [N m] in ground axes; ``source`` names the load, constraint or row. Of what is ``spread`` along a link they
-    are the resultant; ``spread`` is then on its axes at the base, and the same at the tip [N/m].
+    are the resultant; ``spread`` are then the coefficients on its axes [N/m], as of a :class:`.LineLoad`.
     """
 
     source: str
     point: Point
     force: Vector = ZERO
     couple: Vector = ZERO
-    spread: tuple[Vector, Vector] | None = None
+    spread: tuple[Vector, ...] | None = None
 
     @property
     def members(self) -> dict[str, Any]:

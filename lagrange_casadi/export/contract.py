@@ -13,6 +13,7 @@ import numpy as np
 from ..arithmetic.compensated import Precision
 from ..equations.mobility import stations_of
 from ..equations.scene_graph import SceneGraph
+from ..equations.spreads import spreads_of
 from ..instants.solution import Solution
 from ..quantities import Output
 from ..tables import PLANE, Table, table_of
@@ -68,11 +69,12 @@ class Setting(Member):
 
 @dataclass(frozen=True)
 class LinkContract:
-    """A link that has sections: its name, and its number in C."""
+    """A link that has sections: its name, its number in C, and what acts on it: at stations, and along it, in so many powers."""
 
     name: str
     constant: str
     stations: tuple[str, ...]
+    spreads: Mapping[str, int]
 
 
 @dataclass(frozen=True)
@@ -152,7 +154,7 @@ def contract(
         unit = output.unit(mechanism)
         largest[unit] = max(largest.get(unit, 0.0), float(np.abs(solution.outputs[output]).max()))
     numbered = constants(f"{prefix(name)}_link", graph.links)
-    links = [LinkContract(link, constant, stations_of(given, link)) for link, constant in numbered.items()]
+    links = [LinkContract(link, constant, stations_of(given, link), spreads_of(given, link)) for link, constant in numbered.items()]
     return Contract(
         prefix(name),
         name,
@@ -237,6 +239,8 @@ def _output(graph: SceneGraph, output: Output, member: str, solution: Solution, 
 
 def _where(output: Output) -> str:
     kinds = {"motion": "joint", "pose": "body", "effort": "joint", "reaction": "joint", "law": "link", "station": "link"}
+    if output.group == "spread":
+        return f"link {output.part}, load {output.station}{'' if output.power is None else f', power {output.power}'}"
     found = f"{kinds.get(output.group, output.group)} {output.part}"
     return f"{found}, station {output.station}" if output.station else found
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from ..tables import PLANE
 from .contract import Contract
-from .sections import LAW, LAW_IN_SPACE, about
+from .sections import about, law_in_words
 from .source import Source
 from .stack import deepest
 from .statuses import STATUSES
@@ -25,7 +24,7 @@ def header(source: Source) -> str:
         begin=_begin(source),
         story=filled(source.story),
         conventions=filled(f"Conventions: {c.table.conventions}. {_ZERO} Gravity is ({_gravity(source)}) m/s^2."),
-        law=(LAW if c.table is PLANE else LAW_IN_SPACE) if c.links else "",
+        law=law_in_words(c),
         mapping=filled("Called otherwise here: " + ", ".join(f"{k} is {v}" for k, v in c.mapped.items()) + ".", "\n\n")
         if c.mapped
         else "",

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from ..declare.density import Density
 from ..quantities import Output
 from ..tables import ON_INBOARD, PLANE, Table
-from .contract import Contract
+from .contract import Contract, LinkContract
 from .program import Program
 from .text import template
 
@@ -21,6 +21,17 @@ LAW_IN_SPACE = """ Those of a section law are for _section, which is all you nee
    bending_y = my0 - fz0 (l - xi) - fz1 (mu1 - xi mu0) - fz2 (mu2 - xi mu1)
    at xi from the base, where mu0 is the mass from there to the tip, mu1 and mu2 its first and second moment about the base;
    and then what acts on the link at stations, where something joins or loads it between its ends, beyond xi."""
+
+LOADED = """
+   And then loads along the link, of which a section feels what acts beyond it: per length the sums of qn0, qn1, qn2, ... and of
+   qf0, qf1, qf2, ... (in space qfy0, ... and qfz0, ...) times 1, s, s^2, ..., where s = (end - xi/l)/width is between 0 and 1."""
+
+
+def law_in_words(c: Contract) -> str:
+    """What the members of a section law mean; nothing where there is none."""
+    if not c.links:
+        return ""
+    return (LAW if c.table is PLANE else LAW_IN_SPACE) + (LOADED if any(link.spreads for link in c.links) else "")
 
 
 def functions(c: Contract, program: Program, number: Callable[[float], str], root: str) -> str:
@@ -44,6 +55,7 @@ def functions(c: Contract, program: Program, number: Callable[[float], str], roo
         rows += [f"    law[{i}] = outputs->{names[Output('law', link.name, term)]};" for i, term in enumerate(c.table.law)]
         acting = [Output("station", link.name, term, station) for station in link.stations for term in c.table.place_first]
         rows += [f"    acting[{i}] = outputs->{names[output]};" for i, output in enumerate(acting)]
+        rows += _spread_on(c, link, names)
         laws.append("\n".join([*rows, "    break;"]))
         place += 1 + sum(lengths)
     words = {"p": c.prefix, "P": c.prefix.upper()}
@@ -59,10 +71,43 @@ def functions(c: Contract, program: Program, number: Callable[[float], str], roo
         **words,
         **({} if c.table is PLANE else {"root": root}),
         loads=len(c.table.place_first) * max(1, *(len(link.stations) for link in c.links)),
+        **_spreads(c, words),
         laws="\n".join(laws),
     )
     many = template("many_sections.c", **words, indent=" " * (len(c.prefix) * 2 + 16))
     return f"{tails}\n{one}\n{many}"
+
+
+def _spreads(c: Contract, words: dict[str, str]) -> dict[str, str]:
+    """What is declared for loads along links, and what is added for them; nothing where there are none."""
+    many = max(len(link.spreads) for link in c.links)
+    if not many:
+        return {"declared": "", "spread": ""}
+    room = max(sum(2 + len(c.table.spread) * powers for powers in link.spreads.values()) for link in c.links)
+    declared = f"""
+  casadi_real spread[{room}], reach, x, lever, power, share, turning;
+  const casadi_real* along;
+  int powers[{many}], j, spreads = 0;"""
+    added = []
+    for force, terms in c.table.sections.items():
+        if terms.spread:
+            sign, what = "-" if terms.arm < 0 else "+", "turning" if terms.arm else "share"
+            added.append(f"      {force} = {force} {sign} along[{c.table.spread.index(terms.spread)}]*{what};")
+    return {
+        "declared": declared,
+        "spread": template("spreads.c", **words, added="\n".join(added), directions=len(c.table.spread)),
+    }
+
+
+def _spread_on(c: Contract, link: LinkContract, names: Mapping[Output, str]) -> list[str]:
+    """What is taken of the outputs for the loads along a link."""
+    rows = [f"    spreads = {len(link.spreads)};"] if link.spreads else []
+    outputs: list[Output] = []
+    for k, (load, powers) in enumerate(link.spreads.items()):
+        rows.append(f"    powers[{k}] = {powers};")
+        outputs += [Output("spread", link.name, member, load) for member in ("width", "end")]
+        outputs += [Output("spread", link.name, member, load, power) for power in range(powers) for member in c.table.spread]
+    return rows + [f"    spread[{i}] = outputs->{names[output]};" for i, output in enumerate(outputs)]
 
 
 def in_words(table: Table) -> str:

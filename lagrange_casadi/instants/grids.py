@@ -30,6 +30,9 @@ WORTH_COMPILING = 1 << 14
 _STREAMING = 1 << 24
 """Bytes from which on a grid goes past the caches."""
 
+_MOST = 64
+"""Columns that compiled code takes."""
+
 _BLOCK = 1 << 14
 _LINE = 64
 _SHARE = 1 << 21
@@ -58,14 +61,14 @@ def fill(
 ) -> None:
     """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what acts at stations.
 
-    ``columns`` and the rows of ``basis`` are one, three or four; ``u`` are the ratios. With two ``planes`` they are as many for
-    each, one plane's after the other's, as loads are, and ``out`` is the size of both sums. Raises :class:`DeclarationError` for an
-    ``out`` of another shape.
+    ``columns`` and the rows of ``basis`` are one, three, four or more; ``u`` are the ratios. With two ``planes`` they are as many
+    for each, one plane's after the other's, as loads are, and ``out`` is the size of both sums. Raises :class:`DeclarationError`
+    for an ``out`` of another shape.
     """
     if out.shape != (columns[0].size, u.size):
         raise DeclarationError(f"out: expected an array of shape {(columns[0].size, u.size)}, got {out.shape}")
     plain = out.flags.c_contiguous and out.dtype == np.float64
-    library = _compiled() if plain and out.size >= WORTH_COMPILING else None
+    library = _compiled() if plain and out.size >= WORTH_COMPILING and len(columns) <= _MOST else None
     if library is None:
         _fill_in_blocks(columns, basis, loads, u, out, planes)
         return
@@ -95,7 +98,7 @@ def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
     n, t = columns[0].shape
     out = np.empty((n, u.size))
     finite = np.all([np.isfinite(row).all(axis=1) for row in (*columns, *(row for load in loads for row in load))], axis=0)
-    library = _compiled() if t * out.size >= WORTH_COMPILING else None
+    library = _compiled() if t * out.size >= WORTH_COMPILING and len(columns) <= _MOST else None
     if library is None:
         for i in range(n):
             grid = np.empty((t, u.size))
@@ -180,7 +183,7 @@ def _sum_up(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
 def _compiled() -> Any | None:
     """The C functions, or None where there is no compiler that takes them."""
     functions = resources.files("lagrange_casadi.codegen").joinpath("grids.c").read_text()
-    source = GRID.text() + LARGEST.text() + functions
+    source = f"#define MOST {_MOST}\n" + GRID.text() + LARGEST.text() + functions
     try:
         compiler = find_compiler()
         if compiler is None:

@@ -1,8 +1,9 @@
 """The section law of a link as numbers: its forces at any ratio xi/l, and where along the link they peak.
 
 With u = xi/l the forces are those of the material beyond the section, whose moments :mod:`.density` gives, and of what acts on the
-link beyond it: at the tip (n0, f0, m0), and at stations in between, each seen by the sections on its base side. In space a link has
-two planes of bending, each like that of a planar link, and torsion, which nothing but the ends and stations changes.
+link beyond it: at the tip (n0, f0, m0), at stations in between, each seen by the sections on its base side, and along the link
+(:mod:`.spread_loads`). In space a link has two planes of bending, each like that of a planar link, and torsion, which nothing but
+the ends and stations changes.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from ..system.room import cores, require
 from ..tables import PLANE, SPACE, Table
 from . import grids
 from .sizes import growth_of_size, size_of, slope_of_size
+from .spread_loads import SpreadLoad
 from .station_loads import AnyStationLoad, StationLoad
 from .turning import Turns, turns_between, zeros_of_shear, zeros_of_uniform_shear
 
@@ -43,7 +45,7 @@ class Basis:
 
 @dataclass(frozen=True, eq=False)
 class SectionLaw:
-    """The law of one link: ``coefficients`` by name, each (t,); length [m], density, and loads at stations.
+    """The law of one link: ``coefficients`` by name, each (t,); length [m], density, loads at stations, and ``spreads`` along it.
 
     The coefficients are the seven of a planar mechanism or the twelve of a spatial one; :attr:`table` says which.
     """
@@ -52,6 +54,7 @@ class SectionLaw:
     density: NumericDensity
     coefficients: Mapping[str, Array]
     loads: tuple[AnyStationLoad, ...] = ()
+    spreads: tuple[SpreadLoad, ...] = ()
 
     @cached_property
     def table(self) -> Table:
@@ -67,8 +70,11 @@ class SectionLaw:
         xi = np.asarray(xi, dtype=float)
         t0, t1, t2 = self.density.tails(xi)
         l, one = self.length, np.ones_like(t0)
-        bending = [one, l * (1.0 - xi), l * t1, l * l * (xi * t1 + t2)]
-        return Basis(xi, np.stack([one, t0, l * (xi * t0 + t1)]), np.stack(bending))
+        force, bending = [one, t0, l * (xi * t0 + t1)], [one, l * (1.0 - xi), l * t1, l * l * (xi * t1 + t2)]
+        for spread in self.spreads:
+            for rows, more in zip((force, bending), spread.rows(xi, l), strict=True):
+                rows += more
+        return Basis(xi, np.stack(force), np.stack(bending))
 
     def on_grid(self, force: str, xi: Array | Basis, out: Array | None = None, threads: int | None = None) -> Array:
         """A force at every instant and every ratio ``xi``, of shape (t, xi), in ``out`` where given; at a station, on its tip side.
@@ -96,7 +102,9 @@ class SectionLaw:
     def during(self, instants: slice) -> SectionLaw:
         """The law at some of the instants."""
         coefficients = {name: values[instants] for name, values in self.coefficients.items()}
-        return replace(self, coefficients=coefficients, loads=tuple(load.during(instants) for load in self.loads))
+        loads = tuple(load.during(instants) for load in self.loads)
+        spreads = tuple(spread.during(instants) for spread in self.spreads)
+        return replace(self, coefficients=coefficients, loads=loads, spreads=spreads)
 
     def at(self, force: str, xi: Any, side: Side = "tip") -> Array:
         """A force at ratios of shape (t, ...), one row an instant; ``side`` tells which value is meant at a station."""
@@ -116,7 +124,7 @@ class SectionLaw:
             type(load)(load.name, *(outputs[Output("station", link, member, load.name)] for member in self.table.place_first))
             for load in self.loads
         )
-        return replace(self, coefficients=coefficients, loads=loads)
+        return replace(self, coefficients=coefficients, loads=loads, spreads=tuple(s.of(link, outputs) for s in self.spreads))
 
     def changed(self, changes: SectionLaw, xi: Array) -> dict[str, tuple[Array, Array]]:
         """By how much every force changes with its coefficients, loads and stations, and the sizes of all its terms added up.
@@ -133,6 +141,9 @@ class SectionLaw:
             columns, rows = self._terms(force, basis)
             gaps = sum(change[..., None] * row for change, row in zip(changes._terms(force, basis)[0], rows, strict=True))
             sizes = sum(np.abs(column[:, None] * row) for column, row in zip(columns, rows, strict=True))
+            terms = self.table.sections[force]
+            for spread, moving in zip(self.spreads, changes.spreads, strict=True):
+                gaps = gaps + (terms.arm or 1) * spread.moved(terms.spread, moving, u, self.length, arm=bool(terms.arm))
             gaps, sizes = (np.repeat(values[..., None], len(_SIDES) if self.loads else 1, axis=-1) for values in (gaps, sizes))
             for load, change, there in zip(self.loads, changes.loads, seen, strict=True):
                 station, constant, slope = (values[:, None] for values in self._acting(force, load))
@@ -159,8 +170,15 @@ class SectionLaw:
             return np.asarray(-terms.arm * self.length * self.at(terms.shear, u, side))
         if len(terms.coefficients) == 1:
             return np.zeros(u.shape)
-        _, first, second = (_column(column, u) for column in self._terms(force, self.basis(u))[0])
-        return np.asarray(-self.density.at(u) * (first + self.length * u * second))
+        nudge = 1e-12 if side == "tip" else -1e-12
+        return self._falling(force, u, u + nudge)
+
+    def _falling(self, force: str, u: Array, middle: Array) -> Array:
+        """The derivative of a force that has no arm, where loads along the link act that act at the ``middle`` of its part."""
+        terms = self.table.sections[force]
+        first, second = (_column(self.coefficients[name], u) for name in terms.coefficients[1:])
+        slope = -self.density.at(u) * (first + self.length * u * second)
+        return np.asarray(slope - sum(self.length * spread.here(terms.spread, u, middle) for spread in self.spreads))
 
     def rate(self, force: str, rates: SectionLaw, xi: Any, side: Side = "tip") -> Array:
         """The time derivative of a force at ratios of shape (t, ...) that stand still, or, at a station, move with it.
@@ -170,7 +188,9 @@ class SectionLaw:
         u = np.asarray(xi, dtype=float)
         if len(parts := self._parts(force)) > 1:
             return slope_of_size([self.at(part, u, side) for part in parts], [self.rate(part, rates, u, side) for part in parts])
-        values, passing = replace(rates, loads=()).at(force, u, side), np.zeros(u.shape)
+        # Loads along the link grow where they are.
+        spreads = tuple(replace(own, terms=change.terms) for own, change in zip(self.spreads, rates.spreads, strict=True))
+        values, passing = replace(rates, loads=(), spreads=spreads).at(force, u, side), np.zeros(u.shape)
         for load, change in zip(self.loads, rates.loads, strict=True):
             station, _, slope = (_column(values, u) for values in self._acting(force, load))
             going, more, steeper = (_column(values, u) for values in self._acting(force, change))
@@ -184,8 +204,11 @@ class SectionLaw:
         """The largest size that a force may have at ratios ``xi`` where coefficients and loads have any sign."""
         if len(parts := self._parts(force)) > 1:
             return math.hypot(*(self.bound(part, xi) for part in parts))
-        columns, rows = self._terms(force, self.basis(xi))
+        bare = replace(self, spreads=())
+        columns, rows = bare._terms(force, bare.basis(xi))
         size = sum(np.abs(column)[:, None] * np.abs(row) for column, row in zip(columns, rows, strict=True))
+        for spread in self.spreads:
+            size = size + spread.bound(self.table.sections[force].spread, self.length, arm=bool(self.table.sections[force].arm))
         for load in self.loads:
             _, constant, slope = self._acting(force, load)
             size = size + (np.abs(constant) + np.abs(slope))[:, None]
@@ -203,8 +226,9 @@ class SectionLaw:
 
     def _blocks(self, force: str) -> list[SectionLaw]:
         """The law over few instants after another, so that what is sought at them stays at hand."""
-        turns = (2 * self._terms_of_density + 4) * len(self.density.cells) if len(self._parts(force)) > 1 else 1
-        height = max(1, _BLOCK // (turns * (len(self.loads) + 1))) if turns > 1 else _BLOCK
+        many = len(self._parts(force)) > 1 or self.spreads
+        turns = (2 * self._highest + 4) * len(self.density.cells) if many else 1
+        height = max(1, _BLOCK // (turns * (len(self._marked) + 1))) if turns > 1 else _BLOCK
         return [self.during(slice(i, i + height)) for i in range(0, self.coefficients["n0"].size, height)]
 
     def _reached(self, force: str) -> tuple[Array, Array]:
@@ -223,20 +247,22 @@ class SectionLaw:
 
         They are those of the base, the tip, every station, once for each of its sides, and between two stations that at which the
         force turns along the link, or else the end that is next to that; of a resultant its two largest summits there. So each is a
-        smooth curve over time, as long as no station passes another one and no summit of a resultant comes or goes.
+        smooth curve over time, as long as no station passes another one and no summit of a resultant comes or goes. Where loads act
+        along the link, stations are also where these begin and end and where the density jumps, and every force is looked at as
+        resultants are.
         """
         return self._marks(force, all_turns=False)
 
     def _marks(self, force: str, *, all_turns: bool) -> tuple[Array, Array]:
         """The same; or of a resultant wherever it turns, its smallest sizes too."""
         still = np.zeros_like(self.coefficients["n0"])
-        stations = [np.clip(load.station, 0.0, 1.0) for load in self.loads]
+        stations = self._marked
         places = np.stack([still, still + 1.0, *(station for station in stations for _ in range(2))], axis=1)
         values = self.at(force, places)
         values[:, 3::2] = self.at(force, places[:, 3::2], side="base")
         inner = np.sort(np.stack([still, *stations, still + 1.0], axis=1), axis=1)
         low, high = inner[:, :-1], inner[:, 1:]
-        seen = [low + high < 2 * station[:, None] for station in stations]
+        seen = [low + high < 2 * np.clip(load.station, 0.0, 1.0)[:, None] for load in self.loads]
 
         def within(name: str, u: Array) -> Array:
             if len(parts := self._parts(name)) > 1:
@@ -246,12 +272,22 @@ class SectionLaw:
             return np.asarray(self._smooth(name, u) + sum(beyond))
 
         parts = self._parts(force)
-        if len(parts) == 1:
+        if len(parts) == 1 and not self.spreads:
             found = self._turning(force, within, low, high)
+        elif force in self.table.sections and len(self.table.sections[force].coefficients) == 1:
+            found = []
         else:
             turns = self._turns_of_size(parts, within, low, high)
-            found = list(np.moveaxis(turns.places, -1, 0)) if all_turns else turns.summits(within(force, turns.places))
+            found = list(np.moveaxis(turns.places, -1, 0)) if all_turns else turns.summits(np.abs(within(force, turns.places)))
         return np.hstack([places, *found]), np.hstack([values, *(within(force, place) for place in found)])
+
+    @property
+    def _marked(self) -> list[Array]:
+        """Ratios of the places at which something begins or ends to act between base and tip, each (t,)."""
+        marks = [*(load.station for load in self.loads), *(mark for spread in self.spreads for mark in spread.marks)]
+        if self.spreads:
+            marks += [np.full_like(self.coefficients["n0"], jump) for jump in self.density.jumps]
+        return [np.clip(mark, 0.0, 1.0) for mark in marks]
 
     def _planes(self, force: str, basis: Basis) -> tuple[list[Array], Array, list[grids.Load], int]:
         """Columns, functions along the link and loads of a force, or of all that it is the size of, one after another."""
@@ -264,6 +300,8 @@ class SectionLaw:
     def _terms(self, force: str, basis: Basis) -> tuple[list[Array], Array]:
         terms = self.table.sections[force]
         columns = [self.coefficients[name] for name in terms.coefficients]
+        if terms.spread:
+            columns += [column for spread in self.spreads for column in spread.terms[terms.spread]]
         if not terms.arm:
             return columns, basis.force[: len(columns)]
         return columns, basis.bending if terms.arm > 0 else np.concatenate([basis.bending[:1], -basis.bending[1:]])
@@ -300,30 +338,39 @@ class SectionLaw:
         return zeros_of_shear(lambda u: within(terms.shear, u), low, middle, high) if terms.arm else [middle]
 
     def _turns_of_size(self, parts: tuple[str, ...], within: Callable[[str, Array], Array], low: Array, high: Array) -> Turns:
-        """Where the square of a resultant turns: of a shear force where V . V' = 0, of a bending moment where M . M' = 0.
+        """Where a force turns, or the square of a resultant: of a shear force where V . V' = 0, of a bending one where M . M' = 0.
 
-        Of a uniform link that is a cubic or a quintic. A density is a factor of V' and left out there.
+        Of a uniform link with no load along it that is a cubic or a quintic. A density is a factor of V' then, and left out.
         """
-        bends = bool(self.table.sections[parts[0]].arm)
+        bends, middle = bool(self.table.sections[parts[0]].arm), (low + high) / 2
 
         def slope(part: str, u: Array) -> Array:
             terms = self.table.sections[part]
             if bends:
                 return -terms.arm * within(terms.shear, u)
+            if self.spreads:
+                return self._falling(part, u, middle)
             first, second = (_column(self.coefficients[name], u) for name in terms.coefficients[1:])
             return np.asarray(-(first + self.length * u * second))
 
         def change(u: Array) -> Array:
             with np.errstate(all="ignore"):
+                if len(parts) == 1:
+                    return slope(parts[0], u)
                 return np.asarray(sum(within(part, u) * slope(part, u) for part in parts))
 
-        # Of a density of n terms shear forces are of degree n + 1, and bending moments of n + 2.
-        degree = 2 * self._terms_of_density + 3 if bends else self._terms_of_density + 2
-        return turns_between(change, low, high, self.density.breaks, degree)
+        return turns_between(change, low, high, self.density.breaks, self._degree(parts, bends=bends), signed=len(parts) == 1)
+
+    def _degree(self, parts: tuple[str, ...], *, bends: bool) -> int:
+        """Of what is zero where forces turn: shear forces are of one degree more than their slope, bending moments of two."""
+        if len(parts) == 1:
+            return self._highest + bends
+        return 2 * self._highest + 3 if bends else 2 * self._highest + 1 if self.spreads else self._highest + 2
 
     @property
-    def _terms_of_density(self) -> int:
-        return max(map(len, self.density.cells))
+    def _highest(self) -> int:
+        """The degree of the slope of a shear force, between two stations and in a cell of the density."""
+        return max(*map(len, self.density.cells), *(spread.powers - 1 for spread in self.spreads), 0)
 
 
 def made_of(outputs: Iterable[Output], link: str, force: str, table: Table = PLANE) -> list[Output]:

@@ -14,39 +14,32 @@ from ..codegen.emit import NOT_CONVERGED
 from ..codegen.stages import Stages
 from ..declare.density import Array, NumericDensity
 from ..equations.scene_graph import SceneGraph
+from ..quantities import Output
 from ..summits.between import Flags
 from ..summits.panels import Samples
 from ..summits.search import Curves, Peaks, peaks
 from ..summits.sharpness import Sharpness, bent
-from ..tables import Table
 from .backends import follow
-from .section_law import SectionLaw
+from .laws import law_of
 from .sizes import size_of
-from .station_loads import station_load
 
 _BLOCK = 4096
 
 
 @dataclass(frozen=True, eq=False)
 class SectionForce:
-    """A section force of a link: the columns of its law and of what acts at each station, and how its mass lies.
-
-    The ``table`` says which columns these are.
-    """
+    """A section force of a link: the columns of the outputs that its law is made of, and how its mass lies."""
 
     force: str
-    table: Table
-    law: tuple[int, ...]
-    stations: tuple[tuple[int, ...], ...]
+    link: str
+    columns: Mapping[Output, int]
     length: float
     density: NumericDensity
 
     def curves(self, columns: Array) -> tuple[Array, Array]:
         """Ratios and values, each (curves, t): see :meth:`.SectionLaw.curves`."""
-        law = dict(zip(self.table.law, columns[list(self.law)], strict=True))
-        members = (dict(zip(self.table.place_first, columns[list(station)], strict=True)) for station in self.stations)
-        loads = tuple(station_load("", acting) for acting in members)
-        places, values = SectionLaw(self.length, self.density, law, loads).curves(self.force)
+        outputs = {output: columns[k] for output, k in self.columns.items()}
+        places, values = law_of(self.link, outputs, self.length, self.density).curves(self.force)
         return places.T, values.T
 
 
@@ -78,7 +71,9 @@ class Signals:
         ``units`` numbers the units of all, and ``scales`` gives for each unit how large others are that have it.
         """
         samples = self.samples(self.t, self.z, np.arange(self.t.size))
-        counts = [len(values) for _, values in self.curves(np.zeros((len(self.graph.columns), 1)), np.zeros(1, int))]
+        first = self.columns(self.t[:1], self.z[:, :1])
+        with np.errstate(all="ignore"):
+            counts = [len(values) for _, values in self.curves(first, np.zeros(1, int))]
         quantities = tuple(q for q, count in enumerate(counts) for _ in range(count))
         curves = Curves(quantities, tuple(units), tuple(scales), self.sharpness.watches, self.sharpness.knots)
         with np.errstate(all="ignore"):
@@ -112,11 +107,15 @@ class Signals:
         return Samples(*(np.concatenate(rows, axis=1) for rows in zip(*parts, strict=True)))
 
     def _samples(self, t: Array, z: Array, near: npt.NDArray[np.intp]) -> Samples:
-        columns = self.stages.instant(*self.stages.drive(t[None], self.p), z, self.p).full()
+        columns = self.columns(t, z)
         watched = self.sharpness.watched(t[None], *self.graph.motion(t[None], self.p), z, self.p).full()
         with np.errstate(all="ignore"):
             places, values = (np.concatenate(rows) for rows in zip(*self.curves(columns, near), strict=True))
         return Samples(values, places, watched)
+
+    def columns(self, t: Array, z: Array) -> Array:
+        """The graph's columns at times, (columns, t), where the iterated coordinates are told."""
+        return np.asarray(self.stages.instant(*self.stages.drive(t[None], self.p), z, self.p).full())
 
     def curves(self, columns: Array, near: npt.NDArray[np.intp]) -> list[tuple[Array, Array]]:
         """Of each quantity its curves, as ratios and values (curves, t), from the graph's columns (columns, t)."""

@@ -20,9 +20,9 @@ from ..errors import DeclarationError, UnknownNameError
 from ..quantities import Output
 from ..tables import Table, table_of
 from .frames import dataset, frame
-from .section_law import SectionLaw, made_of
+from .laws import law_of
+from .section_law import made_of
 from .sizes import size_of
-from .station_loads import station_load
 from .statistics import Statistics
 from .views import JointMotion, Pose, Reaction, Section
 
@@ -77,10 +77,10 @@ def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[
     sections = groups.index("section")
     parts = parts_of(description)
 
-    def rank(output: Output) -> tuple[int, int, str, str, int]:
+    def rank(output: Output) -> tuple[int, int, str, str, int, int]:
         group = sections if output.along else groups.index(output.group)
         part, _, axis = output.part.partition(":")
-        return group, parts.index(part), axis, output.station, rows.index(output.meant(table))
+        return group, parts.index(part), axis, output.station, rows.index(output.meant(table)), output.power or 0
 
     return {output: outputs[output] for output in sorted(outputs, key=rank)}
 
@@ -290,19 +290,12 @@ class Solution:
 
     @cached_property
     def _sections(self) -> dict[str, Section]:
-        laws: dict[str, dict[str, Array]] = {}
-        stations: dict[str, dict[str, dict[str, Array]]] = {}
-        for output, values in self.outputs.items():
-            if output.group == "law":
-                laws.setdefault(output.part, {})[output.member] = values
-            elif output.group == "station":
-                stations.setdefault(output.part, {}).setdefault(output.station, {})[output.member] = values
-        return {link: self._section(link, law, stations.get(link, {})) for link, law in laws.items()}
+        links = dict.fromkeys(output.part for output in self.outputs if output.group == "law")
+        return {link: self._section(link) for link in links}
 
-    def _section(self, link: str, law: Mapping[str, Array], stations: Mapping[str, Mapping[str, Array]]) -> Section:
+    def _section(self, link: str) -> Section:
         body = self.description["bodies"][link]
-        loads = tuple(station_load(name, members) for name, members in stations.items())
-        return Section(SectionLaw(body["length"], density_of(body), law, loads), self.xi)
+        return Section(law_of(link, self.outputs, body["length"], density_of(body)), self.xi)
 
     def _output(self, name: str | Output) -> Output:
         with suppress(KeyError):

@@ -75,8 +75,12 @@ def tabulate(graph: SceneGraph, p: Array, table: int | float, rates: tuple[float
 
 @functools.lru_cache(maxsize=32)
 def still(graph: SceneGraph, p: tuple[float, ...]) -> dict[Output, float]:
-    """The stations that do not move, as ratios xi/l for parameters ``p``: a spline would round them to either side of a section."""
-    rows = {output: k for output, k in graph.outputs.items() if output.group == "station" and output.member == "station"}
+    """The stations that do not move, as ratios xi/l for parameters ``p``: a spline would round them to either side of a section.
+
+    And where loads along links begin and end.
+    """
+    places = {("station", "station"), ("spread", "width"), ("spread", "end")}
+    rows = {output: k for output, k in graph.outputs.items() if (output.group, output.member) in places}
     if not rows:
         return {}
     t, *moving, parameters = graph.instant.sx_in()

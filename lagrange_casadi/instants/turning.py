@@ -78,10 +78,13 @@ class Turns(NamedTuple):
         return [np.minimum(*both), np.maximum(*both)]
 
 
-def turns_between(slope: Callable[[Array], Array], low: Array, high: Array, breaks: Sequence[float], degree: int) -> Turns:
+def turns_between(
+    slope: Callable[[Array], Array], low: Array, high: Array, breaks: Sequence[float], degree: int, *, signed: bool = False
+) -> Turns:
     """Where something turns between ``low`` and ``high``, whose ``slope`` is a polynomial of a ``degree`` between two ``breaks``.
 
-    ``low`` and ``high`` are (t, parts); ``slope`` takes ratios (t, parts, n), and may have any factor that is not negative.
+    ``low`` and ``high`` are (t, parts); ``slope`` takes ratios (t, parts, n), and may have any factor that is not negative. What is
+    ``signed`` may be largest in size where it is smallest too.
     """
     nodes, weights = interpolation(degree)
     found: list[Turns] = []
@@ -89,17 +92,18 @@ def turns_between(slope: Callable[[Array], Array], low: Array, high: Array, brea
         start, stop = np.clip(a, low, high)[..., None], np.clip(b, low, high)[..., None]
         middle, half = (start + stop) / 2, (stop - start) / 2
         values = slope(middle + half * nodes)
-        zeros, falls, off = _zeros(np.moveaxis(values @ weights, -1, 0))
-        found.append(Turns(np.clip(middle + half * zeros, start, stop), falls & (half > 0.0), off))
+        zeros, falls, rises, off = _zeros(np.moveaxis(values @ weights, -1, 0))
+        summit = falls | rises if signed else falls
+        found.append(Turns(np.clip(middle + half * zeros, start, stop), summit & (half > 0.0), off))
     return Turns(*(np.concatenate(rows, axis=-1) for rows in zip(*found, strict=True)))
 
 
-def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], Array]:
+def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], npt.NDArray[np.bool_], Array]:
     """Places from -1 to 1, in order (..., n), among which are all zeros there of polynomials of degree n; as many as that.
 
-    With them come whether it falls through zero there, and how far from zero it is. ``coefficients`` (n + 1, ...) are those of
-    Chebyshev's polynomials. A polynomial is monotonic between two zeros of its derivative, so it has one zero there or none; then
-    that end is taken at which it is nearer to zero.
+    With them come whether it falls through zero there, or rises, and how far from zero it is. ``coefficients`` (n + 1, ...) are
+    those of Chebyshev's polynomials. A polynomial is monotonic between two zeros of its derivative, so it has one zero there or
+    none; then that end is taken at which it is nearer to zero.
     """
     levels = [coefficients]
     while len(levels[-1]) > 1:
@@ -107,14 +111,16 @@ def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], Array]:
     one = np.ones(coefficients.shape[1:])
     places: list[Array] = []
     falls: list[npt.NDArray[np.bool_]] = []
+    rises: list[npt.NDArray[np.bool_]] = []
     for level, slope in reversed(list(itertools.pairwise(levels))):
         ends = [-one, *places, one]
         values = [_value(level, x) for x in ends]
         pairs = list(zip(itertools.pairwise(ends), itertools.pairwise(values), strict=True))
         places = [_zero(level, slope, a, b, at_a, at_b) for (a, b), (at_a, at_b) in pairs]
         falls = [(at_a > 0.0) & (at_b <= 0.0) for _, (at_a, at_b) in pairs]
+        rises = [(at_a <= 0.0) & (at_b > 0.0) for _, (at_a, at_b) in pairs]
     off = [np.abs(_value(coefficients, x)) for x in places]
-    return np.stack(places, axis=-1), np.stack(falls, axis=-1), np.stack(off, axis=-1)
+    return np.stack(places, axis=-1), np.stack(falls, axis=-1), np.stack(rises, axis=-1), np.stack(off, axis=-1)
 
 
 def _zero(level: Array, slope: Array, a: Array, b: Array, at_a: Array, at_b: Array) -> Array:

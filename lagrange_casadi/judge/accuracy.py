@@ -27,7 +27,7 @@ from .disturbed import Instants, effects, openness
 INSTANTS = 48
 _MANY, _FIRST, _WORST = 2000, 10, 30
 _CLOSED = 10.0
-_FORCES = ("effort", "reaction", "multiplier", "section", "law", "station", "output")
+_FORCES = ("effort", "reaction", "multiplier", "section", "law", "station", "spread", "output")
 _UNEXPLAINED = 100.0
 _SUMS = 64.0
 _ALONG = np.linspace(0.0, 1.0, 5)

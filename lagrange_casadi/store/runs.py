@@ -35,11 +35,11 @@ from .scales import LARGE, Scales
 from .untrusted import check_chunks, check_dataset, check_links, parsed, shown, told_as
 
 SCHEMA = "lagrange-casadi"
-SCHEMA_VERSION = 4
-"""Files of version 1 have no seal. Those of version 2 are not over a drive's coordinate, and those of 3 of planar mechanisms alone;
-both are still written."""
+SCHEMA_VERSION = 5
+"""Files of version 1 have no seal. Those of version 2 are not over a drive's coordinate, those of 3 of planar mechanisms alone, and
+those of 4 have no loads along links; all three are still written."""
 
-_WITHOUT_OVER, _PLANAR = 2, 3
+_WITHOUT_OVER, _PLANAR, _AT_POINTS = 2, 3, 4
 
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
@@ -261,7 +261,9 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
 
 def _version(solution: Solution) -> int:
     """The first version of the schema that has all of a solution."""
-    return SCHEMA_VERSION if solution.table is SPACE else _PLANAR if solution.over else _WITHOUT_OVER
+    if any(output.group == "spread" for output in solution.outputs):
+        return SCHEMA_VERSION
+    return _AT_POINTS if solution.table is SPACE else _PLANAR if solution.over else _WITHOUT_OVER
 
 
 def _add(file: h5py.File, scales: Scales, solution: Solution, output: Output, values: Array) -> None:
@@ -332,7 +334,8 @@ def _read(file: h5py.File) -> Solution:
     solution = Solution(case, t, xi, ordered, description, provenance, left_open, certificate, errors, limit, over)
     for link in solution.links_with_sections:
         law = solution.section(link).law
-        if set(law.coefficients) != set(solution.table.law) or len(law.density.breaks) != len(law.density.cells) + 1:
+        whole = set(law.coefficients) == set(solution.table.law) and all(spread.sound for spread in law.spreads)
+        if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is not whole")
     return solution
 

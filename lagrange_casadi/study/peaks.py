@@ -250,11 +250,8 @@ class _ContinuousSolution:
         if output.group != "section":
             return tuple(self.rows[component] for component in self.solution.made_of(output))
         link, law = output.part, self.solution.section(output.part).law
-        stations = (
-            tuple(self.rows[Output("station", link, member, load.name)] for member in law.table.place_first) for load in law.loads
-        )
-        coefficients = tuple(self.rows[Output("law", link, member)] for member in law.table.law)
-        return SectionForce(output.member, law.table, coefficients, tuple(stations), law.length, law.density)
+        own = {column: k for column, k in self.rows.items() if column.along and column.part == link}
+        return SectionForce(output.member, link, own, law.length, law.density)
 
     def scales(self, names: Sequence[Output]) -> tuple[list[int], list[float]]:
         """The units of quantities, by number, and the largest size of anything that has each."""
@@ -330,7 +327,7 @@ class _ContinuousSolution:
 def _columns(quantity: Quantity) -> set[int]:
     """The columns that a quantity is made of."""
     if isinstance(quantity, SectionForce):
-        return {*quantity.law, *(column for station in quantity.stations for column in station)}
+        return set(quantity.columns.values())
     return set(quantity)
 
 

@@ -20,9 +20,9 @@ from ..declare.density import Array, Density
 from ..declare.mechanism import Mechanism
 from ..designs.engine import Outcome
 from ..errors import DeclarationError, UnknownNameError
+from ..instants.laws import law_of
 from ..instants.refusal import Status
 from ..instants.section_law import SectionLaw
-from ..instants.station_loads import station_load
 from ..quantities import Output
 from ..tables import Table, table_of
 from .chunks import encoded
@@ -282,6 +282,7 @@ class Harvest:
 class _Matter:
     """A link's length and density over the parameters, without deriving either anew for each design."""
 
+    link: str
     density: Density
     numbers: Any
 
@@ -290,7 +291,7 @@ class _Matter:
         link = mechanism.links[name]
         assert isinstance(link.mass, Density)
         cells = [c for cell in link.mass.cells for c in cell]
-        return cls(link.mass, ca.Function("matter", [mechanism.symbols], [ca.vertcat(ca.SX(0, 1), link.length, *cells)]))
+        return cls(name, link.mass, ca.Function("matter", [mechanism.symbols], [ca.vertcat(ca.SX(0, 1), link.length, *cells)]))
 
     def law(self, members: Mapping[Output, Array], p: Array) -> SectionLaw:
         """The law from its coefficients and loads, (t,), of a design (parameters,).
@@ -300,9 +301,4 @@ class _Matter:
         length, *cells = self.numbers(p.T).full()[..., None] if p.ndim > 1 else self.numbers(p).full().ravel().tolist()
         rest = iter(cells)
         density = self.density.at(lambda _: next(rest), length)
-        stations: dict[str, dict[str, Array]] = {}
-        for output, values in members.items():
-            if output.station:
-                stations.setdefault(output.station, {})[output.member] = values
-        coefficients = {output.member: values for output, values in members.items() if not output.station}
-        return SectionLaw(length, density, coefficients, tuple(station_load(part, m) for part, m in stations.items()))
+        return law_of(self.link, members, length, density)

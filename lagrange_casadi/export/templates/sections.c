@@ -3,7 +3,7 @@ static void no_forces(${p}_forces* forces) {
 }
 
 ${p}_status ${p}_section(const ${p}_model* model, const ${p}_outputs* outputs, ${p}_link link, ${p}_real xi, ${p}_forces* forces) {
-  casadi_real law[7], acting[$loads], T[3], l, first, axial, shear, bending;
+  casadi_real law[7], acting[$loads], T[3], l, first, axial, shear, bending;$declared
   const casadi_real* matter_of;
   int k, stations = 0;
   no_forces(forces);
@@ -28,7 +28,7 @@ $laws
       bending = bending + (acting[k + 3] + acting[k + 2]*l*(acting[k] - xi));
     }
   }
-  if (!is_finite(axial + shear + bending)) return ${P}_NOT_FINITE;
+$spread  if (!is_finite(axial + shear + bending)) return ${P}_NOT_FINITE;
   forces->axial = axial;
   forces->shear = shear;
   forces->bending = bending;

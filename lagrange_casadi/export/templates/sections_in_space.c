@@ -4,7 +4,7 @@ static void no_forces(${p}_forces* forces) {
 }
 
 ${p}_status ${p}_section(const ${p}_model* model, const ${p}_outputs* outputs, ${p}_link link, ${p}_real xi, ${p}_forces* forces) {
-  casadi_real law[12], acting[$loads], T[3], l, first, arm, axial, shear_y, shear_z, torsion, bending_y, bending_z, shear, bending;
+  casadi_real law[12], acting[$loads], T[3], l, first, arm, axial, shear_y, shear_z, torsion, bending_y, bending_z, shear, bending;$declared
   const casadi_real* matter_of;
   int k, stations = 0;
   no_forces(forces);
@@ -36,7 +36,7 @@ $laws
       bending_z = bending_z + (acting[k + 6] + acting[k + 2]*l*arm);
     }
   }
-  shear = $root(shear_y*shear_y + shear_z*shear_z);
+$spread  shear = $root(shear_y*shear_y + shear_z*shear_z);
   bending = $root(bending_y*bending_y + bending_z*bending_z);
   if (!is_finite(axial + torsion + shear + bending)) return ${P}_NOT_FINITE;
   forces->axial = axial;

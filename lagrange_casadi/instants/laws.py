@@ -1,0 +1,37 @@
+"""The section law of a link from the outputs that it is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ..declare.density import Array, NumericDensity
+from ..quantities import Output
+from .section_law import SectionLaw
+from .spread_loads import spread_load
+from .station_loads import station_load
+
+
+def law_of(link: str, outputs: Mapping[Output, Array], length: Any, density: NumericDensity) -> SectionLaw:
+    """The law of a link of a length [m] and a density, by those of ``outputs`` that go into it.
+
+    Raises ``ValueError`` where a load along the link is not whole.
+    """
+    law: dict[str, Array] = {}
+    stations: dict[str, dict[str, Array]] = {}
+    ends: dict[str, dict[str, Array]] = {}
+    terms: dict[str, dict[str, dict[int, Array]]] = {}
+    for output, values in outputs.items():
+        if not output.along or output.part != link:
+            continue
+        if output.group == "law":
+            law[output.member] = values
+        elif output.group == "station":
+            stations.setdefault(output.station, {})[output.member] = values
+        elif output.power is None:
+            ends.setdefault(output.station, {})[output.member] = values
+        else:
+            terms.setdefault(output.station, {}).setdefault(output.member, {})[output.power] = values
+    loads = tuple(station_load(name, members) for name, members in stations.items())
+    spreads = tuple(spread_load(name, ends.get(name, {}), found) for name, found in terms.items())
+    return SectionLaw(length, density, law, loads, spreads)

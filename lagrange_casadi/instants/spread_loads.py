@@ -1,0 +1,118 @@
+"""Loads along a link as numbers, and the functions along it that go with their coefficients; see :mod:`..equations.spreads`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..declare.density import Array
+from ..quantities import Output
+
+
+@dataclass(frozen=True, eq=False)
+class SpreadLoad:
+    """A load along a link up to ``end``, a ratio xi/l, on ``width`` of the link, both (t,) and the same at all instants.
+
+    ``terms`` are by direction, ``qn`` and ``qf``, in space ``qn``, ``qfy``, ``qfz``: the coefficients [N/m] of rising powers of
+    (end - xi/l)/width, each (t,).
+    """
+
+    name: str
+    width: Array
+    end: Array
+    terms: Mapping[str, tuple[Array, ...]]
+
+    @property
+    def powers(self) -> int:
+        """How many powers it has."""
+        return max(map(len, self.terms.values()))
+
+    @property
+    def sound(self) -> bool:
+        """Whether it acts on some part of the link."""
+        return bool(np.isfinite([self.width, self.end]).all() and (self.width > 0.0).all())
+
+    @property
+    def marks(self) -> list[Array]:
+        """Where it begins and ends, those places left out that are the ends of the link."""
+        return [place for place in (self.end - self.width, self.end) if ((place > 0.0) & (place < 1.0)).any()]
+
+    def during(self, instants: slice) -> SpreadLoad:
+        """The same at some of the instants."""
+        terms = {member: tuple(values[instants] for values in rows) for member, rows in self.terms.items()}
+        return replace(self, width=self.width[instants], end=self.end[instants], terms=terms)
+
+    def of(self, link: str, outputs: Mapping[Output, Array]) -> SpreadLoad:
+        """The same load of a link with other numbers in it, (..., t)."""
+
+        def value(member: str, power: int | None = None) -> Array:
+            return outputs[Output("spread", link, member, self.name, power)]
+
+        terms = {member: tuple(value(member, j) for j in range(self.powers)) for member in self.terms}
+        return SpreadLoad(self.name, value("width"), value("end"), terms)
+
+    def bound(self, direction: str, length: float, *, arm: bool) -> Array | float:
+        """The largest size of what any section feels of it where its coefficients have any sign, wherever it begins and ends."""
+        lever = length if arm else 1.0
+        return sum((np.abs(c)[:, None] * (length * lever / (j + 1)) for j, c in enumerate(self.terms.get(direction, ()))), 0.0)
+
+    def rows(self, u: Array, length: Array | float) -> tuple[list[Array], list[Array]]:
+        """What sections at ratios ``u`` feel of a unit of each coefficient: force, and moment.
+
+        Width and end are those of the first instant; of n laws, which have (n, t), ratios give (n, u).
+        """
+        x, reach, lever = self._seen(u, length)
+        forces, moments, power = [], [], x
+        for j in range(self.powers):
+            forces.append(reach * power / (j + 1))
+            moments.append(forces[-1] * (reach * x / (j + 2) + lever))
+            power = power * x
+        return forces, moments
+
+    def _seen(self, u: Array, length: Array | float) -> tuple[Array, Array, Array]:
+        """Of sections at ratios: x, L and a of :mod:`..equations.spreads`."""
+        width, end = self.width[..., :1], self.end[..., :1]
+        return np.clip((end - u) / width, 0.0, 1.0), length * width, length * np.maximum(end - width - u, 0.0)
+
+    def moved(self, direction: str, change: SpreadLoad, u: Array, length: float, *, arm: bool) -> Array:
+        """By how much a force or moment at ratios ``u`` (t, n) changes with width and end, whose changes are (..., t)."""
+        x, reach, lever = self._seen(u, length)
+        within = (x > 0.0) & (x < 1.0)
+        by_end, by_width = np.zeros_like(x), np.zeros_like(x)
+        for j, values in enumerate(self.terms.get(direction, ())):
+            c, share = values[:, None], x ** (j + 1) / (j + 1)
+            if arm:
+                by_end += c * length * reach * share
+                by_width += c * length * share * np.where(within, reach * x * (2 / (j + 2) - 1), lever + reach * (2 / (j + 2) - 1))
+            else:
+                by_end += c * length * np.where(within, x**j, 0.0)
+                by_width += c * length * share * np.where(within, -j, 1.0)
+        return by_end * change.end[..., None] + by_width * change.width[..., None]
+
+    def here(self, direction: str, u: Array, middle: Array) -> Array:
+        """The load per length [N/m] at ratios (t, parts, ...), in parts of the link with their ``middle`` (t, parts).
+
+        Where it acts at the middle, the polynomial at the part's ends too; else 0.
+        """
+        ahead = (1,) * (u.ndim - 1)
+        width, end = (values.reshape(-1, *ahead) for values in (self.width, self.end))
+        x = (end - u) / width
+        value = np.zeros_like(u)
+        for coefficient in reversed(self.terms[direction]):
+            value = value * x + coefficient.reshape(-1, *ahead)
+        middle = middle.reshape(middle.shape + (1,) * (u.ndim - middle.ndim))
+        return np.where((end - width < middle) & (middle < end), value, 0.0)
+
+
+def spread_load(name: str, members: Mapping[str, Array], terms: Mapping[str, Mapping[int, Array]]) -> SpreadLoad:
+    """A load along a link, by the names of its members, and of its terms by direction and power.
+
+    Raises ``ValueError`` where one of these is missing.
+    """
+    powers = {direction: tuple(found[j] for j in range(len(found)) if j in found) for direction, found in terms.items()}
+    many = {len(rows) for rows in (*powers.values(), *terms.values())}
+    if set(members) != {"width", "end"} or len(many) != 1:
+        raise ValueError(f"the load along the link '{name}' is not whole")
+    return SpreadLoad(name, members["width"], members["end"], powers)
