@@ -21,11 +21,12 @@ _CLOSE = 512 * float(np.finfo(float).eps)
 """Where something turns: what a place is off changes a summit by the square of that."""
 
 
-def zeros_of_shear(shear: Callable[[Array], Array], low: Array, middle: Array, high: Array) -> list[Array]:
+def zeros_of_shear(shear: Callable[[Array], Array], low: Array, middle: Array, high: Array, rises: Array) -> list[Array]:
     """Where a shear force rises through zero, then where it falls.
 
-    It is monotonic on either side of its turning point, whatever the density: halve that. Where it has no zero there, that end is
-    taken at which it is nearer to zero.
+    It is monotonic on either side of its turning point ``middle``, whatever the density: halve that. Where it has no zero there,
+    that end is taken at which it is nearer to zero. ``rises`` tells whether it rises before its turning point: where that is at an
+    end, its values there differ by rounding alone, and do not tell.
     """
     places = [low, middle, high]
     ends = [shear(u) for u in places]
@@ -39,7 +40,6 @@ def zeros_of_shear(shear: Callable[[Array], Array], low: Array, middle: Array, h
             lower = (shear(half) <= 0.0) == negative
             a, b = np.where(lower, half, a), np.where(lower, b, half)
         zeros.append(np.where(none, nearer, (a + b) / 2))
-    rises = (ends[1] > ends[0]) | ((ends[1] == ends[0]) & (ends[2] < ends[1]))
     return [np.where(rises, zeros[0], zeros[1]), np.where(rises, zeros[1], zeros[0])]
 
 
@@ -58,6 +58,7 @@ class Turns(NamedTuple):
     """Where something may turn, (t, parts, n): its ``places``, whether it has a ``summit`` there, and its slope's size, ``off``.
 
     All zeros of the slope are among the places; where there are fewer of them, others are those at which it is nearest to zero.
+    Where it is lowest ``off`` is infinite.
     """
 
     places: Array
@@ -67,7 +68,8 @@ class Turns(NamedTuple):
     def summits(self, sizes: Array) -> list[Array]:
         """Two summits for each part, (t, parts), in order along the link: the largest, by the ``sizes`` at all places.
 
-        Where there is one, it is both; where there is none, both are where the slope is smallest, as where a summit has just gone.
+        Where there is one, it is both; where there is none, both are where the slope is smallest, as where a summit has just gone,
+        but for where it is lowest.
         """
         heights = np.where(self.summit, sizes, -np.inf)
         none = ~self.summit.any(axis=-1, keepdims=True)
@@ -97,9 +99,9 @@ def turns_between(slope: Callable[[Array], Array], low: Array, high: Array, brea
 def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], Array]:
     """Places from -1 to 1, in order (..., n), among which are all zeros there of polynomials of degree n; as many as that.
 
-    With them come whether it falls through zero there, and how far from zero it is. ``coefficients`` (n + 1, ...) are those of
-    Chebyshev's polynomials. A polynomial is monotonic between two zeros of its derivative, so it has one zero there or none; then
-    that end is taken at which it is nearer to zero.
+    With them come whether it falls through zero there, and how far from zero it is, infinite where it rises. ``coefficients``
+    (n + 1, ...) are those of Chebyshev's polynomials. A polynomial is monotonic between two zeros of its derivative, so it has one
+    zero there or none; then that end is taken at which it is nearer to zero.
     """
     levels = [coefficients]
     while len(levels[-1]) > 1:
@@ -107,13 +109,15 @@ def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], Array]:
     one = np.ones(coefficients.shape[1:])
     places: list[Array] = []
     falls: list[npt.NDArray[np.bool_]] = []
+    rises: list[npt.NDArray[np.bool_]] = []
     for level, slope in reversed(list(itertools.pairwise(levels))):
         ends = [-one, *places, one]
         values = [_value(level, x) for x in ends]
         pairs = list(zip(itertools.pairwise(ends), itertools.pairwise(values), strict=True))
         places = [_zero(level, slope, a, b, at_a, at_b) for (a, b), (at_a, at_b) in pairs]
         falls = [(at_a > 0.0) & (at_b <= 0.0) for _, (at_a, at_b) in pairs]
-    off = [np.abs(_value(coefficients, x)) for x in places]
+        rises = [(at_a <= 0.0) & (at_b > 0.0) for _, (at_a, at_b) in pairs]
+    off = [np.where(lowest, np.inf, np.abs(_value(coefficients, x))) for x, lowest in zip(places, rises, strict=True)]
     return np.stack(places, axis=-1), np.stack(falls, axis=-1), np.stack(off, axis=-1)
 
 
