@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from mechanisms import parallelogram
 
-from lagrange_casadi import Mechanism, Scene, evaluate
+from lagrange_casadi import Mechanism, Scene, evaluate, load_case
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError, MobilityError
+from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 
 
@@ -28,6 +29,26 @@ def test_single_precision_closes_what_is_too_many():
     """Near no dead centre its last corrections are rounding, and not the slow convergence that they look like."""
     exact, single = (evaluate(parallelogram(), precision=precision) for precision in ("double", "single"))
     np.testing.assert_allclose(single.effort("O"), exact.effort("O"), atol=1e-5 * np.max(np.abs(exact.effort("O"))))
+
+
+@pytest.mark.parametrize("scene", [parallelogram(), load_case("bricard").scene], ids=["plane", "space"])
+def test_steps_that_are_counted_leave_equations_that_are_too_many_as_little_closed_as_others(scene):
+    """Two steps give what closed loops do; one is worth less, and says so. What does not fit by more is refused all the same."""
+    t = (0.0, 1.0, 401)
+    exact = evaluate(scene, wanted=["effort"], t=t)
+    (effort,) = exact.names()
+    size = np.abs(exact.array(effort)).max()
+    for steps, near in ((1, 1e-3), (2, 1e-7)):
+        found = evaluate(scene, wanted=["effort"], t=t, newton=steps)
+        assert np.abs(found.array(effort) - exact.array(effort)).max() <= min(near * size, 2 * found.errors[effort])
+        designs = DesignEngine.of(scene, ["effort"], t, rung=Rung("c", newton=steps))
+        assert designs.evaluate(np.array([list(scene.mechanism.values().values())])).status.tolist() == [Status.OK]
+
+
+@pytest.mark.parametrize("steps", [1, 5])
+def test_counted_steps_do_not_hide_a_misfit(steps):
+    with pytest.raises((MobilityError, AssemblyError), match=r"0 degree\(s\) of freedom|do not fit"):
+        evaluate(parallelogram(third=1.02), newton=steps)
 
 
 def test_a_unique_reaction_stays_where_others_are_not():

@@ -255,6 +255,23 @@ def test_where_a_resultant_turns_goes_on_from_instant_to_instant(force, density)
     assert np.ptp(places, axis=0).max() > 0.05
 
 
+@pytest.mark.parametrize("second", [3.0, -3.0, 1e-30, -1e-30])
+@pytest.mark.parametrize("stations", [0, 1])
+@pytest.mark.parametrize("density", ["even", "in cells"])
+def test_where_bending_turns_does_not_change_places_by_rounding(second, stations, density):
+    """A link turns about a base at rest, without weight: the shear turns at the base, but for rounding."""
+    noise = 1e-15 * np.random.default_rng(1).normal(size=400)
+    coefficients = {name: np.zeros(noise.size) for name in SPACE.law} | {"fy0": np.full(noise.size, -0.2 * second)}
+    coefficients |= {"fy1": noise * second, "fy2": np.full(noise.size, second)}
+    (link,) = drawn(5, density, 1, stations=0)
+    nothing = {name: np.zeros(noise.size) for name in SPACE.place_first}
+    loads = tuple(SpatialStationLoad(f"load{k}", **nothing | {"station": np.full(noise.size, 0.7)}) for k in range(stations))
+    law = SectionLaw(LENGTH, link.density, coefficients, loads)
+    places, values = law.curves("bending_z")
+    assert np.ptp(places, axis=0).max() < 1e-7
+    assert np.ptp(values, axis=0).max() < 1e-13 * np.abs(values).max()
+
+
 @pytest.mark.parametrize("side", ["tip", "base"])
 @pytest.mark.parametrize("force", SPACE.forces)
 def test_rates_are_those_of_differences(force, side):

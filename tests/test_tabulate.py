@@ -245,6 +245,10 @@ REFUSED = {
         truss_platform,
         r"the loops? closed by .*, where O = -?[\d.]+ rad .*; expected a drive that can turn all the way round",
     ),
+    "bricard": (
+        lambda: case("bricard"),
+        r"the loops closed by joint 'J3' did not converge, where J0 = 2\.1\d+ rad .*; expected a drive that can turn all the way",
+    ),
     "dead centre": (
         flat_parallelogram,
         r"the loop closed by joint 'B' is at a dead centre, or about a degree from one, near O = 3\.\d+ rad",

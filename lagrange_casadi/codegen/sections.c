@@ -191,9 +191,8 @@ static inline casadi_real designs_zero(const designs_link* link, int cell, casad
   return u;
 }
 
-/* The zero of the shear where it is monotonic, or else the end at which it is nearer to zero. Of the shear become at both ends. */
-static inline casadi_real designs_zero_between(const designs_link* link, casadi_real acting, casadi_real low, casadi_real high,
-                                               casadi_real* first, casadi_real* last) {
+/* The zero of the shear where it is monotonic, or else the end at which it is nearer to zero. */
+static inline casadi_real designs_zero_between(const designs_link* link, casadi_real acting, casadi_real low, casadi_real high) {
   casadi_real zero, from, to, begin, end, ends[2];
   int k, j;
   for (j = 0; j < 2; ++j) {
@@ -202,8 +201,6 @@ static inline casadi_real designs_zero_between(const designs_link* link, casadi_
     for (k = 1; k < link->cells; ++k) ends[j] = lanes_less(u, link->breaks[k], ends[j], designs_shear(link, k, u));
     ends[j] = ends[j] + acting;
   }
-  *first = ends[0];
-  *last = ends[1];
   zero = lanes_less(designs_size(ends[1]), designs_size(ends[0]), high, low);
   for (k = 0; k < link->cells; ++k) {
     from = link->breaks[k];
@@ -237,7 +234,7 @@ static inline void designs_sort(casadi_real* marks, int count) {
 static inline void designs_along(const designs_link* link, casadi_real* marks, casadi_real* value, casadi_real* place) {
   const casadi_real *law = link->law, l = link->matter[0];
   const int count = link->stations, parts = count + 1, many = 3 + 3*count;
-  casadi_real *bending = value + 2*many, sides[2][3], force[3], low, high, middle, acting, zero[2], ends[4], turn[2], u, rises;
+  casadi_real *bending = value + 2*many, sides[2][3], force[3], low, high, middle, acting, zero[2], turn[2], u, rises;
   int k, j, s;
   for (s = -2; s < count; ++s) {
     u = s == -2 ? 0 : 1;
@@ -248,6 +245,8 @@ static inline void designs_along(const designs_link* link, casadi_real* marks, c
     }
   }
   for (k = 0; k < 2; ++k) turn[k] = designs_on_link(-law[3*k + 1]/(law[3*k + 2]*l));
+  /* Before it turns the shear rises where this is positive: where it turns at an end, its values there differ by rounding alone. */
+  rises = lanes_less(0, 1/law[5], 1, 0);
   designs_sort(marks, count);
   for (s = 0; s < parts; ++s) {
     low = 0;
@@ -262,9 +261,8 @@ static inline void designs_along(const designs_link* link, casadi_real* marks, c
       designs_within(link, u, middle, force);
       value[k*many + 2 + 2*count + s] = force[k];
     }
-    zero[0] = designs_zero_between(link, acting, low, u, ends, ends + 1);
-    zero[1] = designs_zero_between(link, acting, u, high, ends + 2, ends + 3);
-    rises = lanes_less(ends[0], ends[1], 1, lanes_less(ends[1], ends[0], 0, lanes_less(ends[3], ends[1], 1, 0)));
+    zero[0] = designs_zero_between(link, acting, low, u);
+    zero[1] = designs_zero_between(link, acting, u, high);
     for (k = 0; k < 2; ++k) {
       u = place[(2 + k)*parts + s] = lanes_less(0, rises, zero[k], zero[1 - k]);
       designs_within(link, u, middle, force);

@@ -150,6 +150,8 @@ static inline void designs_summits_between(const designs_between* of, const desi
         u = middle + half*next[j + 1];
         u = lanes_less(u, start, start, lanes_less(stop, u, stop, u));
         off = designs_size(designs_polynomial(level[0], n, next[j + 1]));
+        /* A size is lowest where its slope rises; what has a sign may be largest in size there. */
+        if (of->many != 1) off = lanes_less(turns, 0, DESIGNS_LARGEST, off);
         if (cell + j == 0) least = off;
         nearest = lanes_less(off, least, u, lanes_less(least, off, nearest, cell + j == 0 ? u : nearest));
         least = lanes_less(off, least, off, least);

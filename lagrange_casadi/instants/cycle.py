@@ -20,7 +20,7 @@ from ..equations.checks import FRACTIONS, Check, Column
 from ..equations.kinematics import describe_coordinate, passes_dead_centre, where
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
-from ..quantities import ANGLE
+from ..tables import ANGLE, FORCE, LENGTH, MOMENT
 
 TURNS = 4
 """Of the longest period."""
@@ -251,7 +251,7 @@ def cycle_of(graph: SceneGraph, p: Array, rates: tuple[float, float]) -> Cycle:
     drive = Drive.of(graph, p)
     for turns in range(1, TURNS + 1):
         course, values = drive.follow(2 * turns)
-        sizes = _sizes(graph, np.abs(values).max(axis=-1))
+        sizes = _sizes(graph, p, np.abs(values).max(axis=-1))
         if turns == 1:
             _refuse_other_powers(drive, course, sizes, rates)
         half = course.angles.size // 2
@@ -297,14 +297,31 @@ def _refuse_other_powers(drive: Drive, course: Course, sizes: Array, rates: tupl
         )
 
 
-def _sizes(graph: SceneGraph, peaks: Array) -> Array:
+def _sizes(graph: SceneGraph, p: Array, peaks: Array) -> Array:
     """The largest terms of the same unit, (factors, columns), of a misfit one; the rate's square and the acceleration have one."""
     kinds = [_kind(graph, column) for column in graph.columns]
     alike = np.stack((peaks[0], peaks[1], *[np.maximum(peaks[2], peaks[3])] * 2))
     largest = {kind: alike[:, [k == kind for k in kinds]].max(axis=-1) for kind in set(kinds)}
+    _raise_to_other_units(largest, graph.extent(p))
     sizes: Array = np.array([largest[kind] for kind in kinds]).reshape(len(kinds), 4).T
     sizes[0, [k for kind in FRACTIONS for k in graph.checks(kind).values()]] = 1.0
     return sizes
+
+
+def _raise_to_other_units(largest: dict[str | Column, Array], extent: float) -> None:
+    """Where all terms of a unit are zero but for rounding, as the slide of a shaft that has none, they are small beside others.
+
+    A motion is so beside a turn of all, whose points are as far away as the mechanism is large [m]; a force beside moments, and
+    moments beside forces, at that arm.
+    """
+    for unit, least in ((ANGLE, 1.0), (LENGTH, extent), ("1", 1.0)):
+        for power, per in enumerate(("", "/s", "/s^2")):
+            if (found := largest.get(unit + per)) is not None:
+                which = slice(power, power + 1 if power < 2 else None)
+                found[which] = np.maximum(found[which], least)
+    if FORCE in largest and MOMENT in largest and extent > 0.0:
+        forces, moments = largest[FORCE], largest[MOMENT]
+        largest[FORCE], largest[MOMENT] = np.maximum(forces, moments / extent), np.maximum(moments, forces * extent)
 
 
 def _kind(graph: SceneGraph, column: Column) -> str | Column:

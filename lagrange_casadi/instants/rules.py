@@ -72,9 +72,9 @@ def rules(graph: SceneGraph, precision: Precision, newton: int | None) -> tuple[
         elif check.kind == "gap":
             found.append(Rule("GAP", k, part, gap_limit(precision, newton)))
         elif check.kind == "misfit":
-            found.append(Rule("MISFIT", k, part, MISFIT[precision]))
+            found.append(Rule("MISFIT", k, part, misfit_limit(precision, newton)))
         elif check.kind == "row":
-            found.append(Rule("ROW", k, part, MISFIT[precision], graph.checks("rowsize")[part]))
+            found.append(Rule("ROW", k, part, misfit_limit(precision, newton), graph.checks("rowsize")[part]))
         elif check.kind == "turned":
             found.append(Rule("TURNED", k, part, REACH))
     return tuple(found)
@@ -89,6 +89,11 @@ def dead_centre(graph: SceneGraph, precision: Precision, closure: str) -> float:
 def gap_limit(precision: Precision, newton: int | None) -> float:
     """How far what is left of a loop's equations may be from zero, of the mechanism's extent; ``newton`` as in :class:`.Rung`."""
     return MISFIT[precision] if newton is None else NEWTON_LOST
+
+
+def misfit_limit(precision: Precision, newton: int | None) -> float:
+    """How far equations that are too many may miss, of the links' length, and a row, of the size of its terms."""
+    return MISFIT[precision] if newton is None else max(_COUNTED, MISFIT[precision])
 
 
 def open_limit(precision: Precision, newton: int | None) -> float:

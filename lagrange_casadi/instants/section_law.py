@@ -335,7 +335,10 @@ class SectionLaw:
                 zeros = zeros_of_uniform_shear(constant, first, second, self.density.cells[0][0], l)
                 return [np.clip(np.where(np.isnan(zero), 0.0, zero)[:, None], 0.0, 1.0) for zero in zeros]
         middle = np.clip(np.where(np.isnan(turning), 0.0, turning)[:, None], low, high)
-        return zeros_of_shear(lambda u: within(terms.shear, u), low, middle, high) if terms.arm else [middle]
+        if not terms.arm:
+            return [middle]
+        rises = ~np.signbit(second)[:, None]
+        return zeros_of_shear(lambda u: within(terms.shear, u), low, middle, high, rises)
 
     def _turns_of_size(self, parts: tuple[str, ...], within: Callable[[str, Array], Array], low: Array, high: Array) -> Turns:
         """Where a force turns, or the square of a resultant: of a shear force where V . V' = 0, of a bending one where M . M' = 0.

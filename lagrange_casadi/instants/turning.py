@@ -21,11 +21,12 @@ _CLOSE = 512 * float(np.finfo(float).eps)
 """Where something turns: what a place is off changes a summit by the square of that."""
 
 
-def zeros_of_shear(shear: Callable[[Array], Array], low: Array, middle: Array, high: Array) -> list[Array]:
+def zeros_of_shear(shear: Callable[[Array], Array], low: Array, middle: Array, high: Array, rises: Array) -> list[Array]:
     """Where a shear force rises through zero, then where it falls.
 
-    It is monotonic on either side of its turning point, whatever the density: halve that. Where it has no zero there, that end is
-    taken at which it is nearer to zero.
+    It is monotonic on either side of its turning point ``middle``, whatever the density: halve that. Where it has no zero there,
+    that end is taken at which it is nearer to zero. ``rises`` tells whether it rises before its turning point: where that is at an
+    end, its values there differ by rounding alone, and do not tell.
     """
     places = [low, middle, high]
     ends = [shear(u) for u in places]
@@ -39,7 +40,6 @@ def zeros_of_shear(shear: Callable[[Array], Array], low: Array, middle: Array, h
             lower = (shear(half) <= 0.0) == negative
             a, b = np.where(lower, half, a), np.where(lower, b, half)
         zeros.append(np.where(none, nearer, (a + b) / 2))
-    rises = (ends[1] > ends[0]) | ((ends[1] == ends[0]) & (ends[2] < ends[1]))
     return [np.where(rises, zeros[0], zeros[1]), np.where(rises, zeros[1], zeros[0])]
 
 
@@ -58,6 +58,7 @@ class Turns(NamedTuple):
     """Where something may turn, (t, parts, n): its ``places``, whether it has a ``summit`` there, and its slope's size, ``off``.
 
     All zeros of the slope are among the places; where there are fewer of them, others are those at which it is nearest to zero.
+    Where a size is lowest ``off`` is infinite.
     """
 
     places: Array
@@ -67,7 +68,8 @@ class Turns(NamedTuple):
     def summits(self, sizes: Array) -> list[Array]:
         """Two summits for each part, (t, parts), in order along the link: the largest, by the ``sizes`` at all places.
 
-        Where there is one, it is both; where there is none, both are where the slope is smallest, as where a summit has just gone.
+        Where there is one, it is both; where there is none, both are where the slope is smallest, as where a summit has just gone,
+        but for where it is lowest.
         """
         heights = np.where(self.summit, sizes, -np.inf)
         none = ~self.summit.any(axis=-1, keepdims=True)
@@ -94,6 +96,7 @@ def turns_between(
         values = slope(middle + half * nodes)
         zeros, falls, rises, off = _zeros(np.moveaxis(values @ weights, -1, 0))
         summit = falls | rises if signed else falls
+        off = off if signed else np.where(rises, np.inf, off)
         found.append(Turns(np.clip(middle + half * zeros, start, stop), summit & (half > 0.0), off))
     return Turns(*(np.concatenate(rows, axis=-1) for rows in zip(*found, strict=True)))
 
