@@ -1,0 +1,111 @@
+// Charts: quantities over time, over a drive, or over one another, those of each unit in a field of their own.
+
+const DASHES = ["", "7 3", "2 3", "10 3 2 3", "4 2", "1 2"];
+const FIELD = { left: 62, right: 14, top: 20, bottom: 40, height: 150, between: 24 };
+
+class Chart {
+  /** `x` is a curve, `curves` are those over it. */
+  constructor(x, curves) {
+    this.x = x;
+    this.curves = curves;
+    this.sheet = drawn("svg", { class: "chart", tabindex: 0, role: "img" });
+    this.sheet.addEventListener("pointermove", (event) => this.hover(event));
+    this.sheet.addEventListener("pointerleave", () => this.hover(null));
+    this.sheet.addEventListener("click", (event) => {
+      const found = this.instantUnder(event);
+      if (found !== null) {
+        player.pause();
+        player.seek(found);
+      }
+    });
+  }
+
+  /** Whether the axis only ever rises, so that an instant has one place on it. */
+  get ordered() {
+    const { values } = this.x;
+    for (let i = 1; i < values.length; i += 1) if (!(values[i] > values[i - 1])) return false;
+    return true;
+  }
+
+  draw(width) {
+    const units = [...new Set(this.curves.map((curve) => curve.unit))];
+    const high = units.length > 1 ? 0.8 * FIELD.height : FIELD.height * 1.15;
+    const height = FIELD.top + units.length * high + (units.length - 1) * FIELD.between + FIELD.bottom;
+    this.width = width;
+    this.sheet.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    this.sheet.setAttribute("width", width);
+    this.sheet.setAttribute("height", height);
+    this.sheet.setAttribute("aria-label", `${this.curves.map((curve) => curve.title).join("; ")}; over ${this.x.title}`);
+    const across = scaled(endsOf([this.x.values], false), [FIELD.left, width - FIELD.right], this.x.unit, this.x.title, this.ordered ? 0 : 0.03);
+    this.across = across;
+    this.fields = units.map((unit, k) => {
+      const top = FIELD.top + k * (high + FIELD.between);
+      const own = this.curves.filter((curve) => curve.unit === unit);
+      const up = scaled(endsOf(own.map((curve) => curve.values), true), [top + high, top], unit, "", 0.06);
+      return { up, own, top, bottom: top + high };
+    });
+    this.sheet.replaceChildren(
+      ...this.fields.map(({ up }, k) => axesOf(across, up, { bottom: k === this.fields.length - 1 })),
+      ...this.fields.map(({ up, top }) => drawn("text", { x: FIELD.left - 7, y: top - 7, class: "unit" }, up.unit || "1")),
+      drawn("text", { x: (FIELD.left + width - FIELD.right) / 2, y: height - 6, class: "label" }, across.label),
+      ...this.fields.flatMap(({ up, own }) => own.map((curve) => this.line(curve, up))),
+    );
+    this.cursor = drawn("g", { class: "cursor" });
+    this.pointer = drawn("g", { class: "cursor pointed" });
+    this.sheet.append(this.cursor, this.pointer);
+    this.mark(player.instant);
+  }
+
+  line(curve, up) {
+    const number = this.curves.indexOf(curve);
+    return drawn("path", {
+      d: pathOf(this.x.values, curve.values, this.across, up),
+      class: `curve of-${number % BODY_COLOURS}`,
+      "stroke-dasharray": DASHES[number % DASHES.length],
+    });
+  }
+
+  /** Mark an instant: a line where the axis has one place for it, and a dot on every curve. */
+  mark(instant, group = this.cursor) {
+    if (!group) return;
+    const x = this.across.at(this.x.values[instant]);
+    const dots = this.fields.flatMap(({ up, own }) =>
+      own
+        .filter((curve) => Number.isFinite(curve.values[instant]))
+        .map((curve) => drawn("circle", { cx: x, cy: up.at(curve.values[instant]), r: 3.6, class: `of-${this.curves.indexOf(curve) % BODY_COLOURS}` })),
+    );
+    const line = this.ordered ? [drawn("line", { x1: x, x2: x, y1: this.fields[0].top, y2: this.fields.at(-1).bottom })] : [];
+    group.replaceChildren(...line, ...dots);
+  }
+
+  instantUnder(event) {
+    const frame = this.sheet.getBoundingClientRect();
+    const [px, py] = [((event.clientX - frame.left) * this.width) / frame.width, ((event.clientY - frame.top) * this.width) / frame.width];
+    let [best, away] = [null, Infinity];
+    for (let i = 0; i < instants.count; i += 1) {
+      const dx = this.across.at(this.x.values[i]) - px;
+      const dy = this.ordered ? 0 : Math.min(...this.fields.flatMap(({ up, own }) => own.map((curve) => Math.abs(up.at(curve.values[i]) - py))));
+      const d = Math.hypot(dx, dy);
+      if (d < away) [best, away] = [i, d];
+    }
+    return best;
+  }
+
+  hover(event) {
+    const found = event && this.instantUnder(event);
+    if (found === null || found === undefined) {
+      this.pointer?.replaceChildren();
+      showTip(null);
+      return;
+    }
+    this.mark(found, this.pointer);
+    const lines = this.ordered ? [] : [[this.x.title, shown(this.x.values[found], this.x.unit, 5, largestOf(this.x.values))]];
+    showTip(event, whenIs(found), [...lines, ...this.curves.map((curve) => [curve.title, this.reads(curve, found)])]);
+  }
+
+  /** What a curve is at an instant, in words. */
+  reads(curve, instant) {
+    const value = shown(curve.values[instant], curve.unit, 5, largestOf(curve.values));
+    return curve.places ? `${value} at ξ/l = ${format(curve.places[instant], 3)}` : value;
+  }
+}
