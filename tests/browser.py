@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import fcntl
 import json
 import os
 import select
@@ -33,24 +34,30 @@ class Browser:
         self._folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         to_read, self._write = os.pipe()
         self._read, to_write = os.pipe()
-        command = f'exec "$@" 3<&{to_read} 4>&{to_write}'
         flags = [*FLAGS, f"--user-data-dir={self._folder.name}", f"--window-size={width},{height}"]
-        self._process = subprocess.Popen(
-            ["/bin/sh", "-c", command, "sh", str(found()), *flags],
-            pass_fds=(to_read, to_write),
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
+
+        def adopt() -> None:
+            """Where the browser looks for its pipes: it reads from 3, and writes to 4."""
+            high = [fcntl.fcntl(number, fcntl.F_DUPFD, 10) for number in (to_read, to_write)]
+            for number, place in zip(high, (3, 4), strict=True):
+                os.dup2(number, place)
+
+        quiet = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        self._process = subprocess.Popen([str(found()), *flags], pass_fds=(3, 4), preexec_fn=adopt, **quiet)
         os.close(to_read)
         os.close(to_write)
         self._left, self._number, self._session = b"", 0, ""
         self.complaints: list[str] = []
         self.asked: list[str] = []
-        target = self.call("Target.createTarget", url="about:blank")["targetId"]
-        self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
-        for room in ("Page", "Runtime", "Log", "Network"):
-            self.call(f"{room}.enable")
-        self.size(width, height)
+        try:
+            target = self.call("Target.createTarget", url="about:blank")["targetId"]
+            self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+            for room in ("Page", "Runtime", "Log", "Network"):
+                self.call(f"{room}.enable")
+            self.size(width, height)
+        except BaseException:
+            self.close()
+            raise
 
     def __enter__(self) -> Browser:
         return self
@@ -64,7 +71,7 @@ class Browser:
         try:
             self.call("Browser.close")
         except (OSError, RuntimeError):
-            self._process.terminate()
+            self._process.kill()
         self._process.wait(PATIENCE)
         os.close(self._read)
         os.close(self._write)

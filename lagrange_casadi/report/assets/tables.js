@@ -1,7 +1,9 @@
 // Tables that can be sorted, and copied as CSV.
 
-/** A table: heads as [words, how a cell is told, what it is sorted by]; `chosen` hears of a row that is pressed. */
-function sortedTable(caption, heads, rows, { chosen = null, aside = null } = {}) {
+/** A table: heads as [words, how a cell is told, what it is sorted by]; `chosen` hears of a row that is pressed.
+ *
+ * `plain` are heads for the copy, whose numbers are those of the file: SI, with all their digits. */
+function sortedTable(caption, heads, rows, { chosen = null, aside = null, plain = heads } = {}) {
   let order = { column: -1, down: false };
   const body = element("tbody");
   const buttons = heads.map(([words], k) =>
@@ -47,7 +49,7 @@ function sortedTable(caption, heads, rows, { chosen = null, aside = null } = {})
     fill();
   };
   const copy = element("button", { type: "button", class: "copy", click: async () => {
-    await copyText(csvOf(heads, rows()));
+    await copyText(csvOf(plain, rows()));
     copy.textContent = "copied";
     announce(`${caption} copied`);
     setTimeout(() => (copy.textContent = "copy as CSV"), 1500);
@@ -62,8 +64,8 @@ function sortedTable(caption, heads, rows, { chosen = null, aside = null } = {})
 /** Rows as text for a spreadsheet, with a plain minus sign. */
 function csvOf(heads, rows) {
   const quoted = (text) => {
-    const plain = String(text).replaceAll("\u2212", "-").replaceAll("\u00a0", " ");
-    return /[",\n;]/.test(plain) ? `"${plain.replaceAll('"', '""')}"` : plain;
+    const cell = String(text ?? "").replaceAll("\u2212", "-").replaceAll("\u00a0", " ");
+    return /[",\n;]/.test(cell) ? `"${cell.replaceAll('"', '""')}"` : cell;
   };
   const lines = [heads.map(([words]) => quoted(words)), ...rows.map((row) => heads.map(([, tell]) => quoted(tell(row))))];
   return `${lines.map((line) => line.join(",")).join("\n")}\n`;
@@ -95,6 +97,8 @@ function resultTables(show) {
   } }), ` also the ${nothing} that are zero`);
   const value = (one, row) => (one === null || one === undefined ? "" : shown(one, row.unit, 6, Math.abs(row.peak.value)));
   const when = (mark) => (mark ? shown(mark.t, "s", 5, Math.max(Math.abs(instants.t[0]), Math.abs(instants.t.at(-1)))) : "");
+  const names = [["name", (row) => row.name], ["part", (row) => row.part], ["quantity", whatOf], ["unit", (row) => row.unit]];
+  const driveHead = over && [`${over.joint} [${over.unit}]`, (row) => row.peak.over];
   const drive = over ? [[over.joint, (row) => shown(row.peak.over, over.unit), (row) => row.peak.over]] : [];
   const error = (row) => (row.error === null ? "" : `± ${shown(row.error, row.unit, 1, Math.abs(row.peak.value))}`);
   tables.push(
@@ -110,7 +114,11 @@ function resultTables(show) {
         ["ξ/l", (row) => (row.peak.xi === null ? "" : row.peak.xi.toFixed(3)), (row) => row.peak.xi ?? -1],
       ],
       rows,
-      { chosen: show, aside: element("div", { class: "tools" }, find, also) },
+      {
+        chosen: show,
+        aside: element("div", { class: "tools" }, find, also),
+        plain: [...names, ["largest in size", (row) => row.peak.value], ["may be off by", (row) => row.error], ...(over ? [driveHead] : []), ["t [s]", (row) => row.peak.t], ["xi/l", (row) => row.peak.xi]],
+      },
     ),
     sortedTable(
       "Over the cycle",
@@ -125,6 +133,9 @@ function resultTables(show) {
         ["rms", (row) => value(row.rms, row), (row) => row.rms ?? -Infinity],
       ],
       rows,
+      {
+        plain: [...names, ["smallest", (row) => row.smallest.value], ["at t [s]", (row) => row.smallest.t], ["largest", (row) => row.largest.value], ["at t [s]", (row) => row.largest.t], ["mean", (row) => row.mean], ["rms", (row) => row.rms]],
+      },
     ),
   );
   return tables.map((table) => table.body);
@@ -136,7 +147,9 @@ function factSections() {
   const range = ({ low, high, unit }) => (low === null && high === null ? "" : `${low === null ? "−∞" : shown(low, unit)} to ${high === null ? "∞" : shown(high, unit)}`);
   if (contents.parameters.length) {
     found.push(
-      sortedTable("Parameters", [["name", (row) => row.name], ["value", (row) => shown(row.value, row.unit, 7), (row) => row.value], ["range", range]], () => contents.parameters).body,
+      sortedTable("Parameters", [["name", (row) => row.name], ["value", (row) => shown(row.value, row.unit, 7), (row) => row.value], ["range", range]], () => contents.parameters, {
+        plain: [["name", (row) => row.name], ["value", (row) => row.value], ["unit", (row) => row.unit]],
+      }).body,
     );
   }
   const length = (body) => (body.length === null ? "point mass" : shown(body.length, "m", 6));
