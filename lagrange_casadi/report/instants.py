@@ -19,7 +19,8 @@ def shown_instants(solution: Solution) -> npt.NDArray[np.intp]:
     """The instants that are shown, by number."""
     total = solution.t.size
     varying = sum(1 for values in solution.outputs.values() if np.ptp(values) != 0.0)
-    most = max(LEAST, MOST // max(varying, 1))
+    largest = 2 * len(solution.links_with_sections) * len(solution.table.forces)  # of each where along its link, and how much
+    most = max(LEAST, MOST // max(varying + largest, 1))
     if total <= most:
         return np.arange(total)
     spread = np.unique(np.linspace(0, total - 1, most).astype(np.intp))

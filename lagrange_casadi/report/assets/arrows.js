@@ -63,6 +63,19 @@ function drawActions(paper, instant, kinds, scale, values) {
   }
 }
 
+/** The ends of arrows at some instants, so that all have room. */
+function arrowEnds(kinds, scale) {
+  const found = [];
+  for (let i = 0; i < instants.count; i += Math.max(1, Math.floor(instants.count / 40))) {
+    for (const action of actions) {
+      if (!kinds[action.kind] || (action.moment && !contents.space)) continue;
+      const way = times(vectorOf(action, i), action.moment ? scale.moment : scale.force);
+      found.push(plus(spotOf(action.spot, i), way, action.kind === "load" ? -1 : 1));
+    }
+  }
+  return found.filter((place) => place.every(Number.isFinite));
+}
+
 /** A straight arrow; of a moment with two heads. Heads differ by kind, for those who see no colours. */
 function arrow(paper, from, to, ink, action, tells) {
   const [a, b] = [paper.on(from), paper.on(to)];

@@ -2,6 +2,42 @@
 
 const over = contents.instants.over;
 
+/** A sheet of two layers: what stands still, and above it what goes with the motion, so that curves are painted once. */
+class Sheet {
+  constructor(kind, words, { hover, press }) {
+    [this.still, this.moving] = [drawn("svg"), drawn("svg", { class: "moving", "aria-hidden": "true" })];
+    this.body = element("div", { class: `chart ${kind}`, tabindex: 0, role: "img", "aria-label": words }, this.still, this.moving);
+    this.cursor = drawn("g", { class: "cursor" });
+    this.pointer = drawn("g", { class: "cursor pointed" });
+    this.moving.append(this.cursor, this.pointer);
+    this.body.addEventListener("pointermove", hover);
+    this.body.addEventListener("pointerleave", () => hover(null));
+    this.body.addEventListener("click", press);
+  }
+
+  /** Give it a size, and what stands still on it. */
+  fill(width, height, ...still) {
+    this.width = width;
+    for (const layer of [this.still, this.moving]) {
+      for (const [name, value] of [["viewBox", `0 0 ${width} ${height}`], ["width", width], ["height", height]]) layer.setAttribute(name, value);
+    }
+    this.still.replaceChildren(...still);
+  }
+
+  /** Where an event is on it. */
+  at(event) {
+    const frame = this.body.getBoundingClientRect();
+    return [event.clientX - frame.left, event.clientY - frame.top].map((value) => (value * this.width) / frame.width);
+  }
+}
+
+/** Show the instant that a reader has pressed on. */
+function seekTo(instant) {
+  if (instant === null || instant === undefined) return;
+  player.pause();
+  player.seek(instant);
+}
+
 /** Everything that can be an axis or a curve, by name; `t` and `over` are the instants. */
 function curveOf(name) {
   if (name === "t") return { name, title: "time", unit: "s", values: instants.t };

@@ -12,17 +12,26 @@ class Card {
     this.legend = element("ul", { class: "legend" });
     const close = signButton("✕", "Take this plot away", () => this.remove(), { class: "sign small" });
     this.body = element("section", { class: "card" }, element("header", {}, this.title, this.choices, close), this.legend, this.field);
+    this.seen = true;
+    // What is out of sight need not go with the motion.
+    this.watcher = new IntersectionObserver(([entry]) => {
+      this.seen = entry.isIntersecting;
+      this.mark(player.instant);
+    });
+    this.watcher.observe(this.body);
     choices(this);
   }
 
   remove() {
     deck.cards.splice(deck.cards.indexOf(this), 1);
+    this.watcher.disconnect();
     this.body.remove();
   }
 
   renew() {
+    showTip(null);
     this.plot = this.make(this);
-    this.field.replaceChildren(this.plot ? this.plot.sheet : element("p", { class: "none" }, "Nothing is chosen."));
+    this.field.replaceChildren(this.plot ? this.plot.sheet.body : element("p", { class: "none" }, "Nothing is chosen."));
     this.drawLegend();
     this.draw();
   }
@@ -34,8 +43,8 @@ class Card {
   }
 
   mark(instant) {
-    if (!this.plot) return;
-    if (this.plot.cursor) this.plot.mark(instant);
+    if (!this.plot || !this.seen) return;
+    if (this.plot.across || this.plot.middle) this.plot.mark(instant);
     this.values?.forEach(([curve, place]) => {
       place.textContent = shown(curve.values[instant], curve.unit, 5, largestOf(curve.values));
     });
@@ -81,6 +90,7 @@ function chartCard(names, along = alongInstants, focus = false) {
         add.value = "";
         own.renew();
       });
+      add.classList.add("curves");
       const x = chooser("Over", axes, state.x, (name) => {
         state.x = name;
         own.renew();

@@ -4,38 +4,21 @@ const DASHES = ["", "7 3", "2 3", "10 3 2 3", "4 2", "1 2"];
 const FIELD = { left: 62, right: 14, top: 20, bottom: 40, height: 150, between: 24 };
 
 class Chart {
-  /** `x` is a curve, `curves` are those over it. */
+  /** `x` is a curve, `curves` are those over it. Where x only ever rises it is `ordered`, and an instant has one place on it. */
   constructor(x, curves) {
     this.x = x;
     this.curves = curves;
-    this.sheet = drawn("svg", { class: "chart", tabindex: 0, role: "img" });
-    this.sheet.addEventListener("pointermove", (event) => this.hover(event));
-    this.sheet.addEventListener("pointerleave", () => this.hover(null));
-    this.sheet.addEventListener("click", (event) => {
-      const found = this.instantUnder(event);
-      if (found !== null) {
-        player.pause();
-        player.seek(found);
-      }
+    this.sheet = new Sheet("curves", `${curves.map((curve) => curve.title).join("; ")}; over ${x.title}`, {
+      hover: (event) => this.hover(event),
+      press: (event) => seekTo(this.instantUnder(event)),
     });
-  }
-
-  /** Whether the axis only ever rises, so that an instant has one place on it. */
-  get ordered() {
-    const { values } = this.x;
-    for (let i = 1; i < values.length; i += 1) if (!(values[i] > values[i - 1])) return false;
-    return true;
+    this.ordered = x.values.every((value, i) => i === 0 || value > x.values[i - 1]);
   }
 
   draw(width) {
     const units = [...new Set(this.curves.map((curve) => curve.unit))];
     const high = units.length > 1 ? 0.8 * FIELD.height : FIELD.height * 1.15;
     const height = FIELD.top + units.length * high + (units.length - 1) * FIELD.between + FIELD.bottom;
-    this.width = width;
-    this.sheet.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    this.sheet.setAttribute("width", width);
-    this.sheet.setAttribute("height", height);
-    this.sheet.setAttribute("aria-label", `${this.curves.map((curve) => curve.title).join("; ")}; over ${this.x.title}`);
     const across = scaled(endsOf([this.x.values], false), [FIELD.left, width - FIELD.right], this.x.unit, this.x.title, this.ordered ? 0 : 0.03);
     this.across = across;
     this.fields = units.map((unit, k) => {
@@ -44,15 +27,13 @@ class Chart {
       const up = scaled(endsOf(own.map((curve) => curve.values), true), [top + high, top], unit, "", 0.06);
       return { up, own, top, bottom: top + high };
     });
-    this.sheet.replaceChildren(
+    this.sheet.fill(
+      width, height,
       ...this.fields.map(({ up }, k) => axesOf(across, up, { bottom: k === this.fields.length - 1 })),
       ...this.fields.map(({ up, top }) => drawn("text", { x: FIELD.left - 7, y: top - 7, class: "unit" }, up.unit || "1")),
       drawn("text", { x: (FIELD.left + width - FIELD.right) / 2, y: height - 6, class: "label" }, across.label),
       ...this.fields.flatMap(({ up, own }) => own.map((curve) => this.line(curve, up))),
     );
-    this.cursor = drawn("g", { class: "cursor" });
-    this.pointer = drawn("g", { class: "cursor pointed" });
-    this.sheet.append(this.cursor, this.pointer);
     this.mark(player.instant);
   }
 
@@ -66,8 +47,7 @@ class Chart {
   }
 
   /** Mark an instant: a line where the axis has one place for it, and a dot on every curve. */
-  mark(instant, group = this.cursor) {
-    if (!group) return;
+  mark(instant, group = this.sheet.cursor) {
     const x = this.across.at(this.x.values[instant]);
     const dots = this.fields.flatMap(({ up, own }) =>
       own
@@ -79,8 +59,7 @@ class Chart {
   }
 
   instantUnder(event) {
-    const frame = this.sheet.getBoundingClientRect();
-    const [px, py] = [((event.clientX - frame.left) * this.width) / frame.width, ((event.clientY - frame.top) * this.width) / frame.width];
+    const [px, py] = this.sheet.at(event);
     let [best, away] = [null, Infinity];
     for (let i = 0; i < instants.count; i += 1) {
       const dx = this.across.at(this.x.values[i]) - px;
@@ -94,11 +73,11 @@ class Chart {
   hover(event) {
     const found = event && this.instantUnder(event);
     if (found === null || found === undefined) {
-      this.pointer?.replaceChildren();
+      this.sheet.pointer.replaceChildren();
       showTip(null);
       return;
     }
-    this.mark(found, this.pointer);
+    this.mark(found, this.sheet.pointer);
     const lines = this.ordered ? [] : [[this.x.title, shown(this.x.values[found], this.x.unit, 5, largestOf(this.x.values))]];
     showTip(event, whenIs(found), [...lines, ...this.curves.map((curve) => [curve.title, this.reads(curve, found)])]);
   }

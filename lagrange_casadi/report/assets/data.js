@@ -30,11 +30,16 @@ function titleOf(one) {
   return one.part && one.what ? `${one.part}: ${one.what}` : one.part || one.what;
 }
 
+const largest = new WeakMap();
+
 /** The largest size among values, those that are no numbers left out. */
 function largestOf(values) {
-  let found = 0;
-  for (const value of values) if (Math.abs(value) > found) found = Math.abs(value);
-  return found;
+  if (!largest.has(values)) {
+    let found = 0;
+    for (const value of values) if (Math.abs(value) > found) found = Math.abs(value);
+    largest.set(values, found);
+  }
+  return largest.get(values);
 }
 
 /** The number of the instant that is nearest to a time. */

@@ -5,40 +5,33 @@ class Heat {
     this.section = section;
     this.force = force;
     this.x = curveOf(alongInstants);
-    this.sheet = drawn("svg", { class: "chart map", tabindex: 0, role: "img", "aria-label": `${section.link}: ${force.what} over the cycle and along the link` });
-    this.sheet.addEventListener("pointermove", (event) => this.hover(event));
-    this.sheet.addEventListener("pointerleave", () => showTip(null));
-    this.sheet.addEventListener("click", (event) => {
-      const at = this.under(event);
-      if (!at) return;
-      player.pause();
-      player.seek(at.instant);
-      this.pin?.({ section, ratio: at.ratio });
+    this.sheet = new Sheet("map", `${section.link}: ${force.what} over the cycle and along the link`, {
+      hover: (event) => this.hover(event),
+      press: (event) => {
+        const at = this.under(event);
+        seekTo(at?.instant);
+        if (at) this.pin?.({ section, ratio: at.ratio });
+      },
     });
   }
 
   draw(width) {
     const height = 244;
-    this.width = width;
     this.across = scaled(endsOf([this.x.values], false), [FIELD.left, width - FIELD.right - 58], this.x.unit, this.x.title);
     this.up = scaled([0, 1], [height - FIELD.bottom, FIELD.top], "1", "");
     const { across, up, section, force } = this;
     const peak = rowByName.get(`section:${section.link}:${force.name}`)?.peak;
     this.most = Math.abs(peak?.value ?? 0) || 1;
     const scale = scaleFor(force.unit, this.most);
-    this.sheet.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    this.sheet.setAttribute("width", width);
-    this.sheet.setAttribute("height", height);
     const field = { x: across.from, y: up.to, width: across.to - across.from, height: up.from - up.to };
     const picture = this.picture(Math.max(2, Math.round(field.width)), Math.round(field.height));
-    this.cursor = drawn("line", { class: "cursor-line", y1: up.to, y2: up.from });
-    this.sheet.replaceChildren(
+    this.sheet.fill(
+      width, height,
       drawn("image", { ...field, href: picture, preserveAspectRatio: "none" }),
       axesOf(across, up),
       drawn("text", { x: 14, y: (up.from + up.to) / 2, class: "label", transform: `rotate(-90 14 ${(up.from + up.to) / 2})` }, "ξ/l, base to tip"),
       drawn("text", { x: (across.from + across.to) / 2, y: height - 6, class: "label" }, across.label),
       ...this.key(scale, width - FIELD.right - 44, up),
-      this.cursor,
       ...(peak ? this.peakMark(peak, scale) : []),
     );
     this.mark(player.instant);
@@ -113,13 +106,11 @@ class Heat {
 
   mark(instant) {
     const x = this.across.at(this.x.values[instant]);
-    for (const end of ["x1", "x2"]) this.cursor.setAttribute(end, x);
+    this.sheet.cursor.replaceChildren(drawn("line", { class: "cursor-line", x1: x, x2: x, y1: this.up.to, y2: this.up.from }));
   }
 
   under(event) {
-    const frame = this.sheet.getBoundingClientRect();
-    const ratio = this.width / frame.width;
-    const [px, py] = [(event.clientX - frame.left) * ratio, (event.clientY - frame.top) * ratio];
+    const [px, py] = this.sheet.at(event);
     const { across, up } = this;
     if (px < across.from || px > across.to || py < up.to || py > up.from) return null;
     const x = across.back(px);
@@ -128,7 +119,7 @@ class Heat {
   }
 
   hover(event) {
-    const at = this.under(event);
+    const at = event && this.under(event);
     if (!at) {
       showTip(null);
       return;

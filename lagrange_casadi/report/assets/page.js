@@ -165,8 +165,13 @@ function listenToPrinter(stage) {
     player.pause();
     document.documentElement.dataset.theme = "light";
     stage.paper.readInks();
-    stage.paper.resize(3);
+    stage.paper.resize(1060, 560, 3);
+    if (!stage.touched) stage.paper.fit(stage.ends);
     stage.draw();
+    for (const card of deck.cards) {
+      card.seen = true;
+      card.draw();
+    }
   });
   window.addEventListener("afterprint", () => {
     if (!before) return;

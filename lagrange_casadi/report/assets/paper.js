@@ -24,14 +24,13 @@ class Paper {
     const names = ["ink", "soft", "faint", "sheet", "metal", "reaction", "effort", "load", "positive", "negative", "path", "accent"];
     this.inks = Object.fromEntries(names.map((name) => [name, ink(name)]));
     this.inks.bodies = Array.from({ length: BODY_COLOURS }, (_, k) => ink(`body-${k}`));
-    this.hatch = null;
   }
 
-  /** Fit the canvas's own points to those of the screen. */
-  resize(ratio = window.devicePixelRatio || 1) {
-    this.width = this.canvas.clientWidth || 640;
-    this.height = this.canvas.clientHeight || 420;
+  /** Fit the canvas's own points to those of the screen, or to a size that is told. */
+  resize(width = this.canvas.clientWidth || 640, height = this.canvas.clientHeight || 420, ratio = window.devicePixelRatio || 1) {
+    [this.width, this.height] = [width, height];
     this.ratio = Math.min(ratio, 3);
+    this.hatch = null;
     this.canvas.width = Math.round(this.width * this.ratio);
     this.canvas.height = Math.round(this.height * this.ratio);
   }
@@ -54,12 +53,12 @@ class Paper {
     camera.toward = on(ce * c, ce * s, se);
   }
 
-  /** Have the whole mechanism, over all instants, on the sheet. */
-  fit() {
+  /** Have the whole mechanism, over all instants, on the sheet, and other places. */
+  fit(others = []) {
     const camera = this.camera;
     camera.centre = extent.middle;
     let [x, y] = [1e-9, 1e-9];
-    const at = allPlaces.map((place) => {
+    const at = [...allPlaces, ...others].map((place) => {
       const from = less(place, camera.centre);
       return [dot(from, camera.right), dot(from, camera.up)];
     });
@@ -130,7 +129,7 @@ class Paper {
 }
 
 function margin(side) {
-  return Math.min(64, 0.14 * side);
+  return Math.min(56, 0.12 * side);
 }
 
 const shades = new Map();

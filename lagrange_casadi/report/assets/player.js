@@ -74,10 +74,10 @@ function transportBar() {
   const speeds = [1, 2, 4, 8, 16, 60];
   const ratio = (seconds) => {
     const times = player.span / seconds;
-    return times >= 1 ? `${format(times, 2)}× real time` : `1 : ${format(1 / times, 2)} of real time`;
+    return times >= 1 ? `${format(times, 2)} : 1` : `1 : ${format(1 / times, 2)}`;
   };
   const speed = chooser(
-    "Speed", speeds.map((seconds) => [String(seconds), `${seconds} s a cycle (${ratio(seconds)})`]), "4", (value) => {
+    "Speed, against real time", speeds.map((seconds) => [String(seconds), `${seconds} s a cycle, ${ratio(seconds)}`]), "4", (value) => {
       player.seconds = Number(value);
     },
   );

@@ -30,12 +30,9 @@ class Polar {
   constructor(joint, way) {
     this.joint = joint;
     this.way = way;
-    this.sheet = drawn("svg", { class: "chart polar", tabindex: 0, role: "img", "aria-label": `reaction of ${joint.name}, ${way.words}` });
-    this.sheet.addEventListener("pointermove", (event) => this.hover(event));
-    this.sheet.addEventListener("pointerleave", () => this.hover(null));
-    this.sheet.addEventListener("click", (event) => {
-      player.pause();
-      player.seek(this.instantUnder(event));
+    this.sheet = new Sheet("polar", `reaction of ${joint.name}, ${way.words}`, {
+      hover: (event) => this.hover(event),
+      press: (event) => seekTo(this.instantUnder(event)),
     });
     this.points = Array.from({ length: instants.count }, (_, i) => {
       const [x, y] = way.columns.map((values) => values[i]);
@@ -48,7 +45,6 @@ class Polar {
   draw(width) {
     const side = Math.min(width, 380);
     const half = side / 2;
-    this.width = width;
     this.middle = [width / 2, half];
     const most = Math.max(...this.points.map(([x, y]) => Math.hypot(x, y)).filter(Number.isFinite), 0) || 1;
     const { factor, unit } = scaleFor("N", most);
@@ -56,13 +52,9 @@ class Polar {
     const rings = ticksBetween(0, most * factor, 3).filter((tick) => tick > 0).map((tick) => [((tick / factor) * this.scale), tick]);
     const [cx, cy] = this.middle;
     const [right, up] = this.way.pair;
-    this.sheet.setAttribute("viewBox", `0 0 ${width} ${side}`);
-    this.sheet.setAttribute("width", width);
-    this.sheet.setAttribute("height", side);
     const d = this.points.map(([x, y], i) => `${i ? "L" : "M"}${(cx + x * this.scale).toFixed(1)} ${(cy - y * this.scale).toFixed(1)}`).join("");
-    this.cursor = drawn("g", { class: "cursor" });
-    this.pointer = drawn("g", { class: "cursor pointed" });
-    this.sheet.replaceChildren(
+    this.sheet.fill(
+      width, side,
       drawn("g", { class: "axes" },
         rings.map(([r]) => drawn("circle", { cx, cy, r, class: "net" })),
         drawn("line", { x1: cx - half + 22, x2: cx + half - 22, y1: cy, y2: cy, class: "zero" }),
@@ -71,13 +63,11 @@ class Polar {
         drawn("text", { x: cx + half - 18, y: cy + 4, class: "ring" }, right),
         drawn("text", { x: cx, y: 16, class: "x" }, up)),
       drawn("path", { d, class: "curve of-0" }),
-      this.cursor, this.pointer,
     );
     this.mark(player.instant);
   }
 
-  mark(instant, group = this.cursor) {
-    if (!group) return;
+  mark(instant, group = this.sheet.cursor) {
     const [x, y] = this.points[instant];
     const [cx, cy] = this.middle;
     const [px, py] = [cx + x * this.scale, cy - y * this.scale];
@@ -85,9 +75,8 @@ class Polar {
   }
 
   instantUnder(event) {
-    const frame = this.sheet.getBoundingClientRect();
-    const ratio = this.width / frame.width;
-    const [px, py] = [(event.clientX - frame.left) * ratio - this.middle[0], this.middle[1] - (event.clientY - frame.top) * ratio];
+    const [at, down] = this.sheet.at(event);
+    const [px, py] = [at - this.middle[0], this.middle[1] - down];
     let [best, away] = [0, Infinity];
     this.points.forEach(([x, y], i) => {
       const d = Math.hypot(x * this.scale - px, y * this.scale - py);
@@ -98,12 +87,12 @@ class Polar {
 
   hover(event) {
     if (!event) {
-      this.pointer?.replaceChildren();
+      this.sheet.pointer.replaceChildren();
       showTip(null);
       return;
     }
     const found = this.instantUnder(event);
-    this.mark(found, this.pointer);
+    this.mark(found, this.sheet.pointer);
     const [x, y] = this.points[found];
     const most = Math.max(...this.points.map(([px, py]) => Math.hypot(px, py)));
     const told = (value) => shown(value, "N", 5, most);

@@ -12,19 +12,19 @@ class Stage {
     this.pinned = null;
     this.pointed = null;
     this.touched = false;
-    this.largest = { force: 0, moment: 0 };
     this.measure();
+    this.ends = arrowEnds(this.shows, this.scale);
   }
 
   /** Find the scales anew, for what is shown now. */
   measure() {
-    this.largest = { force: largestAction(this.shows, false), moment: largestAction(this.shows, true) };
+    const [force, moment] = [false, true].map((turning) => largestAction(this.shows, turning));
     const most = this.shows.ribbon ? largestSection(this.shows.ribbon) : 0;
     const full = LONGEST * extent.size * this.size;
     this.scale = {
-      force: this.largest.force ? full / this.largest.force : 0,
+      force: force ? full / force : 0,
       // In the plane a moment sweeps part of a turn; in space it is an arrow of a length.
-      moment: this.largest.moment ? (contents.space ? full : Math.min(1, this.size)) / this.largest.moment : 0,
+      moment: moment ? (contents.space ? full : Math.min(1, this.size)) / moment : 0,
       ribbon: most ? full / most : 0,
     };
   }
@@ -32,7 +32,7 @@ class Stage {
   layOut() {
     this.paper.readInks();
     this.paper.resize();
-    if (!this.touched) this.paper.fit();
+    if (!this.touched) this.paper.fit(this.ends);
     this.draw();
   }
 
@@ -44,7 +44,7 @@ class Stage {
 
   fit() {
     this.touched = false;
-    this.paper.fit();
+    this.paper.fit(this.ends);
     this.draw();
   }
 

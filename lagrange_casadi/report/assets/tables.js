@@ -94,7 +94,7 @@ function resultTables(show) {
   const also = nothing > 0 && element("label", {}, element("input", { type: "checkbox", change: (event) => {
     state.all = event.target.checked;
     renew();
-  } }), ` also the ${nothing} that are zero`);
+  } }), ` also what is zero (${nothing})`);
   const value = (one, row) => (one === null || one === undefined ? "" : shown(one, row.unit, 6, Math.abs(row.peak.value)));
   const when = (mark) => (mark ? shown(mark.t, "s", 5, Math.max(Math.abs(instants.t[0]), Math.abs(instants.t.at(-1)))) : "");
   const names = [["name", (row) => row.name], ["part", (row) => row.part], ["quantity", whatOf], ["unit", (row) => row.unit]];
