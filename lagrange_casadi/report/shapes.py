@@ -33,7 +33,7 @@ class Shape:
     """How a body is drawn: lines between places, and plates, each a convex polygon.
 
     ``kind`` is "link" where it has an axis that is drawn, "rigid" where only its centre is known, "point" for a point mass. Of a
-    rigid body on whose centre it turns, there is nothing but a ``disc``, of which half the width is told.
+    rigid body that is held at its centre alone, as a gear or a rotor, there is a ``disc``, whose radius is the link's length.
     """
 
     name: str
@@ -87,7 +87,7 @@ def shapes(description: Description) -> Iterator[Shape]:
             # Two joints hold a bar between them; arms from the centre hold any others that lie in no plane.
             ends = [(own[0], own[1])] if len(own) == 2 else [(centre, at) for at in own if at != centre]
             arms = () if plates else tuple(ends)
-            yield Shape(name, "rigid", length, mass, (), arms, plates, centre, 0.0 if arms or plates else max(length, 0.0) / 2)
+            yield Shape(name, "rigid", length, mass, (), arms, plates, centre, 0.0 if arms or plates else max(length, 0.0))
         else:
             axis = ((0.0, 0.0, 0.0), (length, 0.0, 0.0))
             beside = [at for at in own if np.hypot(at[1], at[2]) > _FLAT * (abs(length) or 1.0) or not 0.0 <= at[0] <= length]

@@ -4,7 +4,7 @@ const DASHES = ["", "7 3", "2 3", "10 3 2 3", "4 2", "1 2"];
 const FIELD = { left: 62, right: 14, top: 20, bottom: 40, height: 150, between: 24 };
 
 class Chart {
-  /** `x` is a curve, `curves` are those over it. Where x only ever rises it is `ordered`, and an instant has one place on it. */
+  /** `x` is a curve, `curves` are those over it. Where x only ever rises, or falls, it is `ordered`, and an instant has one place on it. */
   constructor(x, curves) {
     this.x = x;
     this.curves = curves;
@@ -12,7 +12,7 @@ class Chart {
       hover: (event) => this.hover(event),
       press: (event) => seekTo(this.instantUnder(event)),
     });
-    this.ordered = x.values.every((value, i) => i === 0 || value > x.values[i - 1]);
+    this.ordered = [1, -1].some((way) => x.values.every((value, i) => i === 0 || way * value > way * x.values[i - 1]));
   }
 
   draw(width) {

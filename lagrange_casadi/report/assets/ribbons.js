@@ -35,8 +35,7 @@ function drawRibbon(paper, section, force, instant, scale) {
   const [dx, dy] = paper.along(side);
   const edge = axis.map(([x, y], k) => [x + values[k] * scale * dx, y + values[k] * scale * dy]);
   const depth = (axis[0][2] + axis[axis.length - 1][2]) / 2;
-  const order = contents.space ? ORDER.joints : ORDER.ribbons;
-  paper.put(order, depth, (context) => {
+  paper.put(ORDER.ribbons, depth, (context) => {
     for (const sign of [1, -1]) {
       const ink = sign > 0 ? paper.inks.positive : paper.inks.negative;
       context.beginPath();
