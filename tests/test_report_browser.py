@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from reports import HOSTILE, hostile, press, solved
 
+from lagrange_casadi.quantities import Output
+
 pytestmark = pytest.mark.skipif(browser.found() is None, reason="there is no Chromium here")
 
 
@@ -127,25 +129,71 @@ def test_it_plays_pauses_steps_and_scrubs(page):
     quiet(one)
 
 
-def test_a_section_map_tells_the_solutions_forces(page):
-    solution = solved("four_bar")
-    one = page(solution)
-    frame = "document.querySelector('.map').getBoundingClientRect()"
-    one.run("document.querySelector('.map').scrollIntoView({ block: 'center' })")
-    link = one.run("document.querySelector('.map').closest('.card').querySelector('select').value")
-    left, top, width, height = (one.run(f"{frame}.{side}") for side in ("left", "top", "width", "height"))
-    one.point(left + 0.5 * width, top + 0.4 * height)
+def told(one):
+    """What stands beside the pointer: its head, and its lines as names with value and unit."""
     plain = {0x2212: "-", 0xA0: " "}
-    head, text = (one.run(f"document.querySelector('.tip {part}').innerText").translate(plain) for part in (".head", "dl"))
-    xi, t = re.search(r"ξ/l = ([\d.]+); .*t = ([\d.]+) (m?)s", head).group(1, 2)
-    scale = 1e-3 if " ms" in head else 1.0
-    i = int(np.argmin(np.abs(solution.t - float(t) * scale)))
-    law = solution.section(link).law.during(slice(i, i + 1))
-    for force, word in (("axial", "axial force"), ("shear", "shear force"), ("bending", "bending moment")):
-        value, unit = re.search(rf"{word}\s+(\S+) (\S+)", text).groups()
-        expected = law.on_grid(force, np.array([float(xi)]))[0, 0]
-        factor = {"N": 1.0, "kN": 1e3, "mN": 1e-3, "µN": 1e-6}[unit.replace("·m", "")]
-        assert number(value) * factor == pytest.approx(to_digits(expected, 5), rel=1e-9)
+    head = one.run("document.querySelector('.tip .head').textContent").translate(plain)
+    texts = [
+        text.translate(plain) for text in one.run("[...document.querySelectorAll('.tip dl > *')].map((one) => one.textContent)")
+    ]
+    return head, {name: (number(value), value.partition(" ")[2]) for name, value in zip(texts[::2], texts[1::2], strict=True)}
+
+
+def hovered(one, kind, across, down):
+    """The same, with the pointer over a plot."""
+    plot = f"document.querySelector('.{kind}')"
+    one.run(f"{plot}.scrollIntoView({{ block: 'center' }})")
+    left, top, width, height = (one.run(f"{plot}.getBoundingClientRect().{side}") for side in ("left", "top", "width", "height"))
+    one.point(left + across * width, top + down * height)
+    return told(one)
+
+
+def instant_of(solution, head):
+    t, milli = re.search(r"t = (-?[\d.]+) (m?)s", head).groups()
+    return int(np.argmin(np.abs(solution.t - float(t) * (1e-3 if milli else 1.0))))
+
+
+FACTORS = {"": 1.0, "k": 1e3, "M": 1e6, "m": 1e-3, "µ": 1e-6}
+
+
+@pytest.mark.parametrize("name", ["quick_return", "rssr"])
+def test_a_section_map_tells_the_solutions_forces(page, name):
+    """One in the plane whose load slides along its link, over the crank's angle; one in space."""
+    solution = solved(name)
+    one = page(solution)
+    link = one.run("document.querySelector('.map').closest('.card').querySelector('select').value")
+    for across, down in ((0.3, 0.4), (0.6, 0.25), (0.75, 0.7)):
+        head, lines = hovered(one, "map", across, down)
+        i, xi = instant_of(solution, head), float(re.search(r"ξ/l = ([\d.]+)", head)[1])
+        law = solution.section(link).law
+        for force in solution.table.forces:
+            value, unit = lines[Output("section", link, force).meant(solution.table).long_name]
+            expected = law.during(slice(i, i + 1)).on_grid(force, np.array([xi]))[0, 0]
+            least = 1e-12 * law.bound(force, np.array([xi]))
+            prefix = unit[0] if unit[0] in FACTORS else ""
+            assert value * FACTORS[prefix] == pytest.approx(expected, rel=1e-4, abs=least)
+    quiet(one)
+
+
+def test_a_polar_plot_tells_a_bearings_load_in_ground_axes_and_on_a_body(page):
+    solution = solved("slider_crank")
+    one = page(solution)
+    joint = one.run("document.querySelector('.polar').closest('.card').querySelector('select').value")
+    reaction = solution.reaction(joint)
+    head, lines = hovered(one, "polar", 0.45, 0.5)
+    i = instant_of(solution, head)
+    assert {name: lines[name][0] for name in ("fx", "fy")} == pytest.approx({"fx": reaction.fx[i], "fy": reaction.fy[i]}, rel=1e-4)
+    one.run(
+        "{ const ways = document.querySelector('.polar').closest('.card').querySelectorAll('select')[1];"
+        " ways.value = '1'; ways.dispatchEvent(new Event('change')); }"
+    )
+    body = one.run("document.querySelector('.polar').getAttribute('aria-label')").split(" on ")[1].split(",")[0]
+    head, lines = hovered(one, "polar", 0.45, 0.5)
+    i = instant_of(solution, head)
+    turned = (reaction.fx[i] + 1j * reaction.fy[i]) * np.exp(-1j * solution.pose(body).angle[i])
+    assert [lines[name][0] for name in ("along", "across")] == pytest.approx(
+        [turned.real, turned.imag], rel=1e-4, abs=1e-4 * abs(turned)
+    )
     quiet(one)
 
 
