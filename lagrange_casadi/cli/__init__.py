@@ -27,6 +27,7 @@ from .export import export
 from .info import info
 from .new import new
 from .plot import plot
+from .report_page import report
 from .run import run
 from .sweep import sweep
 from .table import table
@@ -72,7 +73,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (run, sweep, best, table, trade, export, plot, info, check, cases, new, cache)
+_COMMANDS = (run, sweep, best, table, trade, export, plot, report, info, check, cases, new, cache)
 
 
 @click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})

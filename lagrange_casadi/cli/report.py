@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -10,14 +9,12 @@ import numpy as np
 
 from ..instants.solution import Peak, Solution
 from ..instants.statistics import Statistics
-from ..quantities import Output
-
-_GROUPS = ("effort", "reaction", "section", "output")
+from ..instants.told import error_of, told
 
 
 def peak_line(solution: Solution, peak: Peak) -> str:
     """A peak with its place, and how far it may be off where that is estimated; of one that is not told, what was found."""
-    error = _error(solution, peak.name)
+    error = error_of(solution, peak.name)
     off = "" if error is None else f" +- {error:.0e}"
     where = f"t = {peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {peak.xi:.4f}")
     if peak.over is not None and solution.over:
@@ -31,8 +28,8 @@ def peak_line(solution: Solution, peak: Peak) -> str:
 def report_lines(solution: Solution, refined: Sequence[Peak] = ()) -> Iterator[str]:
     """All efforts, reactions with their resultants, and section forces: the peaks, or the refined ones, then means and ends."""
     peaks = {peak.name: peak for peak in refined}
-    told = [(output, solution.statistics(output) if solution.determined(output) else None) for output in _told(solution)]
-    for output, found in told:
+    rows = [(output, solution.statistics(output) if solution.determined(output) else None) for output in told(solution)]
+    for output, found in rows:
         if found is None:
             yield f"  {output!s:<28}{'open':>13} {'':<4} equilibrium does not determine it: the mechanism is over-constrained"
             continue
@@ -41,31 +38,13 @@ def report_lines(solution: Solution, refined: Sequence[Peak] = ()) -> Iterator[s
         yield peak_line(solution, peaks.get(found.name) or Peak(found.name, own.value, found.unit, own.t, own.xi, over=over))
     span = f"over {solution.t[-1] - solution.t[0]:.5g} s" if solution.t.size > 1 else "at the one instant"
     yield f"{span:<30}{'smallest':>13} {'largest':>13} {'mean':>13} {'rms':>13}"
-    yield from (_statistics_line(found) for _, found in told if found)
+    yield from (_statistics_line(found) for _, found in rows if found)
 
 
 def _statistics_line(found: Statistics) -> str:
     ends = " ".join(f"{extreme.value + 0.0:>13.6g}" for extreme in (found.smallest, found.largest))
     means = " ".join(f"{'':>13}" if value is None else f"{value + 0.0:>13.6g}" for value in (found.mean, found.rms))
     return f"  {found.name:<28}{ends} {means} {found.unit}"
-
-
-def _told(solution: Solution) -> Iterator[Output]:
-    """What is told of a solution: a reaction's resultant after its components."""
-    for output in solution.quantities():
-        if output.group in _GROUPS:
-            yield output
-            for member in solution.table.reactions:
-                resultant = Output("reaction", output.part, member)
-                if output == solution.made_of(resultant)[-1]:
-                    yield resultant
-
-
-def _error(solution: Solution, name: str) -> float | None:
-    """How far a quantity may be off; the size of a force by no more than its components together."""
-    errors = [solution.errors.get(str(component)) for component in solution.made_of(Output.of(name))]
-    told = [error for error in errors if error is not None]
-    return math.hypot(*told) if len(told) == len(errors) else None
 
 
 def asked_line(words: Sequence[Any], slides: bool) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -273,6 +274,16 @@ class Solution:
         if output.group == "section":
             return Statistics.along(str(output), self.unit(output), self.t, *self._of_section(output).law.reached(output.member))
         return Statistics.over(str(output), self.unit(output), self.t, self.array(output))
+
+    def report(self, path: str | os.PathLike[str]) -> None:
+        """Write a page that shows the mechanism moving, its forces on it, charts and tables: one HTML file for any browser.
+
+        Raises :class:`.DeclarationError` where ``motion`` was not wanted, or the path does not end in .html; :class:`.PathError`
+        and :class:`.StoreError` where the file cannot be written.
+        """
+        from ..report import write_report
+
+        write_report(self, path)
 
     def to_xarray(self) -> xarray.Dataset:
         """All quantities as an ``xarray.Dataset`` over t and xi, with units.

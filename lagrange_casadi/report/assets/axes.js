@@ -1,0 +1,153 @@
+// What charts have in common: curves, scales, axes, and the words beside the pointer.
+
+const over = contents.instants.over;
+
+/** A sheet of two layers: what stands still, and above it what goes with the motion, so that curves are painted once. */
+class Sheet {
+  constructor(kind, words, { hover, press }) {
+    [this.still, this.moving] = [drawn("svg"), drawn("svg", { class: "moving", "aria-hidden": "true" })];
+    this.body = element("div", { class: `chart ${kind}`, tabindex: 0, role: "img", "aria-label": words }, this.still, this.moving);
+    this.cursor = drawn("g", { class: "cursor" });
+    this.pointer = drawn("g", { class: "cursor pointed" });
+    this.moving.append(this.cursor, this.pointer);
+    this.body.addEventListener("pointermove", hover);
+    this.body.addEventListener("pointerleave", () => hover(null));
+    this.body.addEventListener("click", press);
+  }
+
+  /** Give it a size, and what stands still on it. */
+  fill(width, height, ...still) {
+    this.width = width;
+    for (const layer of [this.still, this.moving]) {
+      for (const [name, value] of [["viewBox", `0 0 ${width} ${height}`], ["width", width], ["height", height]]) layer.setAttribute(name, value);
+    }
+    this.still.replaceChildren(...still);
+  }
+
+  /** Where an event is on it. */
+  at(event) {
+    const frame = this.body.getBoundingClientRect();
+    return [event.clientX - frame.left, event.clientY - frame.top].map((value) => (value * this.width) / frame.width);
+  }
+}
+
+/** Show the instant that a reader has pressed on. */
+function seekTo(instant) {
+  if (instant === null || instant === undefined) return;
+  player.pause();
+  player.seek(instant);
+}
+
+/** Everything that can be an axis or a curve, by name; `t` and `over` are the instants. */
+function curveOf(name) {
+  if (name === "t") return { name, title: "time", unit: "s", values: instants.t };
+  if (name === "over" && over) return { name, title: over.joint, unit: over.unit, values: array(over.values) };
+  const one = seriesByName.get(name);
+  const ending = one.group === "section" ? ", largest along the link" : "";
+  return { name, title: titleOf(one) + ending, unit: one.unit, values: array(one.values), places: one.places === null ? null : array(one.places) };
+}
+
+/** A section force at a ratio of a link, over all instants. */
+function curveOfSection(section, force, ratio) {
+  const values = Float64Array.from({ length: instants.count }, (_, i) => sectionForce(section, force.name, i, ratio));
+  return { name: "", title: force.what, unit: force.unit, values };
+}
+
+/** The axis along which instants are shown where nothing else is asked for. */
+const alongInstants = over ? "over" : "t";
+
+/** The entries of a list of quantities, by kind. */
+function seriesEntries(wanted = () => true) {
+  const found = [];
+  for (const [group, head] of Object.entries(contents.groups)) {
+    const own = contents.series.filter((one) => one.group === group && wanted(one));
+    const words = group === "section" ? `${head}, largest along the link` : head;
+    if (own.length) found.push([words, own.map((one) => [one.name, titleOf(one)])]);
+  }
+  return found;
+}
+
+/** The ends of some values, and the room beside them. */
+function endsOf(arrays, withZero) {
+  let [low, high] = withZero ? [0, 0] : [Infinity, -Infinity];
+  for (const values of arrays) {
+    for (const value of values) {
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+  }
+  return low <= high ? [low, high] : [0, 1];
+}
+
+/** A scale: from values to points of the sheet. `factor` brings them to the unit that is read. */
+function scaled([low, high], [from, to], unit, title, room = 0) {
+  const { factor, unit: readable } = scaleFor(unit, Math.max(Math.abs(low), Math.abs(high)));
+  const wide = high - low || Math.abs(high) || 1;
+  const [a, b] = high > low ? [low - room * wide, high + room * wide] : [low - wide / 2, high + wide / 2];
+  const at = (value) => from + ((value - a) / (b - a)) * (to - from);
+  const back = (point) => a + ((point - from) / (to - from)) * (b - a);
+  const about = Math.max(2, Math.floor(Math.abs(to - from) / (to > from ? 76 : 34)));
+  const angular = readable === "deg";
+  const ticks = (angular ? angleTicks : ticksBetween)(a * factor, b * factor, about).map((tick) => [at(tick / factor), tick]);
+  const step = ticks.length > 1 ? Math.abs(ticks[1][1] - ticks[0][1]) : 1;
+  const decimals = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
+  const size = Math.max(...ticks.map(([, tick]) => Math.abs(tick)), 0);
+  const tell = (tick) => {
+    if (size >= 1e6 || (size && size < 1e-4)) return format(tick, 3);
+    const text = stripped(tick.toFixed(Math.min(8, decimals + 1)));
+    return minus(text === "-0" ? "0" : text);
+  };
+  return { at, back, ticks, tell, factor, unit: readable, label: labelled(title, readable), from, to };
+}
+
+/** The lines and numbers of two scales around a field. */
+function axesOf(x, y, { ground = true, bottom = true } = {}) {
+  const group = drawn("g", { class: "axes" });
+  for (const [at, tick] of y.ticks) {
+    group.append(drawn("line", { x1: x.from, x2: x.to, y1: at, y2: at, class: tick === 0 ? "zero" : "net" }));
+    group.append(drawn("text", { x: x.from - 7, y: at, class: "y" }, y.tell(tick)));
+  }
+  for (const [at, tick] of x.ticks) {
+    group.append(drawn("line", { x1: at, x2: at, y1: y.from, y2: y.to, class: "net" }));
+    if (bottom) group.append(drawn("text", { x: at, y: y.from + 15, class: "x" }, x.tell(tick)));
+  }
+  if (ground) group.append(drawn("line", { x1: x.from, x2: x.to, y1: y.from, y2: y.from, class: "edge" }));
+  return group;
+}
+
+/** A curve as the path of an element, broken where there are no numbers. */
+function pathOf(xs, ys, x, y) {
+  const parts = [];
+  let pen = "M";
+  for (let i = 0; i < xs.length; i += 1) {
+    if (!Number.isFinite(xs[i]) || !Number.isFinite(ys[i])) {
+      pen = "M";
+      continue;
+    }
+    parts.push(`${pen}${x.at(xs[i]).toFixed(1)} ${y.at(ys[i]).toFixed(1)}`);
+    pen = "L";
+  }
+  return parts.join("");
+}
+
+const tip = element("div", { class: "tip", role: "presentation", hidden: true });
+
+/** Show lines of names and values beside the pointer; none to hide them. */
+function showTip(event, head, lines) {
+  tip.hidden = !event;
+  if (!event) return;
+  tip.replaceChildren(
+    element("div", { class: "head" }, head),
+    element("dl", {}, lines.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)])),
+  );
+  const { width, height } = tip.getBoundingClientRect();
+  const x = event.clientX + 16 + width > window.innerWidth ? event.clientX - 16 - width : event.clientX + 16;
+  const y = Math.max(4, Math.min(window.innerHeight - height - 4, event.clientY + 14));
+  tip.style.left = `${Math.max(4, x)}px`;
+  tip.style.top = `${y}px`;
+}
+
+/** When an instant is, in words. */
+function whenIs(instant) {
+  return whenOf(instants.t[instant], over ? array(over.values)[instant] : null);
+}

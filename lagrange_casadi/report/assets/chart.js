@@ -1,0 +1,90 @@
+// Charts: quantities over time, over a drive, or over one another, those of each unit in a field of their own.
+
+const DASHES = ["", "7 3", "2 3", "10 3 2 3", "4 2", "1 2"];
+const FIELD = { left: 62, right: 14, top: 20, bottom: 40, height: 150, between: 24 };
+
+class Chart {
+  /** `x` is a curve, `curves` are those over it. Where x only ever rises, or falls, it is `ordered`, and an instant has one place on it. */
+  constructor(x, curves) {
+    this.x = x;
+    this.curves = curves;
+    this.sheet = new Sheet("curves", `${curves.map((curve) => curve.title).join("; ")}; over ${x.title}`, {
+      hover: (event) => this.hover(event),
+      press: (event) => seekTo(this.instantUnder(event)),
+    });
+    this.ordered = [1, -1].some((way) => x.values.every((value, i) => i === 0 || way * value > way * x.values[i - 1]));
+  }
+
+  draw(width) {
+    const units = [...new Set(this.curves.map((curve) => curve.unit))];
+    const high = units.length > 1 ? 0.8 * FIELD.height : FIELD.height * 1.15;
+    const height = FIELD.top + units.length * high + (units.length - 1) * FIELD.between + FIELD.bottom;
+    const across = scaled(endsOf([this.x.values], false), [FIELD.left, width - FIELD.right], this.x.unit, this.x.title, this.ordered ? 0 : 0.03);
+    this.across = across;
+    this.fields = units.map((unit, k) => {
+      const top = FIELD.top + k * (high + FIELD.between);
+      const own = this.curves.filter((curve) => curve.unit === unit);
+      const up = scaled(endsOf(own.map((curve) => curve.values), true), [top + high, top], unit, "", 0.06);
+      return { up, own, top, bottom: top + high };
+    });
+    this.sheet.fill(
+      width, height,
+      ...this.fields.map(({ up }, k) => axesOf(across, up, { bottom: k === this.fields.length - 1 })),
+      ...this.fields.map(({ up, top }) => drawn("text", { x: FIELD.left - 7, y: top - 7, class: "unit" }, up.unit || "1")),
+      drawn("text", { x: (FIELD.left + width - FIELD.right) / 2, y: height - 6, class: "label" }, across.label),
+      ...this.fields.flatMap(({ up, own }) => own.map((curve) => this.line(curve, up))),
+    );
+    this.mark(player.instant);
+  }
+
+  line(curve, up) {
+    const number = this.curves.indexOf(curve);
+    return drawn("path", {
+      d: pathOf(this.x.values, curve.values, this.across, up),
+      class: `curve of-${number % BODY_COLOURS}`,
+      "stroke-dasharray": DASHES[number % DASHES.length],
+    });
+  }
+
+  /** Mark an instant: a line where the axis has one place for it, and a dot on every curve. */
+  mark(instant, group = this.sheet.cursor) {
+    const x = this.across.at(this.x.values[instant]);
+    const dots = this.fields.flatMap(({ up, own }) =>
+      own
+        .filter((curve) => Number.isFinite(curve.values[instant]))
+        .map((curve) => drawn("circle", { cx: x, cy: up.at(curve.values[instant]), r: 3.6, class: `of-${this.curves.indexOf(curve) % BODY_COLOURS}` })),
+    );
+    const line = this.ordered ? [drawn("line", { x1: x, x2: x, y1: this.fields[0].top, y2: this.fields.at(-1).bottom })] : [];
+    group.replaceChildren(...line, ...dots);
+  }
+
+  instantUnder(event) {
+    const [px, py] = this.sheet.at(event);
+    let [best, away] = [null, Infinity];
+    for (let i = 0; i < instants.count; i += 1) {
+      const dx = this.across.at(this.x.values[i]) - px;
+      const dy = this.ordered ? 0 : Math.min(...this.fields.flatMap(({ up, own }) => own.map((curve) => Math.abs(up.at(curve.values[i]) - py))));
+      const d = Math.hypot(dx, dy);
+      if (d < away) [best, away] = [i, d];
+    }
+    return best;
+  }
+
+  hover(event) {
+    const found = event && this.instantUnder(event);
+    if (found === null || found === undefined) {
+      this.sheet.pointer.replaceChildren();
+      showTip(null);
+      return;
+    }
+    this.mark(found, this.sheet.pointer);
+    const lines = this.ordered ? [] : [[this.x.title, shown(this.x.values[found], this.x.unit, 5, largestOf(this.x.values))]];
+    showTip(event, whenIs(found), [...lines, ...this.curves.map((curve) => [curve.title, this.reads(curve, found)])]);
+  }
+
+  /** What a curve is at an instant, in words. */
+  reads(curve, instant) {
+    const value = shown(curve.values[instant], curve.unit, 5, largestOf(curve.values));
+    return curve.places ? `${value} at ξ/l = ${format(curve.places[instant], 3)}` : value;
+  }
+}

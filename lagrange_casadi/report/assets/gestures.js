@@ -1,0 +1,102 @@
+// Looking around with a mouse, with fingers, and by keys; and pointing at sections.
+
+/** Let a stage be turned, moved and zoomed; `point` hears of the section under the pointer, `pin` of one that is pressed. */
+function listenTo(stage, { point, pin }) {
+  const { paper } = stage;
+  const { canvas } = paper;
+  const pointers = new Map();
+  let moved = 0;
+
+  const at = (event) => {
+    const frame = canvas.getBoundingClientRect();
+    return [event.clientX - frame.left, event.clientY - frame.top];
+  };
+
+  const zoom = (factor, [x, y]) => {
+    const { camera, width, height } = paper;
+    const to = Math.max(1e-6, Math.min(1e9, camera.scale * factor));
+    const real = to / camera.scale;
+    camera.shift = [
+      x - width / 2 - real * (x - width / 2 - camera.shift[0]),
+      y - height / 2 - real * (y - height / 2 - camera.shift[1]),
+    ];
+    camera.scale = to;
+    changed();
+  };
+
+  const pan = (dx, dy) => {
+    paper.camera.shift = [paper.camera.shift[0] + dx, paper.camera.shift[1] + dy];
+    changed();
+  };
+
+  const orbit = (dx, dy) => {
+    paper.turnTo(paper.camera.azimuth - 0.4 * dx, paper.camera.elevation + 0.4 * dy);
+    changed();
+  };
+
+  const changed = () => {
+    stage.touched = true;
+    stage.draw();
+  };
+
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    pointers.set(event.pointerId, at(event));
+    moved = 0;
+  });
+
+  canvas.addEventListener("pointermove", (event) => {
+    const now = at(event);
+    const before = pointers.get(event.pointerId);
+    if (!before) {
+      point(sectionUnder(paper, stage.instant, ...now), event);
+      return;
+    }
+    const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
+    moved += Math.abs(dx) + Math.abs(dy);
+    if (pointers.size === 2) {
+      const other = [...pointers.entries()].find(([id]) => id !== event.pointerId)[1];
+      const spread = (one) => Math.hypot(one[0] - other[0], one[1] - other[1]);
+      pan(dx / 2, dy / 2);
+      zoom(spread(now) / (spread(before) || 1), [(now[0] + other[0]) / 2, (now[1] + other[1]) / 2]);
+    } else if (!contents.space || event.shiftKey || event.buttons > 1) pan(dx, dy);
+    else orbit(dx, dy);
+    pointers.set(event.pointerId, now);
+  });
+
+  const leave = (event) => {
+    if (pointers.has(event.pointerId) && event.type === "pointerup" && moved < 5) {
+      const found = sectionUnder(paper, stage.instant, ...at(event));
+      if (found) pin(found);
+    }
+    pointers.delete(event.pointerId);
+  };
+  for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, leave);
+  canvas.addEventListener("pointerleave", () => point(null));
+  canvas.addEventListener("dblclick", () => stage.fit());
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  canvas.addEventListener(
+    "wheel",
+    (event) => {
+      // The page goes on scrolling over a picture in which nobody is at work.
+      if (!event.ctrlKey && document.activeElement !== canvas) return;
+      event.preventDefault();
+      zoom(Math.exp(-0.0015 * event.deltaY * (event.deltaMode ? 30 : 1)), at(event));
+    },
+    { passive: false },
+  );
+  canvas.addEventListener("keydown", (event) => {
+    const middle = [paper.width / 2, paper.height / 2];
+    const keys = {
+      "+": () => zoom(1.2, middle),
+      "=": () => zoom(1.2, middle),
+      "-": () => zoom(1 / 1.2, middle),
+      ArrowLeft: () => event.altKey && (contents.space ? orbit(20, 0) : pan(30, 0)),
+      ArrowRight: () => event.altKey && (contents.space ? orbit(-20, 0) : pan(-30, 0)),
+      ArrowUp: () => (contents.space ? orbit(0, 20) : pan(0, 30)),
+      ArrowDown: () => (contents.space ? orbit(0, -20) : pan(0, -30)),
+    };
+    if (keys[event.key] && keys[event.key]() !== false) event.preventDefault();
+  });
+  return { zoomBy: (factor) => zoom(factor, [paper.width / 2, paper.height / 2]) };
+}

@@ -1,0 +1,75 @@
+// The forces inside links: the law of each link summed up as the file's own grids are.
+
+const sections = contents.sections.map((entry) => {
+  const loads = entry.loads.map((load) => {
+    const { name, ...members } = load;
+    return { name, ...Object.fromEntries(Object.entries(members).map(([member, number]) => [member, array(number)])) };
+  });
+  const forces = new Map(entry.forces.map((force) => [force.name, force]));
+  return { link: entry.link, length: entry.length, xi: array(entry.xi), loads, forces };
+});
+
+const sectionByLink = new Map(sections.map((section) => [section.link, section]));
+
+/** A force at an instant, at the ratio with a number, on the tip's side of a station. */
+function sectionForce(section, name, instant, ratio) {
+  return forceAt(section, section.forces.get(name), instant, section.xi[ratio], (row) => row[ratio], "tip");
+}
+
+/** A force at any ratio, by straight lines between those of which the functions along the link are known. */
+function sectionForceAt(section, name, instant, xi, side = "tip") {
+  const last = section.xi.length - 1;
+  const left = Math.max(0, Math.min(last - 1, Math.floor(xi * last)));
+  const part = xi * last - left;
+  const between = (row) => (part ? row[left] + part * (row[left + 1] - row[left]) : row[left]);
+  return forceAt(section, section.forces.get(name), instant, xi, between, side);
+}
+
+function forceAt(section, force, instant, xi, along, side) {
+  if (force.parts.length) {
+    return Math.hypot(...force.parts.map((part) => forceAt(section, section.forces.get(part), instant, xi, along, side)));
+  }
+  let sum = 0;
+  for (const [coefficient, row, sign] of force.terms) sum += sign * array(coefficient)[instant] * along(array(row));
+  for (const load of section.loads) {
+    const station = load.station[instant];
+    const seen = side === "tip" ? xi < station : xi <= station;
+    if (seen || (xi >= 1 && station >= 1)) {
+      sum += load[force.acting][instant];
+      if (force.arm) sum += force.arm * section.length * load[force.across][instant] * (station - xi);
+    }
+  }
+  return sum;
+}
+
+/** A force along a link at an instant: ratios and values, twice at each station. */
+function forceAlong(section, name, instant, step = 2) {
+  const ratios = [];
+  const values = [];
+  const stations = [...new Set(section.loads.map((load) => load.station[instant]))].filter((u) => u > 0 && u < 1).sort((a, b) => a - b);
+  const put = (xi, side) => {
+    ratios.push(xi);
+    values.push(sectionForceAt(section, name, instant, xi, side));
+  };
+  let next = 0;
+  for (let k = 0; k < section.xi.length; k += step) {
+    const xi = section.xi[k];
+    while (next < stations.length && stations[next] <= xi) {
+      put(stations[next], "base");
+      put(stations[next], "tip");
+      next += 1;
+    }
+    if (!stations.includes(xi)) put(xi, "tip");
+  }
+  return { ratios, values };
+}
+
+/** The forces of a link that equilibrium determines. */
+function knownForces(section) {
+  return [...section.forces.values()].filter((force) => !force.open);
+}
+
+/** Whether a force has a sign: resultants have none. */
+function signed(force) {
+  return force.parts.length === 0;
+}

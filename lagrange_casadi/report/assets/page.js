@@ -1,0 +1,185 @@
+// The page: its head, the picture with what it shows, the cards, the tables; light and dark, units, print.
+
+function buildPage() {
+  const canvas = element("canvas", { class: "picture", tabindex: 0, role: "img", "aria-label": `The mechanism ${contents.case} in motion` });
+  const root = document.getElementById("report");
+  deck.list = element("div", { class: "cards" });
+  const frame = element("div", { class: "frame" }, canvas);
+  const left = element("div", { class: "left" }, frame);
+  root.append(
+    headOf(), glanceOf(), element("div", { class: "desk" }, left, element("div", { class: "right" }, deck.list, addingBar())),
+    element("div", { class: "tables" }, resultTables(showRow)), element("div", { class: "facts" }, factSections()), tip, said,
+  );
+  const stage = new Stage(canvas);
+  deck.stage = stage;
+  const gestures = listenTo(stage, { point: (found, event) => pointAt(stage, found, event), pin: (found) => pinSection(found) });
+  frame.append(viewBar(stage, gestures));
+  left.append(transportBar(), showBar(stage));
+  stage.layOut();
+  firstCards();
+  watch(stage, canvas);
+  player.seek(0);
+  if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches) player.play();
+}
+
+/** The name, what was evaluated, whether it was certified, and the switches. */
+function headOf() {
+  const { state } = contents.certificate;
+  const badge = { certified: ["✓ certified", "certified"], failed: ["✗ the certificate fails", "failed"], none: ["no certificate", "none"] }[state];
+  const shownOf = instants.count < instants.total ? `, ${instants.count} of them shown` : "";
+  const span = () => `${instants.total} instant${instants.total > 1 ? "s" : ""}${shownOf}, t = ${[0, -1].map((k) => shown(instants.t.at(k), "s", 5, Math.abs(instants.t.at(-1)))).join(" to ")}`;
+  const told = element("p", { class: "told" }, span());
+  reading.watchers.add(() => (told.textContent = span()));
+  const si = element("button", { type: "button", class: "switch", "aria-pressed": "false", title: "Units of the file: SI, without prefixes", click: () => {
+    setSi(!reading.si);
+    si.setAttribute("aria-pressed", String(reading.si));
+  } }, "SI units");
+  const themes = ["auto", "light", "dark"];
+  const theme = element("button", { type: "button", class: "switch", title: "Light or dark", click: () => {
+    const next = themes[(themes.indexOf(document.documentElement.dataset.theme ?? "auto") + 1) % 3];
+    if (next === "auto") delete document.documentElement.dataset.theme;
+    else document.documentElement.dataset.theme = next;
+    theme.textContent = `◐ ${next}`;
+    repaint();
+  } }, "◐ auto");
+  const print = element("button", { type: "button", class: "switch", click: () => window.print() }, "Print");
+  return element("header", { class: "head" },
+    element("div", {}, element("h1", {}, contents.case), told),
+    element("span", { class: `badge ${badge[1]}` }, badge[0]),
+    element("div", { class: "switches" }, si, theme, print));
+}
+
+/** What is largest, at a glance: press one to see when and where it is. */
+function glanceOf() {
+  const groups = [["effort", () => true], ["reaction", (row) => row.name.endsWith(":resultant")], ["section", (row) => row.name.endsWith(":axial")], ["section", (row) => row.name.endsWith(":shear")], ["section", (row) => row.name.endsWith(":bending")]];
+  const tiles = groups.flatMap(([group, filter]) => {
+    const rows = contents.rows.filter((row) => row.group === group && !row.open && filter(row));
+    return rows.length ? [rows.reduce((best, row) => (Math.abs(row.peak.value) > Math.abs(best.peak.value) ? row : best))] : [];
+  });
+  const fill = () => tiles.map((row) => {
+    const where = row.peak.xi === null ? "" : ` · ξ/l = ${row.peak.xi.toFixed(2)}`;
+    return element("button", { type: "button", class: "tile", title: "Show when and where", click: () => showRow(row) },
+      element("span", { class: "what" }, `Largest ${row.what.replace("resultant ", "")}`),
+      element("b", {}, shown(row.peak.value, row.unit, 4)),
+      element("span", { class: "where" }, `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}`));
+  });
+  const bar = element("div", { class: "glance" }, fill());
+  reading.watchers.add(() => bar.replaceChildren(...fill()));
+  return bar;
+}
+
+/** Show when a row peaks; of a section force also where, with its ribbon. */
+function showRow(row) {
+  const { stage } = deck;
+  player.pause();
+  player.seek(instantAt(row.peak.t));
+  if (row.group === "section") {
+    const section = sectionByLink.get(row.part);
+    const force = row.name.slice(`section:${row.part}:`.length);
+    stage.show("ribbon", force);
+    document.querySelector(".shows .ribbon").value = force;
+    pinSection({ section, ratio: Math.round(row.peak.xi * (section.xi.length - 1)) }, false);
+  }
+  deck.stage.paper.canvas.scrollIntoView({ block: "nearest", behavior: "smooth" });
+  announce(`${titleOf(row)}: ${shown(row.peak.value, row.unit)}, ${whenOf(row.peak.t, row.peak.over)}`);
+}
+
+function pointAt(stage, found, event) {
+  const same = (a, b) => a === b || (a && b && a.section === b.section && a.ratio === b.ratio);
+  if (!same(found, stage.pointed)) {
+    stage.pointed = found;
+    if (!player.playing) stage.draw();
+  }
+  if (!found) {
+    showTip(null);
+    return;
+  }
+  const xi = found.section.xi[found.ratio];
+  showTip(event, `${found.section.link} at ξ/l = ${format(xi, 3)}`, sectionLines(found.section, found.ratio, stage.instant));
+}
+
+function viewBar(stage, gestures) {
+  return element("div", { class: "views", role: "group", "aria-label": "View" },
+    VIEWS.map(([key, words, angles]) => element("button", { type: "button", title: `${words} (${key})`, click: () => stage.view(...angles) }, words)),
+    signButton("+", "Nearer (+)", () => gestures.zoomBy(1.25)),
+    signButton("−", "Farther (-)", () => gestures.zoomBy(0.8)),
+    element("button", { type: "button", title: "All of it (F, or a double click)", click: () => stage.fit() }, "Fit"));
+}
+
+/** What is shown on the mechanism: arrows, ribbons, names. */
+function showBar(stage) {
+  const box = (what, words) => element("label", { class: `show ${what}` },
+    element("input", { type: "checkbox", checked: stage.shows[what], change: (event) => stage.show(what, event.target.checked) }), ` ${words}`);
+  const kinds = Object.entries(KINDS).filter(([kind]) => actions.some((action) => action.kind === kind));
+  const ribbons = ribbonForces.length > 0 && chooser("Section force along links", [...ribbonForces.map((force) => [force.name, force.what]), ["", "no section force"]], stage.shows.ribbon, (name) => stage.show("ribbon", name));
+  if (ribbons) ribbons.classList.add("ribbon");
+  const size = element("input", { type: "range", min: -1.5, max: 1.5, step: 0.05, value: 0, class: "size", "aria-label": "Length of arrows and ribbons", input: () => {
+    stage.size = 2 ** Number(size.value);
+    stage.measure();
+    stage.draw();
+  } });
+  const signs = element("span", { class: "signs" }, element("i", { class: "positive" }), " + ", element("i", { class: "negative" }), " −");
+  return element("div", { class: "shows", role: "group", "aria-label": "Shown on the mechanism" },
+    ribbons, ribbons && signs, kinds.map(([kind, words]) => box(kind, words)), box("values", "values"), box("names", "names"), box("traces", "paths"),
+    (kinds.length || ribbons) && element("label", { class: "scale" }, "scale ", size));
+}
+
+/** Draw all anew, in the colours that the page has now. */
+function repaint() {
+  deck.stage.layOut();
+  for (const card of deck.cards) card.draw();
+}
+
+function watch(stage, canvas) {
+  let spoken = 0;
+  player.watchers.add((instant) => {
+    stage.draw(instant);
+    for (const card of deck.cards) card.mark(instant);
+    if (!player.playing && performance.now() - spoken > 300) {
+      spoken = performance.now();
+      canvas.setAttribute("aria-label", `The mechanism ${contents.case} at ${whenIs(instant)}`);
+    }
+  });
+  reading.watchers.add(() => {
+    for (const card of deck.cards) card.renew();
+    stage.draw();
+  });
+  let width = 0;
+  new ResizeObserver(() => {
+    stage.layOut();
+    if (deck.list.clientWidth !== width) {
+      width = deck.list.clientWidth;
+      for (const card of deck.cards) card.draw();
+    }
+  }).observe(deck.list.parentElement.parentElement);
+  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
+  listenToKeys(stage);
+  listenToPrinter(stage);
+}
+
+/** On paper: light, still, and as sharp as the printer. */
+function listenToPrinter(stage) {
+  let before;
+  window.addEventListener("beforeprint", () => {
+    before = { theme: document.documentElement.dataset.theme, playing: player.playing };
+    player.pause();
+    document.documentElement.dataset.theme = "light";
+    stage.paper.readInks();
+    stage.paper.resize(1060, 560, 3);
+    if (!stage.touched) stage.paper.fit(stage.ends);
+    stage.draw();
+    for (const card of deck.cards) {
+      card.seen = true;
+      card.draw();
+    }
+  });
+  window.addEventListener("afterprint", () => {
+    if (!before) return;
+    if (before.theme) document.documentElement.dataset.theme = before.theme;
+    else delete document.documentElement.dataset.theme;
+    repaint();
+    if (before.playing) player.play();
+  });
+}
+
+buildPage();

@@ -1,0 +1,134 @@
+// The instant that is shown, and its going on in time.
+
+class Player {
+  constructor() {
+    this.instant = 0;
+    this.playing = false;
+    this.seconds = 4; // that a whole cycle takes on the screen
+    this.watchers = new Set();
+    this.time = instants.t[0];
+    this.span = instants.t[instants.count - 1] - instants.t[0];
+    this.before = null;
+  }
+
+  /** Show an instant by its number, and tell all who watch. */
+  seek(instant) {
+    this.instant = Math.max(0, Math.min(instants.count - 1, instant));
+    this.time = instants.t[this.instant];
+    for (const watcher of this.watchers) watcher(this.instant);
+  }
+
+  step(count) {
+    this.pause();
+    this.seek((this.instant + count + instants.count) % instants.count);
+  }
+
+  play() {
+    if (this.playing || !(this.span > 0)) return;
+    this.playing = true;
+    this.before = null;
+    requestAnimationFrame((now) => this.tick(now));
+    for (const watcher of this.watchers) watcher(this.instant);
+  }
+
+  pause() {
+    if (!this.playing) return;
+    this.playing = false;
+    for (const watcher of this.watchers) watcher(this.instant);
+  }
+
+  toggle() {
+    if (this.playing) this.pause();
+    else this.play();
+  }
+
+  tick(now) {
+    if (!this.playing) return;
+    if (this.before !== null) {
+      const first = instants.t[0];
+      const way = this.time - first + ((now - this.before) / 1000 / this.seconds) * this.span;
+      const time = first + (way % this.span);
+      const instant = instantAt(time);
+      if (instant !== this.instant) this.seek(instant);
+      this.time = time;
+    }
+    this.before = now;
+    requestAnimationFrame((next) => this.tick(next));
+  }
+}
+
+const player = new Player();
+
+/** The bar under the picture: play, pause, steps, the instant, the speed. */
+function transportBar() {
+  const over = contents.instants.over;
+  const play = signButton(icon("play"), "Play", () => player.toggle(), { class: "sign play" });
+  const slider = element("input", {
+    type: "range", min: 0, max: instants.count - 1, step: 1, value: 0, "aria-label": "Instant",
+    input: () => {
+      player.pause();
+      player.seek(Number(slider.value));
+    },
+  });
+  const readout = element("output", { class: "readout" });
+  const speeds = [1, 2, 4, 8, 16, 60];
+  const ratio = (seconds) => {
+    const times = player.span / seconds;
+    return times >= 1 ? `${format(times, 2)} : 1` : `1 : ${format(1 / times, 2)}`;
+  };
+  const speed = chooser(
+    "Speed, against real time", speeds.map((seconds) => [String(seconds), `${seconds} s a cycle, ${ratio(seconds)}`]), "4", (value) => {
+      player.seconds = Number(value);
+    },
+  );
+  let playing = false;
+  const tell = (instant) => {
+    if (playing !== player.playing) {
+      playing = player.playing;
+      play.replaceChildren(icon(playing ? "pause" : "play"));
+    }
+    const words = player.playing ? "Pause" : "Play";
+    play.setAttribute("aria-label", words);
+    play.title = `${words} (space)`;
+    slider.value = instant;
+    const when = whenOf(instants.t[instant], over ? array(over.values)[instant] : null);
+    slider.setAttribute("aria-valuetext", when);
+    readout.textContent = when;
+  };
+  player.watchers.add(tell);
+  reading.watchers.add(() => tell(player.instant));
+  tell(0);
+  return element(
+    "div", { class: "transport", role: "group", "aria-label": "Motion" },
+    signButton(icon("back"), "One instant back (left arrow)", () => player.step(-1)),
+    play,
+    signButton(icon("on"), "One instant on (right arrow)", () => player.step(1)),
+    slider, readout, speed,
+  );
+}
+
+/** Keys for the whole page, where no field or list has them. */
+function listenToKeys(stage) {
+  document.addEventListener("keydown", (event) => {
+    const of = event.target;
+    if (event.ctrlKey || event.metaKey || event.altKey || of.matches?.("input, select, textarea, [contenteditable]")) return;
+    if (event.key === " " && of.matches?.("button, a, summary")) return;
+    const keys = {
+      " ": () => player.toggle(),
+      ArrowLeft: () => player.step(event.shiftKey ? -10 : -1),
+      ArrowRight: () => player.step(event.shiftKey ? 10 : 1),
+      Home: () => player.step(-player.instant),
+      End: () => player.step(instants.count - 1 - player.instant),
+      f: () => stage.fit(),
+      ...Object.fromEntries(VIEWS.map(([key, , angles]) => [key, () => stage.view(...angles)])),
+    };
+    if (!keys[event.key]) return;
+    keys[event.key]();
+    event.preventDefault();
+  });
+}
+
+/** Standard views: their key, words and angles [deg]. */
+const VIEWS = contents.space
+  ? [["1", "Slanted", [-60, 25]], ["2", "Front", [-90, 0]], ["3", "Right", [0, 0]], ["4", "Above", [-90, 90]]]
+  : [];

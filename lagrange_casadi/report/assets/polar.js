@@ -1,0 +1,103 @@
+// Polar plots of what a joint bears: the way of the force's end, in ground axes or on a body, as a bearing or its pin sees it.
+
+/** The plots that a joint offers: [value, words, pair of columns]. */
+function polarWays(joint) {
+  const column = (member) => seriesByName.get(`reaction:${joint.name}:${member}`);
+  const pairs = contents.space ? [["fx", "fy"], ["fy", "fz"], ["fx", "fz"], ["fu", "fv"], ["fv", "fw"], ["fu", "fw"]] : [["fx", "fy"]];
+  const found = [];
+  for (const pair of pairs) {
+    const columns = pair.map(column);
+    if (!columns.every(Boolean)) continue;
+    const own = "uvw".includes(pair[0][1]);
+    const words = contents.space ? `${pair.join(", ")} ${own ? "on the joint's own axes" : "in ground axes"}` : "in ground axes";
+    found.push({ words, pair, columns: columns.map((one) => array(one.values)), body: null });
+  }
+  if (!contents.space && found.length) {
+    for (const body of new Set([joint.parent.body, joint.child.body])) {
+      if (body === "ground" || bodies.get(body).kind === "point") continue;
+      found.push({ ...found[0], pair: ["along", "across"], words: `on ${body}, along and across its axis`, body });
+    }
+  }
+  return found;
+}
+
+/** Joints whose reactions can be plotted. */
+function polarJoints() {
+  return contents.joints.filter((joint) => polarWays(joint).length);
+}
+
+class Polar {
+  constructor(joint, way) {
+    this.joint = joint;
+    this.way = way;
+    this.sheet = new Sheet("polar", `reaction of ${joint.name}, ${way.words}`, {
+      hover: (event) => this.hover(event),
+      press: (event) => seekTo(this.instantUnder(event)),
+    });
+    this.points = Array.from({ length: instants.count }, (_, i) => {
+      const [x, y] = way.columns.map((values) => values[i]);
+      if (!way.body) return [x, y];
+      const [, e, n] = frameOf(way.body, i);
+      return [x * e[0] + y * e[1], x * n[0] + y * n[1]];
+    });
+  }
+
+  draw(width) {
+    const side = Math.min(width, 380);
+    const half = side / 2;
+    this.middle = [width / 2, half];
+    const most = Math.max(...this.points.map(([x, y]) => Math.hypot(x, y)).filter(Number.isFinite), 0) || 1;
+    const { factor, unit } = scaleFor("N", most);
+    this.scale = (half - 30) / most;
+    const rings = ticksBetween(0, most * factor, 3).filter((tick) => tick > 0).map((tick) => [((tick / factor) * this.scale), tick]);
+    const [cx, cy] = this.middle;
+    const [right, up] = this.way.pair;
+    const d = this.points.map(([x, y], i) => `${i ? "L" : "M"}${(cx + x * this.scale).toFixed(1)} ${(cy - y * this.scale).toFixed(1)}`).join("");
+    this.sheet.fill(
+      width, side,
+      drawn("g", { class: "axes" },
+        rings.map(([r]) => drawn("circle", { cx, cy, r, class: "net" })),
+        drawn("line", { x1: cx - half + 22, x2: cx + half - 22, y1: cy, y2: cy, class: "zero" }),
+        drawn("line", { x1: cx, x2: cx, y1: 22, y2: side - 22, class: "zero" }),
+        rings.map(([r, tick], k) => drawn("text", { x: cx + 0.707 * r + 3, y: cy - 0.707 * r - 3, class: "ring" }, `${format(tick, 3)}${k === rings.length - 1 ? ` ${unit}` : ""}`)),
+        drawn("text", { x: cx + half - 18, y: cy + 4, class: "ring" }, right),
+        drawn("text", { x: cx, y: 16, class: "x" }, up)),
+      drawn("path", { d, class: "curve of-0" }),
+    );
+    this.mark(player.instant);
+  }
+
+  mark(instant, group = this.sheet.cursor) {
+    const [x, y] = this.points[instant];
+    const [cx, cy] = this.middle;
+    const [px, py] = [cx + x * this.scale, cy - y * this.scale];
+    group.replaceChildren(drawn("line", { x1: cx, y1: cy, x2: px, y2: py, class: "arm" }), drawn("circle", { cx: px, cy: py, r: 4, class: "of-0" }));
+  }
+
+  instantUnder(event) {
+    const [at, down] = this.sheet.at(event);
+    const [px, py] = [at - this.middle[0], this.middle[1] - down];
+    let [best, away] = [0, Infinity];
+    this.points.forEach(([x, y], i) => {
+      const d = Math.hypot(x * this.scale - px, y * this.scale - py);
+      if (d < away) [best, away] = [i, d];
+    });
+    return best;
+  }
+
+  hover(event) {
+    if (!event) {
+      this.sheet.pointer.replaceChildren();
+      showTip(null);
+      return;
+    }
+    const found = this.instantUnder(event);
+    this.mark(found, this.sheet.pointer);
+    const [x, y] = this.points[found];
+    const most = Math.max(...this.points.map(([px, py]) => Math.hypot(px, py)));
+    const told = (value) => shown(value, "N", 5, most);
+    const turn = ((Math.atan2(y, x) * 180) / Math.PI).toFixed(1);
+    const [right, up] = this.way.pair;
+    showTip(event, whenIs(found), [[right, told(x)], [up, told(y)], ["size", told(Math.hypot(x, y))], ["direction", `${minus(turn)} deg`]]);
+  }
+}

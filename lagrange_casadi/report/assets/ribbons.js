@@ -1,0 +1,106 @@
+// Section forces as ribbons along moving links: ordinates to one scale, positive ones plain, negative ones hatched.
+
+/** The section forces that can be chosen, in the order of the table. */
+const ribbonForces = (() => {
+  const found = new Map();
+  for (const section of sections) for (const force of knownForces(section)) found.set(force.name, force);
+  const order = contents.sections.length ? contents.sections[0].forces.map((force) => force.name) : [];
+  return order.filter((name) => found.has(name)).map((name) => found.get(name));
+})();
+
+/** The largest size of a section force, over all links and instants: from the file's own peaks. */
+function largestSection(name) {
+  const peaks = sections.map((section) => rowByName.get(`section:${section.link}:${name}`)?.peak?.value ?? 0);
+  return largestOf(peaks);
+}
+
+/** Towards which side of a link the ordinates of a force are drawn: its y, or in space its z where the force lies in that plane. */
+function sideOf(link, name, instant) {
+  return directionOf(link, name === "shear_z" || name === "bending_y" ? [0, 0, 1] : [0, 1, 0], instant);
+}
+
+/** The ribbons of a force on all links; `scale` is in metres of the sheet for a unit. */
+function drawRibbons(paper, instant, name, scale) {
+  for (const section of sections) {
+    const force = section.forces.get(name);
+    if (!force.open) drawRibbon(paper, section, force, instant, scale);
+  }
+}
+
+function drawRibbon(paper, section, force, instant, scale) {
+  const { ratios, values } = forceAlong(section, force.name, instant);
+  const side = sideOf(section.link, force.name, instant);
+  const [base, tip] = [0, section.length].map((x) => placeOf(section.link, [x, 0, 0], instant));
+  const axis = ratios.map((u) => paper.on([0, 1, 2].map((k) => base[k] + u * (tip[k] - base[k]))));
+  const [dx, dy] = paper.along(side);
+  const edge = axis.map(([x, y], k) => [x + values[k] * scale * dx, y + values[k] * scale * dy]);
+  const depth = (axis[0][2] + axis[axis.length - 1][2]) / 2;
+  paper.put(ORDER.ribbons, depth, (context) => {
+    for (const sign of [1, -1]) {
+      const ink = sign > 0 ? paper.inks.positive : paper.inks.negative;
+      context.beginPath();
+      for (const part of partsOf(values, axis, edge, sign)) {
+        part.forEach(([x, y], k) => (k ? context.lineTo(x, y) : context.moveTo(x, y)));
+        context.closePath();
+      }
+      context.fillStyle = sheer(ink, sign > 0 ? 0.34 : 0.16);
+      context.fill();
+      if (sign < 0) {
+        context.fillStyle = paper.hatched(ink);
+        context.fill();
+      }
+      context.strokeStyle = ink;
+      context.lineWidth = 1.3;
+      context.stroke();
+    }
+  });
+}
+
+/** The areas between an axis and an edge where values have a sign, cut where they pass through zero. */
+function partsOf(values, axis, edge, sign) {
+  const found = [];
+  let upper = [];
+  let lower = [];
+  const close = () => {
+    if (upper.length > 1) found.push([...lower, ...upper.reverse()]);
+    [upper, lower] = [[], []];
+  };
+  for (let k = 0; k < values.length; k += 1) {
+    const here = sign * values[k] > 0;
+    const before = k > 0 && sign * values[k - 1] > 0;
+    if (k > 0 && here !== before) {
+      const part = values[k - 1] / (values[k - 1] - values[k]);
+      const zero = Number.isFinite(part) ? [0, 1].map((c) => axis[k - 1][c] + part * (axis[k][c] - axis[k - 1][c])) : axis[k];
+      upper.push(zero);
+      lower.push(zero);
+      if (!here) close();
+    }
+    if (here) {
+      upper.push(edge[k]);
+      lower.push(axis[k]);
+    }
+  }
+  close();
+  return found;
+}
+
+/** What the section nearest to a point of the sheet is, within so many points of it: the link and the number of its ratio. */
+function sectionUnder(paper, instant, x, y, within = 18) {
+  let best = null;
+  for (const section of sections) {
+    const [base, tip] = [0, section.length].map((at) => paper.on(placeOf(section.link, [at, 0, 0], instant)));
+    const [dx, dy] = [tip[0] - base[0], tip[1] - base[1]];
+    const along = Math.max(0, Math.min(1, ((x - base[0]) * dx + (y - base[1]) * dy) / (dx * dx + dy * dy || 1)));
+    const away = Math.hypot(base[0] + along * dx - x, base[1] + along * dy - y);
+    if (away < within && (!best || away < best.away)) best = { section, ratio: Math.round(along * (section.xi.length - 1)), away };
+  }
+  return best;
+}
+
+/** What a section bears at an instant, in words: lines of a name and a value. */
+function sectionLines(section, ratio, instant) {
+  return knownForces(section).map((force) => {
+    const value = sectionForce(section, force.name, instant, ratio);
+    return [force.what, shown(value, force.unit)];
+  });
+}

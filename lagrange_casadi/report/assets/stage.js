@@ -1,0 +1,255 @@
+// The picture of the mechanism: everything that is drawn of an instant, and what is chosen to be drawn.
+
+const LONGEST = 0.2; // The longest arrow or ordinate, over the mechanism's size.
+
+class Stage {
+  constructor(canvas) {
+    this.paper = new Paper(canvas);
+    this.instant = 0;
+    const bending = ribbonForces.find((force) => force.name === "bending") ?? ribbonForces[0];
+    this.shows = { reaction: true, effort: true, load: true, ribbon: bending?.name ?? "", names: true, traces: true, values: false };
+    this.size = 1;
+    this.pinned = null;
+    this.pointed = null;
+    this.touched = false;
+    this.measure();
+    this.ends = arrowEnds(this.shows, this.scale);
+  }
+
+  /** Find the scales anew, for what is shown now. */
+  measure() {
+    const [force, moment] = [false, true].map((turning) => largestAction(this.shows, turning));
+    const most = this.shows.ribbon ? largestSection(this.shows.ribbon) : 0;
+    const full = LONGEST * extent.size * this.size;
+    this.scale = {
+      force: force ? full / force : 0,
+      // In the plane a moment sweeps part of a turn; in space it is an arrow of a length.
+      moment: moment ? (contents.space ? full : Math.min(1, this.size)) / moment : 0,
+      ribbon: most ? full / most : 0,
+    };
+  }
+
+  layOut() {
+    this.paper.readInks();
+    this.paper.resize();
+    if (!this.touched) this.paper.fit(this.ends);
+    this.draw();
+  }
+
+  /** Look from somewhere, with all on the sheet. */
+  view(azimuth, elevation) {
+    this.paper.turnTo(azimuth, elevation);
+    this.fit();
+  }
+
+  fit() {
+    this.touched = false;
+    this.paper.fit(this.ends);
+    this.draw();
+  }
+
+  show(what, value) {
+    this.shows[what] = value;
+    this.measure();
+    this.draw();
+  }
+
+  draw(instant = this.instant) {
+    this.instant = instant;
+    const { paper, shows } = this;
+    paper.begin();
+    drawFloor(paper);
+    if (shows.traces) drawTraces(paper);
+    if (shows.ribbon && this.scale.ribbon) drawRibbons(paper, instant, shows.ribbon, this.scale.ribbon);
+    for (const body of bodies.values()) drawBody(paper, body, instant);
+    for (const load of contents.loads) {
+      if (load.kind === "spring") coil(paper, spotOf(load.spots[0], instant), spotOf(load.spots[1], instant), paper.inks.soft);
+    }
+    for (const joint of contents.joints) drawJoint(paper, joint, instant);
+    for (const path of contents.paths) drawPoint(paper, spotOf(path, instant));
+    drawActions(paper, instant, shows, this.scale, shows.values);
+    if (shows.names) drawNames(paper, instant);
+    for (const section of [this.pinned, this.pointed]) if (section) drawSection(paper, section, instant, section === this.pinned);
+    paper.end();
+    drawScales(this);
+  }
+}
+
+/** A faint net of round distances: on the level under a mechanism in space, behind one in the plane. */
+function drawFloor(paper) {
+  const { context } = paper;
+  paper.put(ORDER.floor, 0, () => {
+    context.strokeStyle = paper.inks.faint;
+    context.lineWidth = 1;
+    context.beginPath();
+    if (contents.space) floorOfSpace(paper, context);
+    else netOfPlane(paper, context);
+    context.stroke();
+  });
+}
+
+function netOfPlane(paper, context) {
+  const step = roundDistance(70 / paper.camera.scale);
+  const [zeroX, zeroY] = paper.on([0, 0, 0]);
+  const gap = step * paper.camera.scale;
+  for (let x = zeroX - Math.floor(zeroX / gap) * gap; x < paper.width; x += gap) {
+    context.moveTo(Math.round(x) + 0.5, 0);
+    context.lineTo(Math.round(x) + 0.5, paper.height);
+  }
+  for (let y = zeroY - Math.floor(zeroY / gap) * gap; y < paper.height; y += gap) {
+    context.moveTo(0, Math.round(y) + 0.5);
+    context.lineTo(paper.width, Math.round(y) + 0.5);
+  }
+}
+
+function floorOfSpace(paper, context) {
+  const [right, away, up] = contents.upright;
+  const low = Math.min(...allPlaces.map((place) => dot(place, up))) - 0.06 * extent.size;
+  const step = roundDistance(extent.size / 8);
+  const [a, b] = [right, away].map((axis) => Math.round(dot(extent.middle, axis) / step));
+  const at = (i, j) => paper.on(plus(plus(times(right, (a + i) * step), away, (b + j) * step), up, low));
+  const reach = 6;
+  for (let k = -reach; k <= reach; k += 1) {
+    for (const [from, to] of [[at(k, -reach), at(k, reach)], [at(-reach, k), at(reach, k)]]) {
+      context.moveTo(from[0], from[1]);
+      context.lineTo(to[0], to[1]);
+    }
+  }
+}
+
+/** The nearest of 1, 2, 5 times a power of ten. */
+function roundDistance(rough) {
+  const power = 10 ** Math.floor(Math.log10(rough));
+  return power * [1, 2, 5, 10].find((part) => part * power >= rough * 0.999);
+}
+
+const traces = (() => {
+  const step = Math.max(1, Math.ceil(instants.count / 240));
+  const numbers = Array.from({ length: Math.ceil(instants.count / step) }, (_, k) => k * step);
+  if (numbers.at(-1) !== instants.count - 1) numbers.push(instants.count - 1);
+  const of = (spot) => numbers.map((i) => spotOf(spot, i));
+  const moved = (points) => points.some((point) => sizeOf(less(point, points[0])) > 1e-6 * extent.size);
+  const joints = contents.joints.map((joint) => ({ own: false, points: of(joint.child) }));
+  const paths = contents.paths.map((path) => ({ own: true, points: of(path) }));
+  return [...joints, ...paths].filter((trace) => moved(trace.points));
+})();
+
+function drawTraces(paper) {
+  for (const { own, points } of traces) {
+    const line = points.map((point) => paper.on(point));
+    paper.put(ORDER.traces, Number(own), (context) => {
+      lineThrough(context, line);
+      context.strokeStyle = own ? paper.inks.path : sheer(paper.inks.soft, 0.45);
+      context.lineWidth = own ? 1.8 : 1;
+      context.stroke();
+    });
+  }
+}
+
+function drawPoint(paper, place) {
+  const [x, y] = paper.on(place);
+  paper.put(ORDER.joints, Infinity, (context) => {
+    context.translate(x, y);
+    context.rotate(Math.PI / 4);
+    context.fillStyle = paper.inks.path;
+    context.fillRect(-4, -4, 8, 8);
+  });
+}
+
+/** A section that is pointed at, or pinned: a cut across its link. */
+function drawSection(paper, { section, ratio }, instant, pinned) {
+  const at = placeOf(section.link, [section.xi[ratio] * section.length, 0, 0], instant);
+  const [x, y] = paper.on(at);
+  const [dx, dy] = paper.along(directionOf(section.link, [1, 0, 0], instant));
+  const size = Math.hypot(dx, dy) || 1;
+  const half = 2.2 * pinSize(paper);
+  paper.put(ORDER.names, -1, (context) => {
+    context.strokeStyle = paper.inks.accent;
+    context.lineWidth = pinned ? 3 : 2;
+    if (!pinned) context.setLineDash([4, 3]);
+    lineThrough(context, [[x - (half * dy) / size, y + (half * dx) / size], [x + (half * dy) / size, y - (half * dx) / size]]);
+    context.stroke();
+  });
+}
+
+/** The names of joints and declared points, those at one place together, beside them where there is room. */
+function drawNames(paper, instant) {
+  const spots = [];
+  const pins = [];
+  for (const one of [...contents.joints.map((joint) => [joint.name, joint.child]), ...contents.paths.map((path) => [path.name, path])]) {
+    const [x, y] = paper.on(spotOf(one[1], instant));
+    const near = spots.find((spot) => Math.hypot(spot.x - x, spot.y - y) < 6);
+    if (near) near.words += `, ${one[0]}`;
+    else spots.push({ x, y, words: one[0] });
+    pins.push([x, y]);
+  }
+  const taken = [];
+  const r = pinSize(paper) + 7;
+  paper.put(ORDER.names, 0, (context) => {
+    context.font = "12px system-ui, sans-serif";
+    context.textBaseline = "middle";
+    for (const spot of spots) {
+      const wide = context.measureText(spot.words).width + 4;
+      const boxes = [[r, -r], [-r - wide, -r], [r, r], [-r - wide, r], [r, 0], [-r - wide, 0], [-wide / 2, -2 * r], [-wide / 2, 2 * r]].map(
+        ([x, y]) => ({ x: spot.x + x, y: spot.y + y, wide }),
+      );
+      const cost = (box) =>
+        taken.filter((other) => Math.abs(other.y - box.y) < 14 && box.x < other.x + other.wide && other.x < box.x + box.wide).length * 4 +
+        pins.filter(([x, y]) => x > box.x - r + 4 && x < box.x + wide + r - 4 && Math.abs(y - box.y) < r - 2).length +
+        (box.x < 2 || box.x + wide > paper.width - 2 ? 3 : 0);
+      const best = boxes.reduce((least, box) => (cost(box) < cost(least) ? box : least));
+      taken.push(best);
+      context.strokeStyle = sheer(paper.inks.sheet, 0.85);
+      context.lineWidth = 3.5;
+      context.strokeText(spot.words, best.x, best.y);
+      context.fillStyle = paper.inks.ink;
+      context.fillText(spot.words, best.x, best.y);
+    }
+  });
+}
+
+/** The scales to which lengths, forces and ordinates are drawn, each as a bar with a round value; and in space the axes. */
+function drawScales(stage) {
+  const { paper, scale, shows } = stage;
+  const { context, camera } = paper;
+  const bars = [["m", camera.scale, paper.inks.ink, ""]];
+  if (scale.force) bars.push(["N", scale.force * camera.scale, paper.inks.reaction, "forces"]);
+  if (scale.moment && contents.space) bars.push(["N m", scale.moment * camera.scale, paper.inks.effort, "moments"]);
+  const ribbon = ribbonForces.find((force) => force.name === shows.ribbon);
+  if (ribbon && scale.ribbon) bars.push([ribbon.unit, scale.ribbon * camera.scale, paper.inks.positive, ribbon.what]);
+  context.save();
+  context.font = "11px system-ui, sans-serif";
+  context.textBaseline = "middle";
+  context.lineCap = "butt";
+  bars.forEach(([unit, points, ink, words], k) => {
+    const value = roundDistance(55 / points);
+    const y = paper.height - 14 - 17 * (bars.length - 1 - k);
+    context.strokeStyle = ink;
+    context.lineWidth = 2;
+    lineThrough(context, [[14, y - 4], [14, y], [14 + value * points, y], [14 + value * points, y - 4]]);
+    context.stroke();
+    const text = `${shown(value, unit)}${words ? ` · ${words}` : ""}`;
+    context.strokeStyle = sheer(paper.inks.sheet, 0.8);
+    context.lineWidth = 3;
+    context.strokeText(text, 22 + value * points, y - 2);
+    context.fillStyle = paper.inks.soft;
+    context.fillText(text, 22 + value * points, y - 2);
+  });
+  if (contents.space) drawTriad(paper, context);
+  context.restore();
+}
+
+function drawTriad(paper, context) {
+  const [x, y] = [paper.width - 44, paper.height - 44];
+  context.font = "12px system-ui, sans-serif";
+  context.textAlign = "center";
+  GROUND.slice(1).forEach((axis, k) => {
+    const [dx, dy] = paper.along(axis).map((part) => (part / paper.camera.scale) * 26);
+    context.strokeStyle = paper.inks.soft;
+    context.lineWidth = 1.5;
+    lineThrough(context, [[x, y], [x + dx, y + dy]]);
+    context.stroke();
+    context.fillStyle = paper.inks.ink;
+    context.fillText("xyz"[k], x + 1.35 * dx, y + 1.35 * dy);
+  });
+}

@@ -1,0 +1,205 @@
+// Tables that can be sorted, and copied as CSV.
+
+/** A table: heads as [words, how a cell is told, what it is sorted by]; `chosen` hears of a row that is pressed.
+ *
+ * `plain` are heads for the copy, whose numbers are those of the file: SI, with all their digits. */
+function sortedTable(caption, heads, rows, { chosen = null, aside = null, plain = heads } = {}) {
+  let order = { column: -1, down: false };
+  const body = element("tbody");
+  const buttons = heads.map(([words], k) =>
+    element("button", { type: "button", click: () => sort(k) }, words),
+  );
+  const cells = heads.map(([, , by], k) => element("th", { scope: "col", class: by ? "number" : "" }, buttons[k]));
+  const fill = () => {
+    body.replaceChildren(
+      ...rows().map((row) => {
+        const line = element("tr", {}, heads.map(([, tell, by], k) => element(k ? "td" : "th", { class: by ? "number" : "", scope: k ? null : "row" }, tell(row))));
+        if (chosen) {
+          line.classList.add("pressable");
+          line.addEventListener("click", () => chosen(row));
+          const first = line.firstChild;
+          const go = element("button", { type: "button", class: "go", title: "Show this instant", "aria-label": `Show when ${row.name} peaks` }, "▸");
+          first.prepend(go);
+        }
+        return line;
+      }),
+    );
+  };
+  const ordered = () => {
+    const found = [...rows.all()];
+    if (order.column < 0) return found;
+    const [, tell, by] = heads[order.column];
+    const key = by ?? tell;
+    found.sort((a, b) => {
+      const [x, y] = [key(a), key(b)];
+      return typeof x === "string" ? x.localeCompare(y) : (x ?? -Infinity) - (y ?? -Infinity);
+    });
+    return order.down ? found.reverse() : found;
+  };
+  const source = rows;
+  rows = () => ordered();
+  rows.all = source;
+  const sort = (column) => {
+    const numeric = Boolean(heads[column][2]);
+    order = { column, down: order.column === column ? !order.down : numeric };
+    cells.forEach((cell, k) => {
+      if (k === column) cell.setAttribute("aria-sort", order.down ? "descending" : "ascending");
+      else cell.removeAttribute("aria-sort");
+    });
+    fill();
+  };
+  const copy = element("button", { type: "button", class: "copy", click: async () => {
+    await copyText(csvOf(plain, rows()));
+    copy.textContent = "copied";
+    announce(`${caption} copied`);
+    setTimeout(() => (copy.textContent = "copy as CSV"), 1500);
+  } }, "copy as CSV");
+  const table = element("table", {}, element("thead", {}, element("tr", {}, cells)), body);
+  table.setAttribute("aria-label", caption);
+  reading.watchers.add(fill);
+  fill();
+  return { fill, body: element("section", { class: "table" }, element("header", {}, element("h2", {}, caption), aside, copy), element("div", { class: "scroll" }, table)) };
+}
+
+/** Rows as text for a spreadsheet, with a plain minus sign. */
+function csvOf(heads, rows) {
+  const quoted = (text) => {
+    const cell = String(text ?? "").replaceAll("\u2212", "-").replaceAll("\u00a0", " ");
+    return /[",\n;]/.test(cell) ? `"${cell.replaceAll('"', '""')}"` : cell;
+  };
+  const lines = [heads.map(([words]) => quoted(words)), ...rows.map((row) => heads.map(([, tell]) => quoted(tell(row))))];
+  return `${lines.map((line) => line.join(",")).join("\n")}\n`;
+}
+
+/** Whether a quantity is nothing but rounding. */
+function isNothing(row) {
+  return !row.open && Math.abs(row.peak.value) <= Math.max(2 * (row.error ?? 0), 0);
+}
+
+const whatOf = (row) => row.what || row.part;
+const KIND_WORDS = { effort: "effort", reaction: "joint", section: "link", output: "output" };
+
+/** The two large tables: peaks, and what quantities are over the cycle. */
+function resultTables(show) {
+  const state = { all: false, text: "" };
+  const nothing = contents.rows.filter(isNothing).length;
+  const rows = () =>
+    contents.rows.filter((row) => !row.open && (state.all || !isNothing(row)) && `${row.name} ${row.what}`.toLowerCase().includes(state.text));
+  const tables = [];
+  const renew = () => tables.forEach((table) => table.fill());
+  const find = element("input", { type: "search", placeholder: "find a part or quantity", "aria-label": "Find", input: () => {
+    state.text = find.value.toLowerCase();
+    renew();
+  } });
+  const also = nothing > 0 && element("label", {}, element("input", { type: "checkbox", change: (event) => {
+    state.all = event.target.checked;
+    renew();
+  } }), ` also what is zero (${nothing})`);
+  const value = (one, row) => (one === null || one === undefined ? "" : shown(one, row.unit, 6, Math.abs(row.peak.value)));
+  const when = (mark) => (mark ? shown(mark.t, "s", 5, Math.max(Math.abs(instants.t[0]), Math.abs(instants.t.at(-1)))) : "");
+  const names = [["name", (row) => row.name], ["part", (row) => row.part], ["quantity", whatOf], ["unit", (row) => row.unit]];
+  const driveHead = over && [`${over.joint} [${over.unit}]`, (row) => row.peak.over];
+  const drive = over ? [[over.joint, (row) => shown(row.peak.over, over.unit), (row) => row.peak.over]] : [];
+  const error = (row) => (row.error === null ? "" : `± ${shown(row.error, row.unit, 1, Math.abs(row.peak.value))}`);
+  tables.push(
+    sortedTable(
+      "Peaks",
+      [
+        ["part", (row) => row.part],
+        ["quantity", whatOf],
+        ["largest in size", (row) => value(row.peak.value, row), (row) => Math.abs(row.peak.value)],
+        ["may be off by", error, (row) => row.error ?? -1],
+        ...drive,
+        ["t", (row) => when(row.peak), (row) => row.peak.t],
+        ["ξ/l", (row) => (row.peak.xi === null ? "" : row.peak.xi.toFixed(3)), (row) => row.peak.xi ?? -1],
+      ],
+      rows,
+      {
+        chosen: show,
+        aside: element("div", { class: "tools" }, find, also),
+        plain: [...names, ["largest in size", (row) => row.peak.value], ["may be off by", (row) => row.error], ...(over ? [driveHead] : []), ["t [s]", (row) => row.peak.t], ["xi/l", (row) => row.peak.xi]],
+      },
+    ),
+    sortedTable(
+      "Over the cycle",
+      [
+        ["part", (row) => row.part],
+        ["quantity", whatOf],
+        ["smallest", (row) => value(row.smallest.value, row), (row) => row.smallest.value],
+        ["at t", (row) => when(row.smallest), (row) => row.smallest.t],
+        ["largest", (row) => value(row.largest.value, row), (row) => row.largest.value],
+        ["at t", (row) => when(row.largest), (row) => row.largest.t],
+        ["mean", (row) => value(row.mean, row), (row) => row.mean ?? -Infinity],
+        ["rms", (row) => value(row.rms, row), (row) => row.rms ?? -Infinity],
+      ],
+      rows,
+      {
+        plain: [...names, ["smallest", (row) => row.smallest.value], ["at t [s]", (row) => row.smallest.t], ["largest", (row) => row.largest.value], ["at t [s]", (row) => row.largest.t], ["mean", (row) => row.mean], ["rms", (row) => row.rms]],
+      },
+    ),
+  );
+  return tables.map((table) => table.body);
+}
+
+/** The smaller tables and texts: parameters, parts, the certificate, what is open, how the numbers were made. */
+function factSections() {
+  const found = [];
+  const range = ({ low, high, unit }) => (low === null && high === null ? "" : `${low === null ? "−∞" : shown(low, unit)} to ${high === null ? "∞" : shown(high, unit)}`);
+  if (contents.parameters.length) {
+    found.push(
+      sortedTable("Parameters", [["name", (row) => row.name], ["value", (row) => shown(row.value, row.unit, 7), (row) => row.value], ["range", range]], () => contents.parameters, {
+        plain: [["name", (row) => row.name], ["value", (row) => row.value], ["unit", (row) => row.unit]],
+      }).body,
+    );
+  }
+  const length = (body) => (body.length === null ? "point mass" : shown(body.length, "m", 6));
+  found.push(
+    sortedTable("Bodies", [["name", (row) => row.name], ["length", length, (row) => row.length ?? -1], ["mass", (row) => shown(row.mass, "kg", 6), (row) => row.mass]], () => contents.bodies).body,
+  );
+  const ends = (joint) => `${joint.parent.body} – ${joint.child.body}`;
+  found.push(
+    sortedTable("Joints", [["name", (row) => row.name], ["kind", (row) => row.kind], ["between", ends], ["driven", (row) => (row.driven.length ? "driven" : "")]], () => contents.joints).body,
+  );
+  found.push(certificateText(), ...openText(), provenanceText());
+  return found;
+}
+
+function certificateText() {
+  const { state, residuals, tolerance, words } = contents.certificate;
+  const head = { certified: "Checked independently, and right", failed: "The check fails: do not trust these numbers", none: "Not checked" }[state];
+  const told = (one) => (one.largest === null ? "–" : format(one.largest, 2));
+  const lines = residuals.filter((one) => one.name !== "condition").map((one) => [one.what, told(one)]);
+  const limit = lines.length > 0 && element("p", {}, `No residual may be above ${format(tolerance, 2)}.`);
+  const loops = residuals.filter((one) => one.name === "condition").map((one) => element("p", {}, `The loops magnify errors by at most ${told(one)}; 1 is the least, and near a dead centre it is very many.`));
+  const alarm = state === "failed" && element("p", { class: "alarm" }, words);
+  const sentence = "The reported motions, reactions, efforts and loads were put into Newton's and Euler's equations of every body anew, in plain arithmetic, at every instant.";
+  return element("section", { class: "text" }, element("h2", {}, "Certificate"), element("p", { class: `verdict ${state}` }, head), alarm,
+    state !== "none" && element("p", {}, sentence),
+    element("dl", {}, lines.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)])), limit, loops);
+}
+
+function openText() {
+  const found = [];
+  if (contents.undetermined.length) {
+    found.push(element("section", { class: "text" }, element("h2", {}, "Undetermined"),
+      element("p", {}, "Equilibrium does not determine these: the mechanism is over-constrained."),
+      element("ul", {}, contents.undetermined.map((name) => element("li", {}, element("code", {}, name))))));
+  }
+  if (contents.notes.length) {
+    found.push(element("section", { class: "text" }, element("h2", {}, "Notes"), element("ul", {}, contents.notes.map((note) => element("li", {}, note)))));
+  }
+  return found;
+}
+
+function provenanceText() {
+  const { backend, precision, compiler, flags, versions } = contents.provenance;
+  const { total, count } = instants;
+  const lines = [
+    ["instants", count < total ? `${total}, of which pictures and charts show ${count}; the tables are of all` : String(total)],
+    ["method", [backend, precision, compiler, flags].filter(Boolean).join(", ")],
+    ...Object.entries(versions),
+  ];
+  return element("section", { class: "text" }, element("h2", {}, "How the numbers were made"),
+    element("dl", { class: "wide" }, lines.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)])),
+    element("p", { class: "fine" }, `${contents.conventions}.`));
+}

@@ -1,0 +1,107 @@
+// Units that a person reads, chosen by how large values are; or those of the file, on a switch.
+
+const reading = { si: false, watchers: new Set() };
+
+/** Switch between readable units and SI, and have all that shows numbers do it anew. */
+function setSi(si) {
+  reading.si = si;
+  for (const watcher of reading.watchers) watcher();
+}
+
+const STEPS = [
+  [1e9, "G", 1e-9],
+  [1e6, "M", 1e-6],
+  [1e3, "k", 1e-3],
+  [0.1, "", 1],
+  [1e-4, "m", 1e3],
+  [0, "µ", 1e6],
+];
+
+const PREFIXED = new Set(["N", "N m", "Pa", "W", "J", "N/m", "N s/m"]);
+
+/** How values of a unit, of which the largest has a size, are shown: by which factor, and in what. */
+function scaleFor(unit, size) {
+  if (reading.si || !unit || unit === "1") return { factor: 1, unit: prettyUnit(unit) };
+  if (unit === "rad") return { factor: 180 / Math.PI, unit: "deg" };
+  if (unit === "rad/s") return size >= 10 ? { factor: 30 / Math.PI, unit: "rpm" } : { factor: 180 / Math.PI, unit: "deg/s" };
+  if (unit === "m" || unit === "s" || unit === "m/s") {
+    if (!size || size >= (unit === "m/s" ? 0.1 : 1)) return { factor: 1, unit };
+    return size >= 1e-3 ? { factor: 1e3, unit: `m${unit}` } : { factor: 1e6, unit: `µ${unit}` };
+  }
+  if (PREFIXED.has(unit) && size) {
+    const [, prefix, factor] = STEPS.find(([least]) => size >= least);
+    return { factor, unit: prefix + prettyUnit(unit) };
+  }
+  return { factor: 1, unit: prettyUnit(unit) };
+}
+
+function prettyUnit(unit) {
+  if (!unit || unit === "1") return "";
+  return unit.replace(/\^2/g, "²").replace(/\^3/g, "³").replace(/ /g, "\u00b7");
+}
+
+/** A number to so many digits that count, without noughts at its end, and with a sign that is as wide as a plus. */
+function format(value, digits = 5) {
+  if (!Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e7 || size < 1e-4) {
+    const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+    return `${minus(stripped(mantissa))}·10${raised(Number(exponent))}`;
+  }
+  const text = value.toPrecision(digits);
+  return minus(stripped(text.includes("e") ? String(Number(text)) : text));
+}
+
+function stripped(text) {
+  return text.includes(".") ? text.replace(/0+$/, "").replace(/\.$/, "") : text;
+}
+
+function minus(text) {
+  return text.replace("-", "\u2212");
+}
+
+function raised(exponent) {
+  const digits = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+  const text = [...String(Math.abs(exponent))].map((digit) => digits[Number(digit)]).join("");
+  return exponent < 0 ? `⁻${text}` : text;
+}
+
+/** A value with its unit. */
+function shown(value, unit, digits = 5, size = Math.abs(value)) {
+  const scale = scaleFor(unit, size);
+  return `${format(value * scale.factor, digits)}${scale.unit ? `\u00a0${scale.unit}` : ""}`;
+}
+
+/** What stands at an axis: words, and the unit in brackets. */
+function labelled(words, unit) {
+  return unit ? `${words} [${unit}]` : words;
+}
+
+/** When something is, in words: the time, and the drive's coordinate where instants are over one. */
+function whenOf(t, over) {
+  const time = `t = ${shown(t, "s", 5, Math.max(...[0, -1].map((k) => Math.abs(instants.t.at(k)))))}`;
+  const own = contents.instants.over;
+  return own && over !== null && over !== undefined ? `${own.joint} = ${shown(over, own.unit)}, ${time}` : time;
+}
+
+/** Round steps between two ends: about so many, at numbers that people count by. */
+function ticksBetween(low, high, about) {
+  if (!(high > low)) return [low];
+  const rough = (high - low) / Math.max(about, 1);
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = power * ([1, 2, 2.5, 5].find((part) => part * power >= rough * 0.999) ?? 10);
+  const found = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1) found.push(k * step);
+  return found;
+}
+
+/** The same for angles in degrees, by which people count in thirds of a right angle. */
+function angleTicks(low, high, about) {
+  const steps = [1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360, 720, 1440];
+  const step = steps.find((one) => (high - low) / one <= about * 1.2);
+  if (!step || high - low < 4) return ticksBetween(low, high, about);
+  const found = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1) found.push(k * step);
+  return found;
+}

@@ -1,0 +1,209 @@
+"""What a page holds, as plain numbers and texts: the one place that says what the viewer in the page reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..declare.density import Array
+from ..declare.description import Description
+from ..draw.solid import COLOURS
+from ..draw.views import upright
+from ..errors import DeclarationError
+from ..instants.solution import Solution
+from ..instants.statistics import Extreme
+from ..instants.told import error_of, told
+from ..judge.certificate import failure, summary
+from ..quantities import Output
+from .arrays import Arrays, finite
+from .instants import shown_instants
+from .sections import section_entries
+from .shapes import joint_shapes, load_shapes, path_spots, shapes
+from .words import GROUPS, what
+
+VERSION = 1
+"""Of what a page holds."""
+
+_CHARTED = ("effort", "reaction", "output", "motion", "load", "multiplier", "pose")
+
+
+@dataclass(frozen=True)
+class Series:
+    """A quantity over the instants that are shown, for charts; of a section force, what is largest in size along its link.
+
+    ``values`` is the number of its array, ``places`` that of the ratios xi/l of a section force.
+    """
+
+    name: str
+    group: str
+    part: str
+    what: str
+    unit: str
+    values: int
+    places: int | None = None
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A value with its time, its ratio xi/l where it is along a link, and the drive's coordinate where instants are over one."""
+
+    value: float
+    t: float
+    xi: float | None
+    over: float | None
+
+
+@dataclass(frozen=True)
+class Row:
+    """A quantity over all instants: its peak, how far it may be off, its ends and means; only its name where it is ``open``."""
+
+    name: str
+    group: str
+    part: str
+    what: str
+    unit: str
+    open: bool
+    peak: Mark | None = None
+    error: float | None = None
+    smallest: Mark | None = None
+    largest: Mark | None = None
+    mean: float | None = None
+    rms: float | None = None
+
+
+def contents(solution: Solution) -> dict[str, Any]:
+    """All of a page about a solution.
+
+    Raises :class:`.DeclarationError` where the solution does not have the poses of all bodies, which the picture is made of.
+    """
+    require_poses(solution)
+    arrays, chosen = Arrays(), shown_instants(solution)
+    description = solution.description
+    return {
+        "version": VERSION,
+        "case": solution.case,
+        "conventions": solution.table.conventions,
+        "space": len(description["gravity"]) > 2,
+        "upright": upright([*description["gravity"], 0.0][:3]).tolist(),
+        "gravity": [float(g) for g in description["gravity"]],
+        "instants": _instants(solution, chosen, arrays),
+        "bodies": list(_bodies(solution, chosen, arrays)),
+        "joints": [asdict(joint) for joint in joint_shapes(description)],
+        "loads": [asdict(load) for load in load_shapes(description)],
+        "paths": [{"name": name} | asdict(spot) for name, spot in path_spots(description).items()],
+        "series": [asdict(one) for one in _series(solution, chosen, arrays)],
+        "sections": list(section_entries(solution, chosen, arrays)),
+        "groups": GROUPS,
+        "rows": [asdict(row) for row in _rows(solution)],
+        "parameters": list(_parameters(description)),
+        "certificate": _certificate(solution),
+        "notes": list(solution.notes),
+        "undetermined": list(solution.undetermined),
+        "provenance": asdict(solution.provenance) | {"versions": dict(solution.provenance.versions)},
+        "arrays": arrays.places,
+        "numbers": arrays.block(),
+    }
+
+
+def require_poses(solution: Solution) -> None:
+    """Raise :class:`.DeclarationError` where a body has no pose among the outputs."""
+    lacking = [body for body in solution.description["bodies"] if Output("pose", body, "x") not in solution.outputs]
+    if lacking:
+        told_of = ", ".join(f"'{body}'" for body in lacking[:3]) + (f" and {len(lacking) - 3} more" if len(lacking) > 3 else "")
+        raise DeclarationError(
+            f"{solution.case}: a report shows the mechanism in motion, and there is no motion of {told_of}; want motion too"
+        )
+
+
+def _instants(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Any]:
+    over = solution.over
+    return {
+        "total": solution.t.size,
+        "shown": int(chosen.size),
+        "t": arrays.add(solution.t[chosen]),
+        "over": over and {"joint": over.joint, "unit": over.unit, "values": arrays.add(over.values[chosen])},
+    }
+
+
+def _bodies(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> Iterator[dict[str, Any]]:
+    """The bodies' shapes, colours, and poses: in the plane x, y and the angle; in space a place, and three axes one by one."""
+    for k, shape in enumerate(shapes(solution.description)):
+        pose = solution.pose(shape.name)
+        if pose.z is None:
+            angle = np.zeros_like(pose.x) if pose.angle is None else pose.angle
+            told_of = [pose.x, pose.y, angle]
+        else:
+            axes = _whole_axes(pose.axes, solution.t.size)
+            told_of = [pose.x, pose.y, pose.z, *(axes[:, i, j] for i in range(3) for j in range(3))]
+        yield asdict(shape) | {"colour": COLOURS[k % len(COLOURS)], "pose": [arrays.add(values[chosen]) for values in told_of]}
+
+
+def _whole_axes(axes: Array | None, count: int) -> Array:
+    """Three axes at right angles: those that a body has, and whatever goes with them."""
+    if axes is None:
+        return np.tile(np.eye(3), (count, 1, 1))
+    if not np.isnan(axes).any():
+        return axes
+    x = axes[:, 0]
+    least = np.eye(3)[np.argmin(np.abs(x), axis=1)]
+    y = np.cross(least, x)
+    y /= np.linalg.norm(y, axis=1)[:, None]
+    return np.stack([x, y, np.cross(x, y)], axis=1)
+
+
+def _series(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> Iterator[Series]:
+    resultants = (output for output in told(solution) if len(output.components(solution.table)) > 1 and output.group == "reaction")
+    outputs = [output for output in solution.quantities() if output.group in (*_CHARTED, "section")]
+    for output in sorted([*outputs, *resultants], key=lambda output: list(GROUPS).index(output.group)):
+        if not solution.determined(output):
+            continue
+        values, places = solution.extremes(output)
+        words, unit = what(output, solution.table), solution.unit(output)
+        along = None if places is None else arrays.add(places[chosen])
+        yield Series(str(output), output.group, output.part, words, unit, arrays.add(values[chosen]), along)
+    for output, values in _residuals(solution):
+        yield Series(str(output), output.group, "", what(output, solution.table), "1", arrays.add(values[chosen]))
+
+
+def _rows(solution: Solution) -> Iterator[Row]:
+    def mark(extreme: Extreme) -> Mark:
+        own = solution.over
+        over = float(own.values[int(np.argmax(solution.t == extreme.t))]) if own else None
+        return Mark(extreme.value + 0.0, extreme.t, extreme.xi, over)
+
+    for output in told(solution):
+        words = str(output), output.group, output.part, what(output, solution.table), solution.unit(output)
+        if not solution.determined(output):
+            yield Row(*words, open=True)
+            continue
+        own = solution.statistics(output)
+        peak, smallest, largest = (mark(extreme) for extreme in (own.peak, own.smallest, own.largest))
+        yield Row(*words, False, peak, error_of(solution, output), smallest, largest, own.mean, own.rms)
+
+
+def _parameters(description: Description) -> Iterator[dict[str, Any]]:
+    for name, parameter in description["parameters"].items():
+        low, high = (finite(parameter[end]) for end in ("low", "high"))
+        yield {"name": name, "value": float(parameter["value"]), "unit": parameter["unit"], "low": low, "high": high}
+
+
+def _residuals(solution: Solution) -> Iterator[tuple[Output, Array]]:
+    """The certificate in the order of the table, which a file does not keep."""
+    for quantity in solution.table.rows:
+        if quantity.group == "certificate" and quantity.member in solution.certificate:
+            yield Output("certificate", "", quantity.member), solution.certificate[quantity.member]
+
+
+def _certificate(solution: Solution) -> dict[str, Any]:
+    """The certificate in words, and its residuals."""
+    state = "certified" if solution.certified else "failed" if solution.failed else "none"
+    residuals = [
+        {"name": output.member, "what": what(output, solution.table), "largest": finite(float(np.max(values)))}
+        for output, values in _residuals(solution)
+    ]
+    words = failure(solution) if solution.failed else summary({output.member: values for output, values in _residuals(solution)})
+    return {"state": state, "words": words, "tolerance": finite(solution.tolerance), "residuals": residuals}

@@ -1,0 +1,37 @@
+"""Which instants a page shows: all, or where there are too many evenly spread ones, and those at which something peaks."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from ..instants.solution import Solution
+from ..instants.told import told
+
+MOST = 1_000_000
+"""Numbers that a page holds at most, or little more: 8 bytes each, 11 in the page."""
+
+LEAST = 181
+"""Instants that it shows at least, where there are so many: fewer look no longer like a motion."""
+
+
+def shown_instants(solution: Solution) -> npt.NDArray[np.intp]:
+    """The instants that are shown, by number."""
+    total = solution.t.size
+    varying = sum(1 for values in solution.outputs.values() if np.ptp(values) != 0.0)
+    largest = 2 * len(solution.links_with_sections) * len(solution.table.forces)  # of each where along its link, and how much
+    most = max(LEAST, MOST // max(varying + largest, 1))
+    if total <= most:
+        return np.arange(total)
+    spread = np.unique(np.linspace(0, total - 1, most).astype(np.intp))
+    return np.unique(np.concatenate([spread, np.array(_peaks(solution), np.intp)]))
+
+
+def _peaks(solution: Solution) -> list[int]:
+    """The instants of all smallest and largest values, and of the peaks."""
+    found: list[int] = []
+    for output in told(solution):
+        if solution.determined(output):
+            own = solution.statistics(output)
+            found += [int(np.searchsorted(solution.t, extreme.t)) for extreme in (own.smallest, own.largest, own.peak)]
+    return found

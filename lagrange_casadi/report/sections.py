@@ -1,0 +1,76 @@
+"""The section laws of links in a page: the functions along each link, and which coefficients go with them.
+
+The viewer sums them up as :class:`.SectionLaw` does, so that the force at every section of every instant takes few numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..instants.solution import Solution
+from ..quantities import Output
+from ..tables import Table
+from .arrays import Arrays
+from .words import what
+
+RATIOS = 101
+"""Equal ratios xi/l along a link at which the viewer knows its forces, both ends included."""
+
+
+@dataclass(frozen=True)
+class Force:
+    """A section force of a link: ``parts`` are the forces whose size it is; any other is a sum of ``terms`` and of loads.
+
+    A term is the number of a coefficient's array (t,), that of a function along the link (xi,), and a sign. ``acting`` is the
+    member of what acts at stations that goes into it; of a moment with an ``arm`` of 1 or -1 so is that ``across``, times its
+    distance.
+    """
+
+    name: str
+    what: str
+    unit: str
+    open: bool
+    parts: tuple[str, ...] = ()
+    terms: tuple[tuple[int, int, int], ...] = ()
+    acting: str = ""
+    across: str = ""
+    arm: int = 0
+
+
+def section_entries(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> Iterator[dict[str, Any]]:
+    """The links that have sections, each with its forces."""
+    xi = np.linspace(0.0, 1.0, RATIOS)
+    for link in solution.links_with_sections:
+        law, table = solution.section(link).law, solution.table
+        basis = law.basis(xi)
+        columns = {name: arrays.add(values[chosen]) for name, values in law.coefficients.items()}
+        of_force, of_moment = ([arrays.add(row) for row in rows] for rows in (basis.force, basis.bending))
+        loads = [
+            {"name": load.name} | {member: arrays.add(getattr(load, member)[chosen]) for member in table.station}
+            for load in law.loads
+        ]
+        forces = []
+        for name in table.forces:
+            output = Output("section", link, name)
+            rows = of_moment if name in table.sections and table.sections[name].arm else of_force
+            made = _made(name, table, columns, rows)
+            words = what(output, table), solution.unit(output), not solution.determined(output)
+            forces.append(asdict(Force(name, *words, **made)))
+        yield {"link": link, "length": law.length, "xi": arrays.add(xi), "forces": forces, "loads": loads}
+
+
+def _made(name: str, table: Table, columns: Mapping[str, int], rows: Sequence[int]) -> dict[str, Any]:
+    """What a force is made of."""
+    terms = table.sections.get(name)
+    if terms is None:
+        return {"parts": table.parts("section", name)}
+    signs = [1] + [terms.arm or 1] * (len(terms.coefficients) - 1)
+    told = zip(terms.coefficients, rows, signs, strict=False)
+    summed = tuple((columns[coefficient], row, sign) for coefficient, row, sign in told)
+    across = table.sections[terms.shear].acting if terms.arm else ""
+    return {"terms": summed, "acting": terms.acting, "across": across, "arm": terms.arm}

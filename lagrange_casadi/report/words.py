@@ -1,0 +1,39 @@
+"""What quantities are called in a page: the table's words, as short as a chart's legend."""
+
+from __future__ import annotations
+
+from ..quantities import Output
+from ..tables import Table
+
+_CUT = (
+    " of the joint's coordinate",
+    " of the joint about its point on the child",
+    " of the joint's",
+    " of the joint",
+    " of the drive",
+)
+
+GROUPS = {
+    "effort": "Efforts",
+    "reaction": "Reactions",
+    "section": "Section forces",
+    "output": "Own outputs",
+    "motion": "Motion of joints",
+    "load": "Loads",
+    "multiplier": "Multipliers",
+    "pose": "Places of bodies",
+    "certificate": "Certificate",
+}
+"""The kinds of quantities, in the order in which they are offered."""
+
+
+def what(output: Output, table: Table) -> str:
+    """What a quantity is of its part."""
+    if output.group == "output":
+        return ""
+    words = output.meant(table).long_name
+    if output.group != "reaction":
+        words = words.partition(":")[0]
+    for end in _CUT:
+        words = words.replace(end, "")
+    return words

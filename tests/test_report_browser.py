@@ -1,0 +1,246 @@
+"""Reports in a real browser, from files and without a network: they open, move, and show the file's numbers to the digits shown."""
+
+import csv
+import io
+import re
+
+import browser
+import numpy as np
+import pytest
+from reports import HOSTILE, hostile, press, solved
+
+from lagrange_casadi.quantities import Output
+
+pytestmark = pytest.mark.skipif(browser.found() is None, reason="there is no Chromium here")
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """A browser, and how to open a solution's report in it."""
+    folder = tmp_path_factory.mktemp("reports")
+    with browser.Browser() as one:
+        one.prefer(prefers_reduced_motion="reduce", prefers_color_scheme="light")
+
+        def opened(solution):
+            path = folder / "report.html"
+            solution.report(path)
+            one.size(1400, 900)
+            one.open(path)
+            one.run("navigator.clipboard.writeText = (text) => { window.copied = text; return Promise.resolve(); }")
+            assert one.complaints == []
+            return one
+
+        yield opened
+
+
+def quiet(one):
+    """Nothing was complained of, and nothing asked for but the file itself and pictures that it holds."""
+    assert one.complaints == []
+    first, *others = one.asked
+    assert first.startswith("file://")
+    assert all(address.startswith("data:") for address in others)
+
+
+TABLE = "[...document.querySelectorAll('.table')].find((one) => one.querySelector('h2').textContent === '{}')"
+
+
+def copied(one, caption):
+    """A table of the page as it is copied: its rows."""
+    one.run(f"{TABLE.format(caption)}.querySelector('.copy').click()")
+    return list(csv.DictReader(io.StringIO(one.run("window.copied"))))
+
+
+def shown(one, caption):
+    """The texts of a table: its heads, and its rows."""
+    cells = "[...row.cells].map((cell) => (cell.querySelector('.go') ? cell.lastChild : cell).textContent)"
+    heads, *rows = one.run(f"[...{TABLE.format(caption)}.querySelectorAll('tr')].map((row) => {cells})")
+    return heads, [[text.translate({0x2212: "-", 0xA0: " "}) for text in row] for row in rows]
+
+
+def number(text):
+    """What a shown value is, its unit left out."""
+    mantissa, exponent = re.fullmatch(r"(-?[\d.]+)(?:·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?(?: .*)?", text).groups()
+    return float(mantissa + (f"e{exponent.translate(str.maketrans('⁻⁰¹²³⁴⁵⁶⁷⁸⁹', '-0123456789'))}" if exponent else ""))
+
+
+def to_digits(value, digits):
+    return float(f"{value:.{digits}g}")
+
+
+@pytest.mark.parametrize("name", ["slider_crank", "rssr"])
+def test_tables_show_the_files_numbers_to_the_digits_shown(page, name):
+    solution = solved(name)
+    one = page(solution)
+    one.run("document.querySelector('.switch').click(); document.querySelector('.tools input[type=checkbox]')?.click()")
+    heads, rows = shown(one, "Peaks")
+    assert heads == ["part", "quantity", "largest in size", "may be off by", "t", "ξ/l"]
+    told = [o for o in solution.quantities() if o.group in ("effort", "reaction", "section", "output") and solution.determined(o)]
+    expected = {(o.part, solution.unit(o), to_digits(solution.peak(o).value, 6), to_digits(solution.peak(o).t, 5)) for o in told}
+    assert len(expected) > 10
+    assert expected <= {(row[0], row[2].partition(" ")[2].replace("·", " "), number(row[2]), number(row[4])) for row in rows}
+    _, rows = shown(one, "Over the cycle")
+    over_time = [o for o in told if o.group != "section"]
+    assert {(o.part, to_digits(solution.statistics(o).mean, 6)) for o in over_time} <= {
+        (row[0], number(row[6])) for row in rows if row[6]
+    }
+    quiet(one)
+
+
+def test_a_table_is_copied_with_all_digits_and_sorted_by_a_press(page):
+    solution = solved("rssr")
+    one = page(solution)
+    rows = copied(one, "Peaks")
+    assert len(rows) > 10
+    for row in rows:
+        peak = solution.peak(row["name"])
+        assert (float(row["largest in size"]), float(row["t [s]"]), row["unit"]) == (peak.value, peak.t, peak.unit)
+        assert row["xi/l"] == "" if peak.xi is None else float(row["xi/l"]) == peak.xi
+    one.run(f"{TABLE.format('Peaks')}.querySelectorAll('thead button')[2].click()")
+    sizes = [abs(float(row["largest in size"])) for row in copied(one, "Peaks")]
+    assert sizes == sorted(sizes, reverse=True) != [abs(float(row["largest in size"])) for row in rows]
+    for row in copied(one, "Over the cycle"):
+        assert float(row["smallest"]) == solution.statistics(row["name"]).smallest.value
+
+
+def test_readable_units_are_the_same_numbers(page):
+    solution = solved("excavator")
+    one = page(solution)
+    efforts = {part: value.split(" ") for part, quantity, value, *_ in shown(one, "Peaks")[1] if quantity == "effort"}
+    assert len(efforts) == 3
+    for part, (value, unit) in efforts.items():
+        assert unit == "kN"
+        assert number(value) == to_digits(1e-3 * solution.peak(f"effort:{part}").value, 6)
+
+
+def test_it_plays_pauses_steps_and_scrubs(page):
+    one = page(press(t=(0, 0.628, 101)))
+    instant = "Number(document.querySelector('.transport input').value)"
+    assert one.run(instant) == 0
+    one.run("document.querySelector('.play').click()")
+    assert one.run(f"new Promise((done) => {{ const look = () => {instant} > 3 ? done(true) : setTimeout(look, 20); look(); }})")
+    one.run("document.querySelector('.play').click()")
+    at = one.run(instant)
+    one.press("ArrowRight")
+    assert one.run(instant) == at + 1
+    one.press(" ", " ")
+    one.press(" ", " ")
+    one.run("{ const bar = document.querySelector('.transport input'); bar.value = 50; bar.dispatchEvent(new Event('input')); }")
+    assert one.run("document.querySelector('.readout').textContent.replaceAll('\\u00a0', ' ')") == "t = 314 ms"
+    quiet(one)
+
+
+def told(one):
+    """What stands beside the pointer: its head, and its lines as names with value and unit."""
+    plain = {0x2212: "-", 0xA0: " "}
+    head = one.run("document.querySelector('.tip .head').textContent").translate(plain)
+    texts = [
+        text.translate(plain) for text in one.run("[...document.querySelectorAll('.tip dl > *')].map((one) => one.textContent)")
+    ]
+    return head, {name: (number(value), value.partition(" ")[2]) for name, value in zip(texts[::2], texts[1::2], strict=True)}
+
+
+def hovered(one, kind, across, down):
+    """The same, with the pointer over a plot."""
+    plot = f"document.querySelector('.{kind}')"
+    one.run(f"{plot}.scrollIntoView({{ block: 'center' }})")
+    left, top, width, height = (one.run(f"{plot}.getBoundingClientRect().{side}") for side in ("left", "top", "width", "height"))
+    one.point(left + across * width, top + down * height)
+    return told(one)
+
+
+def instant_of(solution, head):
+    t, milli = re.search(r"t = (-?[\d.]+) (m?)s", head).groups()
+    return int(np.argmin(np.abs(solution.t - float(t) * (1e-3 if milli else 1.0))))
+
+
+FACTORS = {"": 1.0, "k": 1e3, "M": 1e6, "m": 1e-3, "µ": 1e-6}
+
+
+@pytest.mark.parametrize("name", ["quick_return", "rssr"])
+def test_a_section_map_tells_the_solutions_forces(page, name):
+    """One in the plane whose load slides along its link, over the crank's angle; one in space."""
+    solution = solved(name)
+    one = page(solution)
+    link = one.run("document.querySelector('.map').closest('.card').querySelector('select').value")
+    for across, down in ((0.3, 0.4), (0.6, 0.25), (0.75, 0.7)):
+        head, lines = hovered(one, "map", across, down)
+        i, xi = instant_of(solution, head), float(re.search(r"ξ/l = ([\d.]+)", head)[1])
+        law = solution.section(link).law
+        for force in solution.table.forces:
+            value, unit = lines[Output("section", link, force).meant(solution.table).long_name]
+            expected = law.during(slice(i, i + 1)).on_grid(force, np.array([xi]))[0, 0]
+            least = 1e-12 * law.bound(force, np.array([xi]))
+            prefix = unit[0] if unit[0] in FACTORS else ""
+            assert value * FACTORS[prefix] == pytest.approx(expected, rel=1e-4, abs=least)
+    quiet(one)
+
+
+def test_a_polar_plot_tells_a_bearings_load_in_ground_axes_and_on_a_body(page):
+    solution = solved("slider_crank")
+    one = page(solution)
+    joint = one.run("document.querySelector('.polar').closest('.card').querySelector('select').value")
+    reaction = solution.reaction(joint)
+    head, lines = hovered(one, "polar", 0.45, 0.5)
+    i = instant_of(solution, head)
+    assert {name: lines[name][0] for name in ("fx", "fy")} == pytest.approx({"fx": reaction.fx[i], "fy": reaction.fy[i]}, rel=1e-4)
+    one.run(
+        "{ const ways = document.querySelector('.polar').closest('.card').querySelectorAll('select')[1];"
+        " ways.value = '1'; ways.dispatchEvent(new Event('change')); }"
+    )
+    body = one.run("document.querySelector('.polar').getAttribute('aria-label')").split(" on ")[1].split(",")[0]
+    head, lines = hovered(one, "polar", 0.45, 0.5)
+    i = instant_of(solution, head)
+    turned = (reaction.fx[i] + 1j * reaction.fy[i]) * np.exp(-1j * solution.pose(body).angle[i])
+    assert [lines[name][0] for name in ("along", "across")] == pytest.approx(
+        [turned.real, turned.imag], rel=1e-4, abs=1e-4 * abs(turned)
+    )
+    quiet(one)
+
+
+def test_a_mechanism_in_space_is_turned_and_seen_from_the_front(page):
+    one = page(solved("rssr"))
+    picture = "document.querySelector('.picture').toDataURL()"
+    seen = [one.run(picture)]
+    left, top = (one.run(f"document.querySelector('.picture').getBoundingClientRect().{side}") for side in ("left", "top"))
+    one.point(left + 200, top + 100, "mousePressed", button="left", clickCount=1)
+    one.point(left + 260, top + 120, button="left", buttons=1)
+    one.point(left + 260, top + 120, "mouseReleased", button="left", clickCount=1)
+    seen.append(one.run(picture))
+    for key in "234":
+        one.press(key, key)
+        seen.append(one.run(picture))
+    one.press("1", "1")
+    assert len(set(seen)) == 5
+    assert one.run(picture) == seen[0]
+    quiet(one)
+
+
+def test_names_are_texts_and_never_markup(page):
+    one = page(hostile())
+    assert one.run("window.told === undefined && document.images.length === 0")
+    assert one.run("document.title") == one.run("document.querySelector('h1').textContent") == HOSTILE[0]
+    for name in HOSTILE:
+        assert one.run(f"[...document.querySelectorAll('tbody th')].some((cell) => cell.lastChild.textContent === {name!r})")
+    quiet(one)
+
+
+@pytest.mark.parametrize("width", [390, 1000, 1920])
+def test_nothing_is_wider_than_the_window_and_it_prints(page, tmp_path, width):
+    one = page(press())
+    one.size(width, 800)
+    assert one.run("new Promise((done) => requestAnimationFrame(() => done(document.documentElement.scrollWidth)))") <= width
+    if width == 1000:
+        for paper in ((8.27, 11.69), (8.5, 11.0)):
+            assert one.printed(tmp_path / "report.pdf", *paper).startswith(b"%PDF")
+    quiet(one)
+
+
+def test_a_largest_moment_is_found_at_a_glance_and_its_section_shown(page):
+    solution = solved("slider_crank")
+    one = page(solution)
+    one.run("[...document.querySelectorAll('.tile')].find((tile) => tile.textContent.includes('bending')).click()")
+    peak = max((solution.peak(f"section:{link}:bending") for link in ("crank", "rod")), key=lambda peak: abs(peak.value))
+    readout = one.run("document.querySelector('.readout').textContent.replaceAll('\\u00a0', ' ')")
+    assert readout == f"t = {to_digits(1e3 * peak.t, 5):g} ms"
+    assert f"ξ/l = {peak.xi:.3g}" in one.run("document.querySelector('.ratio').textContent")
+    quiet(one)
