@@ -12,18 +12,32 @@ from typing import Any
 
 import numpy as np
 from spatial_algebra import Factored, cross, identity, skew, vector
-from spatial_bodies import GROUND, Joint, Mechanism
+from spatial_bodies import GROUND, Joint, Mechanism, Spread
 from spatial_motion import Motion
+from spread import weights
 
 
 @dataclass(frozen=True)
 class Acting:
-    """A force and a moment on a body at a place, ground axes."""
+    """A force and a moment on a body at a place, ground axes; ``of`` is the load along the body that it is a share of."""
 
     body: str
     place: np.ndarray
     force: np.ndarray
     moment: np.ndarray
+    of: Spread | None = None
+
+
+def shares(arithmetic, spread, pose, low, high) -> list[Acting]:
+    """Forces that do what a load along a body does between two distances."""
+    found = []
+    for place, weight in weights() if low < high else ():
+        place, weight = (arithmetic.number(x.numerator) / arithmetic.number(x.denominator) for x in (place, weight))
+        x = low + (high - low) * place
+        force = arithmetic.array(spread.at(x)) * (weight * (high - low))
+        force = pose.R @ force if spread.turning else force
+        found.append(Acting(spread.body, pose.at(arithmetic.array([x, x * 0, x * 0])), force, force * 0, spread))
+    return found
 
 
 @dataclass(frozen=True)
@@ -89,6 +103,9 @@ class Balance:
             tension += arithmetic.number(spring.damping) * speed
             pull = way * (tension / length)
             found += [Acting(a, self.poses[a].at(at_a), pull, way * 0), Acting(b, self.poses[b].at(at_b), -pull, way * 0)]
+        for spread in self.mechanism.spreads:
+            ends = arithmetic.number(spread.start), arithmetic.number(spread.end)
+            found += shares(arithmetic, spread, self.poses[spread.body], *ends)
         return [one for one in found if one.body != GROUND]
 
     def passed(self, wrenches) -> list[Acting]:

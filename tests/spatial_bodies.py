@@ -203,6 +203,21 @@ class Load:
 
 
 @dataclass(frozen=True)
+class Spread:
+    """A force per length along a rod from ``start`` to ``end`` [m]: a row of powers of the distance for each component."""
+
+    body: str
+    start: float
+    end: float
+    powers: Sequence[Sequence[float]]
+    turning: bool = False
+
+    def at(self, x):
+        """The force per length at a distance."""
+        return [sum(c * x**k for k, c in enumerate(row)) for row in self.powers]
+
+
+@dataclass(frozen=True)
 class Spring:
     """A spring and damper between two points, each (body, point): tension = stiffness (length - free) + damping length'."""
 
@@ -231,6 +246,7 @@ class Mechanism:
     loads: Sequence[Load] = field(default_factory=tuple)
     springs: Sequence[Spring] = field(default_factory=tuple)
     couplings: Sequence[Coupling] = field(default_factory=tuple)
+    spreads: Sequence[Spread] = field(default_factory=tuple)
 
     def __post_init__(self) -> None:
         names = [b.name for b in self.bodies] + [GROUND]

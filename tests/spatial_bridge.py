@@ -57,6 +57,11 @@ def declared(drawn: Drawn, t: float = 0.0, **options) -> Scene:
         for kind, vector in (("force", load.force), ("torque", load.torque)):
             given = dict(zip("xyz", map(float, vector), strict=True))
             getattr(m, kind)(f"{kind}{k}", at(load.body, load.point), **given, turning=load.turning)
+    for k, spread in enumerate(one.spreads):
+        given = dict(
+            zip("xyz", ((lambda x, row=row: sum(c * x**j for j, c in enumerate(row))) for row in spread.powers), strict=True)
+        )
+        m.line_load(f"spread{k}", parts[spread.body], **given, between=(spread.start, spread.end), turning=spread.turning)
     for k, spring in enumerate(one.springs):
         ends = (at(body, point) for body, point in spring.ends)
         m.spring(f"spring{k}", *ends, stiffness=spring.stiffness, length=spring.free, damping=spring.damping)

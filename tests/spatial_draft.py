@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from arithmetic import DOUBLE
 from spatial_algebra import arithmetic_of
-from spatial_bodies import AXES, GROUND, NIL, Joint, Load, Mechanism, Rigid, Rod, Spring, second_moments
+from spatial_bodies import AXES, GROUND, NIL, Joint, Load, Mechanism, Rigid, Rod, Spread, Spring, second_moments
 from spatial_motion import Motion, solve_motion
 from spatial_oracle import Result, solve
 
@@ -164,7 +164,18 @@ def acting(rng, bodies) -> dict:
         first, last = bodies[0], bodies[-1]
         start = (GROUND, direction(rng) * 1.5) if first is last else (first.name, np.array([0.0, 0.05, 0.0]) + point_on(rng, first))
         springs = [Spring((start, (last.name, point_on(rng, last))), rng.uniform(10, 50), rng.uniform(0.1, 0.4), rng.uniform(0, 3))]
-    return {"gravity": direction(rng) * 9.81, "loads": loads, "springs": springs}
+    gravity = direction(rng) * 9.81
+    # By a generator of its own, so that the rest is drawn as it was without.
+    own = np.random.default_rng(int(1e9 * abs(gravity[0])))
+    spreads = [spread(own, b) for b in bodies if isinstance(b, Rod) and own.random() < 0.4]
+    return {"gravity": gravity, "loads": loads, "spreads": spreads, "springs": springs}
+
+
+def spread(rng, rod) -> Spread:
+    """A load along a rod, or a part of it."""
+    start, end = (0.0, 1.0) if rng.random() < 0.4 else (rng.uniform(0.0, 0.4), rng.uniform(0.5, 1.0))
+    powers = [[float(rng.normal() * 10) for _ in range(int(rng.integers(1, 6)))] for _ in range(3)]
+    return Spread(rod.name, float(start * rod.length), float(end * rod.length), powers, bool(rng.random() < 0.5))
 
 
 def joint(rng, name, kind, parent, child, at_parent=NIL, at_child=NIL) -> Joint:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from spatial_algebra import cross, vector
-from spatial_balance import Acting
+from spatial_balance import Acting, shares
 from spatial_bodies import Rod
 
 
@@ -31,9 +31,13 @@ class Section:
         place = pose.at(arithmetic.array([xi * length, xi * 0, xi * 0]))
         force = arithmetic.zeros(3) + xi * 0
         moment = force
-        for one in self.acting:
-            if self._beyond(one, xi, length) != from_base:
-                force, moment = force + one.force, moment + one.moment + cross(one.place - place, one.force)
+        cut = xi * length
+        acting = [one for one in self.acting if one.of is None and self._beyond(one, xi, length) != from_base]
+        for spread in {id(one.of): one.of for one in self.acting if one.of is not None}.values():
+            low, high = arithmetic.number(spread.start), arithmetic.number(spread.end)
+            acting += shares(arithmetic, spread, pose, *((low, min(high, cut)) if from_base else (max(low, cut), high)))
+        for one in acting:
+            force, moment = force + one.force, moment + one.moment + cross(one.place - place, one.force)
         if weight:
             ends = (0, xi) if from_base else (xi, 1)
             for x, mass, inertia in self.rod.slices(arithmetic, *map(arithmetic.number, ends)):

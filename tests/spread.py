@@ -25,8 +25,8 @@ class Spread:
 
 
 @functools.cache
-def _weights():
-    """Weights of the values at k/8, by the moments of the powers: exact fractions."""
+def weights():
+    """Places k/8 and the weights of the values there, by the moments of the powers: exact fractions."""
     places = [Fraction(k, _POINTS - 1) for k in range(_POINTS)]
     found = []
     for k, own in enumerate(places):
@@ -44,7 +44,7 @@ def forces(spreads, arithmetic, link=None, cut=None):
     for one in spreads:
         low = one.start if cut is None or cut < one.start else cut
         if link in (None, one.body) and low < one.end:
-            for place, weight in _weights():
+            for place, weight in weights():
                 at = low + (one.end - low) * arithmetic.number(place.numerator) / place.denominator
                 share = (one.end - low) * arithmetic.number(weight.numerator) / weight.denominator
                 fx, fy = one.at(at)

@@ -50,6 +50,20 @@ def test_efforts_reactions_and_sections(case):
                 assert is_open or abs(value - other) < ROUNDING * size, (rod.name, u)
 
 
+def along(found, name, l, u):
+    """What a section feels of a load along the rod: the integrals of what is beyond it, by Gauss' rule."""
+    width, end = found[f"{name}:width"], found[f"{name}:end"]
+    low = max(u, end - width)
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    places = (low + end) / 2 + (end - low) / 2 * nodes
+    shares = weights * l * (end - low) / 2 if low < end else np.zeros_like(nodes)
+    powers = range(sum(key.startswith(f"{name}:qn") for key in found))
+    n, fy, fz = (sum(found[f"{name}:{q}{j}"] * ((end - places) / width) ** j for j in powers) for q in ("qn", "qfy", "qfz"))
+    arms = (places - u) * l
+    sums = {"axial": n, "shear_y": fy, "shear_z": fz, "bending_z": arms * fy, "bending_y": -arms * fz}
+    return {member: float(np.sum(shares * values)) for member, values in sums.items()}
+
+
 def spun(forces):
     """What of a section's forces a spin about the axis does not change."""
     axial, y, z, torsion, about_y, about_z = forces
@@ -71,7 +85,12 @@ def section(found, rod, u):
     values["torsion"] = law["mx0"]
     values["bending_z"] = law["mz0"] + sum(law[f"fy{k}"] * bend[k] for k in range(3))
     values["bending_y"] = law["my0"] - sum(law[f"fz{k}"] * bend[k] for k in range(3))
-    for name in {key.split(":")[2] for key in found if key.startswith(f"section:{rod.name}:")} - {"law"}:
+    acting = {key.split(":")[2] for key in found if key.startswith(f"section:{rod.name}:")} - {"law"}
+    for name in acting:
+        if f"section:{rod.name}:{name}:width" in found:
+            for member, value in along(found, f"section:{rod.name}:{name}", l, u).items():
+                values[member] += value
+            continue
         n, fy, fz, mx, my, mz, place = (
             found[f"section:{rod.name}:{name}:{member}"] for member in ("n", "fy", "fz", "mx", "my", "mz", "station")
         )
