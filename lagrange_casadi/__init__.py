@@ -9,6 +9,7 @@ from .declare.curves import Curve, curve, table
 from .declare.mechanism import Mechanism
 from .declare.scene import Scene
 from .declare.spatial import SpatialMechanism
+from .designs.prepared import Prepared, prepare
 from .equations.derive import derive
 from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
@@ -27,6 +28,7 @@ __all__ = [
     "LagrangeSystem",
     "Mechanism",
     "Peak",
+    "Prepared",
     "Scene",
     "Solution",
     "SpatialMechanism",
@@ -43,6 +45,7 @@ __all__ = [
     "load",
     "load_case",
     "motion",
+    "prepare",
     "read_designs",
     "refine",
     "save",

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping
+import functools
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from importlib import resources
@@ -126,37 +127,15 @@ class DesignsLibrary:
         results: Mapping[str, npt.NDArray[Any] | None],
         threads: int = 1,
     ) -> None:
-        """Fill ``results`` for designs ``p``, (n, parameters): arrays by their names in :data:`CALL`.
-
-        ``t`` are instants (n, t), and ``bent`` (n, t - 1) tells in which steps between them the motion bends more than they show;
-        one row of either serves all designs. ``history`` may be None; or all but that and the status may be None: then no peaks
-        are sought, and instants need not be in equal steps. The bytes of a row do not depend on other rows, nor on ``threads``.
-        """
-        n, count = p.shape[0], self.count
+        """Fill ``results`` for designs ``p``, as :meth:`bound` does. The bytes of a row do not depend on ``threads``."""
+        n = p.shape[0]
         shares = max(1, min(threads, n // self.share))
         size = max(1, min(_LONGEST * self.share, -(-n // (_SPREAD * shares)) if shares > 1 else n))
-        stride = (-(-count // _LINE) | 1) * _LINE + 2 * _LINE
-        inner = DEEPEST[self.precision] * self.reduction.inner * STRIDE
-        hidden = np.zeros((len(bent), stride), np.int8)
-        hidden[:, : bent.shape[1]] = bent
-        apart = {"t_apart": count if len(t) > 1 else 0, "bent_apart": stride if len(bent) > 1 else 0}
 
         def run(start: int) -> None:
-            room = np.zeros((self.reduction.rows + self.guess.size + 2) * stride + inner + _LINE, DTYPES[self.precision])
-            room = room[-room.ctypes.data // room.itemsize % _LINE :]
-            status, hiding = np.zeros(stride, np.int32), np.zeros(2 * stride, np.int8)
-            rows = {name: None if array is None else array[start : start + size] for name, array in results.items()}
-            own: dict[str, Any] = {"t": t[start:] if len(t) > 1 else t, "bent": hidden[start:] if len(bent) > 1 else hidden}
-            arrays: dict[str, npt.NDArray[Any] | None] = {
-                "p": p[start : start + size],
-                "guess": self.guess,
-                "room": room,
-                **own,
-                **rows,
-            }
-            arrays |= {"statuses": status, "hiding": hiding}
-            places = {name: None if array is None else array.ctypes.data for name, array in arrays.items()}
-            self.entry(CALL.made(designs=min(size, n - start), n=count, stride=stride, **apart, **places))
+            cut = slice(start, start + size)
+            rows = {name: None if array is None else array[cut] for name, array in results.items()}
+            self.bound(t[cut] if len(t) > 1 else t, bent[cut] if len(bent) > 1 else bent, p[cut], rows)()
 
         starts = range(0, n, size)
         if shares == 1:
@@ -168,6 +147,44 @@ class DesignsLibrary:
             list(pool.map(run, starts))
         finally:
             pool.shutdown(cancel_futures=True)
+
+    def bound(
+        self,
+        t: npt.NDArray[np.float64],
+        bent: npt.NDArray[np.bool_],
+        p: npt.NDArray[np.float64],
+        results: Mapping[str, npt.NDArray[Any] | None],
+    ) -> Callable[[], None]:
+        """What fills ``results`` for designs ``p``, (n, parameters), by what the arrays hold when it is called.
+
+        They are arrays by their names in :data:`CALL`. ``t`` are instants (n, t), and ``bent`` (n, t - 1) tells in which steps
+        between them the motion bends more than they show; one row of either serves all designs. ``history`` may be None; or all
+        but that and the status may be None: then no peaks are sought, and instants need not be in equal steps. The bytes of a row
+        do not depend on other rows.
+        """
+        stride = (-(-self.count // _LINE) | 1) * _LINE + 2 * _LINE
+        inner = DEEPEST[self.precision] * self.reduction.inner * STRIDE
+        hidden = np.zeros((len(bent), stride), np.int8)
+        hidden[:, : bent.shape[1]] = bent
+        room = np.zeros((self.reduction.rows + self.guess.size + 2) * stride + inner + _LINE, DTYPES[self.precision])
+        room = room[-room.ctypes.data // room.itemsize % _LINE :]
+        status, hiding = np.zeros(stride, np.int32), np.zeros(2 * stride, np.int8)
+        arrays: dict[str, npt.NDArray[Any] | None] = {"t": t, "bent": hidden, "p": p, "guess": self.guess, "room": room, **results}
+        arrays |= {"statuses": status, "hiding": hiding}
+        call = CALL.made(
+            designs=p.shape[0],
+            n=self.count,
+            stride=stride,
+            t_apart=self.count if len(t) > 1 else 0,
+            bent_apart=stride if len(bent) > 1 else 0,
+            **{name: None if array is None else array.ctypes.data for name, array in arrays.items()},
+        )
+        # The arrays live as long as what reads and writes them.
+        return functools.partial(_enter, self.entry, call, arrays)
+
+
+def _enter(entry: Any, call: Any, arrays: object) -> None:
+    entry(call)
 
 
 def load(source: str, compiler: Compiler, extra: tuple[str, ...] = (), steps: int = 1) -> Library:

@@ -138,12 +138,12 @@ class DesignEngine:
     @property
     def quantities(self) -> tuple[str, ...]:
         """The names of the quantities that have peaks."""
-        return tuple(str(self.kept.quantities[k]) for k in self._shown)
+        return tuple(str(self.kept.quantities[k]) for k in self.shown)
 
     @property
     def units(self) -> tuple[str, ...]:
         """Their units."""
-        return tuple(self.kept.units[k] for k in self._shown)
+        return tuple(self.kept.units[k] for k in self.shown)
 
     @property
     def efforts(self) -> tuple[str, ...]:
@@ -213,17 +213,38 @@ class DesignEngine:
         size = n if self.times.common else max(1, _PIECE // self.count)
         for start in range(0, n, max(size, 1)):
             self._fill(p[start : start + size], _rows(found, slice(start, start + size)), threads or cores())
-        if len(self._shown) < q:
-            found = replace(found, **{name: getattr(found, name)[:, self._shown] for name in ("value", "t", "xi")})
+        if len(self.shown) < q:
+            found = replace(found, **{name: getattr(found, name)[:, self.shown] for name in ("value", "t", "xi")})
         if self.times.law is not None:
             found = replace(found, over=self.times.at_drive(found.t, p))
         if columns is None:
             return found
+        for row, out in zip(p, columns, strict=True):
+            self._withhold(out, row)
         with np.errstate(invalid="ignore"):
-            for row, out in zip(p, columns, strict=True):
-                out[[self.graph.outputs[output] for output in undetermined(self.graph, out, row, self.rung)]] = np.nan
             series = outputs_of(self.graph, np.moveaxis(columns, 1, 0))
         return replace(found, series=np.stack([series[output] for output in self.outputs], axis=1))
+
+    def told(self, out: Array, p: Array) -> dict[Output, Array]:
+        """The series (t,) of one design, which are among its columns ``out`` (columns, t): what is open is NaN, angles go on."""
+        self._withhold(out, p)
+        series = outputs_of(self.graph, out)
+        return {output: series[output] for output in self.outputs}
+
+    def _withhold(self, out: Array, p: Array) -> None:
+        """Take from the columns (columns, t) of a design what equilibrium leaves open."""
+        with np.errstate(invalid="ignore"):
+            out[[self.graph.outputs[output] for output in undetermined(self.graph, out, p, self.rung)]] = np.nan
+
+    @property
+    def plain(self) -> bool:
+        """Whether :meth:`told` changes nothing of the columns."""
+        return not self.graph.loop_angles and not self.graph.doubtful
+
+    @property
+    def watches_ends(self) -> bool:
+        """Whether motions put something into curves, whose ends are to be watched."""
+        return ends_function(self.scene.laws, self.scene.mechanism.symbols) is not None
 
     @property
     def shared(self) -> bool:
@@ -237,7 +258,7 @@ class DesignEngine:
             found.times[:] = asked
         together = found.series is not None and asked is even
         self._evaluate(p, even, found if together else replace(found, series=None), threads)
-        self._refuse_motions(p, even, found)
+        self.refuse_motions(p, even, found)
         if found.series is None or together:
             return
         others = np.zeros(len(p), np.int8)
@@ -254,7 +275,7 @@ class DesignEngine:
             return
         peaks_of = {"value": found.value, "peak_t": found.t, "xi": found.xi}
         results = {"status": found.status, **peaks_of, "mean": found.mean, "rms": found.rms, "history": found.series}
-        self.library.evaluate(t, self._bent(p, t), p, results, threads)
+        self.library.evaluate(t, self.bent(p, t), p, results, threads)
 
     def _series(self, p: Array, t: Array, status: npt.NDArray[np.int8], series: Array, threads: int) -> None:
         """The columns of designs at any instants, without peaks."""
@@ -266,7 +287,7 @@ class DesignEngine:
             status[i], table = columns_of(self.graph, self.kept, t[min(i, len(t) - 1)], row, self.rung.newton)
             series[i] = np.nan if table is None else table.out
 
-    def _bent(self, p: Array, t: Array) -> npt.NDArray[np.bool_]:
+    def bent(self, p: Array, t: Array) -> npt.NDArray[np.bool_]:
         """In which steps between the instants of each design its motion bends more than they show; one row where none has knots."""
         if len(t) == 1 or not self.kept.sharpness.knots:
             # Of the defaults: a row of what is found must not depend on the designs beside it.
@@ -274,7 +295,7 @@ class DesignEngine:
         known = [bent(self.graph, self.kept.sharpness, times, row) for times, row in zip(t, p, strict=True)]
         return np.array(known) if known else np.zeros((1, 0), bool)
 
-    def _refuse_motions(self, p: Array, t: Array, found: Outcome) -> None:
+    def refuse_motions(self, p: Array, t: Array, found: Outcome) -> None:
         """Take the result from designs whose motion puts into a curve what is beyond its ends at any of their instants."""
         ends = ends_function(self.scene.laws, self.scene.mechanism.symbols)
         if ends is None:
@@ -288,7 +309,7 @@ class DesignEngine:
                 array[far] = np.nan
 
     @cached_property
-    def _shown(self) -> list[int]:
+    def shown(self) -> list[int]:
         """The quantities that are given: of a link that has some forces determined, all are made, and these are shown."""
         found, table = enumerate(self.kept.quantities), table_of(self.scene.mechanism.space)
         return [k for k, q in found if q.group != "section" or not made_of(self.left_open, q.part, q.member, table)]

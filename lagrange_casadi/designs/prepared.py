@@ -1,0 +1,185 @@
+"""A scene made ready for many evaluations, one after another: what does not depend on parameters' values is done once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ..arithmetic.compensated import Precision
+from ..declare.density import Array
+from ..declare.scene import Scene
+from ..declare.times import Over, Times
+from ..errors import AssemblyError, DeclarationError, UnknownNameError
+from ..evaluate import evaluate
+from ..instants.refusal import Status
+from ..instants.rung import Backend, Rung
+from .engine import DesignEngine, Outcome
+
+
+@dataclass(frozen=True, eq=False)
+class Peaks:
+    """What the instants of one evaluation come to, with all between them.
+
+    ``value``, ``t`` and ``xi``, (q,), are the peak of each quantity with its sign, its time [s] and its ratio xi/l, NaN off a link;
+    ``mean`` and ``rms``, (e,), those of each effort over time.
+    """
+
+    value: Array
+    t: Array
+    xi: Array
+    mean: Array
+    rms: Array
+
+
+class Prepared:
+    """A scene that answers for values of its parameters: see :func:`prepare`.
+
+    It serves one thread at a time, for its answers lie in arrays of its own; :meth:`copy` gives one for another thread.
+    """
+
+    def __init__(self, engine: DesignEngine, explain: Callable[[Mapping[str, float]], object]) -> None:
+        self._engine, self._explain = engine, explain
+        self._declared = engine.scene.mechanism.parameters
+        self._place = {name: k for k, name in enumerate(self._declared)}
+        self._defaults = np.array(list(engine.scene.mechanism.values().values()))
+        self._p, self._status = self._defaults[None].copy(), np.zeros(1, np.int8)
+        graph, quantities, efforts = engine.graph, len(engine.kept.quantities), len(engine.efforts)
+        self._history = np.empty((1, len(graph.columns), engine.count))
+        self._rows = {str(output): self._history[0, graph.outputs[output]] for output in engine.outputs}
+        kept = ("value", "peak_t", "xi", "mean", "rms")
+        places = {name: np.empty((1, quantities if k < 3 else efforts)) for k, name in enumerate(kept)}
+        self._seen = Peaks(*(places[name][0] for name in kept))
+        self._fill: tuple[Callable[[], None], Callable[[], None]] | None = None
+        # Where nothing but the values changes from call to call, all that remains is the call itself.
+        if engine.library is not None and engine.times.common and not engine.watches_ends:
+            even, asked = engine.times.of(self._p)
+            bind = partial(engine.library.bound, p=self._p)
+            nowhere = np.zeros((1, 0), bool)
+            self._fill = (
+                bind(asked, nowhere, results={"status": self._status, **dict.fromkeys(kept), "history": self._history}),
+                bind(even, engine.bent(self._p, even), results={"status": self._status, **places, "history": None}),
+            )
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of the parameters."""
+        return self._engine.parameters
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """The names of the series that an evaluation gives."""
+        return self._engine.columns
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The names of the quantities that have peaks, in their order."""
+        return self._engine.quantities
+
+    @property
+    def efforts(self) -> tuple[str, ...]:
+        """The names of the efforts that have means, in their order."""
+        return self._engine.efforts
+
+    @property
+    def t(self) -> Array:
+        """The instants (t,) [s] of the last evaluation; before the first one, those of the defaults."""
+        instants: Array = self._engine.times.of(self._p)[1][0]
+        return instants
+
+    def copy(self) -> Prepared:
+        """Another one with arrays of its own, for another thread; nothing is derived or compiled for it."""
+        return Prepared(self._engine, self._explain)
+
+    def __call__(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Mapping[str, Array]:
+        """The series (t,) of all outputs, by name, for values of parameters, by name or in a mapping; the defaults for others.
+
+        The arrays are this object's own: its next evaluation overwrites them. Raises :class:`UnknownNameError` and
+        :class:`ParameterError` for what is no parameter, or out of range, and :class:`AssemblyError` where there is no result.
+        """
+        self._set(values, named)
+        engine = self._engine
+        if self._fill is None:
+            found = engine.evaluate(self._p, threads=1, histories=True)
+            assert found.series is not None
+            self._refuse(found.status[0])
+            return dict(zip(engine.columns, found.series[0], strict=True))
+        self._fill[0]()
+        self._refuse(self._status[0])
+        return self._rows if engine.plain else {str(o): row for o, row in engine.told(self._history[0], self._p[0]).items()}
+
+    def peaks(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Peaks:
+        """Peaks and means for values of parameters; the arrays are this object's own, as those of a call are.
+
+        Raises what a call does, and :class:`AssemblyError` too where a peak cannot be told.
+        """
+        self._set(values, named)
+        engine = self._engine
+        if self._fill is None:
+            found = engine.evaluate(self._p, threads=1)
+            self._refuse(found.status[0])
+            return Peaks(*(array[0] for array in (found.value, found.t, found.xi, found.mean, found.rms)))
+        self._fill[1]()
+        self._refuse(self._status[0])
+        if len(engine.shown) == len(engine.kept.quantities):
+            return self._seen
+        value, t, xi = (array[engine.shown] for array in (self._seen.value, self._seen.t, self._seen.xi))
+        return Peaks(value, t, xi, self._seen.mean, self._seen.rms)
+
+    def designs(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
+        """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`; ``threads`` share them.
+
+        Values are not checked against the parameters' ranges. A design without a result has its status, and NaN.
+        """
+        return self._engine.evaluate(p, threads=threads, histories=histories)
+
+    def _set(self, values: Mapping[str, Any] | None, named: Mapping[str, Any]) -> None:
+        row = self._p[0]
+        row[:] = self._defaults
+        for given in (values, named) if values else (named,):
+            for name, value in given.items():
+                parameter = self._declared.get(name)
+                if parameter is None:
+                    raise UnknownNameError("parameter", name, self._declared)
+                if not (type(value) is float and parameter.low <= value <= parameter.high):
+                    parameter.check(value)
+                row[self._place[name]] = value if type(value) is float else parameter.number(value)
+
+    def _refuse(self, status: int) -> None:
+        if status != Status.OK:
+            # It says where, and why.
+            self._explain(dict(zip(self.parameters, self._p[0].tolist(), strict=True)))
+            raise AssemblyError(f"there is no result: {Status(status).meaning}")
+
+
+def prepare(
+    scene: Scene,
+    *,
+    t: Times | None = None,
+    over: Over | None = None,
+    wanted: Sequence[str] | None = None,
+    backend: Backend = "auto",
+    precision: Precision = "double",
+    newton: int | None = None,
+    flags: str = "",
+) -> Prepared:
+    """Make a scene ready for many evaluations one after another, as an optimiser asks for them.
+
+    Takes what :func:`.evaluate` takes, but for values of parameters, which each evaluation is told. It derives and compiles once;
+    an evaluation is then a call of the compiled code, with the verdicts of :func:`.sweep`. There is no certificate and no estimate
+    of errors: :func:`.evaluate` the design that is chosen.
+
+        f = prepare(scene, wanted=["effort"])
+        largest = abs(f(l=0.25)["effort:O"]).max()
+        peaks = dict(zip(f.quantities, f.peaks(l=0.25).value))
+
+    Raises what :func:`.evaluate` does for mistakes in the arguments, and :class:`CompilerError`.
+    """
+    if not isinstance(scene, Scene):
+        raise DeclarationError(f"prepare: expected a Scene, got {scene!r}")
+    engine = DesignEngine.of(scene, wanted, rung=Rung(backend, precision, newton, None, flags), timing=scene.timing(t, over))
+    asked: dict[str, Any] = {"t": t, "over": over, "wanted": wanted, "backend": backend, "precision": precision, "newton": newton}
+    return Prepared(engine, lambda values: evaluate(scene, parameters=values, **asked, flags=flags, certificate=False))
