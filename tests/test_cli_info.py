@@ -96,6 +96,7 @@ def scene():
     swing = m.revolute("swing", m.ground, arm)
     m.prismatic("reach", arm, load, axis=(1, 0))
     m.line_load("wind", arm, y=(0.0, -40.0))
+    m.line_load("snow", arm, y=lambda xi: -40.0 * xi**2, between=(0.5, 1.0), turning=True)
     m.path("hook", load)
     m.output("power", m.results.effort(swing) * m.rate(swing), unit="W")
     line = {"hook": (motion.polynomial(0.8), motion.harmonic(0.1, 0.2, speed))}
@@ -113,6 +114,8 @@ def test_motions_of_points_drives_elsewhere_and_own_outputs(tmp_path, capsys):
     assert "  motion hook.x: 0.8 of the time t; from 0.8 m to 0.8 m\n" in told
     assert "from 0.1 m to 0.1 m, within -0.1 m and 0.3 m\n" in told
     assert "load wind: line load on arm, x = 0 N/m, y = 0 to -40 N/m, in ground axes\n" in told
+    snow = "x = 0 N/m, y = -10 to -40 N/m by a polynomial of degree 2, in the axes of arm"
+    assert f"load snow: line load on arm between 0.5 and 1 m, {snow}\n" in told
     assert "output power [W]: (effort:swing*swing_rate)\n" in told
     assert "nan" not in told
 

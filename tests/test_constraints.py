@@ -204,3 +204,51 @@ def test_a_row_along_which_nothing_goes_is_not_violated():
     scene = Scene(m, laws, t=(0, 0.05, 2))
     assert evaluate(scene).certified
     assert DesignEngine.of(scene, ["effort"]).evaluate(np.zeros((1, 0))).status == 0
+
+
+def towed(drives):
+    """A body on a skate whose nose is held by an arm of two links: the motion is the skate's, and the arm may make it."""
+    m = Mechanism("towed")
+    m.set_gravity(0.4, -0.3)
+    cross, pivot = m.link("cross", length=0.1, mass=0.1), m.link("pivot", length=0.1, mass=0.2)
+    body, upper, lower = (
+        m.link(name, length=l, mass=w) for name, l, w in (("body", 0.4, 2.0), ("upper", 1.6, 0.7), ("lower", 1.5, 0.5))
+    )
+    m.prismatic("X", m.ground, cross, axis=(1, 0))
+    across = m.prismatic("Y", cross, pivot, axis=(0, 1))
+    turn = m.revolute("turn", pivot, body)
+    m.revolute("shoulder", m.ground.at(0.3, -1.2), upper)
+    m.revolute("elbow", upper.tip, lower)
+    m.revolute("nose", body.tip, lower.tip)
+    vx, vy = m.velocity(body)
+    q = m.direction(body)
+    m.nonholonomic("blade", -ca.sin(q) * vx + ca.cos(q) * vy, replaces=across)
+    m.torque("drag", body, -0.3 * m.rate(turn))
+    laws = {
+        "X": expression(lambda t: 2.0 * ca.sin(0.5 * t)),
+        "Y": expression(lambda t: 2.0 - 2.0 * ca.cos(0.5 * t)),
+        "turn": polynomial(0.0, 0.5),
+    }
+    return Scene(m, laws, t=(0.2, 1.4, 15), posture={"upper": 0.2, "lower": 2.2}, drives=drives)
+
+
+@pytest.mark.parametrize("drives", [("shoulder", "elbow"), ("X", "shoulder"), ("turn", "elbow"), ("Y", "turn"), ("nose", "Y")])
+def test_a_non_holonomic_row_leaves_the_motion_to_drives_elsewhere(drives):
+    """The blade holds sideways; two drives anywhere do the rest, that which the blade replaces too where it is named."""
+
+    def effect(place):
+        phi = place(("body", 0.0, 0.0))[2]
+        return [(("body", 0.0, 0.0), -math.sin(phi.v), math.cos(phi.v), 0.0)]
+
+    def drag(_):
+        return [(("body", 0.0, 0.0), 0.0, 0.0, -0.15)]
+
+    for t in (0.2, 0.9, 1.4):
+        assert_balanced(towed(drives), t=t, extras=[oracle.Extra("blade", None, effect)], loads=[drag])
+    solution = evaluate(towed(drives))
+    assert solution.certified
+    assert {"balance", "power", "ends"} <= set(solution.certificate)
+    assert {q.part for q in solution.outputs if q.group == "effort"} == set(drives)
+    usual = evaluate(towed(None))
+    power = [sum(s.effort(j) * s.motion(j).rate for j in joints) for s, joints in ((usual, ("X", "turn")), (solution, drives))]
+    assert np.abs(power[1] - power[0]).max() < 1e-12 * np.abs(power[0]).max()

@@ -2,10 +2,12 @@
 
 from fractions import Fraction
 
+import casadi as ca
 import numpy as np
 import pytest
 
-from lagrange_casadi.declare.density import polynomial, tabulated, uniform
+from lagrange_casadi import curve
+from lagrange_casadi.declare.density import Density, along, polynomial, tabulated, uniform
 
 pytestmark = pytest.mark.quick
 
@@ -51,3 +53,15 @@ def test_ends(name):
     np.testing.assert_allclose(
         [base / scale, tip / scale, inertia / scale / length**2], exact, rtol=0, atol=8e-16 * (exact[0] + exact[1])
     )
+
+
+def test_a_density_tells_where_it_jumps():
+    ratios = [0.0, 0.2, 0.7, 1.0]
+    smooth = curve(ratios, [1.0, 3.0, 2.0, 2.5])
+    for one in (uniform(2.0), polynomial(1.0, -0.5), tabulated(ratios, [1, 3, 2, 5]), along(smooth)):
+        assert one.jumps == ()
+        assert one.at(float, 0.7).jumps == ()
+    stepped = Density((0.0, 0.3, 0.6, 1.0), ((1.0,), (2.0, -1.0), (1.4,)), per_length=True)
+    assert stepped.jumps == stepped.at(float, 0.7).jumps == (0.3,)
+    unknown = Density((0.0, 0.3, 1.0), ((ca.SX.sym("a"),), (2.0,)), per_length=True)
+    assert unknown.jumps == (0.3,)

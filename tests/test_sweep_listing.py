@@ -1,12 +1,14 @@
 """Lists of designs from CSV: what is wrong is named by line and column."""
 
+import math
 import re
 
 import numpy as np
 import pytest
 import sweeps
 
-from lagrange_casadi.errors import DeclarationError, PathError, UnknownNameError
+from lagrange_casadi import Mechanism
+from lagrange_casadi.errors import DeclarationError, ParameterError, PathError, UnknownNameError
 from lagrange_casadi.sweep import read_designs
 from lagrange_casadi.sweep.axes import check_designs
 
@@ -21,6 +23,26 @@ def test_a_list_is_read(tmp_path):
     np.testing.assert_array_equal(listed.rows, [[0.2, 0.1], [0.3, 0.05]])
     assert listed.outside("l", 0.25, 1.0) == "0.2 in line 2"
     assert listed.outside("r", 0.1, 1.0) == "0.05 in line 4"
+
+
+def test_angles_may_have_a_unit(tmp_path):
+    path = tmp_path / "d.csv"
+    path.write_text("phi,l\n30 deg,0.2\n0.5,0.3\n 90deg ,0.4\n1 rad,0.1\n")
+    m = Mechanism("angles")
+    m.parameter("phi", 0.0, "rad", low=0.0, high=2.0)
+    m.parameter("l", 0.2, "m")
+    listed = read_designs(path)
+    np.testing.assert_array_equal(listed.rows, [[math.pi / 6, 0.2], [0.5, 0.3], [math.pi / 2, 0.4], [1.0, 0.1]])
+    check_designs(listed, m, {})
+    path.write_text("phi,l\n30 deg,0.2\n200 deg,0.3\n0.5,20 deg\n")
+    with pytest.raises(DeclarationError, match=r"d\.csv, column 'l': expected numbers \[m\], not angles"):
+        check_designs(read_designs(path), m, {})
+    path.write_text("phi,l\n30 deg,0.2\n200 deg,0.3\n")
+    with pytest.raises(ParameterError, match=r"phi = 3\.490658504 in line 3, out of its range \[0, 2\]"):
+        check_designs(read_designs(path), m, {})
+    path.write_text("phi,l\nmuch deg,0.2\n")
+    with pytest.raises(DeclarationError, match="line 2, column 'phi': expected a finite number, got 'much deg'"):
+        read_designs(path)
 
 
 @pytest.mark.parametrize(

@@ -65,7 +65,7 @@ def _load(load: Load, *, space: bool) -> str:
         return f"force on {first}, {_components(load, 'N', space)}"
     if isinstance(load, LineLoad):
         axes = f"in the axes of {first}" if load.turning else "in ground axes"
-        told = [f"{x} = {_along(getattr(load, x))} N/m" for x in ("xyz" if space else "xy")]
+        told = [f"{x} = {_along(getattr(load, x))}" for x in ("xyz" if space else "xy")]
         part = "" if load.whole else f" between {_short(load.between[0])} and {_short(load.between[1])} m"
         return f"line load on {first}{part}, {', '.join(told)}, {axes}"
     second = load.points[1].body.name
@@ -82,7 +82,7 @@ def _along(powers: Sequence[Any]) -> str:
     first, last = sum(powers[1:], powers[0]), powers[0]
     words = " to ".join(dict.fromkeys((_short(first), _short(last))))
     degree = max((j for j, power in enumerate(powers) if not (isinstance(power, float) and power == 0.0)), default=0)
-    return words if degree < 2 else f"{words}, a polynomial of degree {degree},"
+    return f"{words} N/m" if degree < 2 else f"{words} N/m by a polynomial of degree {degree}"
 
 
 def _components(load: Force | Torque, unit: str, space: bool) -> str:

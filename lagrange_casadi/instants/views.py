@@ -73,9 +73,9 @@ class Section:
     In the plane these are (e, n, z): e runs from base to tip, n is 90 degrees counter-clockwise of e. In space they are x, from
     base to tip, and the cross-section's y and z; ``shear`` and ``bending`` are then resultants. At a station the grids hold the
     value on its tip side. What equilibrium does not determine is NaN. A grid is made when it is first asked for, from ``law``,
-    which holds seven numbers an instant, or twelve in space, and loads at stations; each raises :class:`.SizeError` where memory
-    does not hold it. Those of space raise :class:`.UnknownNameError` in the plane. The paper's internal forces (Nguyen, Petre,
-    Stroe, eq. 13, 20 and 21) have the opposite sign.
+    which holds seven numbers an instant, or twelve in space, and loads at stations and along the link; each raises
+    :class:`.SizeError` where memory does not hold it. Those of space raise :class:`.UnknownNameError` in the plane. The paper's
+    internal forces (Nguyen, Petre, Stroe, eq. 13, 20 and 21) have the opposite sign.
     """
 
     law: SectionLaw

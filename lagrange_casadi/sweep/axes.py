@@ -200,6 +200,8 @@ class Grid:
 class Listed:
     """A list of designs: ``rows`` (designs, names) of values; ``lines`` tell where each row stood in a file ``source``.
 
+    Some values of the parameters in ``angles`` were told as angles.
+
     Raises :class:`DeclarationError` for no designs, no or repeated names, or values that are not finite.
     """
 
@@ -207,7 +209,7 @@ class Listed:
     rows: Array
     lines: Numbers | None = None
     source: str = ""
-    angles: ClassVar[tuple[str, ...]] = ()
+    angles: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         rows = np.ascontiguousarray(self.rows, dtype=np.float64)
@@ -272,7 +274,8 @@ def check_designs(designs: Designs, mechanism: Mechanism, fixed: Mapping[str, fl
             raise DeclarationError(f"parameter '{name}' is swept and set to {fixed[name]} as well")
     for name in designs.angles:
         if (unit := parameters[name].unit) != "rad":
-            raise DeclarationError(f"grid of {name}: expected numbers [{unit}], not angles")
+            where = f"{designs.source}, column '{name}'" if designs.source else f"grid of {name}"
+            raise DeclarationError(f"{where}: expected numbers [{unit}], not angles")
     wrong = []
     for name in designs.names:
         parameter = parameters[name]

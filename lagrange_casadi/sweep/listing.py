@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..declare.angles import typed
 from ..errors import DeclarationError, PathError
 from ..system.numerals import real
 from .axes import Listed, check_known, not_parameter
@@ -19,7 +20,8 @@ from .axes import Listed, check_known, not_parameter
 def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | None = None) -> Listed:
     """Read a list of designs, for :func:`.sweep`: a first line of parameters' names, then a line of values for each design.
 
-    Cells are separated by commas, numbers have points, the text is UTF-8. Empty lines are passed over. Returns a :class:`.Listed`.
+    Cells are separated by commas, numbers have points, the text is UTF-8. Angles may have a unit, as ``30 deg``. Empty lines are
+    passed over. Returns a :class:`.Listed`.
 
     With the names of ``parameters``, as of a mechanism, the head is checked against them before any number is read; without, a
     sweep checks it.
@@ -28,7 +30,7 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
     """
     if not Path(path).is_file():
         raise PathError(f"{path}: {'is a folder, not a file' if Path(path).is_dir() else 'no such file'}")
-    values, lines = array("d"), array("q")
+    values, lines, angles = array("d"), array("q"), dict[str, None]()
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
             rows = _rows(path, file)
@@ -42,7 +44,10 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
                 if len(row) != len(names):
                     short = f", column '{names[len(row)]}' is missing" if len(row) < len(names) else ""
                     raise DeclarationError(f"{path}, line {line}: {len(row)} cells, expected {len(names)}{short}")
-                values.extend(_number(path, line, name, cell) for name, cell in zip(names, row, strict=True))
+                for name, cell in zip(names, row, strict=True):
+                    value, is_angle = typed(cell)
+                    values.append(value if is_angle else _number(path, line, name, cell))
+                    angles |= {name: None} if is_angle else {}
                 lines.append(line)
     except UnicodeDecodeError as error:
         raise DeclarationError(f"{path}: not a table of text in UTF-8: {error}") from None
@@ -50,7 +55,7 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
         raise PathError(f"{path}: {error.strerror}") from None
     if not lines:
         raise DeclarationError(f"{path}: no designs below its head {', '.join(names)}")
-    return Listed(tuple(names), np.array(values).reshape(-1, len(names)), np.array(lines), str(path))
+    return Listed(tuple(names), np.array(values).reshape(-1, len(names)), np.array(lines), str(path), tuple(angles))
 
 
 def _rows(path: str | os.PathLike[str], file: Iterable[str]) -> Iterator[tuple[int, list[str]]]:

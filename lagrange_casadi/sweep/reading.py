@@ -109,7 +109,7 @@ class Sweep:
 
     def select(self, **values: Any) -> Sweep:
         """The designs with given values of parameters: a number that is on the grid, a list of such numbers, or a tuple
-        (low, high), both included.
+        (low, high), both included. Angles may be texts, as ``"30 deg"``.
 
         An axis stays where one number is selected, of length one. Raises :class:`UnknownNameError` for what was not swept,
         :class:`DeclarationError` for what is none of these, and where no design has such a value, with the nearest one that has.
@@ -120,7 +120,7 @@ class Sweep:
         for name, wanted in values.items():
             axis = self._axis(name)
             there = replace(self, chosen=chosen)[name]
-            found = np.flatnonzero(matches(name, there, wanted))
+            found = np.flatnonzero(matches(name, there, wanted, self.parameters[name]))
             before = chosen.get(axis)
             chosen[axis] = found if before is None else before[found]
         return replace(self, chosen=chosen)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..declare.angles import typed
 from ..declare.density import Array
 from ..errors import DeclarationError
 
@@ -22,14 +23,20 @@ def near(values: Array, number: float) -> npt.NDArray[np.bool_]:
     return np.asarray(np.abs(values - number) <= _NEAR * np.maximum(np.abs(values), abs(number)))
 
 
-def matches(name: str, there: Array, wanted: Any) -> npt.NDArray[np.bool_]:
-    """Where values are wanted. Raises :class:`DeclarationError` for what cannot be, and for what no value is."""
+def matches(name: str, there: Array, wanted: Any, unit: str) -> npt.NDArray[np.bool_]:
+    """Where values are wanted, in their ``unit``; in rad they may be texts of angles, as ``"30 deg"``.
+
+    Raises :class:`DeclarationError` for what cannot be, and for what no value is.
+    """
+    told = [typed(number) for number in (wanted if isinstance(wanted, Iterable) and not isinstance(wanted, str) else [wanted])]
+    if unit != "rad" and any(is_angle for _, is_angle in told):
+        raise DeclarationError(f"select: {name}: expected numbers [{unit}], not angles, got {wanted!r}")
     try:
-        numbers = np.array([float(number) for number in (wanted if isinstance(wanted, Iterable) else [wanted])])
+        numbers = np.array([math.nan if isinstance(number, str) else float(number) for number, _ in told])
     except (TypeError, ValueError):
         numbers = np.array([np.nan])
     pair = isinstance(wanted, tuple)
-    if isinstance(wanted, str) or not numbers.size or np.isnan(numbers).any() or (pair and numbers.size != 2):
+    if not numbers.size or np.isnan(numbers).any() or (pair and numbers.size != 2):
         raise DeclarationError(f"select: {name}: expected a number, a list of numbers, or a tuple (low, high), got {wanted!r}")
     if not pair:
         return np.asarray(np.any([_found(name, there, near(there, number), number, "=") for number in numbers], axis=0))
