@@ -3,10 +3,12 @@
 import csv
 import io
 import re
+from dataclasses import replace
 
 import browser
 import numpy as np
 import pytest
+from drawn_scenes import every_kind
 from reports import HOSTILE, hostile, press, solved
 
 from lagrange_casadi.quantities import Output
@@ -243,4 +245,66 @@ def test_a_largest_moment_is_found_at_a_glance_and_its_section_shown(page):
     readout = one.run("document.querySelector('.readout').textContent.replaceAll('\\u00a0', ' ')")
     assert readout == f"t = {to_digits(1e3 * peak.t, 5):g} ms"
     assert f"ξ/l = {peak.xi:.3g}" in one.run("document.querySelector('.ratio').textContent")
+    quiet(one)
+
+
+PRESSES = """(async () => {
+  const pause = () => new Promise((done) => setTimeout(done, 0));
+  const each = async (what, act) => {
+    for (const one of [...document.querySelectorAll(what)]) if (one.isConnected) { act(one); await pause(); }
+  };
+  const change = (one, value) => {
+    one.value = value;
+    for (const kind of ['input', 'change']) one.dispatchEvent(new Event(kind));
+  };
+  await each('.adding button, .switch:not(:last-child), .show input, .tile', (one) => one.click());
+  await each('.views button, thead button, .transport .sign', (one) => one.click());
+  await each('select', (one) => change(one, one.options[one.options.length - 1].value));
+  await each('select', (one) => change(one, one.options[Math.min(1, one.options.length - 1)].value));
+  await each('input[type=range]', (one) => { change(one, one.min); change(one, one.max); });
+  return document.querySelectorAll('.card').length;
+})()"""
+"""Every button and list of a page, once or twice."""
+
+
+def changed(change, left_open=()):
+    """The press with other arrays."""
+    whole = press()
+    outputs = {output: change(output, values) for output, values in whole.outputs.items()}
+    return replace(whole, outputs=outputs, errors={}, left_open=tuple(o for o in outputs if o.group in left_open))
+
+
+FORCES = ("effort", "reaction", "law", "station", "output")
+ODD = {
+    "no forces": lambda: changed(lambda o, v: np.zeros_like(v) if o.group in FORCES else v),
+    "forces that are open": lambda: changed(
+        lambda o, v: np.full_like(v, np.nan) if o.group in ("reaction", "law") else v, ("reaction", "law")
+    ),
+    "one instant": lambda: press(t=(0.1, 0.1, 1)),
+    "motion alone": lambda: press(wanted=("motion",)),
+    "every kind of joint": every_kind,
+}
+"""Solutions of which little is to be seen, or something that is hard to draw."""
+
+
+@pytest.mark.parametrize("what", ODD)
+def test_nothing_that_a_reader_presses_fails(page, what):
+    one = page(ODD[what]())
+    assert one.run(PRESSES) >= 1
+    quiet(one)
+
+
+def test_what_is_the_same_but_for_rounding_is_a_level_line(page):
+    """No steps of an axis are so small that doubles cannot count them."""
+
+    def jittered(output, values):
+        return np.where(np.arange(values.size) % 2, np.nextafter(values, np.inf), values) if output.member == "rate" else values
+
+    one = page(changed(jittered))
+    lists = "document.querySelector('.card').querySelectorAll('select')"
+    for k in (0, 1):
+        one.run(f"{{ const list = {lists}[{k}]; list.value = 'motion:O_rate'; list.dispatchEvent(new Event('change')); }}")
+    ticks = one.run("[...document.querySelectorAll('.card:first-child .axes text')].map((text) => text.textContent)")
+    assert "10" in ticks or "100" in ticks
+    assert len(ticks) < 40
     quiet(one)

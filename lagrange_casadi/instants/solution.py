@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
+    from ..report import View
+
 
 @dataclass(frozen=True)
 class Provenance:
@@ -284,6 +286,21 @@ class Solution:
         from ..report import write_report
 
         write_report(self, path)
+
+    def view(self, height: int = 760) -> View:
+        """The same page for a notebook, which shows it in a frame of a height [points] where it is the last value of a cell.
+
+        Raises :class:`.DeclarationError` where ``motion`` was not wanted.
+        """
+        from ..report import view
+
+        return view(self, height)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: a drawing and the peaks."""
+        from ..report import summary
+
+        return summary(self)
 
     def to_xarray(self) -> xarray.Dataset:
         """All quantities as an ``xarray.Dataset`` over t and xi, with units.

@@ -79,11 +79,14 @@ function endsOf(arrays, withZero) {
   return low <= high ? [low, high] : [0, 1];
 }
 
+const ROUNDING = 1e-9; // What differs by less, over its size, is the same but for rounding.
+
 /** A scale: from values to points of the sheet. `factor` brings them to the unit that is read. */
 function scaled([low, high], [from, to], unit, title, room = 0) {
   const { factor, unit: readable } = scaleFor(unit, Math.max(Math.abs(low), Math.abs(high)));
-  const wide = high - low || Math.abs(high) || 1;
-  const [a, b] = high > low ? [low - room * wide, high + room * wide] : [low - wide / 2, high + wide / 2];
+  const apart = high - low > ROUNDING * Math.max(Math.abs(low), Math.abs(high));
+  const wide = apart ? high - low : Math.abs(high) || 1;
+  const [a, b] = apart ? [low - room * wide, high + room * wide] : [low - wide / 2, high + wide / 2];
   const at = (value) => from + ((value - a) / (b - a)) * (to - from);
   const back = (point) => a + ((point - from) / (to - from)) * (b - a);
   const about = Math.max(2, Math.floor(Math.abs(to - from) / (to > from ? 76 : 34)));

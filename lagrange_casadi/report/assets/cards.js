@@ -209,7 +209,7 @@ function polarCard(joint, focus = false) {
       offer();
       own.choices.append(joints, ways);
     },
-    () => new Polar(state.joint, polarWays(state.joint)[state.way]),
+    () => new Polar(state.joint, polarWays(state.joint)[state.way] ?? polarWays(state.joint)[0]),
   );
   return addCard(card, focus);
 }

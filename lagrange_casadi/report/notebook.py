@@ -1,0 +1,78 @@
+"""What notebooks show of a solution: a drawing and the peaks at once, and the page of a report inside them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from html import escape
+
+from ..errors import DeclarationError
+from ..instants.solution import Solution
+from ..instants.told import told
+from .contents import require_poses
+from .page import page
+from .still import still
+from .words import what
+
+_ROWS = 12
+"""Peaks that are shown at most: the largest of each unit first."""
+
+
+@dataclass(frozen=True)
+class View:
+    """A report's page, which a notebook shows in a frame of a ``height`` [points]."""
+
+    case: str
+    text: str
+    height: int
+
+    def __repr__(self) -> str:
+        return f"<View of {self.case}: a notebook shows it; solution.report('{self.case}.html') writes it>"
+
+    def _repr_html_(self) -> str:
+        """The page in a frame of its own, which runs its script and may do nothing to the notebook."""
+        style, text = "width:100%;border:0;border-radius:8px", escape(self.text)
+        return f'<iframe sandbox="allow-scripts allow-modals" style="{style}" height="{self.height}" srcdoc="{text}"></iframe>'
+
+
+def view(solution: Solution, height: int = 760) -> View:
+    """A report's page for a notebook. Raises :class:`.DeclarationError` for no height, and as :func:`.page` does."""
+    if isinstance(height, bool) or not isinstance(height, int) or height < 1:
+        raise DeclarationError(f"view: expected a height in points, a whole number above 0, got {height!r}")
+    return View(solution.case, page(solution), height)
+
+
+def summary(solution: Solution) -> str:
+    """A drawing, where the solution has the motion, and the peaks: as HTML."""
+    try:
+        require_poses(solution)
+        drawing = still(solution)
+    except DeclarationError:
+        drawing = ""
+    state = "certified" if solution.certified else "<b>the certificate fails</b>" if solution.failed else "no certificate"
+    span = f"{solution.t.size} instants from {solution.t[0]:.5g} to {solution.t[-1]:.5g} s"
+    head = f"<p><b>{escape(solution.case)}</b>: {span}, {state}</p>"
+    return f'<div style="display:flex;flex-wrap:wrap;gap:1em;align-items:start">{drawing}<div>{head}{_table(solution)}</div></div>'
+
+
+def _table(solution: Solution) -> str:
+    """The peaks of efforts, resultants, section forces and own outputs; of many, the largest of each unit."""
+    plain = [
+        output
+        for output in told(solution)
+        if solution.determined(output) and (output.group != "reaction" or output.member in solution.table.reactions)
+    ]
+    peaks = {output: solution.peak(output) for output in plain}
+    largest: dict[str, float] = {}
+    for peak in peaks.values():
+        largest[peak.unit] = max(largest.get(peak.unit, 0.0), abs(peak.value))
+    by_size = sorted(plain, key=lambda output: -abs(peaks[output].value) / (largest[peaks[output].unit] or 1.0))
+    rows = []
+    for output in (output for output in plain if output in by_size[:_ROWS]):
+        peak = peaks[output]
+        where = f"{peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {peak.xi:.3f}")
+        value = f"{peak.value + 0.0:.5g}" + ("" if peak.unit == "1" else f" {peak.unit}")
+        cells = (output.part, what(output, solution.table), value, where)
+        rows.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
+    heads = "".join(f"<th>{head}</th>" for head in ("part", "quantity", "peak", "at"))
+    more = f"<p>and {len(plain) - len(rows)} more; view() shows all</p>" if len(plain) > len(rows) else ""
+    return f"<table><thead><tr>{heads}</tr></thead><tbody>{''.join(rows)}</tbody></table>{more}" if rows else ""
