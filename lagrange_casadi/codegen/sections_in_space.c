@@ -46,9 +46,9 @@ static inline casadi_real designs_polynomial(const casadi_real* c, int degree, c
 }
 
 /* The zero of what is monotonic from low to high, by Newton's method kept within what encloses it; or the end that is nearer to zero.
-   through becomes 1 where it falls through zero, -1 where it rises, else 0. */
+   falls becomes 1 where it falls through zero, else 0. */
 static inline casadi_real designs_monotonic(const casadi_real* c, const casadi_real* slope, int degree, casadi_real low, casadi_real high,
-                                            casadi_real at_low, casadi_real at_high, casadi_real* through) {
+                                            casadi_real at_low, casadi_real at_high, casadi_real* falls) {
   const casadi_real begin = lanes_less(0, at_low, 1, -1), there = begin*lanes_less(0, at_high, -1, 1);
   const casadi_real nearer = lanes_less(designs_size(at_high), designs_size(at_low), high, low);
   casadi_real x = DESIGNS_HALF*(low + high), now, same, next, half, moved;
@@ -66,7 +66,7 @@ static inline casadi_real designs_monotonic(const casadi_real* c, const casadi_r
     /* What a place is off changes a summit by the square of that. */
     if (!lanes_where_less(64*DESIGNS_CLOSE, lanes_less(there, 0, 0, moved))) break;
   }
-  *through = lanes_less(0, there, begin, 0);
+  *falls = lanes_less(0, there, lanes_less(0, begin, 1, 0), 0);
   return lanes_less(0, there, x, nearer);
 }
 
@@ -104,8 +104,8 @@ static inline casadi_real designs_slope(const designs_between* of, casadi_real u
 static inline void designs_summits_between(const designs_between* of, const designs_nodes* nodes, casadi_real low, casadi_real high,
                                            casadi_real summit[2]) {
   const int n = nodes->degree;
-  casadi_real level[DESIGNS_DEGREE + 1][DESIGNS_DEGREE + 1], at[DESIGNS_DEGREE + 2], next[DESIGNS_DEGREE + 2], through;
-  casadi_real value[DESIGNS_DEGREE + 2], start, stop, middle, half, u, size, off, best[2], least = 0, nearest = low;
+  casadi_real level[DESIGNS_DEGREE + 1][DESIGNS_DEGREE + 1], at[DESIGNS_DEGREE + 2], next[DESIGNS_DEGREE + 2], falls;
+  casadi_real value[DESIGNS_DEGREE + 2], start, stop, middle, half, u, size, best[2];
   int cell, i, j, k;
   best[0] = best[1] = -1;
   summit[0] = summit[1] = low;
@@ -129,15 +129,11 @@ static inline void designs_summits_between(const designs_between* of, const desi
       for (j = 0; j <= n - k; ++j) value[j] = designs_polynomial(level[k], n - k, at[j]);
       next[0] = -1;
       for (j = 0; j < n - k; ++j) {
-        next[j + 1] = designs_monotonic(level[k], level[k + 1], n - k, at[j], at[j + 1], value[j], value[j + 1], &through);
+        next[j + 1] = designs_monotonic(level[k], level[k + 1], n - k, at[j], at[j + 1], value[j], value[j + 1], &falls);
         if (k > 0) continue;
         u = middle + half*next[j + 1];
         u = lanes_less(u, start, start, lanes_less(stop, u, stop, u));
-        off = lanes_less(through, 0, DESIGNS_LARGEST, designs_size(designs_polynomial(level[0], n, next[j + 1])));
-        if (cell + j == 0) least = off;
-        nearest = lanes_less(off, least, u, lanes_less(least, off, nearest, cell + j == 0 ? u : nearest));
-        least = lanes_less(off, least, off, least);
-        size = lanes_less(0, half, lanes_less(0, through, designs_resultant(of, u), -1), -1);
+        size = lanes_less(0, half, lanes_less(0, falls, designs_resultant(of, u), -1), -1);
         summit[1] = lanes_less(best[0], size, summit[0], lanes_less(best[1], size, u, summit[1]));
         best[1] = lanes_less(best[0], size, best[0], lanes_less(best[1], size, size, best[1]));
         summit[0] = lanes_less(best[0], size, u, summit[0]);
@@ -147,7 +143,9 @@ static inline void designs_summits_between(const designs_between* of, const desi
       at[n - k + 1] = 1;
     }
   }
-  summit[0] = lanes_less(best[0], 0, nearest, summit[0]);
+  /* Where there is none, the larger end: a summit comes and goes there by rounding where the slope is zero. */
+  u = lanes_less(designs_resultant(of, low), designs_resultant(of, high), high, low);
+  summit[0] = lanes_less(best[0], 0, u, summit[0]);
   summit[1] = lanes_less(best[1], 0, summit[0], summit[1]);
   u = summit[0];
   summit[0] = lanes_less(summit[1], u, summit[1], u);
