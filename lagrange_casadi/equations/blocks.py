@@ -17,6 +17,7 @@ import numpy as np
 
 from ..declare.density import Array
 from ..errors import MobilityError
+from .bars import idle_spins
 from .loops import ClosedForm, solve_loop
 from .multibody import Coordinate, LoopEquations, Multibody, column
 from .sampling import drawn
@@ -230,8 +231,15 @@ def _require_freedom(multibody: Multibody, equations: int, parts: Sequence[Part]
             return
     movable = list(multibody.mechanism.coordinates)
     advice = f"drive {freedom} of the joints {', '.join(movable)}" if freedom > 0 else "take a joint, a constraint or a link away"
-    if freedom == driven:
+    lacking = [c.told_as for c in multibody.coordinates if c not in start["posture"]]
+    if ranks is None and lacking:
+        advice = f"give a rough posture of {', '.join(lacking)} too"
+    elif freedom == driven:
         advice = "but these over-determine some loops and leave others loose; drive other joints"
+    elif freedom > driven:
+        advice += "".join(
+            f"; {spin}" for spin in idle_spins(multibody.mechanism, [c.name for c in multibody.coordinates if c.driven])
+        )
     raise MobilityError(
         f"mechanism '{multibody.mechanism.name}' has {freedom} degree(s) of freedom ({how}) and {driven} drive(s); {advice}"
     )
