@@ -24,7 +24,6 @@ HEAD = """#include <math.h>
 #define DESIGNS_FABS fabs
 #define DESIGNS_ROOT sqrt
 #define DESIGNS_CLOSE 1e-15
-#define DESIGNS_LARGEST 1e300
 """
 LINKS = 60
 

@@ -1,31 +1,15 @@
 """What makes parts impossible: evaluations, sweeps on every backend and exported C draw the same line."""
 
-import subprocess
-
 import numpy as np
 import pytest
-from compiled import cc
+from prepared import prepared
 
-from lagrange_casadi import Mechanism, Scene, density, evaluate, export
+from lagrange_casadi import Mechanism, Scene, density, evaluate
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import ParameterError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
-
-PREPARED = """#include <stdio.h>
-#include "@.h"
-int main(void) {
-  static const double values[][COUNT] = {VALUES};
-  static @_model model;
-  @_parameters parameters = @_defaults;
-  int k;
-  for (k = 0; k < (int) (sizeof values/sizeof values[0]); ++k) {
-SET    printf("%d\\n", (int) @_prepare(&model, &parameters));
-  }
-  return 0;
-}
-"""
 
 
 def arm(build, names, default=0.0):
@@ -65,19 +49,6 @@ def accepted(scene, values):
         else:
             found.append(True)
     return found
-
-
-def prepared(scene, values, folder):
-    made = export(scene, folder)
-    rows = ", ".join("{" + ", ".join(f"{float(x)!r}" for x in np.atleast_1d(row)) + "}" for row in values)
-    members = "".join(f"    parameters.{name} = values[k][{i}];\n" for i, name in enumerate(scene.mechanism.parameters))
-    text = PREPARED.replace("COUNT", str(len(scene.mechanism.parameters))).replace("VALUES", rows).replace("SET", members)
-    (folder / "harness.c").write_text(text.replace("@", made.prefix))
-    result = cc(["cc", "-std=c99"], folder, "harness.c", f"{made.prefix}.c")
-    assert result.returncode == 0, result.stderr
-    return [
-        int(line) == 0 for line in subprocess.run([folder / "program"], capture_output=True, text=True, check=True).stdout.split()
-    ]
 
 
 @pytest.mark.sampled(5)

@@ -255,21 +255,33 @@ def test_where_a_resultant_turns_goes_on_from_instant_to_instant(force, density)
     assert np.ptp(places, axis=0).max() > 0.05
 
 
-@pytest.mark.parametrize("second", [3.0, -3.0, 1e-30, -1e-30])
+@pytest.mark.parametrize("end", [0.0, 1.0])
+@pytest.mark.parametrize("across", [0.0, 0.7])
+@pytest.mark.parametrize("second", [3.0, -3.0, 1e-30])
 @pytest.mark.parametrize("stations", [0, 1])
 @pytest.mark.parametrize("density", ["even", "in cells"])
-def test_where_bending_turns_does_not_change_places_by_rounding(second, stations, density):
-    """A link turns about a base at rest, without weight: the shear turns at the base, but for rounding."""
-    noise = 1e-15 * np.random.default_rng(1).normal(size=400)
-    coefficients = {name: np.zeros(noise.size) for name in SPACE.law} | {"fy0": np.full(noise.size, -0.2 * second)}
-    coefficients |= {"fy1": noise * second, "fy2": np.full(noise.size, second)}
+def test_what_turns_at_an_end_but_for_rounding_stays_there(second, stations, density, across, end):
+    """A link whose base or tip is at rest, without weight: its shear forces turn there, and so does their resultant.
+
+    Each curve that is more than an end's goes on: none jumps from what is an end's to what is not.
+    """
+    noise = 1e-15 * np.random.default_rng(1).normal(size=(2, 400))
+    coefficients = {name: np.zeros(400) for name in SPACE.law}
+    for axis, share, less in zip("yz", (1.0, across), noise, strict=True):
+        of = share * second
+        law = {"0": np.full(400, -0.2 * of), "1": (less - LENGTH * end) * of, "2": np.full(400, of)}
+        coefficients |= {f"f{axis}{k}": values for k, values in law.items()}
     (link,) = drawn(5, density, 1, stations=0)
-    nothing = {name: np.zeros(noise.size) for name in SPACE.place_first}
-    loads = tuple(SpatialStationLoad(f"load{k}", **nothing | {"station": np.full(noise.size, 0.7)}) for k in range(stations))
+    nothing = {name: np.zeros(400) for name in SPACE.place_first}
+    loads = tuple(SpatialStationLoad(f"load{k}", **nothing | {"station": np.full(400, 0.7)}) for k in range(stations))
     law = SectionLaw(LENGTH, link.density, coefficients, loads)
-    places, values = law.curves("bending_z")
-    assert np.ptp(places, axis=0).max() < 1e-7
-    assert np.ptp(values, axis=0).max() < 1e-13 * np.abs(values).max()
+    for force in SPACE.forces:
+        _, values = law.curves(force)
+        ends, size = 2 + 2 * stations, np.abs(values).max()
+        for curve in values.T[ends:]:
+            own = np.abs(curve[:, None] - values[:, :ends]).min(axis=1) > 1e-9 * size
+            assert own.all() or not own.any(), force
+            assert not own.any() or np.ptp(curve) <= 1e-12 * size, force
 
 
 @pytest.mark.parametrize("side", ["tip", "base"])

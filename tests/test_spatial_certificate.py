@@ -1,6 +1,5 @@
 """The certificate of mechanisms in space: at the level of rounding whatever holds the bodies, and it sees what is wrong."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +7,6 @@ import pytest
 from spatial_solutions import evaluated, residuals
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
-from lagrange_casadi.errors import CertificateWarning
 from lagrange_casadi.judge.certificate import certify
 from lagrange_casadi.judge.written import written
 from lagrange_casadi.quantities import Output
@@ -207,15 +205,3 @@ def test_many_turns_do_not_blur_what_is_judged():
     solution = evaluate(Scene(m, laws, t=(0, 1000, 101)))
     assert max(residuals(solution.certificate).values()) < 1e-11
     assert solution.certified
-
-
-def test_gimbal_lock_of_a_driven_joint_is_seen():
-    """Where the first and the third axis are one, no efforts along the three coordinates give the couple that is needed."""
-    m = SpatialMechanism("gimbal")
-    m.spherical("A", m.ground, m.link("a", length=0.6, mass=1.0))
-    laws = [motion.polynomial(0.3, 1.0), motion.polynomial(math.pi / 2 - 0.5, 1.0), motion.polynomial(0.1, 0.3)]
-    with pytest.warns(CertificateWarning, match="balance"):
-        solution = evaluate(Scene(m, {"A": laws}, t=(0, 1, 1001)))
-    assert not solution.certified
-    away = evaluate(Scene(m, {"A": laws}, t=(0, 0.4, 101)))
-    assert max(residuals(away.certificate).values()) < 1e-14

@@ -78,6 +78,16 @@ def test_what_a_scene_has_not_is_refused_with_the_reason():
     assert "one driven joint" in found.refused["--backend c --table 64"]
 
 
+def test_what_is_zero_but_for_rounding_is_judged_beside_other_motions():
+    """A cardan shaft in phase: its tube turns about one axis, so that all of some unit is zero."""
+    found = trade(
+        load_case("cardan_shaft").scene, wanted=["section:tube"], t=(0.0, 0.1, 9), rungs=(Rung("c"), Rung("c", table=1e-6))
+    )
+    exact, table = sorted(found.measurements, key=lambda one: one.largest)
+    assert exact.largest < 1e-12
+    assert table.largest < 1e-5
+
+
 def test_graphs_that_call_functions_have_no_reference():
     x = ca.SX.sym("x")
     called = ca.Function("called", [x], [ca.sin(x) * x], {"never_inline": True})

@@ -121,7 +121,7 @@ static inline void designs_summits_between(const designs_between* of, const desi
                                            casadi_real summit[2]) {
   const int n = nodes->degree;
   casadi_real level[DESIGNS_DEGREE + 1][DESIGNS_DEGREE + 1], at[DESIGNS_DEGREE + 2], next[DESIGNS_DEGREE + 2], turns;
-  casadi_real value[DESIGNS_DEGREE + 2], start, stop, middle, half, u, size, off, best[2], least = 0, nearest = low;
+  casadi_real value[DESIGNS_DEGREE + 2], start, stop, middle, half, u, size, best[2];
   int cell, i, j, k;
   best[0] = best[1] = -1;
   summit[0] = summit[1] = low;
@@ -149,12 +149,6 @@ static inline void designs_summits_between(const designs_between* of, const desi
         if (k > 0) continue;
         u = middle + half*next[j + 1];
         u = lanes_less(u, start, start, lanes_less(stop, u, stop, u));
-        off = designs_size(designs_polynomial(level[0], n, next[j + 1]));
-        /* A size is lowest where its slope rises; what has a sign may be largest in size there. */
-        if (of->many != 1) off = lanes_less(turns, 0, DESIGNS_LARGEST, off);
-        if (cell + j == 0) least = off;
-        nearest = lanes_less(off, least, u, lanes_less(least, off, nearest, cell + j == 0 ? u : nearest));
-        least = lanes_less(off, least, off, least);
         if (of->many == 1) turns = turns*turns;
         size = lanes_less(0, half, lanes_less(0, turns, designs_looked_at(of, u), -1), -1);
         summit[1] = lanes_less(best[0], size, summit[0], lanes_less(best[1], size, u, summit[1]));
@@ -166,7 +160,9 @@ static inline void designs_summits_between(const designs_between* of, const desi
       at[n - k + 1] = 1;
     }
   }
-  summit[0] = lanes_less(best[0], 0, nearest, summit[0]);
+  /* Where there is none, the larger end: a summit comes and goes there by rounding where the slope is zero. */
+  u = lanes_less(designs_looked_at(of, low), designs_looked_at(of, high), high, low);
+  summit[0] = lanes_less(best[0], 0, u, summit[0]);
   summit[1] = lanes_less(best[1], 0, summit[0], summit[1]);
   u = summit[0];
   summit[0] = lanes_less(summit[1], u, summit[1], u);

@@ -19,7 +19,7 @@ from .parts import Body, Expression, Link, Point
 Checked = Callable[[str, Any], Expression]
 """Takes what is said of an expression, and the expression."""
 
-_RIGHT = 1e-9
+RIGHT = 1e-9
 """A cosine that is smaller is that of a right angle."""
 
 
@@ -75,10 +75,15 @@ def triad_of(what: str, axis: Any, second: Any, checked: Checked) -> Triad:
     else:
         v = _unit(f"{what}: second axis", vector(f"{what}: second axis", second, checked))
         cosine = dot(u, v)
-        if isinstance(cosine, float) and abs(cosine) > _RIGHT:
-            degrees = math.degrees(math.acos(max(-1.0, min(1.0, cosine))))
-            raise DeclarationError(f"{what}: its axes must be at right angles, and are at {degrees:.6g} deg")
+        if isinstance(cosine, float) and abs(cosine) > RIGHT:
+            raise DeclarationError(not_right(what, cosine))
     return u, v, cross(u, v)
+
+
+def not_right(what: str, cosine: float) -> str:
+    """Why two axes are refused, in words."""
+    degrees = math.degrees(math.acos(max(-1.0, min(1.0, cosine))))
+    return f"{what}: its axes must be at right angles, and are at {degrees:.6g} deg"
 
 
 def across(axis: Vector) -> Vector:

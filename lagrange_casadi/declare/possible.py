@@ -14,13 +14,16 @@ import numpy as np
 
 from ..arithmetic.compensated import Precision
 from ..errors import ParameterError
+from ..geometry.vectors import dot
 from ..system.numerals import readable
 from .density import Density
+from .directions import RIGHT, not_right
 from .ends import BEYOND, beyond_ends
+from .joints import Joint
 from .limits import END, margins
 from .lowest import lowest
 from .matter import inertias, second_moments
-from .parts import Expression, LineLoad, Link, PointMass, RigidMass
+from .parts import Expression, LineLoad, Link, PointMass, RigidMass, Vector
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
@@ -88,6 +91,7 @@ def _of(mechanism: Mechanism, precision: Precision) -> Demands:
     if not any(_surely_positive(mass) for mass in masses):
         found.append(_some_mass(mechanism.name, masses))
     for joint in mechanism.joints.values():
+        found += _of_axes(joint, precision)
         for point in (joint.parent, joint.child):
             found += _of_station(f"joint '{joint.name}'", point, precision, space=mechanism.space)
     for load in mechanism.loads.values():
@@ -227,6 +231,23 @@ def _surely_positive(mass: Expression) -> bool:
     """Whether a mass is positive whatever the parameters are."""
     constant = ca.SX(mass)
     return bool(constant.is_constant() and 0.0 < float(constant) < math.inf)
+
+
+def _of_axes(joint: Joint, precision: Precision) -> list[Demand]:
+    """That directions in space that parameters set are some, and at right angles where they are told apart."""
+    what = f"joint '{joint.name}'"
+    own = _of_pair(what, *joint.directions[:2], precision) if joint.directions is not None else []
+    return [*own, *(_of_pair(f"{what}: turned", *joint.turned, precision) if joint.turned is not None else [])]
+
+
+def _of_pair(what: str, first: Vector, second: Vector, precision: Precision) -> list[Demand]:
+    cosine = dot(first, second)
+    if not isinstance(cosine, ca.SX) or cosine.is_constant():
+        return []
+    return [
+        Demand(dot(first, first) + dot(second, second), True, lambda _: f"{what}: its axes must not be of length zero"),
+        Demand(max(RIGHT, END[precision]) - ca.fabs(cosine), False, lambda number: not_right(what, number(cosine))),
+    ]
 
 
 def _of_station(what: str, point: Any, precision: Precision, *, space: bool) -> list[Demand]:

@@ -8,8 +8,9 @@ from typing import Any
 
 import casadi as ca
 
-from ..declare.joints import Joint
+from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
+from ..errors import DeclarationError
 from ..geometry.frames import Carried, Frame, Velocities
 from ..geometry.vectors import times
 from .applied import applied_by, held_by, push, work
@@ -71,6 +72,7 @@ def assemble(
     outputs = {name: resting.at_state(mechanism.outputs[name].expression) for name in own}
     efforts = {name: ca.SX.sym(f"tau_{name}") for name in pushed}
     for name, effort in efforts.items():
+        _refuse_unmeasured(name, *mechanism.coordinates[name], tree, open_)
         push(felt, *mechanism.coordinates[name], effort, velocities)
     return Multibody(
         mechanism=mechanism,
@@ -91,6 +93,19 @@ def assemble(
         kinetic=kinetic,
         velocities=velocities,
     )
+
+
+def _refuse_unmeasured(name: str, joint: Joint, axis: Axis, tree: Tree, unmeasured: Collection[Joint]) -> None:
+    """Raise :class:`DeclarationError` for a drive along a turn that has no angle."""
+    if axis.kind != "angle" or joint not in unmeasured:
+        return
+    bars = [bar.link.name for bar in tree.bars if joint in bar.joints]
+    why = (
+        f"the spin of bar '{bars[0]}' is idle and moves nothing"
+        if bars
+        else "the joint closes a loop, where its turns are not told"
+    )
+    raise DeclarationError(f"drive '{name}': {why}; drive another joint")
 
 
 def _loop_equations(name: str, joint: Joint | None, gap: Any, rate: Any, acceleration: Any) -> LoopEquations:

@@ -96,6 +96,22 @@ def bars_of(mechanism: Mechanism, driven: Collection[str]) -> tuple[Bar, ...]:
     return tuple(found.values())
 
 
+def idle_spins(mechanism: Mechanism, driven: Collection[str]) -> list[str]:
+    """Of links that are no bars, in words: which spins between two spherical joints nothing holds, and what to do."""
+    bars, joints = [bar.link for bar in bars_of(mechanism, driven)], mechanism.joints.values()
+    found = []
+    for link in mechanism.links.values():
+        own = [joint for joint in joints if link in joint.bodies]
+        moved = any(mechanism.coordinates[name][0] in own for name in driven if name in mechanism.coordinates)
+        if link not in bars and not moved and len(own) == 2 and all(joint.kind == "spherical" for joint in own):
+            first, second = (joint.name for joint in own)
+            found.append(
+                f"the spin of link '{link.name}' about the line from '{first}' to '{second}' is idle: give one of their turns a "
+                "motion, or the link its mass alone, so that it is a bar"
+            )
+    return found
+
+
 def bar_frame(bar: Bar, frames: Mapping[str, Frame], released: Mapping[str, Any]) -> tuple[BarFrame, tuple[Any, Any, Any]]:
     """A bar's frame between the bodies of its joints, displaced by the mobilities that are ``released``; and its length's equation.
 

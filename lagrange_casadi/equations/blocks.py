@@ -8,7 +8,7 @@ ACM TOMS 16, 1990). CasADi has that of CSparse.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ import numpy as np
 
 from ..declare.density import Array
 from ..errors import MobilityError
+from .bars import idle_spins
 from .legs import solve_leg
 from .loops import ClosedForm, solve_loop
 from .multibody import Coordinate, LoopEquations, Multibody, column
@@ -119,7 +120,7 @@ def solving_order(multibody: Multibody, start: Mapping[str, Any]) -> tuple[Block
     equations = _equations(multibody, unknown)
     parts = _decomposed(equations, unknown)
     if any(len(rows) != len(columns) for rows, columns in parts):
-        slopes = _require_freedom(multibody, len(equations), parts, _slopes(multibody, start))
+        slopes = _require_freedom(multibody, len(equations), parts, _slopes(multibody, start), start["posture"])
         parts = [piece for part in parts for piece in _pieces(part)]
         if multibody.mechanism.space:
             at = {equation: k for k, equation in enumerate(equations)}, {c: k for k, c in enumerate(multibody.coordinates)}
@@ -250,7 +251,9 @@ def _forms(multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coo
     return forms
 
 
-def _require_freedom(multibody: Multibody, equations: int, parts: Sequence[Part], slopes: Array | None) -> Array:
+def _require_freedom(
+    multibody: Multibody, equations: int, parts: Sequence[Part], slopes: Array | None, told: Collection[Coordinate]
+) -> Array:
     """The slopes; raise :class:`MobilityError` unless the drives are as many as the freedoms, and no part is loose."""
     driven = sum(c.driven for c in multibody.coordinates)
     how = "by the rank of its loops at the start"
@@ -264,8 +267,15 @@ def _require_freedom(multibody: Multibody, equations: int, parts: Sequence[Part]
             return slopes
     movable = list(multibody.mechanism.coordinates)
     advice = f"drive {freedom} of the joints {', '.join(movable)}" if freedom > 0 else "take a joint, a constraint or a link away"
-    if freedom == driven:
+    lacking = [c.told_as for c in multibody.coordinates if c not in told]
+    if slopes is None and lacking:
+        advice = f"give a rough posture of {', '.join(lacking)} too"
+    elif freedom == driven:
         advice = "but these over-determine some loops and leave others loose; drive other joints"
+    elif freedom > driven:
+        advice += "".join(
+            f"; {spin}" for spin in idle_spins(multibody.mechanism, [c.name for c in multibody.coordinates if c.driven])
+        )
     raise MobilityError(
         f"mechanism '{multibody.mechanism.name}' has {freedom} degree(s) of freedom ({how}) and {driven} drive(s); {advice}"
     )

@@ -109,6 +109,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     solved, swings = count_turns(body, solved, motion, scene.span, start, _seeing(body, want))
 
     columns = _beyond(body, _seeing(body, want))
+    columns |= _locks(mechanism, body, forces=want.forces)
     columns |= {Check("closure", name): closure for name, closure in solved.closures.items()}
     columns |= {Check("gap", name): gap for name, gap in solved.gaps.items()}
     columns |= {Check("misfit", name): misfit for name, misfit in solved.misfits.items()}
@@ -199,6 +200,20 @@ def _beyond(body: Multibody, seeing: Mapping[str, Any]) -> dict[Column, Any]:
         far = enumerate(beyond_ends(expression), 1)
         columns |= {Check("beyond", name if k == 1 else f"{name}, curve {k}"): value for k, value in far}
     return columns
+
+
+def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Column, Any]:
+    """Of joints whose three turns are coordinates, the square of the cosine of the second: nil where the third axis is the first.
+
+    There (gimbal lock) loops cannot set them, and they cannot give every couple. Their motion is told where it is given.
+    """
+    found: dict[Column, Any] = {}
+    for joint in mechanism.joints.values():
+        turns = [own_coordinate(axis, body.coordinates) for axis in joint.axes if axis.kind == "angle"]
+        own = [turn for turn in turns if turn is not None]
+        if len(own) == 3 and (forces or not all(turn.driven for turn in own)):
+            found[Check("gimbal", joint.name)] = ca.cos(own[1].value) ** 2
+    return found
 
 
 def _motion_columns(

@@ -29,7 +29,7 @@ from .multibody import Coordinate, Multibody, column
 from .postures import Undecided, directions, measured, posture_name, turns
 from .substitution import Expressions, Numbers
 
-_LARGEST_STEP = 0.3
+LARGEST_STEP = 0.3
 """Of an angle [rad], or of a slide over the length of all links: a full step from afar may land on another branch."""
 
 _WAYS = 32
@@ -353,7 +353,7 @@ class _Solver:
         correction = -LinearSystem.of(ca.jacobian(gaps, iterated)).solve(gaps)
         relative = ca.mmax(ca.fabs(correction / column(self.scales)))
         # Not fmin(1, limit / relative): where the loops are closed, its derivative would be 0 times infinity.
-        bounded = correction * (_LARGEST_STEP / ca.fmax(relative, _LARGEST_STEP))
+        bounded = correction * (LARGEST_STEP / ca.fmax(relative, LARGEST_STEP))
         inputs = [iterated, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
         step = ca.Function("loops", inputs, [bounded, relative], ["z", "t", "d", "p"], ["correction", "size"], {"cse": True})
         names = tuple(block.name for block in self.residuals if not block.forms)

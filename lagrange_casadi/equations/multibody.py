@@ -56,6 +56,11 @@ class Coordinate:
         """The symbol of the coordinate itself."""
         return self.variables[-1]
 
+    @property
+    def told_as(self) -> str:
+        """By which name a posture tells it: the link whose direction it is, or its own."""
+        return self.body if self.kind == "angle" and not self.relative else self.name
+
     def placed(self, symbols: Any, values: Any) -> Any:
         """Its variables for values of the coordinates ``symbols``."""
         if self.kind == "slide":

@@ -18,7 +18,7 @@ from .substitution import Numbers
 
 def posture_name(coordinate: Coordinate) -> str:
     """By which name a posture tells a coordinate that is not driven: the link whose direction it is, or the coordinate's own."""
-    return coordinate.body if coordinate.kind == "angle" and not coordinate.relative else coordinate.name
+    return coordinate.told_as
 
 
 def turns(multibody: Multibody, name: str) -> bool:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import enum
+import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,13 +16,15 @@ from ..codegen.designs import INSIDE, ROUNDS
 from ..codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW
 from ..declare.density import Array
 from ..declare.ends import share_beyond
-from ..equations.kinematics import passes_dead_centre, where
+from ..equations.kinematics import LARGEST_STEP, passes_dead_centre, where
 from ..equations.scene_graph import SceneGraph
 from ..equations.turns import LEAP
 from ..errors import AssemblyError
 from .backends import Evaluated, run
 from .rules import Rule, rules
 from .rung import Rung
+
+_TRIALS, _WIDE = 100, 0.1
 
 
 class Status(enum.IntEnum):
@@ -59,8 +62,8 @@ _MEANINGS = {
     Status.SLOW: "the iterated loops converge slowly: they are near a dead centre",
     Status.OUT_OF_REACH: "a loop cannot be closed: its links do not reach",
     Status.JUMPED: "an iterated loop has jumped to another branch: more instants may help",
-    Status.DEAD_CENTRE: "a loop is at a dead centre, within rounding, or drives cannot make the motion: forces are open there",
-    Status.PASSES_DEAD_CENTRE: "a loop passes a dead centre between two instants, or drives pass where they cannot make the motion",
+    Status.DEAD_CENTRE: "a loop is at a dead centre, a joint in gimbal lock, or drives cannot make the motion: forces are open",
+    Status.PASSES_DEAD_CENTRE: "a loop passes a dead centre between two instants, a joint gimbal lock, or drives such a place",
     Status.MISFIT: "loops are over-constrained and do not fit",
     Status.ROW_VIOLATED: "the motion violates a non-holonomic constraint",
     Status.IMPOSSIBLE: "a length is not positive, a mass or density is negative, or a station is outside its link",
@@ -109,7 +112,8 @@ def refusal(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: R
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
     at = where((name, coordinates[name][1].kind, value) for name, value in zip(graph.driven, driven, strict=True))
     at = f"at t = {t[i]:.6g} s{at}"
-    status, why = _why(graph, evaluated, held, i, at, [rule for rule in passed if passed[rule][i]], extent)
+    left = functools.partial(_left_open, graph, evaluated.iterated[:, i], float(t[i]), p)
+    status, why = _why(graph, evaluated, held, i, at, [rule for rule in passed if passed[rule][i]], extent, left)
     return Refusal(status, _beyond(graph, p, evaluated.stages.precision, at) or why)
 
 
@@ -160,21 +164,52 @@ def _beyond(graph: SceneGraph, p: Array, precision: Precision, at: str) -> str |
     return None
 
 
+def _closing(graph: SceneGraph, part: str) -> str:
+    """What closes a loop, in words."""
+    m = graph.scene.mechanism
+    kinds = (("joint", m.joints), ("path", m.paths), ("bar", m.links))
+    return f"{next((kind for kind, names in kinds if part in names), 'constraint')} '{part}'"
+
+
+def _left_open(graph: SceneGraph, start: Array, t: float, p: Array) -> str:
+    """What closes the loops that iteration leaves open at an instant: those with the widest gaps, or all where these do not tell.
+
+    What it was begun from says nothing of that: it goes on from there, each coordinate by steps of its own, so that loops that can
+    be closed are.
+    """
+    assert graph.newton is not None
+    motion, z = graph.motion(t, p), start[:, None]
+    largest = LARGEST_STEP * np.where(graph.newton.turning, 1.0, graph.extent(p))[:, None]
+    for _ in range(_TRIALS):
+        correction, size = (found.full() for found in graph.newton.step(z, t, motion[0], p))
+        z = z + np.clip(correction * max(1.0, float(size[0, 0]) / LARGEST_STEP), -largest, largest)
+    out = graph.instant(t, *motion, z, p).full()[:, 0]
+    gaps = {closing: abs(float(out[k])) for closing, k in graph.checks("gap").items()}
+    widest = max(gaps.values(), default=math.nan)
+    left = [_closing(graph, closing) for closing, gap in gaps.items() if gap > _WIDE * widest]
+    return ", ".join(left) if 0 < len(left) < len(gaps) else graph.newton.joints
+
+
 def _why(
-    graph: SceneGraph, evaluated: Evaluated, held: Sequence[Rule], i: int, at: str, passed: Sequence[Rule], extent: float
+    graph: SceneGraph,
+    evaluated: Evaluated,
+    held: Sequence[Rule],
+    i: int,
+    at: str,
+    passed: Sequence[Rule],
+    extent: float,
+    still_open: Callable[[], str],
 ) -> tuple[Status, str]:
     for rule in held:
         if rule.kind == "BEYOND" and broken(rule, evaluated.out, extent)[i]:
             far = f"by {share_beyond(float(evaluated.out[rule.column, i])):.3g} of what is between them"
             return Status.BEYOND_ENDS, f"the {rule.part}: what is put into its curve is beyond the curve's ends {at}, {far}"
     if evaluated.status[i] == NOT_CONVERGED:
-        assert graph.newton is not None
         cause = "their links do not reach, or the instant before is too far off"
-        return Status.NOT_CONVERGED, f"the loops closed by {graph.newton.joints} did not converge {at}: {cause}"
+        return Status.NOT_CONVERGED, f"the loops closed by {still_open()} did not converge {at}: {cause}"
     for rule in (rule for rule in held if rule.kind != "BEYOND"):
         part, value = str(rule.part), float(evaluated.out[rule.column, i])
-        m = graph.scene.mechanism
-        closed = f"{'joint' if part in m.joints else 'path' if part in m.paths else 'constraint'} '{part}'"
+        closed = _closing(graph, part)
         drives = f"the drives {part}" if rule.column in graph.checks("hold").values() else ""
         if rule.kind not in ("CLOSURE", "BRANCH"):
             if evaluated.status[i] == SLOW:
@@ -185,6 +220,11 @@ def _why(
             if rule.kind == "BRANCH":
                 return Status.JUMPED, f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
             return Status.OUT_OF_REACH, f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
+        elif rule.column in graph.checks("gimbal").values() and (rule in passed or not value > rule.limit):
+            passes = value > rule.limit
+            lock = f"passes gimbal lock after {at.removeprefix('at ')}" if passes else f"is in gimbal lock {at}"
+            why = "its third axis comes to lie along its first; choose axis and second so that turn_2 keeps away from 90 deg"
+            return Status.PASSES_DEAD_CENTRE if passes else Status.DEAD_CENTRE, f"joint '{part}' {lock}: {why}"
         elif drives and (rule in passed or not value > rule.limit):
             where_to = f"after {at.removeprefix('at ')}" if value > rule.limit else at
             status = Status.PASSES_DEAD_CENTRE if value > rule.limit else Status.DEAD_CENTRE

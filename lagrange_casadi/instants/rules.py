@@ -37,12 +37,11 @@ Kind: TypeAlias = Literal["BEYOND", "CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW",
 class Rule:
     """What a column must keep to, so that an instant has a result.
 
-    A ``CLOSURE``, of a loop or of what drives hold, must be above its limit, and above its opposite unless links do not reach; so
-    must a ``BRANCH``, whose loop iteration follows. ``GAP`` and ``TURNED`` must be within it by size, a ``GAP`` times the
-    mechanism's extent. A ``MISFIT`` and what is ``BEYOND`` the ends of a curve must not be above it, nor a ``ROW`` by size, times
-    the column ``beside``, which is the size of its terms. What is ``OPEN`` must not be above it, an ``OPEN_MOMENT`` times the
-    extent: else the output ``part`` is not
-    determined.
+    A ``CLOSURE``, of a loop, of three turns or of what drives hold, must be above its limit, and above its opposite unless links do
+    not reach; so must a ``BRANCH``, whose loop iteration follows. ``GAP`` and ``TURNED`` must be within it by size, a ``GAP`` times
+    the mechanism's extent. A ``MISFIT`` and what is ``BEYOND`` the ends of a curve must not be above it, nor a ``ROW`` by size,
+    times the column ``beside``, which is the size of its terms. What is ``OPEN`` must not be above it, an ``OPEN_MOMENT`` times the
+    extent: else the output ``part`` is not determined.
     """
 
     kind: Kind
@@ -67,7 +66,7 @@ def rules(graph: SceneGraph, precision: Precision, newton: int | None) -> tuple[
             found.append(Rule("BEYOND", k, part, BEYOND[precision]))
         elif check.kind == "closure":
             found.append(Rule("BRANCH" if graph.follows(part) else "CLOSURE", k, part, dead_centre(graph, precision, part)))
-        elif check.kind == "hold":
+        elif check.kind in ("gimbal", "hold"):
             found.append(Rule("CLOSURE", k, part, _DEAD * ROUNDING[precision]))
         elif check.kind == "gap":
             found.append(Rule("GAP", k, part, gap_limit(precision, newton)))

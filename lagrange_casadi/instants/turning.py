@@ -55,25 +55,24 @@ def zeros_of_uniform_shear(f0: Array, f1: Array, f2: Array, mass: Any, length: A
 
 
 class Turns(NamedTuple):
-    """Where something may turn, (t, parts, n): its ``places``, whether it has a ``summit`` there, and its slope's size, ``off``.
+    """Where something may turn, (t, parts, n): its ``places``, and whether it has a ``summit`` there.
 
-    All zeros of the slope are among the places; where there are fewer of them, others are those at which it is nearest to zero.
-    Where a size is lowest ``off`` is infinite.
+    All zeros of its slope are among the places, and the last two are the ends.
     """
 
     places: Array
     summit: npt.NDArray[np.bool_]
-    off: Array
 
     def summits(self, sizes: Array) -> list[Array]:
         """Two summits for each part, (t, parts), in order along the link: the largest, by the ``sizes`` at all places.
 
-        Where there is one, it is both; where there is none, both are where the slope is smallest, as where a summit has just gone,
-        but for where it is lowest.
+        Where there is one, it is both; where there is none, both are the larger end. So a summit that comes and goes by rounding,
+        as where the slope is zero at an end, changes nothing.
         """
         heights = np.where(self.summit, sizes, -np.inf)
-        none = ~self.summit.any(axis=-1, keepdims=True)
-        first = np.where(none, np.argmin(self.off, axis=-1, keepdims=True), np.argmax(heights, axis=-1, keepdims=True))
+        none, ends = ~self.summit.any(axis=-1, keepdims=True), sizes.shape[-1] - 2
+        larger = ends + np.argmax(sizes[..., ends:], axis=-1, keepdims=True)
+        first = np.where(none, larger, np.argmax(heights, axis=-1, keepdims=True))
         np.put_along_axis(heights, first, -np.inf, -1)
         second = np.where(heights.max(axis=-1, keepdims=True) > -np.inf, np.argmax(heights, axis=-1, keepdims=True), first)
         both = [np.take_along_axis(self.places, which, -1)[..., 0] for which in (first, second)]
@@ -94,19 +93,20 @@ def turns_between(
         start, stop = np.clip(a, low, high)[..., None], np.clip(b, low, high)[..., None]
         middle, half = (start + stop) / 2, (stop - start) / 2
         values = slope(middle + half * nodes)
-        zeros, falls, rises, off = _zeros(np.moveaxis(values @ weights, -1, 0))
+        zeros, falls, rises = _zeros(np.moveaxis(values @ weights, -1, 0))
         summit = falls | rises if signed else falls
-        off = off if signed else np.where(rises, np.inf, off)
-        found.append(Turns(np.clip(middle + half * zeros, start, stop), summit & (half > 0.0), off))
+        found.append(Turns(np.clip(middle + half * zeros, start, stop), summit & (half > 0.0)))
+    ends = np.stack([low, high], axis=-1)
+    found.append(Turns(ends, np.zeros(ends.shape, bool)))
     return Turns(*(np.concatenate(rows, axis=-1) for rows in zip(*found, strict=True)))
 
 
-def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], npt.NDArray[np.bool_], Array]:
+def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
     """Places from -1 to 1, in order (..., n), among which are all zeros there of polynomials of degree n; as many as that.
 
-    With them come whether it falls through zero there, or rises, and how far from zero it is. ``coefficients`` (n + 1, ...) are
-    those of Chebyshev's polynomials. A polynomial is monotonic between two zeros of its derivative, so it has one zero there or
-    none; then that end is taken at which it is nearer to zero.
+    With them comes whether it falls through zero there, or rises. ``coefficients`` (n + 1, ...) are those of Chebyshev's
+    polynomials. A polynomial is monotonic between two zeros of its derivative, so it has one zero there or none; then that end is
+    taken at which it is nearer to zero.
     """
     levels = [coefficients]
     while len(levels[-1]) > 1:
@@ -122,8 +122,7 @@ def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], npt.NDArr
         places = [_zero(level, slope, a, b, at_a, at_b) for (a, b), (at_a, at_b) in pairs]
         falls = [(at_a > 0.0) & (at_b <= 0.0) for _, (at_a, at_b) in pairs]
         rises = [(at_a <= 0.0) & (at_b > 0.0) for _, (at_a, at_b) in pairs]
-    off = [np.abs(_value(coefficients, x)) for x in places]
-    return np.stack(places, axis=-1), np.stack(falls, axis=-1), np.stack(rises, axis=-1), np.stack(off, axis=-1)
+    return np.stack(places, axis=-1), np.stack(falls, axis=-1), np.stack(rises, axis=-1)
 
 
 def _zero(level: Array, slope: Array, a: Array, b: Array, at_a: Array, at_b: Array) -> Array:

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..arithmetic.compensated import DTYPES, ROUNDING
 from ..declare.density import Array
+from ..equations.checks import Kind
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import Evaluated
 from ..instants.cycle_table import CycleTable
@@ -27,6 +28,7 @@ from .disturbed import Instants, effects, openness
 INSTANTS = 48
 _MANY, _FIRST, _WORST = 2000, 10, 30
 _CLOSED = 10.0
+_DEAD: tuple[Kind, ...] = ("closure", "gimbal", "hold")
 _FORCES = ("effort", "reaction", "multiplier", "section", "law", "station", "spread", "output")
 _UNEXPLAINED = 100.0
 _SUMS = 64.0
@@ -109,7 +111,7 @@ def _chosen(graph: SceneGraph, evaluated: Evaluated) -> Array:
     """Instants to look at: evenly spread ones, those at which a loop is nearest to a dead centre, and where outputs peak."""
     n = evaluated.status.size
     spread = np.linspace(0, n - 1, min(n, INSTANTS)).astype(int)
-    closures = [*graph.checks("closure").values(), *graph.checks("hold").values()]
+    closures = [k for kind in _DEAD for k in graph.checks(kind).values()]
     peaks = [int(np.argmin(row if k in closures else -np.abs(row))) for k, row in enumerate(evaluated.out)]
     return np.unique([*spread, *peaks])
 

@@ -26,6 +26,7 @@ from ..instants.backends import Evaluated, run
 from ..instants.from_table import columns
 from ..instants.rung import Rung
 from ..judge.reference import reference
+from ..tables import ANGLE, LENGTH
 from .peaks import Shortfall, shortfall
 
 INSTANTS = 10_000
@@ -177,6 +178,8 @@ class _Truth:
         for name, peak in peaks.items():
             unit = name.quantity.unit
             largest[unit] = max(largest.get(unit, 0.0), peak)
+        for unit, size in _motions(graph, t, p).items():
+            largest[unit] = max(largest.get(unit, 0.0), size)
         of_unit = {name: largest[name.quantity.unit] for name in peaks}
         self.scales = {name: (peak if peak > _NIL * of_unit[name] else of_unit[name]) or 1.0 for name, peak in peaks.items()}
 
@@ -191,6 +194,18 @@ class _Truth:
                 worst[name] = max(abs(gap) for gap in gaps) / self.scales[name]
         name = max(worst, key=lambda name: worst[name])
         return worst[name], float(np.median(list(worst.values()))), str(name)
+
+
+def _motions(graph: SceneGraph, t: Array, p: Array) -> dict[str, float]:
+    """What motions of each unit are beside: those of a point as far away as the mechanism is large, turned by the fastest drive."""
+    extent, (_, rates, _) = graph.extent(p), (np.atleast_2d(part.full()) for part in graph.motion(t[None], p))
+    kinds = [graph.scene.guided.coordinates[name][1].kind for name in graph.driven]
+    turning = [np.abs(row).max() / (1.0 if kind == "angle" else extent or 1.0) for row, kind in zip(rates, kinds, strict=True)]
+    rate = float(max(turning, default=0.0))
+    units = ((ANGLE, 1.0), (LENGTH, extent), ("1", 1.0))
+    return {
+        unit + per: size * rate**power for unit, size in units for power, per in enumerate(("", "/s", "/s^2")) if unit + per != "1"
+    }
 
 
 def _same(rung: Rung, graphs: Mapping[bool, SceneGraph]) -> bool:
