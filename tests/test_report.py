@@ -88,7 +88,7 @@ def test_a_page_of_801_instants_is_under_three_megabytes():
     assert len(text.encode()) < 3_000_000
 
 
-def test_more_instants_than_fit_are_thinned_for_pictures_and_never_for_numbers(monkeypatch):
+def test_more_instants_than_fit_are_thinned_for_pictures_and_never_for_numbers(monkeypatch, tmp_path, capsys):
     solution = solved("four_bar", 401)
     monkeypatch.setattr(instants, "MOST", 2000)
     monkeypatch.setattr(instants, "LEAST", 30)
@@ -101,6 +101,10 @@ def test_more_instants_than_fit_are_thinned_for_pictures_and_never_for_numbers(m
         assert row["peak"]["value"] == solution.peak(row["name"]).value + 0.0
         assert row["peak"]["t"] in shown
         assert row["smallest"]["t"] in shown
+    save(solution, tmp_path / "bar.h5")
+    assert main(["report", str(tmp_path / "bar.h5"), "--out", str(tmp_path / "bar.html")]) == 0
+    note = f"note: pictures and charts show {told['shown']} of 401 instants, which is as many as fit; tables are of all\n"
+    assert capsys.readouterr().err == note
 
 
 def test_a_page_is_the_same_from_a_file_and_each_time(tmp_path):

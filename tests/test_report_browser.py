@@ -308,3 +308,17 @@ def test_what_is_the_same_but_for_rounding_is_a_level_line(page):
     assert "10" in ticks or "100" in ticks
     assert len(ticks) < 40
     quiet(one)
+
+
+def test_a_certificate_says_no_more_than_was_checked(page):
+    """Where motion alone was wanted, nothing is said of forces; where a residual fails, that comes first."""
+    told = "[document.querySelector('.badge').textContent, document.querySelector('.verdict').textContent]"
+    assert page(press()).run(told) == ["✓ certified", "Checked independently, and right"]
+    badge, verdict = page(press(wanted=("motion", "effort"))).run(told)
+    assert badge == "✓ motion certified"
+    assert verdict.endswith("its forces could not be, for want of outputs")
+    wrong = replace(press(), certificate={**press().certificate, "balance": np.full(9, 0.5)})
+    badge, verdict = page(wrong).run(told)
+    assert badge == "✗ the certificate fails"
+    assert verdict == "The check fails: do not trust these numbers"
+    assert page(replace(press(), certificate={})).run(told)[1] == "Not checked"

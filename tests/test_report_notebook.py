@@ -6,11 +6,14 @@ import re
 import numpy as np
 import pytest
 from drawn_scenes import every_kind
-from reports import HOSTILE, hostile, press, solved
+from reports import CASES, HOSTILE, hostile, press, solved
 
+from lagrange_casadi import Mechanism, Scene
+from lagrange_casadi.case import load_case
 from lagrange_casadi.draw.solid import place_of
 from lagrange_casadi.draw.views import upright, view
 from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.motion import polynomial
 from lagrange_casadi.report import page
 from lagrange_casadi.report.still import still
 
@@ -77,6 +80,26 @@ def test_a_view_is_the_report_in_a_frame_that_reaches_nothing_else():
             solution.view(height)
     with pytest.raises(DeclarationError, match="want motion too"):
         press(wanted=("effort",)).view()
+
+
+@pytest.mark.parametrize("name", ["quick_return", "rssr"])
+def test_a_scene_is_drawn_as_its_solution_begins(name):
+    scene = load_case(CASES / name).scene
+    text = scene._repr_html_()
+    assert matched(circles(text), circles(still(solved(name))) * [1.0, -1.0]) < 0.2
+    for joint in scene.mechanism.joints.values():
+        assert f"{joint.name} ({joint.kind})" in text
+
+
+def test_a_scene_that_cannot_be_assembled_is_told_without_a_drawing():
+    m = Mechanism("open")
+    crank, rod = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.5, mass=1.0)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.slot("guide", m.ground.at(0, 2), rod.tip, axis=(1, 0))
+    text = Scene(m, motion={"O": polynomial(0, 1)}, posture={"rod": 0.0})._repr_html_()
+    assert "<svg" not in text
+    assert "guide (slot)" in text
 
 
 def test_no_name_is_markup_in_a_notebook():

@@ -16,6 +16,7 @@ from ..evaluate import evaluate
 from ..instants.solution import Solution
 from ..judge.certificate import failure
 from ..report import ENDINGS, write_report
+from ..report.instants import shown_instants
 from ..store.runs import load
 from ..store.untrusted import told_as
 from ..system.publish import check_writable
@@ -76,6 +77,11 @@ def _with_motion(scene: Scene, want: Sequence[str]) -> list[str]:
 
 def _tell(solution: Solution, out: Path) -> None:
     """Say what was written. Raises :class:`CertificateError` where the certificate fails: the page is there, and says so."""
+    shown, total = shown_instants(solution).size, solution.t.size
+    if shown < total:
+        click.echo(
+            f"note: pictures and charts show {shown} of {total} instants, which is as many as fit; tables are of all", err=True
+        )
     click.echo(f"wrote {out}: open it in a browser")
     if solution.failed:
         raise CertificateError(f"{failure(solution)}; {out} says so")

@@ -234,6 +234,12 @@ class Scene:
         asked = f"from {start} to {stop} s" if self.over is None else f"over {self.over[0]} from {self.over[1]} to {self.over[2]}"
         return f"<Scene of {self.mechanism.name}: drives {motion}, wants {wanted}, {self.timing().count} instants {asked}>"
 
+    def _repr_html_(self) -> str:
+        """What a notebook shows: a drawing at the first instant, where it can be assembled, and the parts."""
+        from ..report import scene_summary
+
+        return scene_summary(self)
+
     def timing(self, t: Times | None = None, over: Over | None = None) -> Timing:
         """How its instants are asked for, or others: ``t`` or ``over`` in place of its own.
 

@@ -1,11 +1,15 @@
-"""What notebooks show of a solution: a drawing and the peaks at once, and the page of a report inside them."""
+"""What notebooks show of a scene or a solution: a drawing and the peaks at once, and the page of a report inside them."""
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from html import escape
 
-from ..errors import DeclarationError
+from ..declare.scene import Scene
+from ..declare.times import span_of
+from ..errors import DeclarationError, LagrangeCasadiError
+from ..evaluate import evaluate
 from ..instants.solution import Solution
 from ..instants.told import told
 from .contents import require_poses
@@ -41,17 +45,42 @@ def view(solution: Solution, height: int = 760) -> View:
     return View(solution.case, page(solution), height)
 
 
+def scene_summary(scene: Scene) -> str:
+    """A drawing of a scene at its first instant, where it can be assembled, and its parts: as HTML."""
+    mechanism, drawing = scene.mechanism, ""
+    with suppress(LagrangeCasadiError):
+        start, _ = span_of(scene.guided, scene.laws, scene.timing(), mechanism.values(scene.assembly))
+        first = evaluate(scene, t=(start, start, 1), wanted=["motion"], backend="vm", certificate=False)
+        drawing = still(first)
+    asked = scene.timing()
+    over = f"over {escape(asked.joint)}" if asked.joint else "over time"
+    lines = [f"<b>{escape(mechanism.name)}</b>: {asked.count} instants {over}"]
+    parts = {
+        "bodies": [body.name for body in mechanism.moving],
+        "joints": [f"{name} ({joint.kind})" for name, joint in mechanism.joints.items()],
+        "loads": list(mechanism.loads),
+        "motion of": list(scene.motion),
+        "parameters": [f"{name} = {parameter.default:g} {parameter.unit}" for name, parameter in mechanism.parameters.items()],
+        "wanted": list(scene.wanted),
+    }
+    lines += [f"{word}: {escape(', '.join(names))}" for word, names in parts.items() if names]
+    return _side_by_side(drawing, "".join(f"<p>{line}</p>" for line in lines))
+
+
 def summary(solution: Solution) -> str:
     """A drawing, where the solution has the motion, and the peaks: as HTML."""
-    try:
+    drawing = ""
+    with suppress(DeclarationError):
         require_poses(solution)
         drawing = still(solution)
-    except DeclarationError:
-        drawing = ""
     state = "certified" if solution.certified else "<b>the certificate fails</b>" if solution.failed else "no certificate"
     span = f"{solution.t.size} instants from {solution.t[0]:.5g} to {solution.t[-1]:.5g} s"
     head = f"<p><b>{escape(solution.case)}</b>: {span}, {state}</p>"
-    return f'<div style="display:flex;flex-wrap:wrap;gap:1em;align-items:start">{drawing}<div>{head}{_table(solution)}</div></div>'
+    return _side_by_side(drawing, head + _table(solution))
+
+
+def _side_by_side(drawing: str, text: str) -> str:
+    return f'<div style="display:flex;flex-wrap:wrap;gap:1em;align-items:start">{drawing}<div>{text}</div></div>'
 
 
 def _table(solution: Solution) -> str:

@@ -25,7 +25,7 @@ function buildPage() {
 /** The name, what was evaluated, whether it was certified, and the switches. */
 function headOf() {
   const { state } = contents.certificate;
-  const badge = { certified: ["✓ certified", "certified"], failed: ["✗ the certificate fails", "failed"], none: ["no certificate", "none"] }[state];
+  const badge = { certified: [forcesChecked ? "✓ certified" : "✓ motion certified", "certified"], failed: ["✗ the certificate fails", "failed"], none: ["no certificate", "none"] }[state];
   const shownOf = instants.count < instants.total ? `, ${instants.count} of them shown` : "";
   const span = () => `${instants.total} instant${instants.total > 1 ? "s" : ""}${shownOf}, t = ${[0, -1].map((k) => shown(instants.t.at(k), "s", 5, Math.abs(instants.t.at(-1)))).join(" to ")}`;
   const told = element("p", { class: "told" }, span());

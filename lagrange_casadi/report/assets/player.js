@@ -120,6 +120,7 @@ function listenToKeys(stage) {
       Home: () => player.step(-player.instant),
       End: () => player.step(instants.count - 1 - player.instant),
       f: () => stage.fit(),
+      F: () => stage.fit(),
       ...Object.fromEntries(VIEWS.map(([key, , angles]) => [key, () => stage.view(...angles)])),
     };
     if (!keys[event.key]) return;

@@ -20,20 +20,26 @@ function bar(paper, start, stop, half, colour, within = false) {
 }
 
 function paintBar(context, [a, b], half, colour, cap) {
+  // Of pieces, what is inside reaches beyond the dark edge under it, so that no seam is seen between them.
   const strokes = [
-    [shade(colour, -0.35), 2 * half, 0],
-    [colour, 2 * half - 2, 0],
-    [shade(colour, 0.38), 0.5 * half, 0.38 * half],
+    [shade(colour, -0.35), 2 * half, 0, 0],
+    [colour, 2 * half - 2, 0, 0.8],
+    [shade(colour, 0.38), 0.5 * half, 0.38 * half, 0.8],
   ];
   const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
-  let [nx, ny] = length > 1e-6 ? [(b[1] - a[1]) / length, -(b[0] - a[0]) / length] : [-0.6, -0.8];
+  const [x, y] = length > 1e-6 ? [(b[0] - a[0]) / length, (b[1] - a[1]) / length] : [0, 0];
+  let [nx, ny] = length > 1e-6 ? [y, -x] : [-0.6, -0.8];
   if (0.55 * nx + 0.83 * ny > 0) [nx, ny] = [-nx, -ny];
   context.lineCap = cap;
-  for (const [ink, width, aside] of strokes) {
+  for (const [ink, width, aside, beyond] of strokes) {
     if (width <= 0.4) continue;
+    const more = cap === "butt" ? beyond : 0;
     context.strokeStyle = ink;
     context.lineWidth = width;
-    lineThrough(context, [[a[0] + aside * nx, a[1] + aside * ny], [b[0] + aside * nx + 1e-3, b[1] + aside * ny]]);
+    lineThrough(context, [
+      [a[0] + aside * nx - more * x, a[1] + aside * ny - more * y],
+      [b[0] + aside * nx + more * x + 1e-3, b[1] + aside * ny + more * y],
+    ]);
     context.stroke();
   }
 }

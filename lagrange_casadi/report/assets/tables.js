@@ -116,7 +116,7 @@ function resultTables(show) {
       rows,
       {
         chosen: show,
-        aside: element("div", { class: "tools" }, find, also),
+        aside: element("div", { class: "tools" }, find, also, element("span", { class: "fine" }, "of all instants; between two of them a value may be larger")),
         plain: [...names, ["largest in size", (row) => row.peak.value], ["may be off by", (row) => row.error], ...(over ? [driveHead] : []), ["t [s]", (row) => row.peak.t], ["xi/l", (row) => row.peak.xi]],
       },
     ),
@@ -164,15 +164,20 @@ function factSections() {
   return found;
 }
 
+/** Whether the certificate is about forces too: it is where enough was wanted. */
+const forcesChecked = contents.certificate.residuals.some((one) => one.name === "balance");
+
 function certificateText() {
   const { state, residuals, tolerance, words } = contents.certificate;
-  const head = { certified: "Checked independently, and right", failed: "The check fails: do not trust these numbers", none: "Not checked" }[state];
+  const right = forcesChecked ? "Checked independently, and right" : "The motion is checked, and right; its forces could not be, for want of outputs";
+  const head = { certified: right, failed: "The check fails: do not trust these numbers", none: "Not checked" }[state];
   const told = (one) => (one.largest === null ? "–" : format(one.largest, 2));
   const lines = residuals.filter((one) => one.name !== "condition").map((one) => [one.what, told(one)]);
   const limit = lines.length > 0 && element("p", {}, `No residual may be above ${format(tolerance, 2)}.`);
   const loops = residuals.filter((one) => one.name === "condition").map((one) => element("p", {}, `The loops magnify errors by at most ${told(one)}; 1 is the least, and near a dead centre it is very many.`));
   const alarm = state === "failed" && element("p", { class: "alarm" }, words);
-  const sentence = "The reported motions, reactions, efforts and loads were put into Newton's and Euler's equations of every body anew, in plain arithmetic, at every instant.";
+  const forces = "The reported motions, reactions, efforts and loads were put into Newton's and Euler's equations of every body anew, in plain arithmetic, at every instant.";
+  const sentence = forcesChecked ? forces : "The bodies were placed anew by the reported motion, in plain arithmetic, at every instant.";
   return element("section", { class: "text" }, element("h2", {}, "Certificate"), element("p", { class: `verdict ${state}` }, head), alarm,
     state !== "none" && element("p", {}, sentence),
     element("dl", {}, lines.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)])), limit, loops);
