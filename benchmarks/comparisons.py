@@ -16,7 +16,7 @@ import psutil
 
 from . import engine
 from .definitions import METHODS, Comparison
-from .peers import reference
+from .peers import arm_reference, reference
 from .peers.paper_case import Array, SliderCrank, Work
 
 TOLERANCE = 1e-9
@@ -89,6 +89,9 @@ def _work(comparison: Comparison, name: str) -> Work:
         "sections": (CASE, t, _ratios(comparison)),
         "fill": (CASE, t, _ratios(comparison)),
         "efforts": (comparison.links, t),
+        "arm_efforts": (t,),
+        "arm_sections": (t, _ratios(comparison)),
+        "arm_resultants": (t, _ratios(comparison)),
     }[comparison.work]
     work: Work = function(*arguments, **method.options)
     return work
@@ -111,6 +114,13 @@ def _error(comparison: Comparison, found: Array) -> float:
         xi = _ratios(comparison)
         places = np.unique(np.linspace(0, xi.size - 1, _SAMPLE).astype(int))
         expected = reference.sections(CASE, t[instants], xi[places])
+        return _worst(found[:, instants[:, None], places], expected)
+    if comparison.work == "arm_efforts":
+        return _worst(found[:, instants], arm_reference.efforts(t[instants]))
+    if comparison.work.startswith("arm_"):
+        xi = _ratios(comparison)
+        places = np.unique(np.linspace(0, xi.size - 1, _SAMPLE).astype(int))
+        expected = getattr(arm_reference, comparison.work.removeprefix("arm_"))(t[instants], xi[places])
         return _worst(found[:, instants[:, None], places], expected)
     if comparison.work == "efforts":
         return _worst(found[:, instants], reference.chain(comparison.links, t[instants]))

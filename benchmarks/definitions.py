@@ -63,7 +63,8 @@ class Comparison:
     @property
     def values(self) -> int:
         """How many numbers the result has."""
-        each = {"instants": 40, "designs": 40, "efforts": self.links}.get(self.work, 3)
+        own = {"instants": 40, "designs": 40, "efforts": self.links, "arm_efforts": 6, "arm_sections": 6, "arm_resultants": 2}
+        each = own.get(self.work, 3)
         return self.units * each
 
 
@@ -149,6 +150,13 @@ METHODS = {
     "mujoco": Method("MuJoCo's inverse dynamics, the same pieces", "peers.mujoco_split", largest=3e6),
     "exudyn": Method("Exudyn's residual, a rod split once for each ratio", "peers.exudyn_split", largest=3e5),
     "pinocchio rnea": Method("Pinocchio's rnea", "peers.pinocchio_chain"),
+    "arm x cores": Method("this package: packs of instants, a thread a core", "arm", {"backend": "lanes", "threads": 0}),
+    "arm": Method("this package: packs of instants, one thread", "arm", {"backend": "lanes"}),
+    "arm c": Method("this package: scalar C, one thread", "arm", {"backend": "c"}),
+    "arm fill": Method("this package: the grids, one thread", "arm"),
+    "arm fill x cores": Method("this package: the grids, a thread a core", "arm", {"threads": 0}),
+    "rnea x cores": Method("Pinocchio's rneaInParallel, two threads", "peers.pinocchio_arm", {"threads": 2}, largest=3e6),
+    "rnea": Method("Pinocchio's rneaInParallel, one thread", "peers.pinocchio_arm", largest=3e6),
     "pinocchio casadi": Method("Pinocchio's rnea as a graph of CasADi, in its virtual machine", "peers.pinocchio_casadi"),
 }
 
@@ -171,6 +179,16 @@ COMPARISONS = (
     *(
         Comparison(f"fill-1e{e}", f"grids filled from a law that is there, 10^{e} values, 101 ratios", "fill",
                    ("memcpy", "fill x cores", "fill"), "memcpy", "ns/(t, xi)", t=max(2, round(10**e / 3 / 101)), xi=101)
+        for e in range(5, 9)
+    ),
+    Comparison("arm-efforts", "efforts of an arm in space of six slender links, 10 000 instants", "arm_efforts",
+               ("arm x cores", "arm", "arm c", "rnea x cores", "rnea"), "rnea", "ns/instant", t=10_000),
+    Comparison("arm-sections", "six section forces of its second link: the law and its grids, 32 ratios", "arm_sections",
+               ("arm x cores", "arm", "arm c", "rnea x cores", "rnea"), "rnea", "ns/(t, xi)", t=2_000, xi=_RATIOS),
+    *(
+        Comparison(f"arm-fill-1e{e}", f"grids of two resultants from a law that is there, 10^{e} values, 101 ratios",
+                   "arm_resultants", ("memcpy", "arm fill x cores", "arm fill"), "memcpy", "ns/(t, xi)",
+                   t=max(2, round(10**e / 2 / 101)), xi=101)
         for e in range(5, 9)
     ),
     Comparison("designs-1000", "1000 lengths of the rod x 128 instants, all 40 outputs", "designs",

@@ -38,13 +38,13 @@ def chain(n: int, wanted: tuple[str, ...] = ("effort",)) -> SceneGraph:
 
 def instants(case: SliderCrank, t: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
     """Every column of ``wanted="all"``, (columns, t)."""
-    return _columns(derive(SCENE, ["all"]), np.array(case.parameters), t, backend, threads)
+    return columns_of(derive(SCENE, ["all"]), np.array(case.parameters), t, backend, threads)
 
 
 def designs(case: SliderCrank, t: Array, lengths: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
     """The same for one length of the rod after another; what is left is the last one's."""
     p = np.array(case.parameters)
-    work = _columns(derive(SCENE, ["all"]), p, t, backend, threads)
+    work = columns_of(derive(SCENE, ["all"]), p, t, backend, threads)
 
     def call() -> Array:
         for length in lengths:
@@ -86,7 +86,7 @@ def _fills(law: SectionLaw, t: Array, xi: Array, threads: int) -> Work:
 
 def efforts(n: int, t: Array, backend: Backend = "lanes", threads: int = 1) -> Work:
     """Efforts of the chain, (n, t)."""
-    return _columns(chain(n), np.zeros(0), t, backend, threads)
+    return columns_of(chain(n), np.zeros(0), t, backend, threads)
 
 
 def columns() -> tuple[str, ...]:
@@ -94,7 +94,7 @@ def columns() -> tuple[str, ...]:
     return tuple(map(str, derive(SCENE, ["all"]).outputs))
 
 
-def _columns(graph: SceneGraph, p: Array, t: Array, backend: Backend, threads: int) -> Work:
+def columns_of(graph: SceneGraph, p: Array, t: Array, backend: Backend, threads: int) -> Work:
     """The outputs, the same array at every call, (columns, t)."""
     compiler = codegen.find_compiler("c++" if backend == "lanes" else "c")
     if compiler is None:
@@ -116,7 +116,7 @@ def _columns(graph: SceneGraph, p: Array, t: Array, backend: Backend, threads: i
 def _law(case: SliderCrank, t: Array, backend: Backend, threads: int) -> tuple[Work, SectionLaw]:
     """What works out the rod's law, and the law, whose arrays that fills."""
     graph = derive(SCENE, ["section:rod"])
-    work = _columns(graph, np.array(case.parameters), t, backend, threads)
+    work = columns_of(graph, np.array(case.parameters), t, backend, threads)
     mechanism = graph.scene.mechanism
     values = mechanism.values(dict(zip(mechanism.parameters, case.parameters, strict=True)))
     description = describe(mechanism, values, graph.scene.motion)

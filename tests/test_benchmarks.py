@@ -44,6 +44,17 @@ def test_grids_are_filled_and_copied_alike():
     assert all(row["error"] < 1e-13 for row in found.values())
 
 
+def test_the_arm_in_space_is_that_of_its_reference():
+    ours = ("arm", "arm c", "arm x cores")
+    for work, methods, sizes in (
+        ("arm_efforts", ours, {"t": 11}),
+        ("arm_sections", ours, {"t": 11, "xi": 9}),
+        ("arm_resultants", ("memcpy", "arm fill", "arm fill x cores"), {"t": 30, "xi": 9}),
+    ):
+        found = rows(work, methods, methods[0], **sizes)
+        assert all(row["error"] < 1e-13 and row["ns"] > 0 for row in found.values()), work
+
+
 def test_a_method_whose_result_is_wrong_reports_no_time(monkeypatch):
     right = comparisons._work
 

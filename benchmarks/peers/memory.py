@@ -18,3 +18,17 @@ def fill(case: SliderCrank, t: Array, xi: Array) -> Work:
         return out
 
     return call
+
+
+def arm_resultants(t: Array, xi: Array) -> Work:
+    """What copies the arm's resultants, (2, t, xi), as :mod:`benchmarks.arm` fills them."""
+    from ..arm import arm_resultants as filled
+
+    source = filled(t, xi)()
+    out = np.empty_like(source)
+
+    def call() -> Array:
+        np.copyto(out, source)
+        return out
+
+    return call

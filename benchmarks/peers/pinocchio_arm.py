@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from . import arm_data
 from .paper_case import Array, Work
 
 
@@ -24,7 +25,7 @@ class Piece:
 
     axis: Array | None
     turned: Array
-    at: Array
+    at: Sequence[float]
     mass: float
     length: float
     slides: bool = False
@@ -97,3 +98,29 @@ def _rod(piece: Piece, start: float, stop: float) -> Any:
     """A piece of a slender link, from where it begins."""
     mass, length = piece.mass * (stop - start), piece.length * (stop - start)
     return pin.Inertia(mass, np.array([length / 2, 0.0, 0.0]), np.diag([0.0, 1.0, 1.0]) * mass * length**2 / 12)
+
+
+def arm_efforts(t: Array, threads: int = 1) -> Work:
+    """What works out the arm's efforts, (6, t), by one ``rneaInParallel`` over the instants."""
+    return _arm(()).work(*arm_data.motion(t), threads)
+
+
+def arm_sections(t: Array, xi: Array, threads: int = 1) -> Work:
+    """What works out six section forces of the second link, (6, t, xi), which is in as many pieces as ratios and one."""
+    chain = _arm(tuple(xi.tolist()))
+    work, first = chain.work(*arm_data.motion(t), threads), [first for *_, first in chain.cuts]
+
+    def call() -> Array:
+        efforts = work()
+        return -np.stack([efforts[[k + member for k in first]].T for member in range(6)])
+
+    return call
+
+
+def _arm(cuts: tuple[float, ...]) -> Chain:
+    pieces, reach = [], 0.0
+    for k, axis in enumerate(arm_data.AXES):
+        turned, own = np.eye(3) if k else arm_data.UPRIGHT, cuts if k == arm_data.SECOND else ()
+        pieces.append(Piece(np.array(axis), turned, (reach, 0.0, 0.0), arm_data.MASSES[k], arm_data.LENGTHS[k], cuts=own))
+        reach = arm_data.LENGTHS[k]
+    return Chain(pieces, arm_data.GRAVITY)
