@@ -269,8 +269,17 @@ class SectionLaw:
         return columns, basis.bending if terms.arm > 0 else np.concatenate([basis.bending[:1], -basis.bending[1:]])
 
     def _smooth(self, force: str, u: Array) -> Array:
-        columns, rows = self._terms(force, self.basis(u))
+        terms = self.table.sections[force]
+        columns = [self.coefficients[name] for name in terms.coefficients]
+        rows = self._terms(force, self.basis(u))[1] if terms.arm else self._force_rows(u, len(columns))
         return np.asarray(sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True)))
+
+    def _force_rows(self, u: Array, count: int) -> Array:
+        """The first rows of a basis for forces: one where nothing but the ends and stations acts, else three."""
+        if count == 1:
+            return np.ones((1, *u.shape))
+        t0, t1 = self.density.tails(u, 2)
+        return np.stack([np.ones_like(t0), t0, self.length * (u * t0 + t1)])
 
     def _acting(self, force: str, load: AnyStationLoad) -> grids.Load:
         terms = self.table.sections[force]
