@@ -12,6 +12,8 @@ from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError, MobilityError
 from lagrange_casadi.instants.rung import Rung
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 
 def test_reactions_that_are_not_unique_are_named():
     solution = evaluate(parallelogram())
