@@ -14,8 +14,6 @@ from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.declare.parts import Link
 from lagrange_casadi.errors import AssemblyError
 
-pytestmark = pytest.mark.quick
-
 TOLERANCE = 1e-12
 
 

@@ -14,8 +14,6 @@ from lagrange_casadi.cli import main
 from lagrange_casadi.draw.postures import assemblies
 from lagrange_casadi.errors import AssemblyError, DeclarationError, PostureError, UnknownNameError
 
-pytestmark = pytest.mark.quick
-
 CLOSED = ["four_bar", "six_bar", "andrews_squeezer", "quick_return", "slider_crank", "engine"]
 
 

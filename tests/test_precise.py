@@ -15,8 +15,6 @@ from precise import precise
 from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.quantities import FORCES
 
-pytestmark = pytest.mark.quick
-
 RATIOS = (0.0, 0.1234567, 0.5012345, 0.9034567, 1.0)
 INSTANTS = (0, 7, 16)
 

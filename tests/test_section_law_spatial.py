@@ -14,8 +14,6 @@ from lagrange_casadi.instants.views import Section
 from lagrange_casadi.quantities import Output
 from lagrange_casadi.tables import SPACE
 
-pytestmark = pytest.mark.quick
-
 X = np.array([1.0, 0.0, 0.0])
 LENGTH = 0.7
 DENSITIES = {
