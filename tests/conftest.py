@@ -19,10 +19,10 @@ from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.codegen import compiler
 from lagrange_casadi.instants import backends, cycle_table, grids
 
-# Where a failure must be the change's own, the same examples every time; elsewhere new ones.
-settings.register_profile("ci", derandomize=True, print_blob=True)
-if os.environ.get("CI"):
-    settings.load_profile("ci")
+# No test is about time. Where a failure must be the change's own, the same examples every time; elsewhere new ones.
+settings.register_profile("usual", deadline=None, max_examples=40)
+settings.register_profile("ci", settings.get_profile("usual"), derandomize=True, print_blob=True)
+settings.load_profile("ci" if os.environ.get("CI") else "usual")
 
 ROOT = Path(__file__).parent.parent
 CASES = ROOT / "cases"
@@ -50,8 +50,13 @@ sys.path.append(str(ROOT))
 def _cache(tmp_path_factory):
     """Compile into a cache of this session's own, which its processes share."""
     base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str((base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cache"))
+        patch.setenv("XDG_CACHE_HOME", str(shared / "cache"))
+        if sys.dont_write_bytecode:
+            # Each program that is started would read all modules anew, in half a second: let them share what they read, elsewhere.
+            patch.delenv("PYTHONDONTWRITEBYTECODE", raising=False)
+            patch.setenv("PYTHONPYCACHEPREFIX", str(shared / "bytecode"))
         yield
 
 
@@ -80,6 +85,22 @@ def released(_quick_to_build):
         yield
     for kept in loaded:
         kept.cache_clear()
+
+
+@pytest.fixture(scope="module")
+def interpreted():
+    """Let CasADi's virtual machine evaluate doubles where no backend is asked for: for what is not about compiled code.
+
+    Compiled code has the same numbers: test_codegen, test_lanes and test_machine_ways show that.
+    """
+    compiled = backends.compiled
+
+    def asked(rung, build):
+        return None if rung.backend == "auto" and rung.precision == "double" else compiled(rung, build)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(backends, "compiled", asked)
+        yield
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -118,6 +139,13 @@ def pytest_addoption(parser):
     parser.addoption("--long", action="store_true", help="also tests marked long, and all parameters of those marked sampled")
 
 
+def pytest_configure(config):
+    """Draw more examples where all that takes long is asked for."""
+    if config.getoption("--long"):
+        settings.register_profile("long", settings.default, max_examples=200)
+        settings.load_profile("long")
+
+
 def pytest_collection_modifyitems(config, items):
     """Leave out long tests, and parameters of those that are sampled, unless they are asked for, all or by name."""
     if config.getoption("--long") or any("::" in argument for argument in config.args):
@@ -132,7 +160,8 @@ def pytest_collection_modifyitems(config, items):
         seen[of] += 1
     if left:
         config.hook.pytest_deselected(items=left)
-        items[:] = [item for item in items if item not in left]
+        out = set(left)
+        items[:] = [item for item in items if item not in out]
 
 
 @pytest.fixture

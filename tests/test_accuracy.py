@@ -34,7 +34,7 @@ def case(name):
     return scene, exactly(scene)
 
 
-@pytest.mark.sampled(8)
+@pytest.mark.sampled(18)
 @pytest.mark.parametrize("rung", RUNGS)
 @pytest.mark.parametrize("name", PLANAR)
 def test_cases(name, rung):
@@ -88,7 +88,7 @@ def drawn(build, rng):
     return masses | {"la": a, "lb": b, "lc": c, "x": frame * math.cos(angle), "y": frame * math.sin(angle)}
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("law", range(len(LAWS)))
 @pytest.mark.parametrize("build", [four_bar, offset_crank])
 @pytest.mark.parametrize("seed", range(2))
@@ -106,7 +106,7 @@ def test_random_loops(build, law, seed):
             assert_near(ratios(solution, exact))
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "scene",
     [
@@ -147,12 +147,12 @@ def test_after_many_turns(later, words, certified):
     assert_near(ratios(solution, exactly(scene)))
 
 
-@pytest.mark.sampled(8)
+@pytest.mark.sampled(14)
 @pytest.mark.parametrize("kind", kinds.KINDS, ids=[kind.__name__ for kind in kinds.KINDS])
 def test_random_mechanisms(kind):
     """Some of every kind: none claims less than a tenth of its error, all together are near, and residuals are of rounding."""
     found = []
-    for seed in range(6):
+    for seed in range(3):
         scene = kinds.closing(kind, [seed])
         solution = evaluate(scene, backend="vm")
         residuals = {name: float(values.max()) for name, values in solution.certificate.items() if name != "condition"}
@@ -170,7 +170,7 @@ def test_random_mechanisms(kind):
 def test_too_few_steps_claim_what_they_leave(kind):
     """Where loops begin near a dead centre the second instant is the worst, for the first is closed."""
     looked = dict.fromkeys((1, 2, 3), 0)
-    for seed, steps in itertools.product(range(6), looked):
+    for seed, steps in itertools.product(range(3), looked):
         if steps == 1:
             scene = kinds.closing(kind, [seed])
             closed = evaluate(scene, backend="vm", t=(0.0, 1.0, 201))

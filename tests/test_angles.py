@@ -15,7 +15,7 @@ from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import polynomial
 from lagrange_casadi.sweep import Range, Sweep, Values, best, chosen, sweep
 
-pytestmark = pytest.mark.quick
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,8 @@ from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError, DeclarationError, ParameterError, UnknownNameError
 from lagrange_casadi.study.peaks import refine
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 SHORT, LONG = (0.1, 0.05, 0.05), (0.1, 0.35, 0.25)
 VALUES = dict(zip("pqr", LONG, strict=True))
 

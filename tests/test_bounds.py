@@ -17,6 +17,8 @@ from lagrange_casadi.errors import DeclarationError, SizeError
 from lagrange_casadi.sweep import plan, workers
 from lagrange_casadi.system import room
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 CASE = str(Path(__file__).parent.parent / "cases" / "slider_crank")
 HUGE = "99999999999999999999999"
 STEPS = r"newton: expected a number of steps, from 1 to 1000 \(after some ten nothing changes\), got "

@@ -31,7 +31,7 @@ def test_against_newton_euler(name):
         assert gap < 1e-12, f"{worst} at {part}"
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", NAMES)
 def test_certificate_is_at_rounding_level(name):
     certificate = evaluate(load_case(CASES / name).scene).certificate
@@ -41,7 +41,7 @@ def test_certificate_is_at_rounding_level(name):
         assert np.max(certificate[residual]) < 1e-13, residual
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("name", PLANAR)
 def test_every_figure_can_be_drawn(name, tmp_path):
     case = load_case(CASES / name)

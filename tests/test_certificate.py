@@ -25,6 +25,8 @@ from lagrange_casadi.judge.written import written
 from lagrange_casadi.quantities import Output
 from lagrange_casadi.store.runs import check, load
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 WHOLE = {"closure", "balance", "power", "ends"}
 
 
@@ -182,6 +184,7 @@ def mistaken(monkeypatch):
     return Scene(m, {"S": polynomial(0.0, 0.1)}, t=(0, 1, 41), posture={"a": 0.9, "b": -0.1})
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("rung", [Rung("vm"), Rung("c"), Rung("lanes"), Rung("lanes", precision="single"), Rung("c", newton=2)])
 def test_what_does_not_close_a_loop_is_refused(rung, monkeypatch, fresh_cache):
     """By every backend, also where only the effort is wanted, and in sweeps; iterated, the same scene is right."""

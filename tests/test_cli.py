@@ -124,8 +124,19 @@ def test_what_is_in_the_way_of_a_figure_is_told_before_the_file_is_there(here, c
     assert os.listdir(here / "figures") == ["effort_O.png"]
 
 
+FEW_FIGURES = """
+from lagrange_casadi import load_case
+CASE = load_case({case!r})
+def scene(): return CASE.scene
+def figures(): return list({{type(spec): spec for spec in CASE.figures}}.values())
+"""
+
+
 def test_plot_draws_what_run_drew(here):
-    assert main(["run", str(CASE), "--t", "0:0.08:41", "--figures", "one"]) == 0
+    """Of the case's own figures some: one of each kind."""
+    (here / "case.py").write_text(FEW_FIGURES.format(case=str(CASE)))
+    assert main(["run", "case.py", "--t", "0:0.08:41", "--out", "slider_crank.h5", "--figures", "one"]) == 0
+    assert len(list(Path("one").iterdir())) == 4
     assert main(["plot", "slider_crank.h5", "--out", "two"]) == 0
     for path in Path("one").iterdir():
         assert path.read_bytes() == (Path("two") / path.name).read_bytes(), path.name

@@ -50,6 +50,7 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
 
 
 @pytest.mark.quick
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", SCENES)
 def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
     scene = SCENES[name]()

@@ -14,7 +14,7 @@ from lagrange_casadi.declare.motion import expression, polynomial
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 
-pytestmark = pytest.mark.quick
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 
 @pytest.mark.parametrize("turns", [0.0, 40.0])

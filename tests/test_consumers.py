@@ -26,7 +26,7 @@ SCENES = cases(PLANAR) | {
 SCENES |= cases(SPATIAL)
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(10)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("name", SCENES)
 def test_a_c99_program_has_the_numbers_of_the_api(name, precision, tmp_path):
@@ -39,7 +39,7 @@ def test_a_c99_program_has_the_numbers_of_the_api(name, precision, tmp_path):
     compare(found, expected(scene, told, solution), told, made, solution, **apart)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize(
     ("name", "rung"),

@@ -11,7 +11,7 @@ import sweeps
 from lagrange_casadi import evaluate, save
 from lagrange_casadi.sweep import sweep
 
-FEW, MANY, AT_ONCE = 200, 10_000, 1000
+FEW, MANY, AT_ONCE = 120, 10_000, 1000
 _SECONDS = 20.0
 
 

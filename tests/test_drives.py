@@ -22,10 +22,12 @@ from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.store.runs import check, load, save
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 PAIRS = list(itertools.combinations("OCADP", 2))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("pair", PAIRS, ids=map("".join, PAIRS))
 def test_any_two_joints_of_a_five_bar_can_drive_it(pair):
     """Pins of the tree and pins that close its loop, at bodies that bear sections: all forces are those of free bodies."""
@@ -229,6 +231,7 @@ def test_a_file_keeps_who_drives(tmp_path):
     assert not [*check(tmp_path / "x.h5")]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("ratio", [1e-5, 1e-2, 1e4])
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_a_gear_of_any_ratio_holds(ratio, precision):

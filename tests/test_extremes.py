@@ -32,7 +32,7 @@ def assert_exact(extreme, **options):
     assert not understated(solution, extreme.graph, extreme.meant)
 
 
-@pytest.mark.sampled(10)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("extreme", EXTREMES, ids=[extreme.name for extreme in EXTREMES])
 def test_extremes(extreme):
     """In both precisions, by steps of Newton's method where no dead centre is near, and without a compiler where one is.

@@ -15,6 +15,8 @@ from lagrange_casadi.errors import AssemblyError, DeclarationError, UnknownNameE
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 CIRCLE = (motion.harmonic(0.05, 0.1, 1.0), motion.harmonic(0.6, 0.05, 1.0, 1.0))
 ROUGH = {"a": 2.0, "b": 1.0, "c": 2.0, "d": 1.0}
 POSE = (motion.harmonic(0.0, 0.03, 1.0), motion.harmonic(0.0, 0.02, 1.0, 0.5), motion.harmonic(0.1, 0.1, 1.0))

@@ -135,6 +135,7 @@ def test_what_is_ignored_is_no_interrupt():
     assert interrupts() == [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda number: number.name)
 def test_a_sweep_keeps_its_blocks(here, number):
     with program(*SWEEP, *LONG, "--out", "x.h5") as stopped:
@@ -146,6 +147,7 @@ def test_a_sweep_keeps_its_blocks(here, number):
     assert re.fullmatch(KEPT, err)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 def test_an_interrupt_comes_through_while_a_long_axis_is_written(here, number):
     """It takes minutes; the blocks that were committed before stay."""
@@ -184,6 +186,7 @@ def test_an_interrupt_does_not_wait_for_newtons_steps(here, name, number):
     assert not list(here.iterdir())
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP], ids=lambda number: number.name)
 def test_what_was_ignored_at_the_start_stays_ignored(here, number):
     """As by ``nohup``, and of a script's background jobs."""

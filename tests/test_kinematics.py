@@ -23,6 +23,8 @@ from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.equations.linear import LinearSystem
 from lagrange_casadi.errors import AssemblyError, DeclarationError, MobilityError
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 
 @pytest.mark.quick
 @pytest.mark.parametrize("name", PATTERNS)

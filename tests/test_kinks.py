@@ -13,7 +13,7 @@ from lagrange_casadi.declare.kinks import kink
 from lagrange_casadi.declare.motion import expression, polynomial
 from lagrange_casadi.errors import DeclarationError
 
-pytestmark = pytest.mark.quick
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 X, Y, T = (ca.SX.sym(name) for name in "xyt")
 TURN = np.linspace(0.0, math.tau, 37)
@@ -75,7 +75,7 @@ def test_it_says_by_how_much_and_where():
     assert str(kinked) == "its slope jumps by 33.3 % where x = 0.7"
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(
     places=st.lists(st.integers(-600, 600), min_size=3, max_size=12, unique=True),
     values=st.lists(st.integers(-300, 300), min_size=12, max_size=12),

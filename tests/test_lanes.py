@@ -36,6 +36,7 @@ def test_packs_agree_with_scalar_c(name, precision):
 
 
 @both
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("name", SCENES)
 def test_a_tail_of_any_length_has_the_same_bits(name, precision):
     scene = SCENES[name]()

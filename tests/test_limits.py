@@ -14,6 +14,8 @@ from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.instants.refusal import Status
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 RATIOS = (0.0, 1.0, 3)
 MISSES = {"0.1 + 0.2 on 0.3": (0.1 + 0.2, 0.3), "0.3 on 0.1 + 0.2": (0.3, 0.1 + 0.2), "its length": (0.3, 0.3)}
 

@@ -16,7 +16,7 @@ from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 
-pytestmark = pytest.mark.quick
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 RATIOS = (0.0, 0.1234567, 0.5, 0.8176543, 1.0)
 

@@ -12,7 +12,7 @@ from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import AssemblyError
 
-pytestmark = pytest.mark.quick
+pytestmark = pytest.mark.usefixtures("interpreted")
 
 
 def iterated(scene):

@@ -29,7 +29,7 @@ def at(cell, u):
 coefficient = st.floats(-10, 10) | st.integers(-3, 3).map(float)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(cell=st.lists(coefficient, min_size=1, max_size=6), ends=st.sampled_from([(0.0, 1.0), (0.25, 0.3), (0.0, 0.5)]))
 def test_nothing_on_the_interval_is_lower(cell, ends):
     place, value = found(cell, *ends)

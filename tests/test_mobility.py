@@ -14,8 +14,6 @@ from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.declare.parts import Link
 from lagrange_casadi.errors import AssemblyError
 
-pytestmark = pytest.mark.quick
-
 TOLERANCE = 1e-12
 
 
@@ -88,7 +86,7 @@ def point_of(body, choice):
     return body.at(along * body.length, beside if kind == "beside" else 0.0)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(st.lists(branch, min_size=1, max_size=5))
 def test_random_trees(branches):
     """Links hung on each other anywhere by any joint, either end of which may be the parent, at stations on and off their axes."""
@@ -119,7 +117,7 @@ lengths = st.floats(0.05, 2.0)
 masses = st.floats(0.0, 5.0)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(st.tuples(lengths, lengths, lengths), st.tuples(masses, masses, st.floats(0.1, 5.0)), st.floats(0.1, 3.0), st.booleans())
 def test_random_four_bars(length, mass, frame, turned):
     try:
@@ -136,7 +134,7 @@ def _transmission(scene):
     return float(instant_at(graph, scene.t[0])[graph.names.index("_closure:B")])
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(st.floats(0.05, 0.3), st.floats(-0.15, 0.15), st.tuples(masses, masses, masses, masses), st.floats(0.2, 0.4), st.booleans())
 def test_random_six_bars(x, y, mass, arm, turned):
     """A crank-rocker with a pin anywhere on its coupler that swings a second rocker; parents, children and order exchanged."""
@@ -168,7 +166,7 @@ def test_random_six_bars(x, y, mass, arm, turned):
         assert gap < 1e-10, worst
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(st.floats(0.01, 1.0), st.floats(1.05, 8.0), masses, masses, st.floats(0.1, 5.0))
 def test_random_slider_cranks(r, ratio, m1, m2, m3):
     parameters = {"r": r, "l": ratio * r, "m1": m1, "m2": m2, "m3": m3}
@@ -176,7 +174,7 @@ def test_random_slider_cranks(r, ratio, m1, m2, m3):
     assert gap < 1e-11, worst
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(["revolute", "prismatic"]), st.booleans()), min_size=1, max_size=4))
 def test_random_open_chains(parts):
     worst, gap = compare(chain(*parts), nudge=1e-3)

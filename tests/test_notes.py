@@ -12,6 +12,8 @@ from lagrange_casadi.declare.motion import harmonic, polynomial
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.instants.rung import Rung
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 
 def slotted(x=0.05):
     """A crank's pin in the slot of a rocker that is too short for it."""

@@ -17,6 +17,8 @@ from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 RATIOS = {"a": 0.0, "b": 0.2, "c": 0.4, "d": 0.75, "e": 1.0}
 LAWS = {"bending": "N m", "axial": "N", "shear": "N"}
 DENSITIES = {

@@ -11,7 +11,7 @@ from lagrange_casadi import Mechanism, Scene, density, derive, evaluate, table
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.errors import DeclarationError, ParameterError
 
-pytestmark = pytest.mark.quick
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 
 @pytest.mark.parametrize(

@@ -84,7 +84,7 @@ def test_no_peak_is_short(name):
     assert_none_is_short(SCENES[name], 51, 101)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("seed", range(4))
 def test_random_crank_rockers(seed):
     random = np.random.default_rng(seed)

@@ -15,8 +15,6 @@ from precise import precise
 from lagrange_casadi import evaluate, load_case
 from lagrange_casadi.quantities import FORCES
 
-pytestmark = pytest.mark.quick
-
 RATIOS = (0.0, 0.1234567, 0.5012345, 0.9034567, 1.0)
 INSTANTS = (0, 7, 16)
 
@@ -65,6 +63,7 @@ def test_double_graphs_agree_with_50_digits(name):
             assert max(map(abs, gaps)) < 1e-12 * size[kind(quantity)], quantity
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", PLANAR)
 def test_30_digits_are_the_first_of_50(name):
     solution, instants = solved(name)

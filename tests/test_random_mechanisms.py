@@ -16,7 +16,7 @@ from random_verdict import compare, is_regular, judge
 from lagrange_casadi import evaluate
 from lagrange_casadi.quantities import Output
 
-QUICK, LONG = range(20), range(20, 1000)
+QUICK, LONG = range(14), range(14, 1000)
 REFUSED = 0.02
 """How many of the regular mechanisms may be refused."""
 
@@ -104,13 +104,14 @@ def test_every_backend_is_right(seed, backend):
     assert found.kind == "right", found.details
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", REGULAR)
 def test_counted_steps_are_as_right_as_they_claim(seed):
     found = judge(draw(seed), newton=3, claims=10.0)
     assert found.kind == "right", found.details
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("seed", REGULAR)
 def test_single_precision_is_as_right_as_it_claims(seed):
     found = judge(draw(seed), precision="single", tolerance=1e-4, claims=10.0)

@@ -110,7 +110,7 @@ def test_of_many_designs_each_has_its_own_reason():
     assert np.isfinite(t).all(axis=1).tolist() == [True, False, False, False]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(
     ripple=st.floats(-0.9, 0.9),
     waves=st.integers(1, 12),

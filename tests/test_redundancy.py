@@ -13,6 +13,8 @@ from lagrange_casadi.errors import AssemblyError, MobilityError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 
 def test_reactions_that_are_not_unique_are_named():
     solution = evaluate(parallelogram())

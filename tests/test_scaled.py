@@ -12,7 +12,7 @@ from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.instants.refusal import Status
 
-pytestmark = pytest.mark.quick
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 TIMES = np.linspace(0.0, 1.0, 14)
 ANGLES = 0.4 * np.sin(5 * TIMES) + TIMES**2

@@ -9,7 +9,7 @@ from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.declare.scene import outputs
 from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
 
-pytestmark = pytest.mark.quick
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 
 def test_outputs():

@@ -8,13 +8,12 @@ from hypothesis import strategies as st
 from lagrange_casadi.declare.density import NumericDensity
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.instants import grids
-from lagrange_casadi.instants.section_law import SectionLaw, made_of
+from lagrange_casadi.instants.laws import made_of
+from lagrange_casadi.instants.section_law import SectionLaw
 from lagrange_casadi.instants.station_loads import SpatialStationLoad
 from lagrange_casadi.instants.views import Section
 from lagrange_casadi.quantities import Output
 from lagrange_casadi.tables import SPACE
-
-pytestmark = pytest.mark.quick
 
 X = np.array([1.0, 0.0, 0.0])
 LENGTH = 0.7
@@ -186,7 +185,7 @@ def test_bending_moments_go_by_the_shear_forces(density):
         np.testing.assert_allclose(law.along(force, xi), difference, rtol=1e-7, atol=1e-6)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(SEEDS, KINDS, st.integers(0, 3), st.sampled_from([0.0, 3.0, 40.0]))
 def test_extremes_are_those_of_a_dense_search(seed, density, stations, spin):
     """Nothing on a fine grid, of either side of every station, is beyond the extremes, and they are values of the law."""
@@ -235,6 +234,7 @@ def test_a_resultant_may_have_two_summits_between_its_ends():
         assert sizes[top] <= values[0, k] <= sizes[top] * (1 + 1e-9)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("force", ["shear", "bending"])
 @pytest.mark.parametrize("density", ["even", "in cells"])
 def test_where_a_resultant_turns_goes_on_from_instant_to_instant(force, density):

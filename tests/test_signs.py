@@ -5,6 +5,8 @@ import pytest
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 LENGTH, AT, LOAD = 2.0, 0.25, 10.0
 
 

@@ -11,6 +11,8 @@ from lagrange_casadi.judge.certificate import certify
 from lagrange_casadi.judge.written import written
 from lagrange_casadi.quantities import Output
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 WHOLE = {"closure", "balance", "power", "ends"}
 
 

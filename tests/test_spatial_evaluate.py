@@ -13,6 +13,8 @@ from lagrange_casadi import Scene, SpatialMechanism, evaluate, load, load_case, 
 from lagrange_casadi.quantities import Output
 from lagrange_casadi.store.runs import check
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 WHOLE = {"closure", "balance", "power", "ends"}
 CASES = [("tree", seed) for seed in range(12)] + [("loop", seed) for seed in range(8)] + [("arm", 0)]
 CASES += [(name, seed) for name in FAMILIES if name not in ("tree", "loop", "arm") for seed in range(2)]
@@ -25,7 +27,7 @@ def near(value, other, size):
     return abs(value - float(other)) <= ROUNDING * size
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, case)))
 def test_all_is_as_the_oracle_has_it_and_certified(case):
     drawn, solution = evaluated(*case)
@@ -105,6 +107,7 @@ def spun(forces):
     return np.array([axial, math.hypot(y, z), torsion, math.hypot(about_y, about_z)])
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "case", [("tree", 3), ("rssr", 1), ("suspension", 0), ("bennett", 0), ("stewart", 0)], ids=lambda case: case[0]
 )

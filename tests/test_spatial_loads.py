@@ -8,7 +8,7 @@ import pytest
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
 from lagrange_casadi.errors import DeclarationError, ParameterError
 
-pytestmark = pytest.mark.quick
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 
 @pytest.mark.parametrize("joint", ["relative", "hard"])

@@ -39,6 +39,19 @@ def dense(scene):
     return evaluate(scene, t=(0, 2, 12_001), xi=(0, 1, 3), certificate=False)
 
 
+@pytest.fixture(scope="module")
+def fine(scene, solution):
+    """The peaks between instants by their names."""
+    quantities = DesignEngine.of(scene, rung=Rung("vm")).quantities
+    return {peak.name: peak for peak in refine(scene, solution, [name for name in quantities if "load" not in name])}
+
+
+@pytest.fixture(scope="module")
+def half(scene):
+    """Far finer instants of half the mass."""
+    return evaluate(scene, parameters={"mass": 3.0}, t=(0, 2, 4001), certificate=False)
+
+
 @pytest.fixture
 def no_certificate(monkeypatch):
     """What is tested here is not what is judged: residuals of nothing."""
@@ -120,17 +133,15 @@ def test_peaks_between_instants_are_those_of_dense_ones(scene, solution, dense):
 @pytest.mark.parametrize(
     ("rung", "tolerance"), [(Rung("lanes"), 1e-11), (Rung("c"), 1e-11), (Rung("vm"), 1e-11), (Rung("lanes", "single"), 1e-5)]
 )
-def test_designs_have_the_same_peaks(scene, solution, rung, tolerance):
+def test_designs_have_the_same_peaks(scene, fine, half, rung, tolerance):
     designs = DesignEngine.of(scene, rung=rung)
     outcome = designs.evaluate(np.array([[6.0], [3.0]]))
     assert (outcome.status == 0).all()
-    fine = {peak.name: peak for peak in refine(scene, solution, [name for name in designs.quantities if "load" not in name])}
     largest = {unit: max(abs(peak.value) for peak in fine.values() if peak.unit == unit) for unit in ("N", "N m")}
     assert {"reaction:A:resultant", "reaction:A:moment", "section:beam:bending", "section:taper:torsion"} <= set(fine)
     for k, name in enumerate(designs.quantities):
         peak = fine[name]
         assert abs(abs(outcome.value[0, k]) - abs(peak.value)) <= tolerance * (abs(peak.value) + 1e-2 * largest[peak.unit]), name
-    half = evaluate(scene, parameters={"mass": 3.0}, t=(0, 2, 4001), certificate=False)
     bending = designs.quantities.index("section:beam:bending")
     assert outcome.value[1, bending] == pytest.approx(half.peak("section:beam:bending").value, rel=1e-6)
 

@@ -16,6 +16,8 @@ from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.quantities import FORCES
 from lagrange_casadi.store.runs import load, save
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 LOADS = {
     "beam": [(("bar", 0.9, 0.0), 3.0, -7.0, 0.0)],
     "rail": [(("block", 0.3, 0.0), 1.0, -4.0, 0.0)],
@@ -86,6 +88,7 @@ def at_c(a, b, c, l):
 BENT = {"shear", "bending"}
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("rung", [{"backend": b} for b in ("vm", "c", "lanes")] + [{"precision": "single"}], ids=str)
 def test_two_pins_at_one_place_bear_one_sum(rung):
     """What both bear together holds the beam on its base's pin; along it, the base and they share the thrust."""
@@ -111,6 +114,7 @@ def test_it_is_judged_for_the_places_as_they_are():
     assert unique(scene, {"a": 0.7, "b": 0.7}) == BENT
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("apart", [1e-3, 1e-6, 1e-8, 1e-11])
 def test_what_is_nearly_at_one_place_is_not(apart):
     solution = evaluate(beam(at_a, lambda a, b, c, l: a + apart))

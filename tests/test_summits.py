@@ -109,13 +109,13 @@ def assert_found(name, rungs):
         assert abs(value) <= largest * (1 + max(1e-6, tolerance))
 
 
-@pytest.mark.sampled(8)
+@pytest.mark.sampled(10)
 @pytest.mark.parametrize("name", SIGNALS)
 def test_the_largest_is_found(name):
     assert_found(name, RUNGS)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", ["in the first interval", "a spike of a tenth of a step", "a kink", "a jump", "a plateau"])
 def test_other_rungs_search_alike(name):
     """Singles come in other packs: a jump between the lanes of one must be seen too."""

@@ -15,8 +15,6 @@ from lagrange_casadi.store import runs as store
 from lagrange_casadi.sweep import Listed, Sweep, is_sweep, reading, sweep
 from lagrange_casadi.sweep.checking import check_sweep
 
-pytestmark = pytest.mark.quick
-
 GRID = {"l": (0.15, 0.4, 6), "r": [0.05, 0.1, 0.07], "m1": [0.1, 0.2]}
 LENGTHS = [0.15, 0.2, 0.25, 0.3, 0.35, 0.4]
 
@@ -166,6 +164,7 @@ def test_blocks_of_what_is_selected(swept):
         list(swept.blocks(["peak_at:section:rod:axial"]))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("size", [1, 9, 40, 1 << 15])
 @pytest.mark.parametrize("along", [("t",), ("xi",), ("t", "xi")])
 def test_blocks_of_rows_along_axes(histories, monkeypatch, size, along):

@@ -14,8 +14,6 @@ from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.instants import tabulate
 from lagrange_casadi.instants.cycle import Cycle
 
-pytestmark = pytest.mark.quick
-
 
 def drag_link():
     """A short frame: coupler and rocker turn with the crank."""

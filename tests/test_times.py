@@ -17,7 +17,7 @@ from lagrange_casadi.draw.figures import MechanismDrawing, SectionMaps, SpanPlot
 from lagrange_casadi.errors import DeclarationError, SizeError, UnknownNameError
 from lagrange_casadi.study.peaks import shortfall
 
-pytestmark = pytest.mark.quick
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 TURN = math.tau
 PEAKS = ["effort:O", "reaction:O:fx", "section:rod:bending"]

@@ -23,6 +23,8 @@ from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.study.peaks import refine
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 SMALL = 0.05
 
 

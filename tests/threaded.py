@@ -1,4 +1,4 @@
-"""What many threads do at once: `python tests/threaded.py THREADS FOLDER` prints a digest of what each of 14 jobs gave.
+"""What many threads do at once: `python tests/threaded.py THREADS FOLDER` prints a digest of what each of 10 jobs gave.
 
 With one thread the jobs come one after another. The scenes are built where they are evaluated, as users' threads do it.
 """
@@ -15,7 +15,7 @@ import numpy as np
 from lagrange_casadi import Mechanism, Scene, evaluate, export, load, save, sweep
 from lagrange_casadi.declare.motion import polynomial
 
-JOBS = 14
+JOBS = 10
 QUICK = "-O0"  # to compile
 
 

@@ -98,16 +98,15 @@ class NumericDensity:
         """The whole mass [kg]."""
         return float(self.tails(np.zeros(1))[0][0])
 
-    def tails(self, u: Array) -> tuple[Array, Array, Array]:
-        """T0, T1 and T2 at ratios ``u`` of any shape."""
-        found: list[Any] = [np.zeros_like(u) for _ in range(3)]
+    def tails(self, u: Array, count: int = 3) -> tuple[Array, ...]:
+        """T0, T1 and T2 at ratios ``u`` of any shape, or the first of them only."""
+        found: list[Any] = [np.zeros_like(u) for _ in range(count)]
         for (a, b), cell in zip(zip(self.breaks, self.breaks[1:], strict=False), self.cells, strict=True):
-            parts = _differences(np.maximum(b - u, 0.0), np.maximum(a - u, 0.0), len(cell) + 2)
-            for j, shifted in enumerate(_shift(cell, u)):
-                whole = np.asarray(shifted + np.zeros_like(u))
-                for k in range(3):
-                    found[k] = found[k] + whole * parts[j + k] / (j + k + 1)
-        return found[0], found[1], found[2]
+            parts = _differences(np.maximum(b - u, 0.0), np.maximum(a - u, 0.0), len(cell) + count - 1)
+            for j, shifted in enumerate(_shift(cell, u) if len(cell) > 1 else cell):
+                for k in range(count):
+                    found[k] = found[k] + shifted * parts[j + k] / (j + k + 1)
+        return tuple(found)
 
     def at(self, u: Array) -> Array:
         """The density at ratios ``u`` of any shape; at a break, that towards the tip."""

@@ -30,9 +30,9 @@ from ..evaluate import checked_laws, checked_span, outputs_of
 from ..instants.backends import begun, compiled, provenance
 from ..instants.cost import seconds
 from ..instants.determinacy import determinate, undetermined
+from ..instants.laws import made_of
 from ..instants.refusal import Status
 from ..instants.rung import Rung
-from ..instants.section_law import made_of
 from ..instants.solution import Provenance
 from ..quantities import Output
 from ..summits.sharpness import bent, with_watched

@@ -23,10 +23,10 @@ from ..equations.mobility import stations_of
 from ..equations.scene_graph import SceneGraph
 from ..equations.spreads import spreads_of
 from ..errors import DeclarationError
+from ..instants.laws import made_of
 from ..instants.refusal import Status
 from ..instants.rules import rules
 from ..instants.rung import Rung
-from ..instants.section_law import made_of
 from ..quantities import Output
 from ..summits.sharpness import Sharpness
 from ..tables import Table, table_of

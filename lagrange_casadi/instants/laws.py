@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ..declare.density import Array, NumericDensity
 from ..quantities import Output
+from ..tables import PLANE, Table
 from .section_law import SectionLaw
 from .spread_loads import spread_load
 from .station_loads import station_load
@@ -35,3 +36,12 @@ def law_of(link: str, outputs: Mapping[Output, Array], length: Any, density: Num
     loads = tuple(station_load(name, members) for name, members in stations.items())
     spreads = tuple(spread_load(name, ends.get(name, {}), found) for name, found in terms.items())
     return SectionLaw(length, density, law, loads, spreads)
+
+
+def made_of(outputs: Iterable[Output], link: str, force: str, table: Table = PLANE) -> list[Output]:
+    """The outputs, among others, that a force of a link is made of; without the places of stations."""
+    terms = [table.sections[part] for part in table.parts("section", force)]
+    coefficients = {name for of in terms for name in of.coefficients}
+    members = {of.acting for of in terms} | {table.sections[of.shear].acting for of in terms if of.arm}
+    own = (output for output in outputs if output.along and output.part == link)
+    return [output for output in own if output.member in (members if output.station else coefficients)]

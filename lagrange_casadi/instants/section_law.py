@@ -9,7 +9,7 @@ the ends and stations changes.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
@@ -26,7 +26,7 @@ from .spread_loads import SpreadLoad
 from .station_loads import AnyStationLoad, StationLoad
 from .turning import Turns, turns_between, zeros_of_shear, zeros_of_uniform_shear
 
-__all__ = ["Basis", "SectionLaw", "Side", "StationLoad", "made_of"]
+__all__ = ["Basis", "SectionLaw", "Side", "StationLoad"]
 
 Side = Literal["base", "tip"]
 _SIDES: tuple[Side, ...] = ("tip", "base")
@@ -307,8 +307,20 @@ class SectionLaw:
         return columns, basis.bending if terms.arm > 0 else np.concatenate([basis.bending[:1], -basis.bending[1:]])
 
     def _smooth(self, force: str, u: Array) -> Array:
-        columns, rows = self._terms(force, self.basis(u))
+        terms = self.table.sections[force]
+        if terms.arm or self.spreads:
+            columns, rows = self._terms(force, self.basis(u))
+        else:
+            columns = [self.coefficients[name] for name in terms.coefficients]
+            rows = self._force_rows(u, len(columns))
         return np.asarray(sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True)))
+
+    def _force_rows(self, u: Array, count: int) -> Array:
+        """The first rows of a basis for forces: one where nothing but the ends and stations acts, else three."""
+        if count == 1:
+            return np.ones((1, *u.shape))
+        t0, t1 = self.density.tails(u, 2)
+        return np.stack([np.ones_like(t0), t0, self.length * (u * t0 + t1)])
 
     def _acting(self, force: str, load: AnyStationLoad) -> grids.Load:
         terms = self.table.sections[force]
@@ -374,15 +386,6 @@ class SectionLaw:
     def _highest(self) -> int:
         """The degree of the slope of a shear force, between two stations and in a cell of the density."""
         return max(*map(len, self.density.cells), *(spread.powers - 1 for spread in self.spreads), 0)
-
-
-def made_of(outputs: Iterable[Output], link: str, force: str, table: Table = PLANE) -> list[Output]:
-    """The outputs, among others, that a force of a link is made of; without the places of stations."""
-    terms = [table.sections[part] for part in table.parts("section", force)]
-    coefficients = {name for of in terms for name in of.coefficients}
-    members = {of.acting for of in terms} | {table.sections[of.shear].acting for of in terms if of.arm}
-    own = (output for output in outputs if output.along and output.part == link)
-    return [output for output in own if output.member in (members if output.station else coefficients)]
 
 
 def _seen(u: Array, station: Array, side: Side) -> Any:

@@ -21,8 +21,7 @@ from ..errors import DeclarationError, UnknownNameError
 from ..quantities import Output
 from ..tables import Table, table_of
 from .frames import dataset, frame
-from .laws import law_of
-from .section_law import made_of
+from .laws import law_of, made_of
 from .sizes import size_of
 from .statistics import Statistics
 from .views import JointMotion, Pose, Reaction, Section

@@ -17,6 +17,7 @@ from ..declare.density import Array
 from ..summits.polynomials import interpolation
 
 _HALVINGS = 60
+_ROUNDING = 2 * float(np.finfo(float).eps)
 _CLOSE = 512 * float(np.finfo(float).eps)
 """Where something turns: what a place is off changes a summit by the square of that."""
 
@@ -24,23 +25,46 @@ _CLOSE = 512 * float(np.finfo(float).eps)
 def zeros_of_shear(shear: Callable[[Array], Array], low: Array, middle: Array, high: Array, rises: Array) -> list[Array]:
     """Where a shear force rises through zero, then where it falls.
 
-    It is monotonic on either side of its turning point ``middle``, whatever the density: halve that. Where it has no zero there,
-    that end is taken at which it is nearer to zero. ``rises`` tells whether it rises before its turning point: where that is at an
-    end, its values there differ by rounding alone, and do not tell.
+    It is monotonic on either side of its turning point ``middle``, whatever the density, so it has one zero there or none. Where it
+    has none, that end is taken at which it is nearer to zero. ``rises`` tells whether it rises before its turning point: where that
+    is at an end, its values there differ by rounding alone, and do not tell.
     """
-    places = [low, middle, high]
-    ends = [shear(u) for u in places]
-    zeros = []
-    for k in (0, 1):
-        a, b = places[k : k + 2]
-        negative, nearer = ends[k] <= 0.0, np.where(np.abs(ends[k]) <= np.abs(ends[k + 1]), a, b)
-        none = negative == (ends[k + 1] <= 0.0)
-        for _ in range(_HALVINGS):
-            half = (a + b) / 2
-            lower = (shear(half) <= 0.0) == negative
-            a, b = np.where(lower, half, a), np.where(lower, b, half)
-        zeros.append(np.where(none, nearer, (a + b) / 2))
+    places = np.stack([low, middle, high])
+    ends = np.stack([shear(u) for u in (low, middle, high)])
+    zeros = [_between(shear, places[k : k + 2], ends[k : k + 2]) for k in (0, 1)]
     return [np.where(rises, zeros[0], zeros[1]), np.where(rises, zeros[1], zeros[0])]
+
+
+def _between(function: Callable[[Array], Array], places: Array, ends: Array) -> Array:
+    """The zero of what is monotonic between two ``places`` (2, ...), where it is ``ends``; or the place at which it is nearer.
+
+    By inverse quadratic interpolation, where that is safe, and else by halves: Chandrupatla, *A new hybrid quadratic/bisection
+    algorithm for finding the zero of a nonlinear function without using derivatives*, Advances in Engineering Software 28 (1997).
+    """
+    nearer = np.where(np.abs(ends[0]) <= np.abs(ends[1]), places[0], places[1])
+    sought = (ends[0] <= 0.0) != (ends[1] <= 0.0)
+    (b, a), (at_b, at_a) = places, ends
+    step = np.full(a.shape, 0.5)
+    for _ in range(_HALVINGS):
+        if not sought.any():
+            break
+        x = np.where(sought, a + step * (b - a), nearer)
+        at_x = function(x)
+        same = (at_x <= 0.0) == (at_a <= 0.0)
+        c, at_c = np.where(same, a, b), np.where(same, at_a, at_b)
+        b, at_b = np.where(same, b, a), np.where(same, at_b, at_a)
+        a, at_a = x, at_x
+        nearer = np.where(sought, np.where(np.abs(at_a) <= np.abs(at_b), a, b), nearer)
+        width = np.abs(b - a)
+        sought &= (width > _ROUNDING) & (at_a != 0.0)
+        with np.errstate(all="ignore"):
+            least = np.minimum(_ROUNDING / width, 0.5)
+            along, up = (a - b) / (c - b), (at_a - at_b) / (at_c - at_b)
+            curved = at_a / (at_b - at_a) * (at_c / (at_b - at_c))
+            curved += (c - a) / (b - a) * (at_a / (at_c - at_a)) * (at_b / (at_c - at_b))
+            safe = (up * up < along) & ((1.0 - up) * (1.0 - up) < 1.0 - along)
+            step = np.clip(np.where(safe, curved, 0.5), least, 1.0 - least)
+    return np.asarray(nearer)
 
 
 def zeros_of_uniform_shear(f0: Array, f1: Array, f2: Array, mass: Any, length: Any) -> list[Array]:
@@ -111,38 +135,39 @@ def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], npt.NDArr
     levels = [coefficients]
     while len(levels[-1]) > 1:
         levels.append(np.asarray(chebyshev.chebder(levels[-1], axis=0), float))
-    one = np.ones(coefficients.shape[1:])
-    places: list[Array] = []
-    falls: list[npt.NDArray[np.bool_]] = []
-    rises: list[npt.NDArray[np.bool_]] = []
+    one = np.ones((1, *coefficients.shape[1:]))
+    places, falls, rises = one[:0], one[:0] > 0.0, one[:0] > 0.0
     for level, slope in reversed(list(itertools.pairwise(levels))):
-        ends = [-one, *places, one]
-        values = [_value(level, x) for x in ends]
-        pairs = list(zip(itertools.pairwise(ends), itertools.pairwise(values), strict=True))
-        places = [_zero(level, slope, a, b, at_a, at_b) for (a, b), (at_a, at_b) in pairs]
-        falls = [(at_a > 0.0) & (at_b <= 0.0) for _, (at_a, at_b) in pairs]
-        rises = [(at_a <= 0.0) & (at_b > 0.0) for _, (at_a, at_b) in pairs]
-    return np.stack(places, axis=-1), np.stack(falls, axis=-1), np.stack(rises, axis=-1)
+        ends = np.concatenate([-one, places, one])
+        values = _value(level, ends)
+        places = _zero(level, slope, ends[:-1], ends[1:], values[:-1], values[1:])
+        falls = (values[:-1] > 0.0) & (values[1:] <= 0.0)
+        rises = (values[:-1] <= 0.0) & (values[1:] > 0.0)
+    return np.moveaxis(places, 0, -1), np.moveaxis(falls, 0, -1), np.moveaxis(rises, 0, -1)
 
 
 def _zero(level: Array, slope: Array, a: Array, b: Array, at_a: Array, at_b: Array) -> Array:
-    """The zero of what is monotonic from a to b, by Newton's method kept within what encloses it; or the nearer end."""
+    """The zeros of what is monotonic from a to b, by Newton's method kept within what encloses it; or the nearer end.
+
+    The ends are (parts, ...), the coefficients of polynomials (n + 1, ...).
+    """
     found = np.where(np.abs(at_a) <= np.abs(at_b), a, b)
     there = (at_a <= 0.0) != (at_b <= 0.0)
     if not there.any():
         return found
-    level, slope, a, b, negative = level[:, there], slope[:, there], a[there], b[there], at_a[there] <= 0.0
+    level, slope = (np.broadcast_to(row[:, None], (len(row), *a.shape))[:, there] for row in (level, slope))
+    a, b, negative = a[there], b[there], at_a[there] <= 0.0
     x = (a + b) / 2
-    for _ in range(_HALVINGS):
-        now = _value(level, x)
-        before = (now <= 0.0) == negative
-        a, b = np.where(before, x, a), np.where(before, b, x)
-        with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"):
+        for _ in range(_HALVINGS):
+            now = _value(level, x)
+            before = (now <= 0.0) == negative
+            a, b = np.where(before, x, a), np.where(before, b, x)
             ahead = x - now / _value(slope, x)
-        ahead = np.where((ahead > a) & (ahead < b), ahead, (a + b) / 2)
-        moved, x = np.abs(ahead - x), ahead
-        if not (moved > _CLOSE).any():
-            break
+            ahead = np.where((ahead > a) & (ahead < b), ahead, (a + b) / 2)
+            moved, x = np.abs(ahead - x), ahead
+            if not (moved > _CLOSE).any():
+                break
     found[there] = x
     return found
 

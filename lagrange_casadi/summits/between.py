@@ -12,6 +12,7 @@ from ..declare.density import Array
 from .sharpness import Kind, Watch
 
 Flags = npt.NDArray[np.bool_]
+Numbers = npt.NDArray[np.intp]
 
 RATE = 0.3
 """An angle [rad] that a step may turn: less than a twentieth of a turn, so that harmonics show."""
@@ -129,16 +130,8 @@ def _unresolved(row: Array, watch: Watch, step: float, bent: Flags) -> tuple[Fla
         beyond = (np.isinf(a) | np.isinf(b)) & ~np.isinf(row).all()
         return beyond | crossed | (nearest < DIP * np.minimum(np.abs(a), np.abs(b))), none
     if kind in _NUMBERED:
-        twice, crossed = np.zeros(none.size, bool), none
-        for at in watch.at:
-            over, under = (a > at) != (b > at), (a > at) & (b > at)
-            crossed = crossed + over
-            touched = ~over & np.where(under, low < at, high > at)
-            if kind is Kind.KNOT:
-                crossed = crossed + touched
-            else:
-                twice |= touched
-        return twice, crossed
+        crossed, touched = passed_or_touched(np.sort(watch.at), a, b, low, high)
+        return (np.zeros(none.size, bool), crossed + touched) if kind is Kind.KNOT else (touched > 0, crossed)
     if kind is Kind.STEP:
         first, last = np.floor(a), np.floor(b)
         beyond = (np.floor(high) > np.maximum(first, last)) | (np.floor(low) < np.minimum(first, last))
@@ -150,6 +143,18 @@ def _unresolved(row: Array, watch: Watch, step: float, bent: Flags) -> tuple[Fla
         turns = ((high > last + CHANGE) | (low < first - CHANGE)) & (low < reach) & (high > -reach)
         return turns, ((last - first > CHANGE) & (first < reach) & (last > -reach)).astype(np.intp)
     return (high > np.maximum(a, b) + RISE) & (high > np.max(row[~np.isnan(row)], initial=-np.inf) - NEGLIGIBLE), none
+
+
+def passed_or_touched(at: Array, a: Array, b: Array, low: Array, high: Array) -> tuple[Numbers, Numbers]:
+    """How many of the numbers ``at``, which rise, an argument passes from ``a`` to ``b``, and how many others it may touch.
+
+    It stays between ``low`` and ``high``. What is not a number passes as what is below all.
+    """
+    first, last = (np.searchsorted(at, np.where(np.isnan(end), -np.inf, end)) for end in (a, b))
+    under, over = np.minimum(first, last), np.maximum(first, last)
+    below = np.where(np.isnan(low), under, np.searchsorted(at, low, side="right"))
+    above = np.where(np.isnan(high), over, np.searchsorted(at, high))
+    return over - under, np.maximum(under - below, 0) + np.maximum(above - over, 0)
 
 
 def _between(row: Array, bent: Flags) -> tuple[Array, Array]:

@@ -40,6 +40,10 @@ static int all_finite(const casadi_real* x, int many) {
   return is_finite((a + b) + (c + d));
 }
 $helpers
+/* Within another function its values are read ahead of all that is written, and kept on the stack. */
+#ifdef __GNUC__
+__attribute__((noinline))
+#endif
 static void put(const casadi_real* y, ${p}_outputs* outputs) {
 $put
 }
