@@ -145,13 +145,15 @@ function watch(stage, canvas) {
     stage.draw();
   });
   let width = 0;
-  new ResizeObserver(() => {
+  const watcher = new ResizeObserver(() => {
     stage.layOut();
     if (deck.list.clientWidth !== width) {
       width = deck.list.clientWidth;
       for (const card of deck.cards) card.draw();
     }
-  }).observe(deck.list.parentElement.parentElement);
+  });
+  // The sheet's own size too: it goes with the window's height, and with the controls below it.
+  for (const element of [deck.list.parentElement.parentElement, stage.paper.canvas]) watcher.observe(element);
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
   listenToKeys(stage);
   listenToPrinter(stage);
