@@ -58,23 +58,28 @@ class Turns(NamedTuple):
     """Where something may turn, (t, parts, n): its ``places``, whether it has a ``summit`` there, and its slope's size, ``off``.
 
     All zeros of the slope are among the places; where there are fewer of them, others are those at which it is nearest to zero.
+    What has no summit in a part is told at ``rest`` (t, parts), if that is given.
     """
 
     places: Array
     summit: npt.NDArray[np.bool_]
     off: Array
+    rest: Array | None = None
 
     def summits(self, sizes: Array) -> list[Array]:
         """Two summits for each part, (t, parts), in order along the link: the largest, by the ``sizes`` at all places.
 
-        Where there is one, it is both; where there is none, both are where the slope is smallest, as where a summit has just gone.
+        Where there is one, it is both; where there is none, both are at rest, or where the slope is smallest, as where a summit has
+        just gone.
         """
         heights = np.where(self.summit, sizes, -np.inf)
-        none = ~self.summit.any(axis=-1, keepdims=True)
+        none = np.asarray(~self.summit.any(axis=-1, keepdims=True))
         first = np.where(none, np.argmin(self.off, axis=-1, keepdims=True), np.argmax(heights, axis=-1, keepdims=True))
         np.put_along_axis(heights, first, -np.inf, -1)
         second = np.where(heights.max(axis=-1, keepdims=True) > -np.inf, np.argmax(heights, axis=-1, keepdims=True), first)
         both = [np.take_along_axis(self.places, which, -1)[..., 0] for which in (first, second)]
+        if self.rest is not None:
+            both = [np.where(none[..., 0], self.rest, place) for place in both]
         return [np.minimum(*both), np.maximum(*both)]
 
 
@@ -84,7 +89,8 @@ def turns_between(
     """Where something turns between ``low`` and ``high``, whose ``slope`` is a polynomial of a ``degree`` between two ``breaks``.
 
     ``low`` and ``high`` are (t, parts); ``slope`` takes ratios (t, parts, n), and may have any factor that is not negative. What is
-    ``signed`` may be largest in size where it is smallest too.
+    ``signed`` may be largest in size where it is smallest too. Where it has no summit it rests nearer to that end at which its
+    slope is smaller: a summit comes in there.
     """
     nodes, weights = interpolation(degree)
     found: list[Turns] = []
@@ -95,7 +101,14 @@ def turns_between(
         zeros, falls, rises, off = _zeros(np.moveaxis(values @ weights, -1, 0))
         summit = falls | rises if signed else falls
         found.append(Turns(np.clip(middle + half * zeros, start, stop), summit & (half > 0.0), off))
-    return Turns(*(np.concatenate(rows, axis=-1) for rows in zip(*found, strict=True)))
+    places, summit, off = (np.concatenate([getattr(part, name) for part in found], axis=-1) for name in ("places", "summit", "off"))
+    return Turns(places, summit, off, _rest(slope, low, high) if signed else None)
+
+
+def _rest(slope: Callable[[Array], Array], low: Array, high: Array) -> Array:
+    first, last = (np.abs(slope(u[..., None])[..., 0]) for u in (low, high))
+    share = np.divide(first, first + last, out=np.full_like(first, 0.5), where=first + last > 0.0)
+    return np.asarray(low + (high - low) * share)
 
 
 def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], npt.NDArray[np.bool_], Array]:
