@@ -343,6 +343,25 @@ def test_peaks_between_instants_and_of_sweeps():
                 assert abs(peak.value) >= np.abs(fine.array(peak.name)).max() * (1 - 1e-12)
 
 
+@pytest.mark.parametrize("mass", [0.0, 0.4])
+def test_sweeps_in_single_precision_tell_peaks_where_a_force_is_the_same_all_along(mass):
+    """Beyond its load a massless link has one shear: there rounding alone would say where its bending moment is steepest."""
+    m = Mechanism("linkage")
+    m.parameter("unused", 1.0)
+    a, b, c = (m.link(n, length=l, mass=w) for n, l, w in (("a", 0.1, 0.3), ("b", 0.35, 0.5), ("c", 0.25, mass)))
+    m.revolute("O", m.ground, a)
+    m.revolute("A", a.tip, b)
+    m.revolute("B", b.tip, c.tip)
+    m.revolute("C", m.ground.at(0.3, 0.05), c)
+    m.line_load("flow", c, y=lambda xi: -30 + 50 * xi + 2000 * xi**2 - 6250 * xi**3, between=(0.0, 0.1), turning=True)
+    scene = Scene(m, {"O": motion.polynomial(0.2, 3.0, 4.0)}, ["section:c"], posture={"c": 1.5}, t=(0.1, 0.9, 81))
+    single, double = (
+        DesignEngine.of(scene, rung=Rung("lanes", precision=p)).evaluate(np.ones((1, 1))) for p in ("single", "double")
+    )
+    assert single.status.tolist() == double.status.tolist() == [Status.OK]
+    np.testing.assert_allclose(single.value, double.value, rtol=1e-5)
+
+
 def test_a_body_that_has_no_sections_feels_it_too():
     """As a load on a link whose mass is the same: reactions and efforts are alike."""
 

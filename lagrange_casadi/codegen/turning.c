@@ -121,7 +121,7 @@ static inline void designs_summits_between(const designs_between* of, const desi
                                            casadi_real summit[2]) {
   const int n = nodes->degree;
   casadi_real level[DESIGNS_DEGREE + 1][DESIGNS_DEGREE + 1], at[DESIGNS_DEGREE + 2], next[DESIGNS_DEGREE + 2], turns;
-  casadi_real value[DESIGNS_DEGREE + 2], start, stop, middle, half, u, size, best[2];
+  casadi_real value[DESIGNS_DEGREE + 2], start, stop, middle, half, u, size, best[2], first = 0, last = 0;
   int cell, i, j, k;
   best[0] = best[1] = -1;
   summit[0] = summit[1] = low;
@@ -132,6 +132,12 @@ static inline void designs_summits_between(const designs_between* of, const desi
     stop = lanes_less(stop, low, low, lanes_less(high, stop, high, stop));
     middle = DESIGNS_HALF*(start + stop);
     half = DESIGNS_HALF*(stop - start);
+    if (of->many == 1) {
+      size = designs_size(designs_slope(of, cell, start));
+      first = lanes_less(low, stop, lanes_less(low, start, first, size), first);
+      size = designs_size(designs_slope(of, cell, stop));
+      last = lanes_less(start, high, lanes_less(stop, high, last, size), last);
+    }
     for (j = 0; j <= n; ++j) level[0][j] = 0;
     for (i = 0; i <= n; ++i) {
       size = designs_slope(of, cell, middle + half*nodes->nodes[i]);
@@ -160,8 +166,10 @@ static inline void designs_summits_between(const designs_between* of, const desi
       at[n - k + 1] = 1;
     }
   }
-  /* Where there is none, the larger end: a summit comes and goes there by rounding where the slope is zero. */
-  u = lanes_less(designs_looked_at(of, low), designs_looked_at(of, high), high, low);
+  /* Where there is none, a size rests at its larger end, and a force nearer to that end at which its slope is smaller: a summit comes in
+     there, and goes, by rounding where the slope is zero. */
+  if (of->many == 1) u = low + (high - low)*lanes_less(0, first + last, first/(first + last), DESIGNS_HALF);
+  else u = lanes_less(designs_looked_at(of, low), designs_looked_at(of, high), high, low);
   summit[0] = lanes_less(best[0], 0, u, summit[0]);
   summit[1] = lanes_less(best[1], 0, summit[0], summit[1]);
   u = summit[0];

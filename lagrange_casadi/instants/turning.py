@@ -81,7 +81,7 @@ def zeros_of_uniform_shear(f0: Array, f1: Array, f2: Array, mass: Any, length: A
 class Turns(NamedTuple):
     """Where something may turn, (t, parts, n): its ``places``, and whether it has a ``summit`` there.
 
-    All zeros of its slope are among the places, and the last two are the ends.
+    All zeros of its slope are among the places. The last two are where it rests in a part that has no summit: the larger of them.
     """
 
     places: Array
@@ -90,12 +90,12 @@ class Turns(NamedTuple):
     def summits(self, sizes: Array) -> list[Array]:
         """Two summits for each part, (t, parts), in order along the link: the largest, by the ``sizes`` at all places.
 
-        Where there is one, it is both; where there is none, both are the larger end. So a summit that comes and goes by rounding,
-        as where the slope is zero at an end, changes nothing.
+        Where there is one, it is both; where there is none, both are the place at rest. So a summit that comes and goes by
+        rounding, as where the slope is zero at an end, changes nothing.
         """
         heights = np.where(self.summit, sizes, -np.inf)
-        none, ends = ~self.summit.any(axis=-1, keepdims=True), sizes.shape[-1] - 2
-        larger = ends + np.argmax(sizes[..., ends:], axis=-1, keepdims=True)
+        none, rests = ~self.summit.any(axis=-1, keepdims=True), sizes.shape[-1] - 2
+        larger = rests + np.argmax(sizes[..., rests:], axis=-1, keepdims=True)
         first = np.where(none, larger, np.argmax(heights, axis=-1, keepdims=True))
         np.put_along_axis(heights, first, -np.inf, -1)
         second = np.where(heights.max(axis=-1, keepdims=True) > -np.inf, np.argmax(heights, axis=-1, keepdims=True), first)
@@ -109,7 +109,8 @@ def turns_between(
     """Where something turns between ``low`` and ``high``, whose ``slope`` is a polynomial of a ``degree`` between two ``breaks``.
 
     ``low`` and ``high`` are (t, parts); ``slope`` takes ratios (t, parts, n), and may have any factor that is not negative. What is
-    ``signed`` may be largest in size where it is smallest too.
+    ``signed`` may be largest in size where it is smallest too. A size without a summit rests at its larger end; what is signed nearer
+    to that end at which its slope is smaller, for a summit comes in there.
     """
     nodes, weights = interpolation(degree)
     found: list[Turns] = []
@@ -120,9 +121,15 @@ def turns_between(
         zeros, falls, rises = _zeros(np.moveaxis(values @ weights, -1, 0))
         summit = falls | rises if signed else falls
         found.append(Turns(np.clip(middle + half * zeros, start, stop), summit & (half > 0.0)))
-    ends = np.stack([low, high], axis=-1)
-    found.append(Turns(ends, np.zeros(ends.shape, bool)))
+    rests = np.stack([_rest(slope, low, high)] * 2 if signed else [low, high], axis=-1)
+    found.append(Turns(rests, np.zeros(rests.shape, bool)))
     return Turns(*(np.concatenate(rows, axis=-1) for rows in zip(*found, strict=True)))
+
+
+def _rest(slope: Callable[[Array], Array], low: Array, high: Array) -> Array:
+    first, last = (np.abs(slope(u[..., None])[..., 0]) for u in (low, high))
+    share = np.divide(first, first + last, out=np.full_like(first, 0.5), where=first + last > 0.0)
+    return np.asarray(low + (high - low) * share)
 
 
 def _zeros(coefficients: Array) -> tuple[Array, npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
