@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
 from .arm_data import AXES, GRAVITY, LENGTHS, MASSES, SECOND, UPRIGHT, motion
@@ -10,7 +13,8 @@ from .paper_case import Array
 
 def efforts(t: Array) -> Array:
     """Efforts of the joints, (6, t)."""
-    return np.array([_instant(*row)[0] for row in zip(*(x.T for x in motion(t)), strict=True)]).T
+    rows = [_instant(*row)[0] for row in zip(*(x.T for x in motion(t)), strict=True)]
+    return np.asarray(np.array(rows).T)
 
 
 def sections(t: Array, xi: Array) -> Array:
@@ -25,7 +29,7 @@ def resultants(t: Array, xi: Array) -> Array:
     return np.stack([np.hypot(shear_y, shear_z), np.hypot(bending_y, bending_z)])
 
 
-def _instant(q, v, a):  # type: ignore[no-untyped-def]
+def _instant(q: Array, v: Array, a: Array) -> tuple[list[Any], Callable[[float], Array]]:
     """Efforts, and what gives the second link's section forces at a ratio."""
     frame, rate, turn, base = np.eye(3), np.zeros(3), np.zeros(3), -np.array(GRAVITY)
     links = []
@@ -36,7 +40,9 @@ def _instant(q, v, a):  # type: ignore[no-untyped-def]
         along = LENGTHS[k] * frame[:, 0]
         links.append((own, frame, base, _accelerated(along, rate, turn), along))
         base = base + links[-1][3]
-    force, moment, found, piece = np.zeros(3), np.zeros(3), [], None
+    force, moment = np.zeros(3), np.zeros(3)
+    found: list[Any] = []
+    piece: tuple[Any, ...] = ()
     for k in reversed(range(len(links))):
         own, frame, base, gained, along = links[k]
         if k == SECOND:
@@ -45,10 +51,12 @@ def _instant(q, v, a):  # type: ignore[no-untyped-def]
         moment = moment + np.cross(along, force) + MASSES[k] * np.cross(along, base / 2 + gained / 3)
         force = force + MASSES[k] * (base + gained / 2)
         found.append(own @ moment)
-    return found[::-1], lambda ratio: _section(ratio, *piece)  # type: ignore[misc]
+    return found[::-1], lambda ratio: _section(ratio, *piece)
 
 
-def _section(ratio, frame, base, gained, along, mass, force, moment):  # type: ignore[no-untyped-def]
+def _section(
+    ratio: float, frame: Array, base: Array, gained: Array, along: Array, mass: float, force: Array, moment: Array
+) -> Array:
     """What the piece beyond a ratio does to the rest: less what it needs."""
     left, middle = 1 - ratio, (1 + ratio) / 2
     own = mass * left * (base + middle * gained)
@@ -58,11 +66,11 @@ def _section(ratio, frame, base, gained, along, mass, force, moment):  # type: i
     return -np.concatenate([frame.T @ (force + own), frame.T @ about])
 
 
-def _accelerated(r, rate, turn):  # type: ignore[no-untyped-def]
-    return np.cross(turn, r) + np.cross(rate, np.cross(rate, r))
+def _accelerated(r: Array, rate: Array, turn: Array) -> Array:
+    return np.asarray(np.cross(turn, r) + np.cross(rate, np.cross(rate, r)))
 
 
-def _rotation(axis, angle):  # type: ignore[no-untyped-def]
+def _rotation(axis: Array, angle: float) -> Array:
     x, y, z = axis
     across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * across @ across
+    return np.asarray(np.eye(3) + np.sin(angle) * across + (1 - np.cos(angle)) * across @ across)
