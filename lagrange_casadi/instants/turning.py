@@ -109,8 +109,8 @@ def turns_between(
     """Where something turns between ``low`` and ``high``, whose ``slope`` is a polynomial of a ``degree`` between two ``breaks``.
 
     ``low`` and ``high`` are (t, parts); ``slope`` takes ratios (t, parts, n), and may have any factor that is not negative. What is
-    ``signed`` may be largest in size where it is smallest too. A size without a summit rests at its larger end; what is signed nearer
-    to that end at which its slope is smaller, for a summit comes in there.
+    ``signed`` may be largest in size where it is smallest too. A size without a summit rests at its larger end; what is signed
+    nearer to that end at which its slope is smaller, for a summit comes in there.
     """
     nodes, weights = interpolation(degree)
     found: list[Turns] = []
