@@ -276,7 +276,7 @@ def test_every_way_of_evaluating_agrees(tmp_path):
     assert load(path).section("b").bending.tolist() == expected_.section("b").bending.tolist()
 
 
-def test_a_table_over_a_cycle_has_them():
+def test_a_table_over_a_cycle_has_them_and_exported_c_reads_it(tmp_path):
     m = Mechanism("turning")
     a = m.link("a", length=0.4, density=density.polynomial(1.0, 0.5))
     main = m.revolute("O", m.ground, a)
@@ -286,6 +286,8 @@ def test_a_table_over_a_cycle_has_them():
     for force in ("axial", "shear", "bending"):
         name, size = f"section:a:{force}", np.abs(direct.array(f"section:a:{force}")).max()
         assert np.abs(read.array(name) - direct.array(name)).max() <= min(read.errors[name] + 1e-12 * size, 1e-3 * size)
+    made, told = exported(scene, tmp_path, table=64)
+    compare(by_c99(tmp_path, told, instants(read.t, "double")), expected(scene, told, read), told, made, read)
 
 
 def test_a_file_without_a_part_of_a_load_is_not_whole(tmp_path):
