@@ -15,11 +15,14 @@ _SLOT = 8
 _FRAME = 192
 """What a call and saved registers take besides, with a margin."""
 
+_LARGE, _PART = 256, 8
+"""From so many variables on a compiler that runs out of registers keeps other values too: up to one in so many more."""
+
 
 def deepest(source: str) -> int:
     """Bytes, with 8 for every variable, also where a compiler keeps it in a register. Raises ``ValueError`` where calls recur."""
     bodies = {found[1]: found[2] or found[3] or "" for found in _DEFINITION.finditer(source)}
-    own = {name: _FRAME + _SLOT * sum(_slots(found[2]) for found in _DECLARATION.finditer(body)) for name, body in bodies.items()}
+    own = {name: _FRAME + _SLOT * _kept(sum(_slots(x[2]) for x in _DECLARATION.finditer(body))) for name, body in bodies.items()}
     calls = {name: sorted(set(_CALL.findall(body)) & bodies.keys()) for name, body in bodies.items()}
 
     @functools.cache
@@ -29,6 +32,11 @@ def deepest(source: str) -> int:
         return own[name] + max((depth(other, (*above, name)) for other in calls[name]), default=0)
 
     return max(depth(name) for name in bodies)
+
+
+def _kept(slots: int) -> int:
+    """How many slots a function takes that declares so many."""
+    return slots if slots < _LARGE else slots + slots // _PART
 
 
 def _slots(declarators: str) -> int:
