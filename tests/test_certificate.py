@@ -173,7 +173,7 @@ def test_the_tolerance_has_a_ceiling():
 def mistaken(monkeypatch):
     """A scene whose equations are taken for two circles, which they are not: as a pattern that nobody verified."""
     monkeypatch.setattr(loops, "_turns", lambda *_: True)
-    monkeypatch.setattr(loops, "_solves", lambda *_: True)
+    monkeypatch.setattr(loops, "solves", lambda *_: True)
     m = Mechanism("mistaken")
     a, b = m.link("a", length=0.6, mass=1.0), m.link("b", length=0.5, mass=1.2)
     m.revolute("A", m.ground, a)

@@ -71,18 +71,28 @@ def test_an_output_and_its_name_are_one(output, name):
 NAMES = st.from_regex(r"[A-Za-z]\w{0,3}(_rate|_acceleration|_coordinate)?", fullmatch=True, alphabet=st.characters(codec="ascii"))
 
 
-@given(part=NAMES | st.just("law"), station=NAMES | st.just("law"), quantity=st.sampled_from(QUANTITIES))
-def test_no_two_outputs_have_one_name(part, station, quantity):
-    of_station, of_part = quantity.group == "station", quantity.group != "certificate"
-    output = Output(quantity.group, part if of_part else "", quantity.member, station if of_station else "")
+def drawn(part, station, power, quantity):
+    """An output of a quantity; what acts at a place, or along a link, has a name of its own, and the latter has powers."""
+    spread = quantity.group == "spread"
+    return Output(
+        quantity.group,
+        part if quantity.group != "certificate" else "",
+        quantity.member,
+        station if spread or quantity.group == "station" else "",
+        power if spread and quantity.member not in ("width", "end") else None,
+    )
+
+
+@given(NAMES | st.just("law"), NAMES | st.just("law"), st.integers(0, 12), st.sampled_from(QUANTITIES))
+def test_no_two_outputs_have_one_name(part, station, power, quantity):
+    output = drawn(part, station, power, quantity)
     assert Output.of(str(output)) == output
     assert output.quantity is quantity
 
 
-@given(part=NAMES | st.just("law"), station=NAMES | st.just("law"), quantity=st.sampled_from(SPATIAL_QUANTITIES))
-def test_no_two_outputs_have_one_name_in_space(part, station, quantity):
-    of_station, of_part = quantity.group == "station", quantity.group != "certificate"
-    output = Output(quantity.group, part if of_part else "", quantity.member, station if of_station else "")
+@given(NAMES | st.just("law"), NAMES | st.just("law"), st.integers(0, 12), st.sampled_from(SPATIAL_QUANTITIES))
+def test_no_two_outputs_have_one_name_in_space(part, station, power, quantity):
+    output = drawn(part, station, power, quantity)
     assert Output.of(str(output)) == output
     assert output.meant(SPACE) is quantity
     assert quantity_of(str(output), space=True) is quantity

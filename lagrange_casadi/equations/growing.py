@@ -237,11 +237,10 @@ def _own(branch: Branch, coordinates: Sequence[Coordinate], base: Carried) -> Fr
     speed, acceleration = base.own.motion_of(_ends(branch, slides)[0])
     motion = Frame(speed=speed, acceleration=acceleration, rate=base.own.rate, angular=base.own.angular)
     if not branch.far.body.oriented:
-        # A point has no axes of its own: the ground's.
-        motion = replace(_seen_from(motion, base.rotation.inverse), rate=ZERO, angular=ZERO)
         for direction, coordinate in slides:
-            motion = _slid(motion, base.rotation.apply(direction), coordinate)
-        return motion
+            motion = _slid(motion, direction, coordinate)
+        # A point has no axes of its own: the ground's.
+        return replace(_seen_from(motion, base.rotation.inverse), rate=ZERO, angular=ZERO)
     zero, turns = orientation(branch.joint), [c for c in coordinates if c.kind == "angle"]
     if branch.reverse:
         motion = _seen_from(motion, zero.inverse)
