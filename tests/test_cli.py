@@ -234,7 +234,7 @@ def scene():
         (["run", "raises.py"], 2, "case raises.py, line 1: ZeroDivisionError: division by zero"),
         (["run", "empty.py"], 2, "case empty.py: has no function scene()"),
         (["run"], 2, "Missing argument 'CASE'"),
-        (["walk"], 2, "unknown command 'walk'; valid: run, sweep, best, table, trade, export, plot, report, info, check"),
+        (["walk"], 2, "unknown command 'walk'; valid: run, sweep, best, table, trade, export, plot, report, animate, info, check"),
         (["run", "CASE", "--fast"], 2, "No such option"),
         (["run", "CASE", "--figures", "a", "--no-figures"], 2, "exclude each other"),
         (["run", "CASE", "--out", "m.txt"], 2, "expected a name that ends in .h5"),

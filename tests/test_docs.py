@@ -17,7 +17,10 @@ from lagrange_casadi.tables import SPATIAL_QUANTITIES
 pytestmark = pytest.mark.quick
 
 ROOT = Path(__file__).parent.parent
-PAGES = ["README.md", *(f"docs/{page}.md" for page in ("method", "declaring", "machines", "space", "sweeps", "report"))]
+PAGES = [
+    "README.md",
+    *(f"docs/{page}.md" for page in ("method", "declaring", "machines", "space", "sweeps", "report", "animations")),
+]
 PROSE = ["README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md"))]
 LINKING = [*PROSE, "cases/slider_crank/README.md"]
 
@@ -76,7 +79,7 @@ def test_synopses_name_options_that_there_are():
     assert set(found) == set(program.commands)
     for name, named in found.items():
         assert named <= options(name), name
-    for name in ("run", "best", "table", "plot", "report", "info", "check"):
+    for name in ("run", "best", "table", "plot", "report", "animate", "info", "check"):
         assert found[name] == options(name), name
 
 

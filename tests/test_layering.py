@@ -34,6 +34,7 @@ ORDER = (
     "store",
     "draw",
     "report",
+    "animation",
     "density",
     "motion",
     "figures",

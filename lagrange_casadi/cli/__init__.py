@@ -18,6 +18,7 @@ from ..errors import LagrangeCasadiError, PostureError, UnknownNameError, one_li
 from ..system.interrupts import SENTENCE, STATUS, interrupts
 from ..system.standard_streams import lead_nowhere
 from ..version import __version__
+from .animate import animate
 from .best import best
 from .cache import cache
 from .cases import cases
@@ -73,7 +74,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (run, sweep, best, table, trade, export, plot, report, info, check, cases, new, cache)
+_COMMANDS = (run, sweep, best, table, trade, export, plot, report, animate, info, check, cases, new, cache)
 
 
 @click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})

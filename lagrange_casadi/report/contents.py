@@ -109,13 +109,13 @@ def contents(solution: Solution) -> dict[str, Any]:
     }
 
 
-def require_poses(solution: Solution) -> None:
-    """Raise :class:`.DeclarationError` where a body has no pose among the outputs."""
+def require_poses(solution: Solution, what: str = "a report") -> None:
+    """Raise :class:`.DeclarationError` where a body has no pose among the outputs; ``what`` would show it."""
     lacking = [body for body in solution.description["bodies"] if Output("pose", body, "x") not in solution.outputs]
     if lacking:
         told_of = ", ".join(f"'{body}'" for body in lacking[:3]) + (f" and {len(lacking) - 3} more" if len(lacking) > 3 else "")
         raise DeclarationError(
-            f"{solution.case}: a report shows the mechanism in motion, and there is no motion of {told_of}; want motion too"
+            f"{solution.case}: {what} shows the mechanism in motion, and there is no motion of {told_of}; want motion too"
         )
 
 

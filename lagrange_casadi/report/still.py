@@ -12,6 +12,7 @@ from ..declare.description import in_space
 from ..draw.solid import COLOURS, PATH
 from ..draw.views import AZIMUTH, ELEVATION, upright, view
 from ..instants.solution import Solution
+from .places import drawn_spots, placed
 from .shapes import Spot, joint_shapes, load_shapes, path_spots, shapes
 
 _WIDE, _HIGH, _MARGIN = 460.0, 300.0, 34.0
@@ -39,10 +40,10 @@ def still(solution: Solution) -> str:
 
     def flat(spot: Spot) -> Array:
         """A place over the instants (t, 2), to the right and up [m]."""
-        found: Array = _placed(thin, spot) @ np.column_stack([right, up])
+        found: Array = placed(thin, spot) @ np.column_stack([right, up])
         return found
 
-    cloud = np.concatenate([flat(spot) for spot in _spots(solution)])
+    cloud = np.concatenate([flat(spot) for spot in drawn_spots(solution.description)])
     low, high = cloud.min(axis=0), cloud.max(axis=0)
     span = np.maximum(high - low, 0.2 * max(float(np.max(high - low)), 1e-12))
     scale = float(min((np.array([_WIDE, _HIGH]) - 2 * _MARGIN) / span))
@@ -56,17 +57,6 @@ def still(solution: Solution) -> str:
     size = f'width="{_WIDE:g}" height="{_HIGH:g}" viewBox="0 0 {_WIDE:g} {_HIGH:g}"'
     label = f'role="img" aria-label="{escape(solution.case)} at its first instant"'
     return f'<svg xmlns="http://www.w3.org/2000/svg" {size} {label} stroke-linecap="round" stroke-linejoin="round">{lines}</svg>'
-
-
-def _spots(solution: Solution) -> Iterator[Spot]:
-    """All between which something is drawn."""
-    description = solution.description
-    for shape in shapes(description):
-        own = [*shape.axis, *(at for arm in shape.arms for at in arm), *(at for plate in shape.plates for at in plate)]
-        yield from (Spot(shape.name, at) for at in own or [shape.centre or (0.0, 0.0, 0.0)])
-    for joint in joint_shapes(description):
-        yield from (joint.parent, joint.child)
-    yield from path_spots(description).values()
 
 
 def _drawn(solution: Solution, on_sheet: Places) -> Iterator[str]:
@@ -108,20 +98,3 @@ def _line(points: Array, colour: str, width: float, *, closed: bool = False, das
     fill = f'fill="{colour}" fill-opacity="0.25"' if closed else 'fill="none"'
     dashes = ' stroke-dasharray="2 4"' if dashed else ""
     return f'<path d="{path}" {fill} stroke="{colour}" stroke-width="{width:g}"{dashes}/>'
-
-
-def _placed(solution: Solution, spot: Spot) -> Array:
-    """A place over the instants (t, 3) in ground axes [m]."""
-    local = np.array(spot.at)
-    if spot.body == "ground":
-        return np.tile(local, (solution.t.size, 1))
-    pose = solution.pose(spot.body)
-    z = np.zeros_like(pose.x) if pose.z is None else pose.z
-    place: Array = np.column_stack([pose.x, pose.y, z])
-    if pose.axes is not None:
-        for k in np.flatnonzero(local):  # what a body has no axes for is not asked of it
-            place = place + local[k] * pose.axes[:, k]
-    elif pose.angle is not None:
-        turned = (local[0] + 1j * local[1]) * np.exp(1j * pose.angle)
-        place = place + np.column_stack([turned.real, turned.imag, z])
-    return place

@@ -1,0 +1,100 @@
+"""What is asked of an animation, and the file that it makes."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import DeclarationError
+from ..instants.solution import Solution
+from ..report.contents import require_poses
+from ..report.places import drawn_spots
+from ..system.publish import replacing, writing
+from .body_lines import mechanism
+from .drawn import Picture
+from .forces import Forces, arrow_things, forces_of, ribbon_things
+from .motion import motion_of
+from .raster import find_ffmpeg, gif, mp4
+from .stage import stage_for
+from .vector import svg
+
+ENDINGS = (".gif", ".mp4", ".svg")
+"""Kinds of animations, by the name's ending."""
+
+_WIDTHS, _MOST = (80, 3840), 3000
+
+
+@dataclass(frozen=True)
+class Film:
+    """How a cycle is shown: the picture's ``width`` [pixels], frames a second, and the ``seconds`` that a cycle takes.
+
+    ``forces`` adds reactions, efforts and loads as arrows, ``section`` a section force by its name, as "bending", as ribbons along
+    links. ``names`` writes the joints' names beside them. Raises :class:`.DeclarationError` for what is out of range.
+    """
+
+    width: int = 640
+    rate: float = 25.0
+    seconds: float = 4.0
+    forces: bool = False
+    section: str = ""
+    names: bool = True
+
+    def __post_init__(self) -> None:
+        low, high = _WIDTHS
+        if isinstance(self.width, bool) or not isinstance(self.width, int) or not low <= self.width <= high or self.width % 2:
+            raise DeclarationError(f"width: expected an even number of pixels from {low} to {high}, got {self.width!r}")
+        for name, value, unit in (("rate", self.rate, "frames a second"), ("seconds", self.seconds, "seconds a cycle")):
+            if isinstance(value, bool) or not isinstance(value, (int, float)) or not (math.isfinite(value) and value > 0):
+                raise DeclarationError(f"{name}: expected {unit} above 0, got {value!r}")
+        if self.rate > 50:
+            raise DeclarationError(f"rate: expected 50 frames a second at most, got {self.rate!r}")
+        if self.rate * self.seconds > _MOST:
+            raise DeclarationError(f"rate and seconds: expected {_MOST} frames at most, got {self.rate * self.seconds:.6g}")
+
+
+def check_ending(path: Path) -> None:
+    """Raise :class:`.DeclarationError` for a name with another ending, :class:`.LagrangeCasadiError` for an MP4 without ffmpeg."""
+    if path.suffix.lower() not in ENDINGS:
+        raise DeclarationError(f"animation {path}: expected a name that ends in {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
+    if path.suffix.lower() == ".mp4":
+        find_ffmpeg()
+
+
+def write_animation(solution: Solution, path: str | os.PathLike[str], film: Film | None = None) -> None:
+    """Write one cycle of a solution as a GIF, an MP4 or an animated SVG, replacing the file at ``path`` whole or not at all.
+
+    Raises :class:`.DeclarationError` where the solution lacks the motion of its bodies, or forces that are asked for, and where
+    ``path`` has another ending; :class:`.PathError` and :class:`.StoreError` where the file cannot be written;
+    :class:`.LagrangeCasadiError` where an MP4 is asked for and ffmpeg is not found.
+    """
+    if not isinstance(solution, Solution) or not isinstance(path, (str, os.PathLike)):
+        raise DeclarationError(f"animation: expected a solution and a path, got {solution!r} and {path!r}")
+    target, film = Path(path), film or Film()
+    check_ending(target)
+    picture = picture_of(solution, film)
+    ending = target.suffix.lower()
+    if ending == ".mp4":
+        with replacing(target) as draft:
+            mp4(picture, picture.frames / film.seconds, draft)
+        return
+    data = gif(picture, film.seconds) if ending == ".gif" else svg(picture, film.seconds).encode()
+    with writing(target) as (file,):
+        file.write(data)
+
+
+def picture_of(solution: Solution, film: Film) -> Picture:
+    """All that is drawn, frame by frame. Raises :class:`.DeclarationError` for motion or forces that the solution lacks."""
+    require_poses(solution, "an animation")
+    motion = motion_of(solution, max(2, round(film.rate * film.seconds)))
+    cloud = np.concatenate([motion.place(spot) for spot in drawn_spots(solution.description)])
+    size = float(np.max(np.ptp(cloud, axis=0))) or 1.0
+    shown = film.forces or film.section
+    forces = forces_of(motion, size, arrows=film.forces, section=film.section) if shown else Forces()
+    stage = stage_for(solution.description, np.concatenate([cloud, *forces.cloud()]), film.width, foot=bool(forces.scale))
+    own = mechanism(motion, stage, names=film.names)
+    things = (*ribbon_things(forces, stage), *own, *arrow_things(forces, stage))
+    return Picture(solution.case, stage.width, stage.height, stage.unit, motion.before.size, motion.closed, things)

@@ -1,0 +1,136 @@
+"""Frames as pixels, and the GIF and the MP4 that they make."""
+
+from __future__ import annotations
+
+import io
+import itertools
+import shutil
+import subprocess
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import LagrangeCasadiError, StoreError, one_line
+from .drawn import INK, Dot, Picture, Thing, Words
+
+_DOTS = 100.0
+"""Pixels an inch."""
+
+_SAMPLES = 6
+"""Frames from which the colours of a GIF are taken."""
+
+_COLOURS = 128
+"""Of a GIF: more are not seen, and take room."""
+
+_WHITE = 248
+"""What is no darker is white."""
+
+Pixels = npt.NDArray[np.uint8]
+
+
+def frames(picture: Picture) -> Iterator[Pixels]:
+    """The frames (height, width, 3)."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(picture.width / _DOTS, picture.height / _DOTS), dpi=_DOTS, facecolor="white")
+    canvas: Any = FigureCanvasAgg(figure)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set(xlim=(0.0, picture.width), ylim=(picture.height, 0.0))
+    axes.set_axis_off()
+    artists = [(thing, _artist(axes, thing, picture.unit, order)) for order, thing in enumerate(picture.things)]
+    for k in range(picture.frames):
+        for thing, artist in artists:
+            if k == 0 or len(thing.points) > 1:
+                _move(artist, thing, thing.points[min(k, len(thing.points) - 1)])
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Glyph", UserWarning)  # a name may have letters that no font has
+            canvas.draw()
+        yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+
+def gif(picture: Picture, seconds: float) -> bytes:
+    """An animation that repeats for ever."""
+    from PIL import Image
+
+    pixels = frames(picture)
+    images = [Image.fromarray(one) for one in pixels]
+    chosen = [images[k] for k in np.linspace(0, len(images) - 1, _SAMPLES).astype(int)]
+    sheet = Image.new("RGB", (picture.width, picture.height * len(chosen)))
+    for k, image in enumerate(chosen):
+        sheet.paste(image, (0, k * picture.height))
+    palette = sheet.quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    taken = np.array(palette.getpalette()).reshape(-1, 3)
+    taken[np.min(taken, axis=1) >= _WHITE] = 255  # a mean of light colours is not white
+    palette.putpalette(taken.ravel().tolist())
+    flat = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
+    # A GIF counts hundredths of a second; those of all frames are together those of the cycle.
+    ends = np.round(100.0 * seconds * np.arange(len(flat) + 1) / len(flat)).astype(int)
+    times = [max(20, 10 * int(stop - start)) for start, stop in itertools.pairwise(ends)]
+    file = io.BytesIO()
+    flat[0].save(file, "GIF", save_all=True, append_images=flat[1:], duration=times, loop=0, optimize=False)
+    return file.getvalue()
+
+
+def find_ffmpeg() -> str:
+    """Where the program is that makes an MP4. Raises :class:`.LagrangeCasadiError` where it is not found."""
+    found = shutil.which("ffmpeg")
+    if found is None:
+        raise LagrangeCasadiError("an MP4 is made by ffmpeg, which is not found; install it, or write a .gif or an .svg")
+    return found
+
+
+def mp4(picture: Picture, rate: float, path: Path) -> None:
+    """Write a film of H.264, with so many frames a second. Raises :class:`.StoreError` where ffmpeg fails."""
+    size = f"{picture.width}x{picture.height}"
+    taken = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size, "-r", f"{rate:.17g}", "-i", "-"]
+    made = ["-an", "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"]
+    plain = ["-threads", "1", "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"]  # the same bytes
+    command = [find_ffmpeg(), "-v", "error", "-nostdin", "-y", *taken, *made, *plain, "-f", "mp4", str(path.absolute())]
+    film = b"".join(one.tobytes() for one in frames(picture))
+    try:
+        done = subprocess.run(command, input=film, capture_output=True, check=False)
+    except OSError as error:
+        raise StoreError(f"ffmpeg cannot be run: {one_line(error)}") from None
+    if done.returncode:
+        said = done.stderr.decode(errors="replace").strip().splitlines()
+        raise StoreError(f"ffmpeg failed: {said[-1] if said else f'status {done.returncode}'}")
+
+
+def _artist(axes: Any, thing: Thing, unit: float, order: int) -> Any:
+    from matplotlib.colors import to_rgba
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Circle, Polygon
+    from matplotlib.patheffects import withStroke
+
+    point = 72.0 / _DOTS
+    style: dict[str, Any]
+    if isinstance(thing, Words):
+        style = {"ha": "right" if thing.before else "left", "va": "baseline", "parse_math": False, "zorder": order}
+        halo = [withStroke(linewidth=3.0 * unit * point, foreground="white")]
+        return axes.text(0.0, 0.0, thing.text, fontsize=13.0 * unit * point, color=INK, path_effects=halo, **style)
+    if isinstance(thing, Dot):
+        circle = Circle((0.0, 0.0), thing.radius, facecolor=thing.fill, edgecolor=INK, linewidth=1.5 * unit * point, zorder=order)
+        return axes.add_patch(circle)
+    if thing.closed:
+        fill = to_rgba(thing.fill, thing.opacity) if thing.fill else "none"
+        style = {"facecolor": fill, "edgecolor": thing.colour, "linewidth": thing.width * point, "joinstyle": "round"}
+        return axes.add_patch(Polygon(np.zeros((3, 2)), closed=True, zorder=order, **style))
+    dashes = (0, (4.0, 3.0)) if thing.dashed else "-"
+    style = {"solid_capstyle": "round", "solid_joinstyle": "round", "linestyle": dashes}
+    return axes.add_line(Line2D([], [], color=thing.colour, linewidth=thing.width * point, zorder=order, **style))
+
+
+def _move(artist: Any, thing: Thing, points: Any) -> None:
+    if isinstance(thing, Words):
+        artist.set_position(points)
+    elif isinstance(thing, Dot):
+        artist.set_center(points)
+    elif thing.closed:
+        artist.set_xy(points)
+    else:
+        artist.set_data(points.T)
