@@ -364,7 +364,8 @@ def test_a_file_that_cannot_grow_is_one_line(released, here, size):
     # All that it compiles is there: a compiler could not write, either.
     assert main([*asked, "--t", "0:0.08:601"]) == 0
     before = Path("slider_crank.h5").read_bytes()
-    command = [sys.executable, "-m", "lagrange_casadi", *asked]
+    # Without bytecode, which Python would leave cut off for others.
+    command = [sys.executable, "-B", "-m", "lagrange_casadi", *asked]
     done = subprocess.run(command, capture_output=True, text=True, check=False, preexec_fn=limit)
     assert done.returncode == 1
     assert done.stderr == "error: cannot write slider_crank.h5: File too large\n"

@@ -98,6 +98,8 @@ PROGRAM = """
     from lagrange_casadi.errors import LagrangeCasadiError
     from lagrange_casadi.sweep import plan, sweep
     plan.compiled = lambda *_: sweeps.Formula(pause={pause})
+    # Python would leave bytecode cut off for others.
+    sys.dont_write_bytecode = True
     resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}))
     print("ready", flush=True)
     try:
