@@ -84,15 +84,31 @@ def test_bodies_are_where_the_solution_has_them():
     np.testing.assert_allclose(np.unwrap(np.arctan2(-way[:, 1], way[:, 0])), solution.pose("crank").angle[:-1], atol=1e-12)
 
 
-@pytest.mark.parametrize("name", ["rssr", "quick_return", "engine"])
+@pytest.mark.parametrize("name", ["rssr", "quick_return", "spatial_slider_crank"])
 def test_everything_is_on_the_sheet_at_all_times(name):
-    section = "bending_z" if name == "rssr" else "bending"
+    section = "bending" if name == "quick_return" else "bending_z"
     picture = picture_of(solved(name), Film(forces=True, section=section))
     for thing in picture.things:
         assert np.isfinite(thing.points).all()
         assert (thing.points >= 0).all()
         assert (thing.points <= [picture.width, picture.height]).all()
     assert picture.height % 2 == 0
+
+
+def test_gears_turn_and_have_room():
+    """Of the rim of a disc the spoke is a radius; it goes round as the body does."""
+    m = Mechanism("rotor")
+    rotor = m.link("rotor", length=0.3, mass=1.0, centre=(0, 0), inertia=0.1)
+    m.revolute("O", m.ground, rotor)
+    solution = evaluate(Scene(m, {"O": polynomial(0, 1)}, t=(0, 2 * np.pi, 41), wanted=["all"]), backend="vm")
+    picture = picture_of(solution, Film(rate=10, seconds=4.0))
+    rim, spoke = (thing.points for thing in picture.things if isinstance(thing, Line) and thing.width == 2.4)
+    assert (rim >= 0).all()
+    assert (rim <= [picture.width, picture.height]).all()
+    radius = spoke[:, 1] - spoke[:, 0]
+    np.testing.assert_allclose(np.hypot(*(rim - spoke[:, :1]).transpose(2, 0, 1)), np.hypot(*radius[0]), rtol=1e-9)
+    turned = np.unwrap(np.arctan2(-radius[:, 1], radius[:, 0]))
+    np.testing.assert_allclose(turned - turned[0], solution.motion("O").value[:-1], atol=1e-9)
 
 
 def test_joints_of_every_kind_are_drawn():

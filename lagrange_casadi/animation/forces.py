@@ -196,7 +196,8 @@ def _laws(solution: Solution, force: str) -> list[str]:
         raise UnknownNameError("section force", force, solution.table.sections)
     links = [link for link in solution.links_with_sections if solution.determined(Output("section", link, force))]
     if not links:
-        raise DeclarationError(f"{solution.case}: there is no section force to be shown; want section too")
+        none = "bodies of which only mass and centre are known have none, nor is what equilibrium leaves open shown"
+        raise DeclarationError(f"{solution.case}: there is no section force to be shown; want section too; {none}")
     return links
 
 
