@@ -126,7 +126,7 @@ def arrow_things(forces: Forces, stage: Stage) -> Iterator[Thing]:
         angles = np.pi / 4 + _FULL * arc.share[:, None] * np.linspace(0.0, 1.0, 25)
         spokes = np.stack([np.cos(angles), -np.sin(angles)], axis=-1)
         points = stage.on_sheet(arc.place)[:, None] + radius * spokes
-        ahead = -across(spokes[:, -1]) * -np.sign(arc.share)[:, None]
+        ahead = across(spokes[:, -1]) * np.sign(arc.share)[:, None]
         yield from _headed(points, radius * _FULL * np.abs(arc.share), ahead, arc.colour, stage.unit)
     if forces.scale:
         at = np.array([[12.0 * stage.unit, stage.height - 12.0 * stage.unit]])
