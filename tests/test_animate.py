@@ -84,15 +84,74 @@ def test_bodies_are_where_the_solution_has_them():
     np.testing.assert_allclose(np.unwrap(np.arctan2(-way[:, 1], way[:, 0])), solution.pose("crank").angle[:-1], atol=1e-12)
 
 
-@pytest.mark.parametrize("name", ["rssr", "quick_return", "engine"])
+@pytest.mark.parametrize("name", ["rssr", "quick_return", "spatial_slider_crank"])
 def test_everything_is_on_the_sheet_at_all_times(name):
-    section = "bending_z" if name == "rssr" else "bending"
+    section = "bending" if name == "quick_return" else "bending_z"
     picture = picture_of(solved(name), Film(forces=True, section=section))
     for thing in picture.things:
         assert np.isfinite(thing.points).all()
         assert (thing.points >= 0).all()
         assert (thing.points <= [picture.width, picture.height]).all()
     assert picture.height % 2 == 0
+
+
+def picture_size(solution):
+    """The larger side of all places between which something is drawn, over the whole cycle [m]: here joints, at all frames."""
+    x = [0.0, *(solution.pose(body).x[:-1] for body in ("crank", "rod", "ram"))]
+    y = [0.0, *(solution.pose(body).y[:-1] for body in ("crank", "rod", "ram"))]
+    return max(np.ptp(np.concatenate([np.atleast_1d(one) for one in side])) for side in (x, y))
+
+
+def test_arrows_and_ribbons_have_the_signs_of_the_solution():
+    """Against the solution at the frames' own instants: y is up, ordinates go to the side of n, turns are counter-clockwise."""
+    solution = press(TURN)
+    picture = picture_of(solution, Film(rate=10, seconds=4.0, forces=True, section="bending"))
+    lines = [thing for thing in picture.things if isinstance(thing, Line)]
+    scales = []
+    heads = [line for line in lines if line.colour == "#c2304a" and line.closed]
+    shafts = [line for line in lines if line.colour == "#c2304a" and not line.closed]
+    for joint, shaft, head in zip(("O", "A", "B", "guide"), shafts, heads, strict=True):
+        reaction, way = solution.reaction(joint), (head.points[:, 0] - shaft.points[:, 0]) * [1, -1]
+        force = np.column_stack([reaction.fx, reaction.fy])[:-1]
+        np.testing.assert_allclose(
+            way[:, 0] * force[:, 1], way[:, 1] * force[:, 0], atol=1e-9 * np.abs(way).max() * np.abs(force).max()
+        )
+        scales.append(np.sum(way * force) / np.sum(force * force))
+    np.testing.assert_allclose(scales, scales[0], rtol=1e-9)
+    assert scales[0] > 0
+
+    largest = max(abs(solution.peak(f"section:{link}:bending").value) for link in ("crank", "rod"))
+    widest = 0.2 * np.hypot(*(shafts[0].points[0, 0] - shafts[1].points[0, 0])) / 0.1 * picture_size(solution)
+    for link, both in (("crank", lines[:2]), ("rod", lines[2:4])):
+        angle, values = solution.pose(link).angle[:-1], solution.section(link).law.on_grid("bending", np.linspace(0, 1, 41))[:-1]
+        n = np.column_stack([-np.sin(angle), -np.cos(angle)])[:, None]
+        for line, kept in zip(both, (np.maximum(values, 0), np.minimum(values, 0)), strict=True):
+            ordinates = np.sum((line.points[:, :40:-1] - line.points[:, :41]) * n, axis=-1)
+            np.testing.assert_allclose(ordinates, widest * kept / largest, atol=1e-9 * widest)
+
+    arc, head = (line.points for line in lines if line.colour == "#6d3fc0")
+    centre = lines[[line.width for line in lines].index(8.0)].points[:, :1]
+    turned = np.unwrap(np.arctan2(-(arc - centre)[..., 1], (arc - centre)[..., 0]), axis=1)
+    effort = solution.effort("O")[:-1]
+    np.testing.assert_allclose(turned[:, -1] - turned[:, 0], 1.5 * np.pi * effort / np.abs(solution.effort("O")).max(), atol=1e-9)
+    ahead, last = head[:, 0] - head[:, 1:].mean(axis=1), arc[:, -1] - arc[:, -2]
+    assert (np.sum(ahead * last, axis=1) >= 0).all()
+
+
+def test_gears_turn_and_have_room():
+    """Of the rim of a disc the spoke is a radius; it goes round as the body does."""
+    m = Mechanism("rotor")
+    rotor = m.link("rotor", length=0.3, mass=1.0, centre=(0, 0), inertia=0.1)
+    m.revolute("O", m.ground, rotor)
+    solution = evaluate(Scene(m, {"O": polynomial(0, 1)}, t=(0, 2 * np.pi, 41), wanted=["all"]), backend="vm")
+    picture = picture_of(solution, Film(rate=10, seconds=4.0))
+    rim, spoke = (thing.points for thing in picture.things if isinstance(thing, Line) and thing.width == 2.4)
+    assert (rim >= 0).all()
+    assert (rim <= [picture.width, picture.height]).all()
+    radius = spoke[:, 1] - spoke[:, 0]
+    np.testing.assert_allclose(np.hypot(*(rim - spoke[:, :1]).transpose(2, 0, 1)), np.hypot(*radius[0]), rtol=1e-9)
+    turned = np.unwrap(np.arctan2(-radius[:, 1], radius[:, 0]))
+    np.testing.assert_allclose(turned - turned[0], solution.motion("O").value[:-1], atol=1e-9)
 
 
 def test_joints_of_every_kind_are_drawn():

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..declare.density import Array
+from ..declare.description import in_space
 from ..draw.solid import COLOURS, PATH
 from ..report.places import placed
 from ..report.shapes import JointShape, Place, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
@@ -15,6 +16,7 @@ from .motion import Motion
 from .stage import Stage
 
 _SLIDES = ("prismatic", "cylindrical", "screw", "slot")
+_TURNS = ("revolute", "cylindrical", "screw", "universal")
 _PINS = ("revolute", "slot", "universal", "spherical")
 
 _BLOCK, _POINT = (24.0, 15.0), (36.0, 24.0)
@@ -73,7 +75,7 @@ def _body(motion: Motion, stage: Stage, shape: Shape, joints: list[JointShape], 
     for plate in shape.plates:
         yield Line(on_sheet(plate), colour, 2.0 * unit, closed=True, fill=colour, opacity=0.25)
     if shape.disc:
-        yield from _disc(motion, stage, shape, joints, colour)
+        yield from _disc(motion, stage, shape, colour)
     if shape.axis:
         yield Line(on_sheet(shape.axis), colour, 8.0 * unit)
     for arm in shape.arms:
@@ -84,22 +86,34 @@ def _body(motion: Motion, stage: Stage, shape: Shape, joints: list[JointShape], 
         yield Line(on_sheet([(0.0, 0.0, 0.0)]) + half, INK, 1.2 * unit, closed=True, fill=colour)
 
 
-def _disc(motion: Motion, stage: Stage, shape: Shape, joints: list[JointShape], colour: str) -> Iterator[Thing]:
+def _disc(motion: Motion, stage: Stage, shape: Shape, colour: str) -> Iterator[Thing]:
     """A circle about the axis that holds the body, and a spoke, which shows that it turns."""
-    centre = shape.centre or (0.0, 0.0, 0.0)
-    holding = next((one for one in joints if one.axes and shape.name in (one.parent.body, one.child.body)), None)
+    around = rim(motion, shape)
+    if around is not None:
+        edge, middle = stage.on_sheet(around), stage.on_sheet(np.mean(around, axis=1))
+        yield Line(edge, colour, 2.4 * stage.unit, closed=True, fill=colour, opacity=0.2)
+        yield Line(np.stack([middle, edge[:, 0]], axis=1), colour, 2.4 * stage.unit)
+
+
+def rim(motion: Motion, shape: Shape) -> Array | None:
+    """The edge of a body that is a disc (frames, n, 3) [m], about the joint by which it turns; None of any other."""
+    joints = [one for one in joint_shapes(motion.solution.description) if shape.name in (one.parent.body, one.child.body)]
+    turning = next((one for one in joints if one.kind in _TURNS), None)
+    if not shape.disc or (turning is None and any(one.kind in _SLIDES for one in joints)):
+        return None
     axis = np.array([0.0, 0.0, 1.0])
     own = np.stack([motion.way(shape.name, way) for way in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))], axis=1)
-    if holding is not None and np.isfinite(own).all():
-        axis = own[0] @ motion.way(holding.parent.body, holding.axes[0])[0]
+    if not np.isfinite(own).all():
+        return None
+    if turning is not None and in_space(motion.solution.description):
+        axis = own[0] @ motion.way(turning.parent.body, turning.axes[0])[0]
     least = np.eye(3)[np.argmin(np.abs(axis))]
     first = np.cross(axis, least) / np.linalg.norm(np.cross(axis, least))
     second = np.cross(axis, first) / np.linalg.norm(axis)
     around = shape.disc * (_ROUND.real[:, None] * first + _ROUND.imag[:, None] * second)
-    middle = motion.place(Spot(shape.name, centre))[:, None]
-    edge = stage.on_sheet(middle + np.einsum("nk,fkc->fnc", around, own))
-    yield Line(edge, colour, 2.4 * stage.unit, closed=True, fill=colour, opacity=0.2)
-    yield Line(np.stack([stage.on_sheet(middle[:, 0]), edge[:, 0]], axis=1), colour, 2.4 * stage.unit)
+    middle = motion.place(Spot(shape.name, shape.centre or (0.0, 0.0, 0.0)))[:, None]
+    found: Array = middle + np.einsum("nk,fkc->fnc", around, own)
+    return found
 
 
 def _slide(motion: Motion, stage: Stage, joint: JointShape) -> Array:

@@ -13,8 +13,9 @@ from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..report.contents import require_poses
 from ..report.places import drawn_spots
+from ..report.shapes import shapes
 from ..system.publish import replacing, writing
-from .body_lines import mechanism
+from .body_lines import mechanism, rim
 from .drawn import Picture
 from .forces import Forces, arrow_things, forces_of, ribbon_things
 from .motion import motion_of
@@ -25,7 +26,7 @@ from .vector import svg
 ENDINGS = (".gif", ".mp4", ".svg")
 """Kinds of animations, by the name's ending."""
 
-_WIDTHS, _MOST = (80, 3840), 3000
+_WIDTHS, _MOST, _SHORTEST = (80, 3840), 3000, 0.1
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,8 @@ class Film:
         for name, value, unit in (("rate", self.rate, "frames a second"), ("seconds", self.seconds, "seconds a cycle")):
             if isinstance(value, bool) or not isinstance(value, (int, float)) or not (math.isfinite(value) and value > 0):
                 raise DeclarationError(f"{name}: expected {unit} above 0, got {value!r}")
+        if self.seconds < _SHORTEST:
+            raise DeclarationError(f"seconds: expected {_SHORTEST} seconds a cycle at least, got {self.seconds!r}")
         if self.rate > 50:
             raise DeclarationError(f"rate: expected 50 frames a second at most, got {self.rate!r}")
         if self.rate * self.seconds > _MOST:
@@ -90,7 +93,8 @@ def picture_of(solution: Solution, film: Film) -> Picture:
     """All that is drawn, frame by frame. Raises :class:`.DeclarationError` for motion or forces that the solution lacks."""
     require_poses(solution, "an animation")
     motion = motion_of(solution, max(2, round(film.rate * film.seconds)))
-    cloud = np.concatenate([motion.place(spot) for spot in drawn_spots(solution.description)])
+    rims = [around.reshape(-1, 3) for shape in shapes(solution.description) if (around := rim(motion, shape)) is not None]
+    cloud = np.concatenate([*(motion.place(spot) for spot in drawn_spots(solution.description)), *rims])
     size = float(np.max(np.ptp(cloud, axis=0))) or 1.0
     shown = film.forces or film.section
     forces = forces_of(motion, size, arrows=film.forces, section=film.section) if shown else Forces()

@@ -126,7 +126,7 @@ def arrow_things(forces: Forces, stage: Stage) -> Iterator[Thing]:
         angles = np.pi / 4 + _FULL * arc.share[:, None] * np.linspace(0.0, 1.0, 25)
         spokes = np.stack([np.cos(angles), -np.sin(angles)], axis=-1)
         points = stage.on_sheet(arc.place)[:, None] + radius * spokes
-        ahead = -across(spokes[:, -1]) * -np.sign(arc.share)[:, None]
+        ahead = across(spokes[:, -1]) * np.sign(arc.share)[:, None]
         yield from _headed(points, radius * _FULL * np.abs(arc.share), ahead, arc.colour, stage.unit)
     if forces.scale:
         at = np.array([[12.0 * stage.unit, stage.height - 12.0 * stage.unit]])
@@ -196,7 +196,8 @@ def _laws(solution: Solution, force: str) -> list[str]:
         raise UnknownNameError("section force", force, solution.table.sections)
     links = [link for link in solution.links_with_sections if solution.determined(Output("section", link, force))]
     if not links:
-        raise DeclarationError(f"{solution.case}: there is no section force to be shown; want section too")
+        none = "bodies of which only mass and centre are known have none, nor is what equilibrium leaves open shown"
+        raise DeclarationError(f"{solution.case}: there is no section force to be shown; want section too; {none}")
     return links
 
 

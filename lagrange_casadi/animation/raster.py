@@ -6,8 +6,10 @@ import io
 import itertools
 import shutil
 import subprocess
+import tempfile
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import LagrangeCasadiError, StoreError, one_line
+from ..system.room import require
 from .drawn import INK, Dot, Picture, Thing, Words
 
 _DOTS = 100.0
@@ -32,8 +35,8 @@ _WHITE = 248
 Pixels = npt.NDArray[np.uint8]
 
 
-def frames(picture: Picture) -> Iterator[Pixels]:
-    """The frames (height, width, 3)."""
+def frames(picture: Picture, chosen: Iterable[int] | None = None) -> Iterator[Pixels]:
+    """The frames (height, width, 3), all or those that are ``chosen`` by number."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -43,10 +46,9 @@ def frames(picture: Picture) -> Iterator[Pixels]:
     axes.set(xlim=(0.0, picture.width), ylim=(picture.height, 0.0))
     axes.set_axis_off()
     artists = [(thing, _artist(axes, thing, picture.unit, order)) for order, thing in enumerate(picture.things)]
-    for k in range(picture.frames):
+    for k in range(picture.frames) if chosen is None else chosen:
         for thing, artist in artists:
-            if k == 0 or len(thing.points) > 1:
-                _move(artist, thing, thing.points[min(k, len(thing.points) - 1)])
+            _move(artist, thing, thing.points[min(k, len(thing.points) - 1)])
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Glyph", UserWarning)  # a name may have letters that no font has
             canvas.draw()
@@ -54,25 +56,22 @@ def frames(picture: Picture) -> Iterator[Pixels]:
 
 
 def gif(picture: Picture, seconds: float) -> bytes:
-    """An animation that repeats for ever."""
+    """An animation that repeats for ever. Raises :class:`.SizeError` where memory does not hold it."""
     from PIL import Image
 
-    pixels = frames(picture)
-    images = [Image.fromarray(one) for one in pixels]
-    chosen = [images[k] for k in np.linspace(0, len(images) - 1, _SAMPLES).astype(int)]
-    sheet = Image.new("RGB", (picture.width, picture.height * len(chosen)))
-    for k, image in enumerate(chosen):
-        sheet.paste(image, (0, k * picture.height))
+    require("a GIF", (picture.frames, picture.height, picture.width // 8))
+    chosen = np.unique(np.linspace(0, picture.frames - 1, _SAMPLES).astype(int)).tolist()
+    sheet = Image.fromarray(np.concatenate(list(frames(picture, chosen))))
     palette = sheet.quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     taken = np.array(palette.getpalette()).reshape(-1, 3)
     taken[np.min(taken, axis=1) >= _WHITE] = 255  # a mean of light colours is not white
     palette.putpalette(taken.ravel().tolist())
-    flat = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
+    flat = (Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in frames(picture))
     # A GIF counts hundredths of a second; those of all frames are together those of the cycle.
-    ends = np.round(100.0 * seconds * np.arange(len(flat) + 1) / len(flat)).astype(int)
+    ends = np.round(100.0 * seconds * np.arange(picture.frames + 1) / picture.frames).astype(int)
     times = [max(20, 10 * int(stop - start)) for start, stop in itertools.pairwise(ends)]
     file = io.BytesIO()
-    flat[0].save(file, "GIF", save_all=True, append_images=flat[1:], duration=times, loop=0, optimize=False)
+    next(flat).save(file, "GIF", save_all=True, append_images=flat, duration=times, loop=0, optimize=False)
     return file.getvalue()
 
 
@@ -90,15 +89,20 @@ def mp4(picture: Picture, rate: float, path: Path) -> None:
     taken = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size, "-r", f"{rate:.17g}", "-i", "-"]
     made = ["-an", "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"]
     plain = ["-threads", "1", "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"]  # the same bytes
-    command = [find_ffmpeg(), "-v", "error", "-nostdin", "-y", *taken, *made, *plain, "-f", "mp4", str(path.absolute())]
-    film = b"".join(one.tobytes() for one in frames(picture))
-    try:
-        done = subprocess.run(command, input=film, capture_output=True, check=False)
-    except OSError as error:
-        raise StoreError(f"ffmpeg cannot be run: {one_line(error)}") from None
-    if done.returncode:
-        said = done.stderr.decode(errors="replace").strip().splitlines()
-        raise StoreError(f"ffmpeg failed: {said[-1] if said else f'status {done.returncode}'}")
+    command = [find_ffmpeg(), "-v", "error", "-y", *taken, *made, *plain, "-f", "mp4", str(path.absolute())]
+    with tempfile.TemporaryFile() as words:
+        try:
+            with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=words, stderr=words) as running:
+                assert running.stdin is not None
+                with suppress(BrokenPipeError), running.stdin as film:  # what ended early says why
+                    for one in frames(picture):
+                        film.write(one.tobytes())
+        except OSError as error:
+            raise StoreError(f"ffmpeg cannot be run: {one_line(error)}") from None
+        if running.returncode:
+            words.seek(0)
+            said = words.read().decode(errors="replace").strip().splitlines()
+            raise StoreError(f"ffmpeg failed: {said[-1] if said else f'status {running.returncode}'}")
 
 
 def _artist(axes: Any, thing: Thing, unit: float, order: int) -> Any:
