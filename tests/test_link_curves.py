@@ -25,7 +25,7 @@ HEAD = """#include <math.h>
 #define DESIGNS_ROOT sqrt
 #define DESIGNS_CLOSE 1e-15
 """
-LINKS = 30
+LINKS = 15
 
 
 def drawn(generator, table, loaded):

@@ -93,22 +93,20 @@ def test_exported_c_has_the_numbers_of_the_api(precision, tmp_path):
 
 
 def test_peaks_between_instants_and_of_sweeps():
-    one = scene(t=(0.0, 1.0, 81))
+    one, designs = scene(t=(0.0, 1.0, 81)), np.array([[1.0, 0.1], [-2.0, 0.0]])
     forces = [f"section:{link}:{force}" for link in ("boom", "jib") for force in SPACE.forces]
-    for backend in ("vm", "lanes"):
-        engine = DesignEngine.of(one, rung=Rung(backend))
-        designs = np.array([[1.0, 0.1], [-2.0, 0.0]])
-        found = engine.evaluate(designs)
-        assert found.status.tolist() == [Status.OK] * 2
-        names = [str(quantity) for quantity in engine.quantities]
-        for k, (gust, start) in enumerate(designs.tolist()):
-            parameters = {"gust": gust, "start": start}
-            solution = evaluate(one, parameters=parameters)
-            fine = evaluate(one, parameters=parameters, t=(0.0, 1.0, 2001))
-            for peak in refine(one, solution, forces):
-                size = max(abs(peak.value), 1e-9)
+    engines = [DesignEngine.of(one, rung=Rung(backend)) for backend in ("vm", "lanes")]
+    swept = [engine.evaluate(designs) for engine in engines]
+    assert [found.status.tolist() for found in swept] == [[Status.OK] * 2] * 2
+    names = [str(quantity) for quantity in engines[0].quantities]
+    for k, (gust, start) in enumerate(designs.tolist()):
+        parameters = {"gust": gust, "start": start}
+        fine = evaluate(one, parameters=parameters, t=(0.0, 1.0, 2001))
+        for peak in refine(one, evaluate(one, parameters=parameters), forces):
+            size = max(abs(peak.value), 1e-9)
+            for found in swept:
                 assert abs(found.value[k, names.index(peak.name)] - peak.value) <= 1e-9 * size, peak.name
-                assert abs(fine.peak(peak.name).value - peak.value) <= 1e-5 * size, peak.name
+            assert abs(fine.peak(peak.name).value - peak.value) <= 1e-5 * size, peak.name
 
 
 def test_a_point_mass_bears_none():
