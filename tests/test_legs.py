@@ -9,7 +9,7 @@ from lagrange_casadi import Scene, SpatialMechanism, derive, evaluate
 from lagrange_casadi.errors import AssemblyError, PostureError
 from lagrange_casadi.motion import harmonic, polynomial
 
-pytestmark = pytest.mark.quick
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 SKEW = (math.cos(0.7), 0.0, math.sin(0.7))

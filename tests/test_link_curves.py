@@ -101,7 +101,7 @@ int main(void) {{
 
 @pytest.mark.parametrize("loaded", [False, True])
 @pytest.mark.parametrize("table", [PLANE, SPACE], ids=["plane", "space"])
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.long)])
 def test_curves_are_those_of_the_law(seed, table, loaded, tmp_path):
     """Each value is the force at its place, and the largest of each force is the law's."""
     generator = np.random.default_rng(seed)
