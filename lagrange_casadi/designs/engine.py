@@ -258,7 +258,7 @@ class DesignEngine:
             found.times[:] = asked
         together = found.series is not None and asked is even
         self._evaluate(p, even, found if together else replace(found, series=None), threads)
-        self.refuse_motions(p, even, found)
+        self._refuse_motions(p, even, found)
         if found.series is None or together:
             return
         others = np.zeros(len(p), np.int8)
@@ -295,7 +295,7 @@ class DesignEngine:
         known = [bent(self.graph, self.kept.sharpness, times, row) for times, row in zip(t, p, strict=True)]
         return np.array(known) if known else np.zeros((1, 0), bool)
 
-    def refuse_motions(self, p: Array, t: Array, found: Outcome) -> None:
+    def _refuse_motions(self, p: Array, t: Array, found: Outcome) -> None:
         """Take the result from designs whose motion puts into a curve what is beyond its ends at any of their instants."""
         ends = ends_function(self.scene.laws, self.scene.mechanism.symbols)
         if ends is None:

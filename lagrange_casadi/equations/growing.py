@@ -124,12 +124,11 @@ class Grown:
         moved = Frame(speed=speed, acceleration=acceleration, rate=turning)
         for direction, coordinate in slides:
             moved = _slid(moved, carrier.apply(times(branch.sign, direction)), coordinate)
-        place, (speed, acceleration) = base.place_of(point), (moved.speed, moved.acceleration)
-        if isinstance(base, Carried):
-            own = replace(_own(branch, coordinates, base), anchor=anchor)
-            turns = base.turns + sum(coordinate.kind == "angle" for coordinate in coordinates)
-            return Carried(place, speed, acceleration, rotation, rate, angular, anchor, own, turns)
-        return Frame(place, speed, acceleration, rotation, rate, angular, anchor)
+        motion = base.place_of(point), moved.speed, moved.acceleration, rotation, rate, angular, anchor
+        if not isinstance(base, Carried):
+            return Frame(*motion)
+        own = replace(_own(branch, coordinates, base), anchor=anchor)
+        return Carried(*motion, own, base.turns + sum(coordinate.kind == "angle" for coordinate in coordinates))
 
     def _turn(self, branch: Branch, coordinates: Sequence[Coordinate], base: Frame) -> tuple[Rotation, Vector, Vector]:
         """Direction, angular velocity and its change of the body that hangs on a branch."""

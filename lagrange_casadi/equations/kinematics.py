@@ -26,7 +26,7 @@ from .gaps import left, misfit, reach
 from .linear import LinearSystem
 from .loops import ClosedForm
 from .multibody import Coordinate, Multibody, column
-from .postures import Undecided, directions, measured, posture_name, turns
+from .postures import Undecided, directions, measured, turns
 from .substitution import Expressions, Numbers
 
 LARGEST_STEP = 0.3
@@ -183,12 +183,10 @@ class _Solver:
                 self._iterate(block, rough)
             return
         left_to_newton = self.iterate and any(form.branch is not None for form in block.forms)
-        known, closures = dict(self.known), [self._solved(block, form) for form in block.forms]
+        closures = [self._solved(block, form) for form in block.forms]
         if left_to_newton:
             self.dyads[block] = ca.mmin(column(closure for closure in closures if closure is not None))
-            values = {c: self.numbers.of(self.known[c])[-1] for c in block.unknown}
-            self.known = known
-            self._iterate(block, values)
+            self._iterate(block, {c: self.numbers.of(self.known[c])[-1] for c in block.unknown})
             return
         for form, closure in zip(block.forms, closures, strict=True):
             if form.branch is not None:
@@ -259,7 +257,7 @@ class _Solver:
 
         Where it is not ``needed``, joints that hold directions are not looked through, for that takes time.
         """
-        found = {c: self.posture[posture_name(c)] for c in coordinates if posture_name(c) in self.posture}
+        found = {c: self.posture[c.told_as] for c in coordinates if c.told_as in self.posture}
         angles = [c for c in coordinates if c.kind == "angle" and not c.relative and c not in found]
         if angles and (needed or any(n not in self.multibody.frames and turns(self.multibody, n) for n in self.posture)):
             told = directions(self.multibody, self.posture, self.numbers, self.known)
@@ -397,4 +395,4 @@ def _numbers(unknown: Sequence[Coordinate], values: Sequence[float]) -> dict[Coo
 
 
 def _describe(way: Mapping[Coordinate, float]) -> str:
-    return " with ".join(describe_coordinate(posture_name(c), c.kind, x) for c, x in way.items())
+    return " with ".join(describe_coordinate(c.told_as, c.kind, x) for c, x in way.items())

@@ -49,22 +49,20 @@ def _leg(joint: Joint, first: Coordinate, later: Sequence[Coordinate], multibody
         return ()
     if len(later) == 1:
         head, target = cross(axis, head), cross(axis, target)
-    equations, kept = [], [(dot(head, head), dot(target, target), True), (dot(axis, head), dot(axis, target), False)]
-    for of_head, of_target, squared in kept[: len(later)]:
-        plain = _in_fewest(of_head, later, multibody.coordinates)
-        if plain is None:
+    squares = _in_fewest(dot(head, head), later, multibody.coordinates), dot(target, target)
+    # One of the two is a length that nothing changes: beside it the gap is one in metres.
+    fixed = next((square for square in squares if square is not None and not _held((square,), later)), None)
+    if squares[0] is None or fixed is None:
+        return ()
+    length = ca.sqrt(fixed)
+    near, far = (length if square is fixed else square / length for square in squares)
+    equations = [(near - far) / 2]
+    if len(later) == 2:
+        height = _in_fewest(dot(axis, head), later, multibody.coordinates)
+        if height is None:
             return ()
-        if squared and not _held((plain,), later):
-            length = ca.sqrt(plain)
-            equations.append((length - of_target / length) / 2)
-        elif squared and not _held((of_target,), later):
-            length = ca.sqrt(of_target)
-            equations.append((plain / length - length) / 2)
-        elif squared:
-            return ()
-        else:
-            equations.append(plain - of_target)
-    equations = sorted(equations, key=lambda equation: len(_held((equation,), later)))
+        equations.append(height - dot(axis, target))
+    equations.sort(key=lambda equation: len(_held((equation,), later)))
     forms, rest = [], list(later)
     for equation in equations:
         found = _held((equation,), rest)
@@ -73,7 +71,7 @@ def _leg(joint: Joint, first: Coordinate, later: Sequence[Coordinate], multibody
             return ()
         forms.append(form)
         rest.remove(found[0])
-    return (*forms, _turned(first, axis, head, target, held=len(later) == 1))
+    return (*forms, _turned(first, axis, head, target, across=len(later) == 1))
 
 
 def _in_fewest(expression: Any, later: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> Any | None:
@@ -86,18 +84,18 @@ def _in_fewest(expression: Any, later: Sequence[Coordinate], coordinates: Sequen
     return None
 
 
-def _turned(first: Coordinate, axis: Vector, head: Vector, target: Vector, *, held: bool) -> ClosedForm:
-    """The turn about an axis that leads from where the head is without it to the target; where ``held``, both are across the axis.
+def _turned(first: Coordinate, axis: Vector, head: Vector, target: Vector, *, across: bool) -> ClosedForm:
+    """The turn about an axis that leads from where the head is without it to the target, or where both are ``across`` the axis.
 
     A target on the axis tells no turn: the closure is the square of the sine between the two.
     """
     x, y, z = ca.vertsplit(_at_rest(ca.vertcat(*head), (first,)))
-    start, across = (x, y, z), cross(axis, target)
-    cosine = dot(start, target) - (0 if held else dot(axis, start) * dot(axis, target))
-    sine = -dot(start, across)
+    start, beside = (x, y, z), cross(axis, target)
+    cosine = dot(start, target) - (0 if across else dot(axis, start) * dot(axis, target))
+    sine = -dot(start, beside)
     length = ca.sqrt(cosine * cosine + sine * sine)
     variables = ca.vertcat(cosine / length, sine / length, ca.atan2(sine, cosine))
-    closure = None if held else dot(across, across) / dot(target, target)
+    closure = None if across else dot(beside, beside) / dot(target, target)
     return ClosedForm((variables,), closure, None, (first,))
 
 

@@ -58,7 +58,7 @@ class Coordinate:
 
     @property
     def told_as(self) -> str:
-        """By which name a posture tells it: the link whose direction it is, or its own."""
+        """By which name a posture tells it where it is not driven: the link whose direction it is, or its own."""
         return self.body if self.kind == "angle" and not self.relative else self.name
 
     def placed(self, symbols: Any, values: Any) -> Any:

@@ -16,11 +16,6 @@ from .multibody import Coordinate, Multibody, own_coordinate, place_along
 from .substitution import Numbers
 
 
-def posture_name(coordinate: Coordinate) -> str:
-    """By which name a posture tells a coordinate that is not driven: the link whose direction it is, or the coordinate's own."""
-    return coordinate.told_as
-
-
 def turns(multibody: Multibody, name: str) -> bool:
     """Whether what a posture tells by a name is an angle."""
     return name in multibody.frames or multibody.mechanism.coordinates[name][1].kind == "angle"
@@ -95,7 +90,7 @@ class Undecided:
             return abs(math.remainder(gap, math.tau)) if coordinate.kind == "angle" else abs(gap) / length
 
         chosen = max(first, key=apart)
-        name = posture_name(chosen)
+        name = chosen.told_as
         self.ways.append((block.joints, {name: first[chosen]}, {name: second[chosen]}))
         self.words.append(
             f"the loop closed by {block.joints} can be assembled in two ways at the start of the motion: {' or '.join(words)}"
@@ -103,8 +98,8 @@ class Undecided:
 
     def note_lacking(self, block: Block, missing: Sequence[Coordinate]) -> None:
         """Note that an iteration needs rough values of coordinates to begin with."""
-        names = [posture_name(c) for c in missing]
-        self.lacking.append((block.joints, [(posture_name(c), c.kind == "angle") for c in missing]))
+        names = [c.told_as for c in missing]
+        self.lacking.append((block.joints, [(c.told_as, c.kind == "angle") for c in missing]))
         self.words.append(f"the loops closed by {block.joints} have no closed form; give a rough posture of {', '.join(names)} too")
 
     def refusal(self, multibody: Multibody) -> PostureError:

@@ -69,8 +69,8 @@ class SectionLaw:
         """The functions along the link at ratios ``xi`` of any shape; they serve every force, and the law at any instants."""
         xi = np.asarray(xi, dtype=float)
         t0, t1, t2 = self.density.tails(xi)
-        l, one = self.length, np.ones_like(t0)
-        force, bending = [one, t0, l * (xi * t0 + t1)], [one, l * (1.0 - xi), l * t1, l * l * (xi * t1 + t2)]
+        l, force = self.length, self._force_rows(xi, t0, t1)
+        bending = [np.ones_like(t0), l * (1.0 - xi), l * t1, l * l * (xi * t1 + t2)]
         for spread in self.spreads:
             for rows, more in zip((force, bending), spread.rows(xi, l), strict=True):
                 rows += more
@@ -310,17 +310,15 @@ class SectionLaw:
         terms = self.table.sections[force]
         if terms.arm or self.spreads:
             columns, rows = self._terms(force, self.basis(u))
-        else:
-            columns = [self.coefficients[name] for name in terms.coefficients]
-            rows = self._force_rows(u, len(columns))
-        return np.asarray(sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True)))
+            return np.asarray(sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True)))
+        # The whole basis takes one moment more of the matter.
+        plain = [self.coefficients[name] for name in terms.coefficients]
+        matter = self._force_rows(u, *self.density.tails(u, 2)) if len(plain) > 1 else [np.ones_like(u)]
+        return np.asarray(sum(_column(column, u) * row for column, row in zip(plain, matter, strict=True)))
 
-    def _force_rows(self, u: Array, count: int) -> Array:
-        """The first rows of a basis for forces: one where nothing but the ends and stations acts, else three."""
-        if count == 1:
-            return np.ones((1, *u.shape))
-        t0, t1 = self.density.tails(u, 2)
-        return np.stack([np.ones_like(t0), t0, self.length * (u * t0 + t1)])
+    def _force_rows(self, u: Array, t0: Array, t1: Array) -> list[Array]:
+        """The rows of a basis for forces, by the moments of the matter beyond."""
+        return [np.ones_like(t0), t0, self.length * (u * t0 + t1)]
 
     def _acting(self, force: str, load: AnyStationLoad) -> grids.Load:
         terms = self.table.sections[force]
