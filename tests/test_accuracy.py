@@ -34,7 +34,7 @@ def case(name):
     return scene, exactly(scene)
 
 
-@pytest.mark.sampled(18)
+@pytest.mark.sampled(25)
 @pytest.mark.parametrize("rung", RUNGS)
 @pytest.mark.parametrize("name", PLANAR)
 def test_cases(name, rung):
@@ -147,7 +147,7 @@ def test_after_many_turns(later, words, certified):
     assert_near(ratios(solution, exactly(scene)))
 
 
-@pytest.mark.sampled(14)
+@pytest.mark.sampled(20)
 @pytest.mark.parametrize("kind", kinds.KINDS, ids=[kind.__name__ for kind in kinds.KINDS])
 def test_random_mechanisms(kind):
     """Some of every kind: none claims less than a tenth of its error, all together are near, and residuals are of rounding."""

@@ -28,7 +28,7 @@ def columns(graph, t, p):
     return [x.full().ravel() for x in rates(graph)(ca.vertcat(t, z), p)]
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("name", NAMES)
 def test_rates_are_those_of_differences(name):
     scene = load_case(CASES / name).scene

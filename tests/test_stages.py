@@ -84,7 +84,7 @@ def test_plain_stages_are_the_graphs_bits(name):
         assert out.full().tobytes() == graph.instant(t, *graph.motion(t, p), z, p).full().tobytes()
 
 
-@pytest.mark.sampled(17)
+@pytest.mark.sampled(25)
 @pytest.mark.parametrize("later", [1e3, 1e6])
 @pytest.mark.parametrize("rung", DOUBLE, ids=lambda rung: rung.backend)
 @pytest.mark.parametrize("name", NAMES)
@@ -93,7 +93,7 @@ def test_doubles_after_days(name, rung, later):
     assert gap(graph, t, rung, truth) < 1e-13
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("rung", SINGLE, ids=lambda rung: rung.backend)
 @pytest.mark.parametrize("name", [name for name in NAMES if name != "andrews_squeezer"])
 def test_singles_after_hours(name, rung):
@@ -102,7 +102,7 @@ def test_singles_after_hours(name, rung):
     assert gap(graph, t, rung, truth) < max(1e-5, BOUNDS.get(name, 0.0))
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("name", NAMES)
 def test_singles_at_the_start(name):
     graph, t, truth = case(name, 0.0)
