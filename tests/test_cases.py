@@ -31,7 +31,7 @@ def test_against_newton_euler(name):
         assert gap < 1e-12, f"{worst} at {part}"
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", NAMES)
 def test_certificate_is_at_rounding_level(name):
     certificate = evaluate(load_case(CASES / name).scene).certificate

@@ -32,7 +32,7 @@ def test_every_way_gives_the_same_within_its_errors(name):
             assert gap <= 10.0 * float(np.max(found.errors[quantity])) + 1e-13 * size[exact.unit(quantity)], (way, quantity)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("name", SCENES)
 def test_designs_have_the_peaks_of_the_api(name):
     """Of the cam some: a search looks at every one of its points."""

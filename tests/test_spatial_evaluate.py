@@ -27,7 +27,7 @@ def near(value, other, size):
     return abs(value - float(other)) <= ROUNDING * size
 
 
-@pytest.mark.sampled(11)
+@pytest.mark.sampled(17)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, case)))
 def test_all_is_as_the_oracle_has_it_and_certified(case):
     drawn, solution = evaluated(*case)
@@ -150,6 +150,7 @@ def test_angles_that_loops_set_go_on():
     assert solution.motion("B").value[-1] == pytest.approx(solution.motion("B").value[0], abs=1e-9)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("made", "values"),
     [
