@@ -14,7 +14,10 @@ from spatial_mechanisms import FAMILIES
 def locked(drawn: Drawn, name: str, t: float) -> Drawn:
     """The same, with a joint's three turns told from where its second one is at a right angle at an instant."""
     joint, poses = drawn.mechanism.joint(name), drawn.solve(t).poses
-    (R, S), (u, v, w) = (np.asarray(poses[b].R, float) if b in poses else np.eye(3) for b in (joint.parent, joint.child)), joint.frame
+    (R, S), (u, v, w) = (
+        (np.asarray(poses[b].R, float) if b in poses else np.eye(3) for b in (joint.parent, joint.child)),
+        joint.frame,
+    )
     turned = np.outer(u, w) + np.outer(v, v) - np.outer(w, u)
     changed = dataclasses.replace(joint, orientation=turned.T @ R.T @ S)
     joints = [changed if one is joint else one for one in drawn.mechanism.joints]
@@ -52,7 +55,9 @@ def platform(seed: int, t: float, reverse: bool = False) -> Drawn:
         (parent, there), (child, here) = reversed(ends) if reverse else ends
         joints.append(Joint(f"S{k}", "spherical", parent, child, there, here))
         laws["O" + str(k), 0] = Law(0.0, 0.0, rng.uniform(0.1, 0.25), rng.uniform(3, 6), 0.0)
-    one = Mechanism([plate, *bodies], joints, loads=[Load("plate", (0.1, 0, 0), rng.normal(size=3) * 20, (1, 0, 0))], gravity=(0, 0, -9.81))
+    one = Mechanism(
+        [plate, *bodies], joints, loads=[Load("plate", (0.1, 0, 0), rng.normal(size=3) * 20, (1, 0, 0))], gravity=(0, 0, -9.81)
+    )
     return locked(Drawn(one, laws, guess, span=0.4), "S0", t)
 
 

@@ -224,7 +224,9 @@ def _untold(body: Multibody, motions: Collection[Output]) -> dict[Column, Any]:
         turns = [axis.coordinate for axis in ball.joint.axes if axis.kind == "angle"]
         locked = body.turns_of(ball).locked
         outputs = (Output("motion", name, member) for name in turns for member in ("", "rate", "acceleration"))
-        columns |= {Check("open", output): locked for output in outputs if output != Output("motion", turns[1]) and output in motions}
+        columns |= {
+            Check("open", output): locked for output in outputs if output != Output("motion", turns[1]) and output in motions
+        }
     return columns
 
 

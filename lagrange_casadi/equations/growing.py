@@ -233,7 +233,9 @@ def _of_ball(ball: Ball, body: str, axes: Sequence[Axis]) -> list[Coordinate]:
     rates, accelerations = ([ca.SX.sym(f"{axis.coordinate}_{what}") for axis in axes] for what in ("spin", "spin_rate"))
     changes = ball.changes(rates)
     return [
-        Coordinate(axis.coordinate, body, axis, False, ball.axes[3 * k : 3 * k + 3], changes[k], rates[k], accelerations[k], ball=ball)
+        Coordinate(
+            axis.coordinate, body, axis, False, ball.axes[3 * k : 3 * k + 3], changes[k], rates[k], accelerations[k], ball=ball
+        )
         for k, axis in enumerate(axes)
     ]
 

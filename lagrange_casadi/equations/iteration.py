@@ -79,7 +79,9 @@ class Iterated:
         slope = ca.jacobian(gaps, column(self.balls[k].axes if k in self.balls else part for k, part in enumerate(self.parts)))
         if self.balls:
             unit = ca.SX.eye(3)
-            turned = {k: ca.horzcat(*(ca.vertcat(*b.changes(ca.vertsplit(unit[:, i]))) for i in range(3))) for k, b in self.balls.items()}
+            turned = {
+                k: ca.horzcat(*(ca.vertcat(*b.changes(ca.vertsplit(unit[:, i]))) for i in range(3))) for k, b in self.balls.items()
+            }
             slope = self.placed(slope @ ca.diagcat(*(turned.get(k, ca.SX(1)) for k in range(len(self.parts)))))
         correction = -LinearSystem.of(slope).solve(self.placed(gaps))
         relative = ca.mmax(ca.fabs(correction / column(self.scales)))
