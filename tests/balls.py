@@ -1,4 +1,4 @@
-"""Mechanisms in space whose bodies hang on balls, in gimbal lock at an instant: of the three turns that tell a ball, one is lost."""
+"""Mechanisms in space whose bodies hang on balls that are in gimbal lock at an instant."""
 
 from __future__ import annotations
 

@@ -5,8 +5,8 @@ loads needs none of them. Its body has three axes, and the components of its ang
 
     x' = w_z y - w_y z,    y' = w_x z - w_z x,    z' = w_y x - w_x y.
 
-Newton's method finds the axes by a quaternion, which it turns by a small rotation a step and keeps at length one (the Cayley map,
-see E. Hairer, C. Lubich and G. Wanner, *Geometric Numerical Integration*, 2006, IV.8). Gaps hold its direction alone, not its length.
+Newton's method finds the axes by a quaternion, which it turns by a small rotation a step and keeps at length one (E. Hairer,
+C. Lubich and G. Wanner, *Geometric Numerical Integration*, 2006, on Lie groups). Gaps hold its direction alone, not its length.
 """
 
 from __future__ import annotations

@@ -28,8 +28,9 @@ Values = npt.NDArray[Any]
 def drawn(expression: Any, coordinates: Iterable[Coordinate]) -> Values:
     """An expression's entries at random values of all its symbols, (entries, :data:`COUNT`); NaN where it has no value.
 
-    Cosine and sine of a coordinate are those of one angle, and axes of a body are at right angles; every other symbol is a number from a half to one and a half, as
-    lengths, masses and factors are. The root of a negative number is imaginary, so an identity also holds where links do not reach.
+    Cosine and sine of a coordinate are those of one angle, and axes of a body are at right angles; every other symbol is a number
+    from a half to one and a half, as lengths, masses and factors are. The root of a negative number is imaginary, so an identity
+    also holds where links do not reach.
     """
     symbols = ca.symvar(ca.SX(expression))
     generator = np.random.default_rng(0)

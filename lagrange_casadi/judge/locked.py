@@ -16,7 +16,7 @@ _NEAR = 1e-3
 
 
 def without_locked(solution: Solution) -> Solution:
-    """A solution in space that does not measure the turns of such joints, so that their bodies are taken where they are reported."""
+    """A solution in space without such joints' turns among what is measured: their bodies are taken where they are reported."""
     locked = [name for joint in solution.description["joints"].values() for name in _locked(solution, joint)]
     if not locked:
         return solution
