@@ -37,7 +37,8 @@ def assemble(
     The frames and gaps that positions are solved from are built without any mobility: they do not depend on what is wanted.
     Gravity is an acceleration of the ground, upward, in the frames that matter is weighed in (d'Alembert).
     """
-    carried = coordinates_of(mechanism, tree, driven)
+    seen = [measure.axis.coordinate for measure in mechanism.measures.asked if measure.axis is not None]
+    carried = coordinates_of(mechanism, tree, driven, {*seen, *pushed})
     upward = times(-1, mechanism.gravity)
     weighed = Carried(acceleration=upward, own=Frame(acceleration=upward)) if mechanism.space else Frame(acceleration=upward)
     resting, felt = Grown(mechanism, carried, Frame()), Grown(mechanism, carried, weighed)
@@ -69,6 +70,7 @@ def assemble(
     work(felt, (*applied, *held), loops, velocities)
     # Where a joint with three turns closes a loop, its angles are not measured.
     open_ = [joint for joint in tree.closing if joint.turns > 2] + [joint for bar in tree.bars for joint in bar.joints]
+    balls = [c.name for c in resting.coordinates if c.ball is not None]
     outputs = {name: resting.at_state(mechanism.outputs[name].expression) for name in own}
     efforts = {name: ca.SX.sym(f"tau_{name}") for name in pushed}
     for name, effort in efforts.items():
@@ -86,7 +88,11 @@ def assemble(
         applied=applied,
         held=tuple(held),
         efforts=efforts,
-        along={name: resting.along(joint, axis) for name, (joint, axis) in mechanism.coordinates.items() if joint not in open_},
+        along={
+            name: resting.along(joint, axis)
+            for name, (joint, axis) in mechanism.coordinates.items()
+            if joint not in open_ and name not in balls
+        },
         axes=resting.turning,
         own=outputs,
         turned=tuple(resting.turned.values()),

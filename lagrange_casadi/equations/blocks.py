@@ -17,11 +17,14 @@ import numpy as np
 
 from ..declare.density import Array
 from ..errors import MobilityError
+from .balls import axes_of, turn
 from .bars import idle_spins
+from .iteration import place_roughly
 from .legs import solve_leg
 from .loops import ClosedForm, solve_loop
 from .multibody import Coordinate, LoopEquations, Multibody, column
 from .sampling import drawn
+from .substitution import Numbers
 
 _STEPS = 200
 _CLOSED = 1e-11
@@ -142,13 +145,16 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
     found = []
     for k, (loop, row) in enumerate((own, row) for own in loops for row in range(own.gap.numel())):
         least = _ABSENT * max(sizes[k].values(), default=0.0)
-        present = frozenset(c for c, size in sizes[k].items() if size > least)
+        there = {c for c, size in sizes[k].items() if size > least}
+        # The three of a ball share their variables.
+        balls = {c.ball for c in there if c.ball is not None}
+        present = frozenset(c for c in unknown if c in there or c.ball in balls)
         parts = ca.vertcat(*(expressions[k] for expressions in motion))
         written = {symbol.element_hash() for symbol in ca.symvar(parts)}
         absent = [c for c in unknown if c not in present and not written.isdisjoint(c.keys)]
         if absent:
             symbols = column(ca.vertcat(c.variables, c.rate, c.acceleration) for c in absent)
-            parts = ca.substitute(parts, symbols, column([1, 0, 0, 0, 0] if c.kind == "angle" else [0, 0, 0] for c in absent))
+            parts = ca.substitute(parts, symbols, column(ca.DM([*c.resting, 0, 0]) for c in absent))
         found.append(Equation(loop, row, present, *ca.vertsplit(parts)))
     return found
 
@@ -240,6 +246,8 @@ def _in_order(parts: Sequence[Part], loops: Sequence[LoopEquations]) -> list[Par
 
 def _forms(multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coordinate], counted: Any) -> tuple[ClosedForm, ...]:
     """The closed forms that solve a part one after another, where there are any."""
+    if any(c.ball is not None for c in unknown):
+        return ()
     bar, phi = all(equation.loop.bar is not None for equation in rows), column(equation.gap for equation in rows)
     form = solve_loop(phi, unknown, multibody.coordinates, bar=bar)
     forms: tuple[ClosedForm, ...] = (form,) if form is not None else ()
@@ -286,19 +294,31 @@ def _slopes(multibody: Multibody, start: Mapping[str, Any]) -> Array | None:
 
     Drives are free to give way in it, for there may be too many. None where no posture is found.
     """
-    coordinates = multibody.coordinates
+    coordinates, numbers = multibody.coordinates, Numbers()
+    for symbols, values in zip(start["inputs"], start["values"], strict=True):
+        numbers.note(symbols, np.atleast_1d(values).tolist())
+    quaternions = place_roughly(multibody, start["posture"], numbers, {}) if any(c.ball for c in coordinates) else {}
+    turned = {ball: ca.SX.sym("quaternion", 4) for ball in quaternions}
     free = ca.SX.sym("u", len(coordinates))
     symbols = column(c.value for c in coordinates)
-    values = column(c.placed(symbols, free) for c in coordinates)
-    gaps = ca.substitute(column(c.gap for c in multibody.loop_equations), column(c.variables for c in coordinates), values)
-    f = ca.Function("gaps", [free, *start["inputs"]], [gaps, ca.jacobian(gaps, free)])
-    u = np.array([start["posture"].get(c, 0.0) for c in coordinates])
+    values = [c.placed(symbols, free) for c in coordinates if c.ball is None]
+    # Of balls a step is a small rotation of where they are.
+    own = {ball: ca.vertcat(*(free[k] for k, c in enumerate(coordinates) if c.ball is ball)) for ball in turned}
+    values += [axes_of(turn(turned[ball], own[ball])) for ball in turned]
+    variables = [*(c.variables for c in coordinates if c.ball is None), *(ball.axes for ball in turned)]
+    gaps = ca.substitute(column(c.gap for c in multibody.loop_equations), column(variables), column(values))
+    f = ca.Function("gaps", [free, column(turned.values()), *start["inputs"]], [gaps, ca.jacobian(gaps, free)])
+    steps = ca.Function("steps", [free, column(turned.values())], [column(turn(turned[ball], own[ball]) for ball in turned)])
+    u = np.array([0.0 if c.ball else start["posture"].get(c, 0.0) for c in coordinates])
+    resting, q = np.array([c.ball is not None for c in coordinates], bool), np.array([*quaternions.values()]).ravel()
     for _ in range(_STEPS):
-        gap, slope = (x.full() for x in f(u, *start["values"]))
+        gap, slope = (x.full() for x in f(u, q, *start["values"]))
         step = np.linalg.lstsq(slope, -gap.ravel(), rcond=1e-10)[0] if u.size else u
         u = u + step * min(1.0, 0.5 / (np.max(np.abs(step), initial=0.0) + 1e-300))
         if np.max(np.abs(gap), initial=0.0) < _CLOSED:
             return np.asarray(slope)
+        q = steps(u, q).full().ravel()
+        u[resting] = 0.0
     return None
 
 

@@ -130,6 +130,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
         motions |= {output: ca.substitute(ca.SX(motions[output]), column(counted.values()), within) for output in loop_angles}
         columns |= {check: value for check, value in whole.items() if any(check in turns for turns in loop_angles.values())}
         columns |= dict(motions.items())
+        columns |= _untold(body, motions)
     for part in reversed(body.applied):
         if part.source in want.loads:
             columns |= {Output("load", part.source, member): part.members[member] for member in force_members(mechanism.space)}
@@ -214,6 +215,19 @@ def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Colum
         if len(own) == 3 and (forces or not all(turn.driven for turn in own)):
             found[Check("gimbal", joint.name)] = ca.cos(own[1].value) ** 2
     return found
+
+
+def _untold(body: Multibody, motions: Collection[Output]) -> dict[Column, Any]:
+    """Of the turns of balls, by a check that they are ``open``, where they are not told, in gimbal lock; the second's angle is."""
+    columns: dict[Column, Any] = {}
+    for ball in body.balls:
+        turns = [axis.coordinate for axis in ball.joint.axes if axis.kind == "angle"]
+        locked = body.turns_of(ball).locked
+        outputs = (Output("motion", name, member) for name in turns for member in ("", "rate", "acceleration"))
+        columns |= {
+            Check("open", output): locked for output in outputs if output != Output("motion", turns[1]) and output in motions
+        }
+    return columns
 
 
 def _motion_columns(

@@ -57,6 +57,7 @@ def _slope(multibody: Multibody, equation: Equation, length: Any) -> Any:
     """How much an equation changes with all coordinates: angles by a radian or their own size, slides by a length or theirs."""
     total = ca.SX(0)
     for coordinate in multibody.coordinates:
-        unit = ca.SX(1) if coordinate.kind == "angle" else length
-        total += ca.fabs(ca.jacobian(equation.gap_rate, coordinate.rate)) * (unit + ca.fabs(coordinate.value))
+        unit = length if coordinate.kind == "slide" else ca.SX(1)
+        own = 0 if coordinate.kind == "ball" else ca.fabs(coordinate.value)
+        total += ca.fabs(ca.jacobian(equation.gap_rate, coordinate.rate)) * (unit + own)
     return total

@@ -14,6 +14,7 @@ from ..declare.parts import Link, Point, Vector
 from ..geometry.frames import Carried, Frame
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import AXES, ZERO, cross, dot, minus, plus, times
+from .balls import Ball
 from .bars import Bar, bar_frame
 from .joints import orientation, turning_axes
 from .multibody import Coordinate, Turned, column, own_coordinate, place_along, rates_along
@@ -127,8 +128,14 @@ class Grown:
         motion = base.place_of(point), moved.speed, moved.acceleration, rotation, rate, angular, anchor
         if not isinstance(base, Carried):
             return Frame(*motion)
-        own = replace(_own(branch, coordinates, base), anchor=anchor)
-        return Carried(*motion, own, base.turns + sum(coordinate.kind == "angle" for coordinate in coordinates))
+        if free := [coordinate for coordinate in coordinates if coordinate.ball is not None]:
+            speed, acceleration = rotation.resolve(moved.speed), rotation.resolve(moved.acceleration)
+            own = Frame(speed=speed, acceleration=acceleration, rate=_rates(free), angular=_accelerations(free))
+        else:
+            own = _own(branch, coordinates, base)
+        return Carried(
+            *motion, replace(own, anchor=anchor), base.turns + sum(coordinate.kind != "slide" for coordinate in coordinates)
+        )
 
     def _turn(self, branch: Branch, coordinates: Sequence[Coordinate], base: Frame) -> tuple[Rotation, Vector, Vector]:
         """Direction, angular velocity and its change of the body that hangs on a branch."""
@@ -145,6 +152,10 @@ class Grown:
             assert base.rotation.angle is not None
             assert own.angle is not None
             return replace(own, angle=base.rotation.angle + branch.sign * own.angle), plus(rate, spin), plus(angular, change)
+        if free := [c for c in coordinates if c.ball is not None]:
+            assert free[0].ball is not None
+            rotation = free[0].ball.rotation
+            return rotation, rotation.apply(_rates(free)), rotation.apply(_accelerations(free))
         zero = orientation(joint)
         rotation = base.rotation.then(zero.inverse) if branch.reverse else base.rotation
         for coordinate in reversed(turns) if branch.reverse else turns:
@@ -176,8 +187,13 @@ class Grown:
         return times(1 / (1 - slope * slope), minus(own, times(slope, other)))
 
 
-def coordinates_of(mechanism: Mechanism, tree: Tree, driven: Collection[str]) -> dict[str, tuple[Coordinate, ...]]:
-    """The coordinates of every branch, by its joint; none where a branch leaves no freedom."""
+def coordinates_of(
+    mechanism: Mechanism, tree: Tree, driven: Collection[str], told: Collection[str]
+) -> dict[str, tuple[Coordinate, ...]]:
+    """The coordinates of every branch, by its joint; none where a branch leaves no freedom.
+
+    A joint with three turns none of which is ``driven`` or ``told`` is a ball.
+    """
     # Directions that drives alone set, and their rates, by body: of a plane.
     turned: dict[str, tuple[Any, Any]] = {} if mechanism.space else {mechanism.ground.name: (ca.SX(0), ca.SX(0))}
     found: dict[str, tuple[Coordinate, ...]] = {}
@@ -186,11 +202,17 @@ def coordinates_of(mechanism: Mechanism, tree: Tree, driven: Collection[str]) ->
         if joint.holds_direction and near in turned:
             turned[far.name] = (turned[near][0] + branch.sign * joint.angle, turned[near][1])
         own: list[Coordinate] = []
+        turns = [axis.coordinate for axis in joint.axes_of(far) if axis.kind == "angle"]
+        ball = None
+        if len(turns) == 3 and not {*turns} & {*driven, *told}:
+            ball = Ball.of(joint, near, reverse=branch.reverse)
         for axis in joint.axes_of(far):
             name, drives = axis.coordinate, axis.coordinate in driven
             q, rate, acceleration = (ca.SX.sym(f"{name}{end}") for end in ("", "_rate", "_acceleration"))
             if axis.kind == "slide":
                 own.append(Coordinate(name, far.name, axis, drives, q, rate, rate, acceleration))
+                continue
+            if ball is not None:
                 continue
             turn, spin = q, rate
             if drives and near in turned:
@@ -200,8 +222,34 @@ def coordinates_of(mechanism: Mechanism, tree: Tree, driven: Collection[str]) ->
             variables, change = ca.vertcat(c, s, q), ca.vertcat(-s * spin, c * spin, rate)
             relative = mechanism.space or (drives and near not in turned)
             own.append(Coordinate(name, far.name, axis, drives, variables, change, rate, acceleration, turn, relative=relative))
+        if ball is not None:
+            own += _of_ball(ball, far.name, [axis for axis in joint.axes_of(far) if axis.kind == "angle"])
         found[joint.name] = tuple(own)
     return found
+
+
+def _of_ball(ball: Ball, body: str, axes: Sequence[Axis]) -> list[Coordinate]:
+    """The three coordinates of a ball."""
+    rates, accelerations = ([ca.SX.sym(f"{axis.coordinate}_{what}") for axis in axes] for what in ("spin", "spin_rate"))
+    changes = ball.changes(rates)
+    return [
+        Coordinate(
+            axis.coordinate, body, axis, False, ball.axes[3 * k : 3 * k + 3], changes[k], rates[k], accelerations[k], ball=ball
+        )
+        for k, axis in enumerate(axes)
+    ]
+
+
+def _rates(free: Sequence[Coordinate]) -> Vector:
+    """The angular velocity of a ball, on its own axes."""
+    x, y, z = (coordinate.rate for coordinate in free)
+    return x, y, z
+
+
+def _accelerations(free: Sequence[Coordinate]) -> Vector:
+    """Its change."""
+    x, y, z = (coordinate.acceleration for coordinate in free)
+    return x, y, z
 
 
 def _slides(coordinates: Sequence[Coordinate]) -> list[tuple[Vector, Coordinate]]:

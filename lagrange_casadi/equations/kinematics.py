@@ -21,16 +21,15 @@ import numpy.typing as npt
 from ..declare.density import Array
 from ..errors import AssemblyError
 from ..geometry.vectors import AXES
+from .balls import Ball
 from .blocks import Block, solving_order
 from .gaps import left, misfit, reach
+from .iteration import Iterated, NewtonLoop, place_roughly
 from .linear import LinearSystem
 from .loops import ClosedForm
 from .multibody import Coordinate, Multibody, column
 from .postures import Undecided, directions, measured, turns
 from .substitution import Expressions, Numbers
-
-LARGEST_STEP = 0.3
-"""Of an angle [rad], or of a slide over the length of all links: a full step from afar may land on another branch."""
 
 _WAYS = 32
 """How many ways to close loops that are open are tried, where the first does not close the others."""
@@ -40,21 +39,6 @@ _READ = {"angle": 12, "slide": 15}
 
 NEAR = 0.3
 """Sines of the transmission angle below which a loop may pass a dead centre."""
-
-
-@dataclass(frozen=True, eq=False)
-class NewtonLoop:
-    """What is left to iterate: ``step(z, t, d, p) -> (correction, relative size)`` and the guess for the first instant.
-
-    ``names`` are those of its blocks that have no closed form, and are judged by a volume; ``joints`` says what closes all of its
-    blocks, for messages. ``turning`` tells which unknowns are angles that matter up to whole turns only.
-    """
-
-    step: Any
-    guess: tuple[float, ...]
-    turning: tuple[bool, ...]
-    names: tuple[str, ...]
-    joints: str
 
 
 @dataclass(frozen=True)
@@ -135,10 +119,7 @@ class _Solver:
         self.start = start
         driven = [c for c in multibody.coordinates if c.driven]
         self.d, self.dd, self.ddd = (ca.SX.sym(name, len(driven)) for name in ("d", "d_rate", "d_acceleration"))
-        self.iterated: list[Any] = []
-        self.guess: list[float] = []
-        self.scales: list[Any] = []
-        self.turning: list[bool] = []
+        self.iterated = Iterated()
         self.residuals: list[Block] = []
         self.closures: dict[str, tuple[Any, bool]] = {}
         self.dyads: dict[Block, Any] = {}
@@ -265,16 +246,24 @@ class _Solver:
         return found
 
     def _iterate(self, block: Block, guess: Mapping[Coordinate, float]) -> None:
+        balls = list(dict.fromkeys(c.ball for c in block.unknown if c.ball is not None))
+        if balls:
+            told = {c: self.posture.get(c.told_as, 0.0) for c in self.multibody.coordinates}
+            quaternions = place_roughly(self.multibody, told | dict(guess), self.numbers, self.known)
         for coordinate in block.unknown:
-            symbol = ca.SX.sym(f"z_{coordinate.name}")
-            self._know(coordinate, coordinate.placed(coordinate.value, symbol))
-            self.iterated.append(symbol)
-            self.guess.append(guess[coordinate])
-            self.scales.append(1 if coordinate.kind == "angle" else self.length)
+            if coordinate.ball is not None:
+                continue
             counted = any(ca.depends_on(loop.gap, coordinate.value) for loop in self.multibody.loop_equations)
-            self.turning.append(coordinate.kind == "angle" and not counted)
-            if self.turning[-1]:
+            turning = coordinate.kind == "angle" and not counted
+            scale = 1 if coordinate.kind == "angle" else self.length
+            symbol = self.iterated.number(coordinate.name, scale, guess[coordinate], turning=turning)
+            self._know(coordinate, coordinate.placed(coordinate.value, symbol))
+            if turning:
                 self.loose.add(coordinate.name)
+        for ball in balls:
+            axes = self.iterated.ball(ball, quaternions[ball])
+            for number, coordinate in enumerate(c for c in block.unknown if c.ball is ball):
+                self.known[coordinate] = axes[3 * number : 3 * number + 3]
         self.residuals.append(block)
         self._settle()
 
@@ -283,10 +272,11 @@ class _Solver:
         loop = self.newton()
         assert loop is not None
         for _ in range(100):
-            correction, size = loop.step(self.guess, self.start.t, self.start.driven, self.start.parameters)
-            self.guess = [float(z) for z in (ca.DM(self.guess) + correction).full().ravel()]
+            guess = self.iterated.guess
+            correction, size = loop.step(guess, self.start.t, self.start.driven, self.start.parameters)
+            guess[:] = [float(z) for z in (ca.DM(guess) + correction).full().ravel()]
             if float(size) < 1e-9:
-                self.numbers.note(column(self.iterated), self.guess)
+                self.numbers.note(self.iterated.symbols, guess)
                 for coordinate in (c for block in self.residuals for c in block.unknown):
                     self.numbers.note(coordinate.variables, self.numbers.of(self.known[coordinate]))
                 return
@@ -301,10 +291,15 @@ class _Solver:
 
     def finish(self, blocks: tuple[Block, ...]) -> Kinematics:
         """Rates and accelerations, block by block, and the substitution of everything."""
-        body, found = self.multibody, self.found
+        body, newton, found = self.multibody, self.newton(), self.found
+        if body.balls:
+            found = found.with_values(self.iterated.placed)
         for bar in body.tree.bars:
             along = self.numbers.of(column(body.frames[bar.link.name].rotation.x))
             found.note(column(bar.aside), column(AXES[min(range(3), key=lambda k: abs(along[k]))]))
+        for ball in body.balls:
+            found.note(ball.side, ca.SX(self._side(ball)))
+            found.note(ball.axes, self.iterated.placed(ball.axes))
         driven = column(c.rate for c in body.coordinates if c.driven), column(c.acceleration for c in body.coordinates if c.driven)
         found.note(ca.vertcat(*driven), ca.vertcat(self.dd, self.ddd))
         systems: list[LinearSystem] = []
@@ -331,32 +326,36 @@ class _Solver:
             driven=self.d,
             driven_rate=self.dd,
             driven_acceleration=self.ddd,
-            iterated=column(self.iterated),
+            iterated=self.iterated.symbols,
             found=found,
             blocks=blocks,
             systems=tuple(systems),
-            closures={name: closure for name, (closure, _) in self.closures.items()},
+            closures={name: self.iterated.placed(closure) for name, (closure, _) in self.closures.items()},
             gaps=gaps,
             misfits=misfits,
-            newton=self.newton(),
+            newton=newton,
             loose=frozenset(self.loose),
         )
+
+    def _side(self, ball: Ball) -> int:
+        """The sign of the cosine of a ball's second turn with which its turns at the start are nearest to the posture."""
+        told = [self.posture.get(c.name, 0.0) for c in self.multibody.coordinates if c.ball is ball]
+        turns = ca.vertcat(*self.multibody.turns_of(ball).angles)
+        ways = {side: self.numbers.of(ca.substitute(turns, ball.side, side)) for side in (1, -1)}
+        apart = {side: sum(abs(math.remainder(a - b, math.tau)) for a, b in zip(told, ways[side], strict=True)) for side in ways}
+        return -1 if apart[-1] < apart[1] else 1
 
     def newton(self) -> NewtonLoop | None:
         """The iteration of all blocks without a closed form, together."""
         if not self.residuals:
             return None
-        iterated = column(self.iterated)
         gaps = self.found.put_into(column(block.gap for block in self.residuals))
-        correction = -LinearSystem.of(ca.jacobian(gaps, iterated)).solve(gaps)
-        relative = ca.mmax(ca.fabs(correction / column(self.scales)))
-        # Not fmin(1, limit / relative): where the loops are closed, its derivative would be 0 times infinity.
-        bounded = correction * (LARGEST_STEP / ca.fmax(relative, LARGEST_STEP))
-        inputs = [iterated, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
-        step = ca.Function("loops", inputs, [bounded, relative], ["z", "t", "d", "p"], ["correction", "size"], {"cse": True})
+        correction, relative = self.iterated.step(gaps)
+        inputs = [self.iterated.symbols, self.multibody.mechanism.time, self.d, self.multibody.mechanism.symbols]
+        step = ca.Function("loops", inputs, [correction, relative], ["z", "t", "d", "p"], ["correction", "size"], {"cse": True})
         names = tuple(block.name for block in self.residuals if not block.forms)
         joints = ", ".join(block.joints for block in self.residuals)
-        return NewtonLoop(step, tuple(self.guess), tuple(self.turning), names, joints)
+        return NewtonLoop(step, tuple(self.iterated.guess), tuple(self.iterated.turning), names, joints)
 
 
 def where(coordinates: Iterable[tuple[str, str, float]]) -> str:

@@ -102,7 +102,7 @@ def _turned(first: Coordinate, axis: Vector, head: Vector, target: Vector, *, ac
 def _at_rest(expression: Any, coordinates: Sequence[Coordinate]) -> Any:
     """An expression with coordinates that are zero."""
     symbols = column(c.variables for c in coordinates)
-    return ca.substitute(expression, symbols, column([1, 0, 0] if c.kind == "angle" else [0] for c in coordinates))
+    return ca.substitute(expression, symbols, column(ca.DM(c.resting) for c in coordinates))
 
 
 def _held(expressions: Sequence[Any], coordinates: Sequence[Coordinate]) -> list[Coordinate]:

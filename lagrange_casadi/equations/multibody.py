@@ -19,10 +19,12 @@ from ..declare.mechanism import Mechanism
 from ..declare.parts import Point, Row, Vector
 from ..errors import DeclarationError
 from ..geometry.frames import Frame, Velocities
-from ..geometry.vectors import ZERO
+from ..geometry.vectors import AXES, ZERO
+from .balls import Ball
 from .bars import Bar
 from .joints import slide, slide_motion, turned, turning
 from .lagrange import LagrangeSystem
+from .three_turns import ThreeTurns
 from .tree import Tree
 
 
@@ -33,6 +35,9 @@ class Coordinate:
     ``variables`` is what graphs are written in: (cosine, sine, angle) or the slide itself, the value last; ``change`` their rates.
     Cosine and sine are those of ``turn``, an expression in coordinates: the direction of the body, or a turn about the axis
     alone (``relative``).
+
+    Of a ``ball`` there are three coordinates, by the names of its joint's turns: each has one of the body's axes for its variables,
+    and for its rate the angular velocity's component on it, which is the rate of nothing.
     """
 
     name: str
@@ -45,11 +50,19 @@ class Coordinate:
     acceleration: Any
     turn: Any = None
     relative: bool = False
+    ball: Ball | None = None
 
     @property
-    def kind(self) -> Literal["angle", "slide"]:
+    def kind(self) -> Literal["angle", "slide", "ball"]:
         """What it is."""
-        return self.axis.kind
+        return "ball" if self.ball is not None else self.axis.kind
+
+    @property
+    def resting(self) -> tuple[float, ...]:
+        """Its variables where it is zero."""
+        if self.ball is not None:
+            return AXES[[axis.coordinate for axis in self.ball.joint.axes if axis.kind == "angle"].index(self.name)]
+        return (1.0, 0.0, 0.0) if self.kind == "angle" else (0.0,)
 
     @property
     def value(self) -> Any:
@@ -180,6 +193,16 @@ class Multibody:
     velocities: Velocities
 
     @property
+    def balls(self) -> tuple[Ball, ...]:
+        """The balls among the coordinates."""
+        return tuple(dict.fromkeys(c.ball for c in self.coordinates if c.ball is not None))
+
+    def turns_of(self, ball: Ball) -> ThreeTurns:
+        """The three turns of a ball's joint."""
+        parent, child = (self.frames[body.name] for body in ball.joint.bodies)
+        return ThreeTurns(ball.joint, parent, child, ball.side)
+
+    @property
     def variables(self) -> Any:
         """All coordinates' variables, one column."""
         return column(c.variables for c in self.coordinates)
@@ -207,13 +230,15 @@ class Multibody:
         """
         still = ca.SX.sym("still", self.variables.numel() if self.mechanism.space else 0)
         moving = self.variables if self.mechanism.space else still
+        # The axes of a ball change with rates that are those of nothing, and stand still here as all that moves in space does.
+        integrable = [c for c in self.coordinates if c.ball is None]
         system = LagrangeSystem(
             kinetic=self.kinetic,
             force_function=ca.SX(0),
-            coordinates=self.variables,
+            coordinates=column(c.variables for c in integrable),
             rates=self.rates,
             accelerations=self.accelerations,
-            tangent=ca.jacobian(column(c.change for c in self.coordinates), self.rates),
+            tangent=ca.jacobian(column(c.change for c in integrable), self.rates),
             mobility_rates=self.mobility_rates,
             velocities=column(self.velocities.symbols),
             velocity_graphs=ca.substitute(column(self.velocities.graphs), moving, still),
@@ -241,6 +266,9 @@ def place_along(joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates:
     parent, child = (frames[body.name] for body in joint.bodies)
     if axis.kind == "slide":
         return ca.SX(slide(joint, parent, child, axis.direction))
+    if ball := _ball(axis, coordinates):
+        return ThreeTurns(joint, parent, child, ball.side).angles[_number(joint, axis)]
+    _refuse_three(joint)
     return ca.SX(turned(joint, _number(joint, axis), parent, child))
 
 
@@ -253,16 +281,28 @@ def rates_along(joint: Joint, axis: Axis, frames: dict[str, Frame], coordinates:
     if axis.kind == "slide":
         rate, acceleration = slide_motion(joint, parent, child, axis.direction)
         return ca.SX(rate), ca.SX(acceleration)
+    if ball := _ball(axis, coordinates):
+        turns, number = ThreeTurns(joint, parent, child, ball.side), _number(joint, axis)
+        return turns.rates[number], turns.accelerations[number]
+    _refuse_three(joint)
     rate, acceleration = turning(joint, _number(joint, axis), parent, child)
     return ca.SX(rate), ca.SX(acceleration)
 
 
-def _number(joint: Joint, axis: Axis) -> int:
-    """Which of a joint's turns an axis is."""
+def _refuse_three(joint: Joint) -> None:
     if joint.turns > 2:
         raise DeclarationError(
             f"joint '{joint.name}' closes a loop, and the angles of a joint that turns about three axes are not measured there"
         )
+
+
+def _ball(axis: Axis, coordinates: tuple[Coordinate, ...]) -> Ball | None:
+    """The ball one of whose turns an axis is."""
+    return next((c.ball for c in coordinates if c.ball is not None and c.name == axis.coordinate), None)
+
+
+def _number(joint: Joint, axis: Axis) -> int:
+    """Which of a joint's turns an axis is."""
     return [one.coordinate for one in joint.axes if one.kind == "angle"].index(axis.coordinate)
 
 

@@ -99,7 +99,7 @@ class Undecided:
     def note_lacking(self, block: Block, missing: Sequence[Coordinate]) -> None:
         """Note that an iteration needs rough values of coordinates to begin with."""
         names = [c.told_as for c in missing]
-        self.lacking.append((block.joints, [(c.told_as, c.kind == "angle") for c in missing]))
+        self.lacking.append((block.joints, [(c.told_as, c.kind != "slide") for c in missing]))
         self.words.append(f"the loops closed by {block.joints} have no closed form; give a rough posture of {', '.join(names)} too")
 
     def refusal(self, multibody: Multibody) -> PostureError:

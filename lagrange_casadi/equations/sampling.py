@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic
+from .balls import Ball, axes_of
 from .multibody import Coordinate, column
 
 COUNT = 64
@@ -27,16 +28,23 @@ Values = npt.NDArray[Any]
 def drawn(expression: Any, coordinates: Iterable[Coordinate]) -> Values:
     """An expression's entries at random values of all its symbols, (entries, :data:`COUNT`); NaN where it has no value.
 
-    Cosine and sine of a coordinate are those of one angle; every other symbol is a number from a half to one and a half, as
-    lengths, masses and factors are. The root of a negative number is imaginary, so an identity also holds where links do not reach.
+    Cosine and sine of a coordinate are those of one angle, and axes of a body are at right angles; every other symbol is a number
+    from a half to one and a half, as lengths, masses and factors are. The root of a negative number is imaginary, so an identity
+    also holds where links do not reach.
     """
     symbols = ca.symvar(ca.SX(expression))
     generator = np.random.default_rng(0)
     values = {symbol.element_hash(): generator.uniform(0.5, 1.5, COUNT) for symbol in symbols}
+    turned: dict[Ball, list[Any]] = {}
     for coordinate in coordinates:
         if coordinate.kind == "angle" and not values.keys().isdisjoint(coordinate.keys):
             angle = generator.uniform(-np.pi, np.pi, COUNT)
             values |= dict(zip(coordinate.keys, (np.cos(angle), np.sin(angle), angle), strict=False))
+        elif coordinate.ball is not None and not values.keys().isdisjoint(coordinate.keys):
+            if coordinate.ball not in turned:
+                turned[coordinate.ball] = [np.asarray(row) for row in _turned(generator.normal(size=(4, COUNT)))]
+            number = int(np.argmax(coordinate.resting))
+            values |= dict(zip(coordinate.keys, turned[coordinate.ball][3 * number : 3 * number + 3], strict=False))
     rows = [values[symbol.element_hash()] for symbol in symbols]
     function = ca.Function("drawn", [column(symbols)], [ca.densify(ca.vec(ca.SX(expression)))])
     with np.errstate(all="ignore"):
@@ -45,6 +53,12 @@ def drawn(expression: Any, coordinates: Iterable[Coordinate]) -> Values:
         except TypeError:  # no order of imaginary numbers
             found = [np.nan] * function.numel_out(0)
     return np.array([np.broadcast_to(row, COUNT) for row in found]).reshape(-1, COUNT)
+
+
+def _turned(quaternions: Values) -> Values:
+    """The axes that quaternions (4, n) turn to, (9, n)."""
+    symbols = ca.SX.sym("quaternion", 4)
+    return np.asarray(ca.Function("axes", [symbols], [axes_of(symbols)])(quaternions).full())
 
 
 def vanish(expressions: Any, coordinates: Iterable[Coordinate], beside: Any = 1.0) -> bool:

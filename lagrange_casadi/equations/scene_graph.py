@@ -16,7 +16,7 @@ from ..declare.scene import Scene, Wanted
 from ..quantities import Output, law_members, station_members
 from .checks import Check, Column, Kind, column_of
 from .gaps import extent
-from .kinematics import NewtonLoop
+from .iteration import NewtonLoop
 from .mobility import stations_of
 
 

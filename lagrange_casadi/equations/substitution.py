@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import casadi as ca
@@ -24,6 +24,14 @@ class Expressions:
         more = Expressions()
         more._known = dict(self._known)
         more.note(symbols, values)
+        return more
+
+    def with_values(self, of: Callable[[Any], Any]) -> Expressions:
+        """What is known here, with another expression made of each."""
+        more = Expressions()
+        if self._known:
+            symbols, values = (ca.vertcat(*parts) for parts in zip(*self._known.values(), strict=True))
+            more.note(symbols, of(values))
         return more
 
     def put_into(self, expression: Any) -> Any:

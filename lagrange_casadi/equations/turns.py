@@ -22,7 +22,8 @@ import numpy as np
 from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic
 from ..declare.density import Array
 from ..errors import DeclarationError
-from .kinematics import Kinematics, NewtonLoop, Start
+from .iteration import NewtonLoop
+from .kinematics import Kinematics, Start
 from .multibody import Multibody, Turned, column
 
 REACH = math.pi - 0.35

@@ -16,6 +16,7 @@ from ..declare.description import Description, density_of, drives_of, measured_o
 from ..instants.solution import Solution
 from ..quantities import Output, force_members
 from . import digits
+from .locked import without_locked
 from .spatial_placing import Moving, Reported, measured, oriented, relative, resolve, spot, told, turn
 from .spatial_rest import axes_of, gaps_of, place_all
 from .written import Written
@@ -66,6 +67,7 @@ def residuals(solution: Solution, turned: Solution, equations: Sequence[Written]
         return {}
     if any(Output("pose", name, "z") not in solution.outputs for name in description["bodies"]):
         return {}
+    solution, turned = without_locked(solution), without_locked(turned)
     reported = Reported(solution, turned)
     bodies = place_all(reported, equations or ())
     if len(bodies) < len(description["bodies"]) + 1:

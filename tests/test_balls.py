@@ -1,0 +1,127 @@
+"""Joints with three turns that loops set: no posture of theirs is special, in every way of evaluating them."""
+
+import dataclasses
+import functools
+
+import casadi as ca
+import numpy as np
+import pytest
+from balls import platform, suspension
+from spatial_bodies import GROUND, Rod
+from spatial_bridge import coordinate, declared, plain, postures
+from spatial_oracle import REACTION, SECTION
+
+from lagrange_casadi import evaluate
+from lagrange_casadi.equations.balls import axes_of, quaternion_of
+from lagrange_casadi.quantities import Output
+
+LOCK = 0.2
+MADE = {
+    "free": lambda: suspension(0, LOCK),
+    "on a leg": lambda: platform(0, LOCK),
+    "under a leg": lambda: platform(1, LOCK, reverse=True),
+}
+AROUND = (0.1, 0.3, 9)
+"""The fifth instant is that of the lock."""
+
+
+@functools.cache
+def made(name):
+    """What was drawn, the scene of it, and what is true at the instants."""
+    drawn = plain(MADE[name]())
+    scene = dataclasses.replace(declared(drawn, AROUND[0]), t=AROUND, xi=(0, 1, 3))
+    return drawn, scene, {k: drawn.solve(float(t)) for k, t in enumerate(np.linspace(*AROUND)) if k in (0, 4, 5)}
+
+
+def turns_of(solution):
+    """The turns of the ball."""
+    return [output.part for output in solution.outputs if output.group == "motion" and "turn_" in output.part and not output.member]
+
+
+def compare(drawn, solution, true, rounding=1e-12):
+    """All forces, and where bodies are, beside the oracle's."""
+    force = max(float(np.abs(x[:3].astype(float)).max()) for one in true.values() for x in one.reactions.values())
+    moment = force * drawn.solve(0.0).size
+    sizes = [force] * 3 + [moment] * 3
+    for k, one in true.items():
+        for (joint, number), effort in one.efforts.items():
+            own = solution.effort(coordinate(drawn.mechanism.joint(joint), number))[k]
+            assert abs(own - float(effort)) < rounding * moment, joint
+        for joint, reaction in one.reactions.items():
+            for member, value, size in zip(REACTION, reaction, sizes, strict=True):
+                own = solution.outputs.get(Output("reaction", joint, member), np.zeros_like(solution.t))[k]
+                assert abs(own - float(value)) < rounding * size, (joint, member)
+        for body, pose in one.poses.items():
+            if body != GROUND and body not in solution.description["bars"]:
+                assert np.allclose(solution.pose(body).axes[k], np.array(pose.R, float).T, rtol=0, atol=rounding), body
+        for rod in (
+            () if not solution.links_with_sections else (body.name for body in drawn.mechanism.bodies if isinstance(body, Rod))
+        ):
+            for i, xi in enumerate(solution.xi):
+                told = one.sections[rod].at(float(xi)).astype(float)
+                own = np.array([getattr(solution.section(rod), name)[k, i] for name in SECTION])
+                if rod in solution.description["bars"]:
+                    # A bar's cross-section has axes of its own.
+                    told, own = (np.array([x[0], np.hypot(*x[1:3]), 0, x[3], np.hypot(*x[4:]), 0]) for x in (told, own))
+                assert (np.abs(own - told) < rounding * np.array(sizes)).all(), rod
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("name", MADE)
+def test_in_gimbal_lock_all_is_as_the_oracle_has_it(name):
+    drawn, scene, true = made(name)
+    solution = evaluate(scene, backend="vm")
+    assert solution.certified
+    compare(drawn, solution, true)
+    turns = turns_of(solution)
+    assert len(turns) == 3
+    members = [f"motion:{turn}{end}" for turn in turns for end in ("", "_rate", "_acceleration")]
+    assert set(solution.undetermined) == set(members) - {f"motion:{turns[1]}"}
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("name", MADE)
+def test_beside_gimbal_lock_three_turns_are_told(name):
+    drawn, scene, _ = made(name)
+    beside = evaluate(scene, t=(0.1, 0.3, 8), backend="vm")
+    assert beside.certified
+    assert not beside.undetermined
+    for k in (0, 3, 4, 7):
+        places = postures(drawn, float(beside.t[k]))
+        for turn in turns_of(beside):
+            gap = beside.motion(turn).value[k] - places[turn]
+            assert abs(gap - 2 * np.pi * round(gap / (2 * np.pi))) < 1e-11, turn
+    step = 1e-4
+    near = evaluate(scene, t=(0.12 - step, 0.12 + step, 3), backend="vm")
+    for turn in turns_of(near):
+        told = near.motion(turn)
+        assert told.rate[1] == pytest.approx((told.value[2] - told.value[0]) / (2 * step), rel=1e-4, abs=1e-5)
+        assert told.acceleration[1] == pytest.approx((told.rate[2] - told.rate[0]) / (2 * step), rel=1e-4, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("options", "rounding"),
+    [
+        ({"backend": "c"}, 1e-12),
+        pytest.param({"backend": "lanes"}, 1e-12, marks=pytest.mark.long),
+        pytest.param({"backend": "vm", "newton": 4}, 1e-9, marks=pytest.mark.long),
+        pytest.param({"precision": "single"}, 2e-4, marks=pytest.mark.long),
+    ],
+)
+def test_every_way_to_evaluate_passes_gimbal_lock(options, rounding):
+    drawn, scene, true = made("on a leg")
+    wanted = None if "precision" not in options else ["effort", "reaction", "motion"]
+    solution = evaluate(scene, wanted=wanted, **options)
+    compare(drawn, solution, true, rounding)
+
+
+def test_a_quaternion_of_any_axes_turns_to_them():
+    rng, q = np.random.default_rng(0), ca.SX.sym("q", 4)
+    turned = ca.Function("axes", [q], [axes_of(q)])
+    halves = [np.eye(4)[k] + 1e-9 * rng.normal(size=4) for k in range(4)]
+    for told in [*halves, *rng.normal(size=(100, 4))]:
+        axes = turned(told).full().reshape(3, 3)
+        again = np.array(quaternion_of(axes))
+        assert np.allclose(axes @ axes.T, np.eye(3), rtol=0, atol=1e-15)
+        assert np.allclose(turned(again).full().reshape(3, 3), axes, rtol=0, atol=1e-15)
+        assert np.linalg.norm(again) == pytest.approx(1.0, abs=1e-15)
