@@ -42,6 +42,30 @@ def test_compiled_and_not_agree_to_the_last_bit(n, k, monkeypatch):
                 assert out.tobytes() == plain.tobytes()
 
 
+@pytest.mark.parametrize("many", [0, 2])
+@pytest.mark.parametrize("planes", [1, 2])
+@pytest.mark.parametrize("terms", [1, 3, 4, 5, 9])
+def test_sums_of_any_length_agree_to_the_last_bit(terms, planes, many, monkeypatch):
+    """A link with loads along it has more terms than others: a resultant of five once lost its last one in compiled code."""
+    n, k = 23, 37
+    columns, rows = [*random.normal(size=(planes * terms, n))], random.normal(size=(planes * terms, k))
+    loads = [tuple(random.uniform(0, 1, size=(3, n))) for _ in range(planes * many)]
+    u, found = np.linspace(0, 1, k), []
+    for worth in (0, 10**12):
+        monkeypatch.setattr(grids, "WORTH_COMPILING", worth)
+        found.append(np.full((n, k), np.nan))
+        grids.fill(columns, rows, loads, u, found[-1], planes=planes)
+    assert found[0].tobytes() == found[1].tobytes()
+    sums = np.zeros((planes, n, k))
+    for plane in range(planes):
+        for m in range(plane * terms, (plane + 1) * terms):
+            sums[plane] += columns[m][:, None] * rows[m]
+        for station, constant, slope in loads[plane * many : (plane + 1) * many]:
+            sums[plane] += np.where(u < station[:, None], constant[:, None] + slope[:, None] * (station[:, None] - u), 0.0)
+    expected = np.hypot(*sums) if planes == 2 else sums[0]
+    np.testing.assert_allclose(found[0], expected, rtol=0, atol=1e-13)
+
+
 def test_a_grid_is_what_the_law_gives_at_each_point():
     law, xi = loaded_law(50), np.linspace(0, 1, 41)
     for force in FORCES:

@@ -80,7 +80,7 @@ static void whole(long long n, const double* const* columns, const double* const
   long long j;
   int m, s, plane;
   for (m = 0; m < planes*terms; ++m) c[m] = columns[m][i];
-  if (planes == 2 && !loads && terms > 1) {
+  if (planes == 2 && !loads && (terms == 3 || terms == 4)) {
     combine_sizes(n, terms, c, along, row);
     return;
   }
