@@ -42,6 +42,33 @@ def test_compiled_and_not_agree_to_the_last_bit(n, k, monkeypatch):
                 assert out.tobytes() == plain.tobytes()
 
 
+@pytest.mark.parametrize("many", [0, 2])
+@pytest.mark.parametrize("planes", [1, 2])
+@pytest.mark.parametrize("terms", [1, 3, 4, 5, 9])
+def test_sums_of_any_length_agree_to_the_last_bit(terms, planes, many, monkeypatch):
+    """A link with loads along it has more terms than others: a resultant of five once lost its last one in compiled code."""
+    n, k = 97, 37
+    columns, rows = [*random.normal(size=(planes * terms, n))], random.normal(size=(terms, k))
+    loads = [tuple(random.uniform(0, 1, size=(3, n))) for _ in range(planes * many)]
+    u, found = np.linspace(0, 1, k), []
+    for worth, share, streaming in ((10**12, 1, 0), (0, 10**9, 10**12), (0, 1000, 10**12), (0, 10**9, 0), (0, 1000, 0)):
+        monkeypatch.setattr(grids, "WORTH_COMPILING", worth)
+        monkeypatch.setattr(grids, "_SHARE", share)
+        monkeypatch.setattr(grids, "_STREAMING", streaming)
+        found.append(np.full((n + 1, k), np.nan))
+        grids.fill(columns, rows, loads, u, found[-1][:n], threads=3, planes=planes)
+        assert np.isnan(found[-1][n]).all()
+    assert len({grid.tobytes() for grid in found}) == 1
+    sums = np.zeros((planes, n, k))
+    for plane in range(planes):
+        for m in range(plane * terms, (plane + 1) * terms):
+            sums[plane] += columns[m][:, None] * rows[m - plane * terms]
+        for station, constant, slope in loads[plane * many : (plane + 1) * many]:
+            sums[plane] += np.where(u < station[:, None], constant[:, None] + slope[:, None] * (station[:, None] - u), 0.0)
+    expected = np.hypot(*sums) if planes == 2 else sums[0]
+    np.testing.assert_allclose(found[0][:n], expected, rtol=0, atol=1e-13)
+
+
 def test_a_grid_is_what_the_law_gives_at_each_point():
     law, xi = loaded_law(50), np.linspace(0, 1, 41)
     for force in FORCES:

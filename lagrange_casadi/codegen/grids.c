@@ -1,64 +1,55 @@
 /* Section forces over instants and ratios, row by row: a combination of a few functions along the link. */
 #include <math.h>
 #include <stdint.h>
-#include <string.h>
-#ifdef __SSE2__
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#define WIDE 8
+#define PAST(out, from) _mm512_stream_pd(out, _mm512_loadu_pd(from))
+#elif defined(__AVX__)
+#include <immintrin.h>
+#define WIDE 4
+#define PAST(out, from) _mm256_stream_pd(out, _mm256_loadu_pd(from))
+#elif defined(__SSE2__)
 #include <emmintrin.h>
+#define WIDE 2
+#define PAST(out, from) _mm_stream_pd(out, _mm_loadu_pd(from))
 #endif
 
-#define TILE 2048
+/* So many values stay in the nearest cache beside the functions that they are combined of. */
+#define TILE 512
 
 /* Put a tile into memory without reading first what it replaces, nor turning other data out of the cache. */
 static void stream(double* out, const double* tile, long long n) {
   long long i = 0;
-#ifdef __SSE2__
-  if (((uintptr_t) out & 15) != 0 && n > 0) {
-    out[0] = tile[0];
-    i = 1;
-  }
-  if (((uintptr_t) (out + i) & 15) == 0) {
-    for (; i + 2 <= n; i += 2) _mm_stream_pd(out + i, _mm_loadu_pd(tile + i));
-  }
+#ifdef PAST
+  for (; i < n && ((uintptr_t) (out + i) & (WIDE*sizeof(double) - 1)) != 0; ++i) out[i] = tile[i];
+  for (; i + WIDE <= n; i += WIDE) PAST(out + i, tile + i);
 #endif
-  memcpy(out + i, tile + i, (size_t) (n - i)*sizeof(double));
+  for (; i < n; ++i) out[i] = tile[i];
 }
 
-/* One row: sum of c[m]*basis[m][j] over one, three, four or more terms, in this order. */
-static void combine(long long n, int terms, const double* c, const double* const* basis, double* restrict row) {
-  const double c0 = c[0], *b0 = basis[0];
+/* Of rows of n values each: the sum of columns[m][i]*basis[m][j] over terms, in this order, or the size of two planes' sums. Compiled
+   for numbers of planes and terms that are known, so that a row is written once: roots, or memory, are then all that takes time. A
+   row that another one follows goes on to a whole number of LINEs, as functions do: what is too much there that row replaces. */
+static inline __attribute__((always_inline)) void combine(long long many, long long n, const int planes, const int terms,
+                                                          const double* const* columns, long long i, const double* const* basis,
+                                                          double* restrict row) {
+  const long long end = i + many;
   long long j;
   int m;
-  if (terms == 1) {
-    for (j = 0; j < n; ++j) row[j] = c0*b0[j];
-  } else if (terms == 3) {
-    const double c1 = c[1], c2 = c[2], *b1 = basis[1], *b2 = basis[2];
-    for (j = 0; j < n; ++j) row[j] = (c0*b0[j] + c1*b1[j]) + c2*b2[j];
-  } else {
-    const double c1 = c[1], c2 = c[2], c3 = c[3], *b1 = basis[1], *b2 = basis[2], *b3 = basis[3];
-    for (j = 0; j < n; ++j) row[j] = ((c0*b0[j] + c1*b1[j]) + c2*b2[j]) + c3*b3[j];
-  }
-  for (m = 4; m < terms; ++m) {
-    const double cm = c[m], *bm = basis[m];
-    for (j = 0; j < n; ++j) row[j] = row[j] + cm*bm[j];
-  }
-}
-
-/* The size of two planes' sums of three or four terms each, in one pass: a row is then written once, as fast as memory takes it. */
-static void combine_sizes(long long n, int terms, const double* c, const double* const* basis, double* restrict row) {
-  const double *const d = c + terms, *const *beside = basis + terms;
-  const double c0 = c[0], c1 = c[1], c2 = c[2], *b0 = basis[0], *b1 = basis[1], *b2 = basis[2];
-  const double d0 = d[0], d1 = d[1], d2 = d[2], *e0 = beside[0], *e1 = beside[1], *e2 = beside[2];
-  long long j;
-  if (terms == 3) {
-    for (j = 0; j < n; ++j) {
-      const double x = (c0*b0[j] + c1*b1[j]) + c2*b2[j], y = (d0*e0[j] + d1*e1[j]) + d2*e2[j];
-      row[j] = sqrt(x*x + y*y);
-    }
-  } else {
-    const double c3 = c[3], d3 = d[3], *b3 = basis[3], *e3 = beside[3];
-    for (j = 0; j < n; ++j) {
-      const double x = ((c0*b0[j] + c1*b1[j]) + c2*b2[j]) + c3*b3[j], y = ((d0*e0[j] + d1*e1[j]) + d2*e2[j]) + d3*e3[j];
-      row[j] = sqrt(x*x + y*y);
+  for (; i < end; ++i, row += n) {
+    const long long size = n >= LINE && i + 1 < end ? (n + LINE - 1)/LINE*LINE : n;
+    double c[8];
+    for (m = 0; m < planes*terms; ++m) c[m] = columns[m][i];
+    for (j = 0; j < size; ++j) {
+      double x = c[0]*basis[0][j], y;
+      for (m = 1; m < terms; ++m) x = x + c[m]*basis[m][j];
+      if (planes == 2) {
+        y = c[terms]*basis[0][j];
+        for (m = 1; m < terms; ++m) y = y + c[terms + m]*basis[m][j];
+        x = sqrt(x*x + y*y);
+      }
+      row[j] = x;
     }
   }
 }
@@ -73,69 +64,78 @@ static void act(long long n, double station, double constant, double slope, cons
   }
 }
 
-/* A row at an instant i: in one plane what acts there, and with two planes the size of both; other is room for the second one's. */
-static void whole(long long n, const double* const* columns, const double* const* along, int planes, int terms,
-                  const double* const* acting, int loads, long long i, const double* u, double* restrict row, double* restrict other) {
-  double c[MOST];
+/* Rows of one plane, of one, three, four or more terms, with what acts there. */
+static void add_up(long long many, long long n, int terms, const double* const* columns, const double* const* basis,
+                   const double* const* acting, int loads, long long i, const double* u, double* restrict row) {
+  const long long end = i + many;
   long long j;
-  int m, s, plane;
-  for (m = 0; m < planes*terms; ++m) c[m] = columns[m][i];
-  if (planes == 2 && !loads && terms > 1) {
-    combine_sizes(n, terms, c, along, row);
-    return;
-  }
-  for (plane = 0; plane < planes; ++plane) {
-    double* sum = plane ? other : row;
-    combine(n, terms, c + plane*terms, along + plane*terms, sum);
-    for (s = plane*loads; s < (plane + 1)*loads; ++s) {
-      const double* const* load = acting + 3*s;
-      act(n, load[0][i], load[1][i], load[2][i], u, sum);
+  int m, s;
+  if (terms == 1) combine(many, n, 1, 1, columns, i, basis, row);
+  else if (terms == 3) combine(many, n, 1, 3, columns, i, basis, row);
+  else combine(many, n, 1, 4, columns, i, basis, row);
+  for (; i < end; ++i, row += n) {
+    for (m = 4; m < terms; ++m) {
+      const double c = columns[m][i], *b = basis[m];
+      for (j = 0; j < n; ++j) row[j] = row[j] + c*b[j];
     }
-  }
-  if (planes == 2) {
-    for (j = 0; j < n; ++j) row[j] = sqrt(row[j]*row[j] + other[j]*other[j]);
+    for (s = 0; s < loads; ++s) act(n, acting[3*s][i], acting[3*s + 1][i], acting[3*s + 2][i], u, row);
   }
 }
 
-/* out[i*k + j], n rows of k ratios u. columns[m][i] are the coefficients of basis[m*k + j], and acting[3*s], [3*s + 1], [3*s + 2] the
-   station, the constant and the slope of load s. With two planes there are so many terms and loads of each, one plane's after the
-   other's, and out is the size of both. */
+/* Rows from instant i on: of one plane, or the size of two; other is room for the second one's. */
+static void whole(long long many, long long n, const double* const* columns, const double* const* basis, int planes, int terms,
+                  const double* const* acting, int loads, long long i, const double* u, double* restrict row, double* restrict other) {
+  long long j;
+  if (planes == 2 && !loads && terms == 3) {
+    combine(many, n, 2, 3, columns, i, basis, row);
+  } else if (planes == 2 && !loads && terms == 4) {
+    combine(many, n, 2, 4, columns, i, basis, row);
+  } else {
+    add_up(many, n, terms, columns, basis, acting, loads, i, u, row);
+    if (planes == 2) {
+      add_up(many, n, terms, columns + terms, basis, acting + 3*loads, loads, i, u, other);
+      for (j = 0; j < many*n; ++j) row[j] = sqrt(row[j]*row[j] + other[j]*other[j]);
+    }
+  }
+}
+
+/* out[i*k + j], n rows of k ratios u. columns[m][i] are the coefficients of basis[m*stride + j], and acting[3*s], [3*s + 1] and
+   [3*s + 2] the station, the constant and the slope of load s. With two planes there are so many coefficients and loads of each, one
+   plane's after the other's, and out is the size of both. */
 __attribute__((visibility("default")))
 void lagrange_casadi_grid(const lagrange_casadi_grid_call* call) {
   const long long n = call->n, k = call->k;
-  const int planes = call->planes, terms = call->terms, loads = call->loads, streams = call->streams;
-  const double *const *columns = call->columns, *const *acting = call->acting, *basis = call->basis, *u = call->u;
+  const int planes = call->planes, terms = call->terms, loads = call->loads;
+  const double *const *columns = call->columns, *const *acting = call->acting, *u = call->u;
   double* out = call->out;
   double tile[TILE], other[TILE];
   const double* along[MOST];
   const long long width = k < TILE ? k : TILE, rows = TILE/width;
-  long long first, start, i;
+  long long first, start;
   int m;
-  for (first = 0; first < n; first += rows) {
-    const long long many = n - first < rows ? n - first : rows;
-    for (start = 0; start < k; start += width) {
-      const long long size = k - start < width ? k - start : width;
-      double* rows_here = streams ? tile : out + first*k + start;
-      for (m = 0; m < planes*terms; ++m) along[m] = basis + m*k + start;
-      for (i = 0; i < many; ++i) {
-        whole(size, columns, along, planes, terms, acting, loads, first + i, u + start, rows_here + i*size, other);
-      }
-      if (streams) stream(out + first*k + start, tile, many*size);
+  for (start = 0; start < k; start += width) {
+    const long long size = k - start < width ? k - start : width;
+    for (m = 0; m < terms; ++m) along[m] = call->basis + m*call->stride + start;
+    for (first = 0; first < n; first += rows) {
+      const long long many = n - first < rows ? n - first : rows;
+      double* here = call->streams ? tile : out + first*k + start;
+      whole(many, size, columns, along, planes, terms, acting, loads, first, u + start, here, other);
+      if (call->streams) stream(out + first*k + start, tile, many*size);
     }
   }
-#ifdef __SSE2__
-  if (streams) _mm_sfence();
+#ifdef PAST
+  if (call->streams) _mm_sfence();
 #endif
 }
 
 /* out[d*k + j], of so many designs: over n instants, what is largest in size at each of k ratios u, with its sign; of sizes that are
-   the same, the positive one. As above, but columns[m][d*n + i] are the coefficients of basis[(m*designs + d)*k + j], and loads have
+   the same, the positive one. As above, but columns[m][d*n + i] are the coefficients of basis[m*stride + d*k + j], and loads have
    a value for every d*n + i. All of them must be finite. */
 __attribute__((visibility("default")))
 void lagrange_casadi_largest(const lagrange_casadi_largest_call* call) {
   const long long designs = call->designs, n = call->n, k = call->k;
   const int planes = call->planes, terms = call->terms, loads = call->loads;
-  const double *const *columns = call->columns, *const *acting = call->acting, *basis = call->basis, *u = call->u;
+  const double *const *columns = call->columns, *const *acting = call->acting, *u = call->u;
   double* out = call->out;
   double row[TILE], other[TILE], high[TILE], low[TILE];
   const double* along[MOST];
@@ -144,13 +144,13 @@ void lagrange_casadi_largest(const lagrange_casadi_largest_call* call) {
   for (d = 0; d < designs; ++d) {
     for (start = 0; start < k; start += TILE) {
       const long long size = k - start < TILE ? k - start : TILE;
-      for (m = 0; m < planes*terms; ++m) along[m] = basis + (m*designs + d)*k + start;
+      for (m = 0; m < terms; ++m) along[m] = call->basis + m*call->stride + d*k + start;
       for (j = 0; j < size; ++j) {
         high[j] = -HUGE_VAL;
         low[j] = HUGE_VAL;
       }
       for (i = d*n; i < (d + 1)*n; ++i) {
-        whole(size, columns, along, planes, terms, acting, loads, i, u + start, row, other);
+        whole(1, size, columns, along, planes, terms, acting, loads, i, u + start, row, other);
         for (j = 0; j < size; ++j) {
           high[j] = row[j] > high[j] ? row[j] : high[j];
           low[j] = row[j] < low[j] ? row[j] : low[j];

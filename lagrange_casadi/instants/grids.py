@@ -33,8 +33,10 @@ _STREAMING = 1 << 24
 _MOST = 64
 """Columns that compiled code takes."""
 
+_LINE = 8
+"""Doubles in a cache line, and in the longest of vectors."""
+
 _BLOCK = 1 << 14
-_LINE = 64
 _SHARE = 1 << 21
 _OPTIONS = ("-O3", "-march=native")
 
@@ -42,6 +44,7 @@ _SUM = {
     "planes": "int",
     "terms": "int",
     "columns": "const double* const*",
+    "stride": "long long",
     "basis": "const double*",
     "loads": "int",
     "acting": "const double* const*",
@@ -61,9 +64,9 @@ def fill(
 ) -> None:
     """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what acts at stations.
 
-    ``columns`` and the rows of ``basis`` are one, three, four or more; ``u`` are the ratios. With two ``planes`` they are as many
-    for each, one plane's after the other's, as loads are, and ``out`` is the size of both sums. Raises :class:`DeclarationError`
-    for an ``out`` of another shape.
+    The rows of ``basis`` are one, three, four or more, and ``columns`` as many; ``u`` are the ratios. With two ``planes`` there are
+    as many columns for each, one plane's after the other's, as loads are, and ``out`` is the size of both sums. Raises
+    :class:`DeclarationError` for an ``out`` of another shape.
     """
     if out.shape != (columns[0].size, u.size):
         raise DeclarationError(f"out: expected an array of shape {(columns[0].size, u.size)}, got {out.shape}")
@@ -72,8 +75,10 @@ def fill(
     if library is None:
         _fill_in_blocks(columns, basis, loads, u, out, planes)
         return
-    flat, functions, ratios = _flat(columns, basis, loads, u)
     n, k = out.shape
+    functions = empty("the functions along a link", (len(basis), -(-k // _LINE) * _LINE))
+    functions[:, :k], functions[:, k:] = basis, 0.0
+    flat, ratios = _flat(columns, loads), np.ascontiguousarray(u, dtype=np.float64)
     shares = max(1, min(threads, out.size // _SHARE, n))
     size = -(-n // shares)
 
@@ -85,8 +90,10 @@ def fill(
     if shares == 1:
         run(0)
         return
-    with ThreadPoolExecutor(shares) as pool:
-        list(pool.map(run, range(0, n, size)))
+    with ThreadPoolExecutor(shares - 1) as pool:
+        others = pool.map(run, range(size, n, size))
+        run(0)
+        list(others)
 
 
 def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, planes: int = 1) -> Array:
@@ -108,7 +115,8 @@ def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
             out[i] = np.where(high >= -low, high, low)
         out[~finite] = np.nan
         return out
-    flat, functions, ratios = _flat(columns, basis, loads, u)
+    flat, ratios = _flat(columns, loads), np.ascontiguousarray(u, dtype=np.float64)
+    functions = np.ascontiguousarray(basis, dtype=np.float64).reshape(len(basis), -1)
     rows = (ctypes.c_void_p * len(flat))(*(array.ctypes.data for array in flat))
     whole = _sum(len(columns), planes, rows, functions, ratios) | {"out": out.ctypes.data}
     library.lagrange_casadi_largest(LARGEST.made(designs=n, n=t, k=u.size, **whole))
@@ -123,24 +131,25 @@ def empty(what: str, shape: tuple[int, ...], dtype: Any = np.float64) -> Array:
     """
     require(what, shape)
     count = math.prod(shape)
-    room = np.empty(count + _LINE // np.dtype(dtype).itemsize, dtype)
-    first = -room.ctypes.data // room.itemsize % (_LINE // room.itemsize)
+    line = 8 * _LINE // np.dtype(dtype).itemsize
+    room = np.empty(count + line, dtype)
+    first = -room.ctypes.data // room.itemsize % line
     return room[first : first + count].reshape(shape)
 
 
-def _flat(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array) -> tuple[list[Array], Array, Array]:
-    """Columns and loads one after another, basis and ratios, as C takes them."""
-    rows = [np.ascontiguousarray(row, dtype=np.float64) for row in (*columns, *(row for load in loads for row in load))]
-    return rows, np.ascontiguousarray(basis, dtype=np.float64), np.ascontiguousarray(u, dtype=np.float64)
+def _flat(columns: Sequence[Array], loads: Sequence[Load]) -> list[Array]:
+    """Columns and loads one after another, as C takes them."""
+    return [np.ascontiguousarray(row, dtype=np.float64) for row in (*columns, *(row for load in loads for row in load))]
 
 
 def _sum(columns: int, planes: int, rows: Any, functions: Array, ratios: Array) -> dict[str, int]:
-    """What a call takes of :func:`_flat`; ``rows`` are the addresses of the columns, so many, and of the loads' parts."""
+    """What a call takes: ``rows`` are the addresses of the columns, so many, and of the loads' parts; functions have a row each."""
     first = ctypes.addressof(rows)
     return {
         "planes": planes,
         "terms": columns // planes,
         "columns": first,
+        "stride": functions.shape[1],
         "basis": functions.ctypes.data,
         "loads": (len(rows) - columns) // (3 * planes),
         "acting": first + columns * ctypes.sizeof(ctypes.c_void_p),
@@ -156,10 +165,8 @@ def _fill_in_blocks(columns: Sequence[Array], basis: Array, loads: Sequence[Load
         rows = out[block]
         for plane in range(planes):
             values = np.empty(rows.shape) if plane else rows
-            here, there = slice(plane * terms, (plane + 1) * terms), slice(plane * many, (plane + 1) * many)
-            _sum_up(
-                [column[block] for column in columns[here]], basis[here], [_cut(load, block) for load in loads[there]], u, values
-            )
+            own = [column[block] for column in columns[plane * terms : (plane + 1) * terms]]
+            _sum_up(own, basis, [_cut(load, block) for load in loads[plane * many : (plane + 1) * many]], u, values)
             if plane:
                 np.sqrt(rows * rows + values * values, out=rows)
 
@@ -183,7 +190,7 @@ def _sum_up(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
 def _compiled() -> Any | None:
     """The C functions, or None where there is no compiler that takes them."""
     functions = resources.files("lagrange_casadi.codegen").joinpath("grids.c").read_text()
-    source = f"#define MOST {_MOST}\n" + GRID.text() + LARGEST.text() + functions
+    source = f"#define MOST {_MOST}\n#define LINE {_LINE}\n" + GRID.text() + LARGEST.text() + functions
     try:
         compiler = find_compiler()
         if compiler is None:

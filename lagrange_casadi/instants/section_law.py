@@ -290,12 +290,11 @@ class SectionLaw:
         return [np.clip(mark, 0.0, 1.0) for mark in marks]
 
     def _planes(self, force: str, basis: Basis) -> tuple[list[Array], Array, list[grids.Load], int]:
-        """Columns, functions along the link and loads of a force, or of all that it is the size of, one after another."""
+        """Functions along the link, and columns and loads of a force, or of all that it is the size of, one after another."""
         parts = self._parts(force)
         terms = [self._terms(part, basis) for part in parts]
-        rows = terms[0][1] if len(parts) == 1 else np.concatenate([rows for _, rows in terms])
         acting = [self._acting(part, load) for part in parts for load in self.loads]
-        return [column for columns, _ in terms for column in columns], rows, acting, len(parts)
+        return [column for columns, _ in terms for column in columns], terms[0][1], acting, len(parts)
 
     def _terms(self, force: str, basis: Basis) -> tuple[list[Array], Array]:
         terms = self.table.sections[force]
@@ -304,7 +303,8 @@ class SectionLaw:
             columns += [column for spread in self.spreads for column in spread.terms[terms.spread]]
         if not terms.arm:
             return columns, basis.force[: len(columns)]
-        return columns, basis.bending if terms.arm > 0 else np.concatenate([basis.bending[:1], -basis.bending[1:]])
+        # The two planes of bending are of the same functions along the link.
+        return columns if terms.arm > 0 else [*columns[:1], *(-column for column in columns[1:])], basis.bending
 
     def _smooth(self, force: str, u: Array) -> Array:
         terms = self.table.sections[force]
