@@ -28,6 +28,7 @@ ORDER = (
     "instants",
     "judge",
     "evaluate",
+    "sensitivity",
     "designs",
     "study",
     "export",

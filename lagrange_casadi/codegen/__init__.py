@@ -4,15 +4,18 @@ from .compiler import Compiler, Language, find_compiler
 from .designs import emit_designs
 from .emit import emit
 from .library import DesignsLibrary, Library, load, load_designs
+from .points import PointsLibrary, load_points
 
 __all__ = [
     "Compiler",
     "DesignsLibrary",
     "Language",
     "Library",
+    "PointsLibrary",
     "emit",
     "emit_designs",
     "find_compiler",
     "load",
     "load_designs",
+    "load_points",
 ]

@@ -57,7 +57,7 @@ OK, NOT_CONVERGED, NOT_FINITE, SLOW = 0, 1, 2, 3
 
 LANES_PLACE = "/* As C++ for packs of instants, lanes.h goes here. */\n"
 
-_START = f"""\
+START = f"""\
 {LANES_PLACE}#include <string.h>
 #ifdef LANES
 #define LAGRANGE_CASADI_C extern "C"
@@ -239,7 +239,7 @@ def emit(graph: SceneGraph, stages: Stages | None = None, newton: int | None = N
     stages = plain(graph) if stages is None else stages
     parts = Parts.of(graph, stages)
     sizes = parts.sizes
-    text = _START + INSTANTS.text(sizes["real"])
+    text = START + INSTANTS.text(sizes["real"])
     if parts.narrow:
         text += dump("follow", parts.narrow)
     if stages.loops:

@@ -35,6 +35,7 @@ from ..instants.refusal import Status
 from ..instants.rung import Rung
 from ..instants.solution import Provenance
 from ..quantities import Output
+from ..sensitivity.slopes import Slopes
 from ..summits.sharpness import bent, with_watched
 from ..system.room import cores, require
 from ..tables import table_of
@@ -313,6 +314,11 @@ class DesignEngine:
         """The quantities that are given: of a link that has some forces determined, all are made, and these are shown."""
         found, table = enumerate(self.kept.quantities), table_of(self.scene.mechanism.space)
         return [k for k, q in found if q.group != "section" or not made_of(self.left_open, q.part, q.member, table)]
+
+    @cached_property
+    def slopes(self) -> Slopes:
+        """The derivatives of :attr:`quantities` at points; they are derived and compiled when they are first asked for."""
+        return Slopes.of(self.graph, [self.kept.quantities[k] for k in self.shown], self.kept.sharpness, self.rung)
 
     def failures(self, p: Array) -> dict[str, float]:
         """What fails of one design that has a result, (parameters,), looked at with all its outputs: see :mod:`.witness`."""

@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ..arithmetic.compensated import Precision
 from ..declare.density import Array
@@ -17,6 +18,9 @@ from ..errors import AssemblyError, DeclarationError, UnknownNameError
 from ..evaluate import evaluate
 from ..instants.refusal import Status
 from ..instants.rung import Backend, Rung
+from ..sensitivity.ends import end_slopes
+from ..sensitivity.peaks import peak_slopes
+from ..summits.search import NOTHING
 from .engine import DesignEngine, Outcome
 
 
@@ -33,6 +37,31 @@ class Peaks:
     xi: Array
     mean: Array
     rms: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Gradient:
+    """The peaks of q ``quantities``, and how each changes with the parameters.
+
+    ``value``, ``t`` and ``xi``, (q,), are those of :class:`Peaks`. ``slopes`` (q, parameters) are the derivatives of ``value``,
+    with its sign, by each of ``parameters``, in the quantity's unit over the parameter's. ``kinds`` (q,) says what each peak is at:
+    see :class:`.PeakKind`. Slopes are NaN where a peak has none: it is infinite, not determined, or at a kink or a jump that
+    nothing explains. Where a quantity has two peaks of one size, the slopes are those of the one that is told.
+    """
+
+    quantities: tuple[str, ...]
+    parameters: tuple[str, ...]
+    value: Array
+    t: Array
+    xi: Array
+    slopes: Array
+    kinds: npt.NDArray[np.int8]
+
+    def __getitem__(self, quantity: str) -> dict[str, float]:
+        """The derivatives of the peak of a quantity, by the parameter's name. Raises :class:`UnknownNameError`."""
+        if quantity not in self.quantities:
+            raise UnknownNameError("quantity with a peak", quantity, self.quantities)
+        return dict(zip(self.parameters, self.slopes[self.quantities.index(quantity)].tolist(), strict=True))
 
 
 class Prepared:
@@ -128,6 +157,34 @@ class Prepared:
             return self._seen
         value, t, xi = (array[engine.shown] for array in (self._seen.value, self._seen.t, self._seen.xi))
         return Peaks(value, t, xi, self._seen.mean, self._seen.rms)
+
+    def gradient(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Gradient:
+        """Peaks and their derivatives by all parameters, for values of these.
+
+        They are exact, by automatic differentiation. The first call derives and compiles them, in doubles; a later one takes a few
+        times as long as :meth:`peaks` at most. Raises what that does.
+        """
+        peaks = self.peaks(values, **named)
+        engine, p = self._engine, self._p[0]
+        instants = engine.times.of(self._p)[0][0]
+        slopes = engine.slopes
+        places = (peaks.value, peaks.t, peaks.xi)
+        timing = engine.times.timing
+        ends = end_slopes(engine.scene, timing, float(instants[0]), float(instants[-1]), p)
+        found = peak_slopes(
+            slopes, instants, p, np.arange(peaks.value.size, dtype=np.intc), places, ends, self._nothing(peaks.value)
+        )
+        value, t, xi = (x.copy() for x in places)
+        return Gradient(self.quantities, self.parameters, value, t, xi, found.slopes, found.kinds)
+
+    def _nothing(self, value: Array) -> npt.NDArray[np.bool_]:
+        """Which peaks are zero but for rounding, beside the largest of their unit."""
+        sizes, units = np.abs(value), self._engine.units
+        found = np.zeros(value.size, bool)
+        for unit in dict.fromkeys(units):
+            own = np.array([other == unit for other in units])
+            found[own] = sizes[own] <= NOTHING * np.max(sizes[own], initial=0.0, where=np.isfinite(sizes[own]))
+        return found
 
     def designs(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`; ``threads`` share them.

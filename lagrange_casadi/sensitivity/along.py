@@ -1,0 +1,83 @@
+"""Section forces as expressions: of the columns of a graph, of the ratio xi/l, and of the parameters.
+
+They are those of :class:`.SectionLaw`, which has them as numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from ..declare.density import Density
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Link
+from ..equations.checks import Column
+from ..equations.mobility import stations_of
+from ..equations.spreads import felt, spreads_of
+from ..quantities import Output
+from ..tables import Terms, table_of
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A place along a link, as an expression: ``station`` where something acts there, and whether a section there sees that."""
+
+    ratio: Any
+    station: str = ""
+    seen: bool = False
+
+
+class Along:
+    """The section forces of a link, of columns that are expressions."""
+
+    def __init__(self, mechanism: Mechanism, link: Link, columns: Mapping[Column, Any]) -> None:
+        assert isinstance(link.mass, Density)
+        self.link, self.density, self.columns = link, link.mass, columns
+        self.table = table_of(mechanism.space)
+        outputs = [column for column in columns if isinstance(column, Output)]
+        self.stations: Sequence[str] = stations_of(outputs, link.name)
+        self.spreads = spreads_of(outputs, link.name)
+
+    @property
+    def marks(self) -> list[Place]:
+        """Both sides of every station, and where loads along the link begin and end: places that may move as parameters change."""
+        found = [Place(self._of("station", "station", name), name, seen) for name in self.stations for seen in (False, True)]
+        for name in self.spreads:
+            width, end = (self.columns[Output("spread", self.link.name, member, name)] for member in ("width", "end"))
+            found += [Place(end), Place(end - width)]
+        return found
+
+    def force(self, name: str, place: Place) -> Any:
+        """A section force at a place: one of the table's own, no resultant."""
+        terms, u = self.table.sections[name], place.ratio
+        length = self.link.length
+        t0, t1, t2 = self.density.tails(ca.SX(u), length)
+        if terms.arm:
+            rows = [1.0, *(terms.arm * row for row in (length * (1.0 - u), length * t1, length * length * (u * t1 + t2)))]
+        else:
+            rows = [1.0, t0, length * (u * t0 + t1)]
+        law = [self.columns[Output("law", self.link.name, member)] for member in terms.coefficients]
+        value = sum(column * row for column, row in zip(law, rows, strict=False))
+        value += sum(self._beyond(terms, station, place) for station in self.stations)
+        for load, powers in self.spreads.items() if terms.spread else ():
+            sign = terms.arm or 1
+            value += sign * felt(self.columns, self.link, load, powers, terms.spread, u, arm=bool(terms.arm))
+        return ca.SX(value)
+
+    def _beyond(self, terms: Terms, station: str, place: Place) -> Any:
+        """What a section feels of what acts at a station, where that is towards the tip."""
+        u, at = place.ratio, self._of("station", "station", station)
+        value = self._of("station", terms.acting, station)
+        if terms.arm:
+            across = self._of("station", self.table.sections[terms.shear].acting, station)
+            value = value + terms.arm * self.link.length * across * (at - u)
+        if station == place.station:
+            # At the tip there is no section beyond.
+            return value if place.seen else ca.if_else(at >= 1.0, value, 0.0)
+        return ca.if_else(ca.logic_or(u < at, ca.logic_and(u >= 1.0, at >= 1.0)), value, 0.0)
+
+    def _of(self, group: str, member: str, station: str) -> Any:
+        return self.columns[Output(group, self.link.name, member, station)]

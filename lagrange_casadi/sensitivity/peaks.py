@@ -1,0 +1,118 @@
+"""How peaks change with parameters.
+
+A smooth peak moves as a parameter changes. To first order its value changes as that of the quantity does where the peak is: the
+envelope theorem. A peak at the first or the last instant goes with that instant. A peak at a kink or a jump goes with the time of
+what switches there.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ..declare.density import Array
+from ..summits.panels import SIDE, SPACING
+from ..summits.sharpness import Kind, Watch
+from .slopes import Numbers, Slopes
+
+_STEEP = 1e-5
+"""Of its value: how much a quantity changes in a step of time where its peak is not smooth."""
+
+
+class PeakKind(enum.IntEnum):
+    """What a peak is at."""
+
+    SMOOTH = 0
+    """The quantity is stationary in time there."""
+    END = 1
+    """The first or the last instant."""
+    SWITCH = 2
+    """A kink or a jump, whose time is known."""
+    UNTOLD = 3
+    """A kink or a jump of which it is not known what makes it, or none: there is no derivative."""
+
+
+@dataclass(frozen=True, eq=False)
+class PeakSlopes:
+    """Of q peaks the derivatives by all parameters, (q, parameters), and what each is at, (q,)."""
+
+    slopes: Array
+    kinds: npt.NDArray[np.int8]
+
+
+def peak_slopes(
+    slopes: Slopes,
+    instants: Array,
+    p: Array,
+    chosen: Numbers,
+    peaks: tuple[Array, Array, Array],
+    ends: Array,
+    nothing: npt.NDArray[np.bool_],
+) -> PeakSlopes:
+    """Those of peaks, (value, t, xi), (q,) each, of what is ``chosen``.
+
+    They are peaks over the time of the ``instants``, which are in equal steps; ``ends`` (2, parameters) says how the first and the
+    last move. ``nothing`` (q,) tells which peaks are zero but for rounding: with them nothing moves.
+    """
+    value, t, xi = peaks
+    found = np.full((t.size, p.size), np.nan)
+    kinds = np.full(t.size, PeakKind.UNTOLD, np.int8)
+    some = np.flatnonzero(np.isfinite(value) & np.isfinite(t))
+    value, t, xi = value[some], t[some], xi[some]
+    first, last = instants[0], instants[-1]
+    step = (last - first) / max(instants.size - 1, 1)
+    z = slopes.iterated(instants, p, t)
+    here = slopes.at(t, z, p, chosen[some], xi, value)
+    near = _near(step, instants)
+    at_first, at_last = t - first <= near, last - t <= near
+    kind = np.where(at_first | at_last, PeakKind.END, PeakKind.SMOOTH)
+    steep = (np.abs(here.rate) * step > _STEEP * np.abs(value)) & (kind == PeakKind.SMOOTH) & ~nothing[some]
+    moved = np.zeros_like(here.slopes)
+    moved[at_last], moved[at_first] = ends[1], ends[0]
+    if steep.any():
+        moved[steep] = _switching(slopes, t[steep], z[steep], p, 2 * near)
+        kind[steep] = np.where(np.isnan(moved[steep]).any(axis=1), PeakKind.UNTOLD, PeakKind.SWITCH)
+    going = kind != PeakKind.SMOOTH
+    here.slopes[going] += here.rate[going, None] * moved[going]
+    found[some], kinds[some] = here.slopes, kind
+    return PeakSlopes(found, kinds)
+
+
+def _near(step: float, instants: Array) -> float:
+    """How far from a kink, a jump or an end a peak is told that is at it [s]."""
+    return SIDE * step + 2 * SPACING * float(np.abs(instants).max())
+
+
+def _switching(slopes: Slopes, t: Array, z: Array, p: Array, near: float) -> Array:
+    """The derivatives by all parameters of the times (n,) at which something switches, (n, parameters); NaN where nothing does."""
+    switches, first = slopes.points.switches, len(slopes.points.quantities)
+    times, at, back = np.unique(t, return_index=True, return_inverse=True)
+    laws = slopes.graph.scene.laws
+    knots = np.array([knot for name in slopes.graph.driven for knot in laws[name].knots])
+    found = np.full((times.size, p.size), np.nan)
+    if switches:
+        many = len(switches)
+        chosen = np.tile(np.arange(first, first + many, dtype=np.intc), times.size)
+        there = slopes.at(np.repeat(times, many), np.repeat(z[at], many, axis=0), p, chosen, np.zeros(chosen.size))
+        value, rate = there.value.reshape(-1, many), there.rate.reshape(-1, many)
+        gaps = np.stack([_gap(watch, value[:, k]) for k, watch in enumerate(switches)], axis=1)
+        with np.errstate(all="ignore"):
+            away = np.where(rate != 0.0, np.abs(gaps / rate), np.inf)
+        for row in range(times.size):
+            k = int(np.argmin(away[row]))
+            if away[row, k] <= near:
+                found[row] = -there.slopes[row * many + k] / rate[row, k]
+    if knots.size:
+        found[(np.abs(times[:, None] - knots) <= near).any(axis=1)] = 0.0
+    return found[back]
+
+
+def _gap(watch: Watch, values: Array) -> Array:
+    """How far what is watched is from the nearest number at which it makes a kink or a jump."""
+    if watch.kind is Kind.STEP:
+        return np.asarray(values - np.round(values))
+    gaps = values[:, None] - np.array(watch.at or (0.0,))
+    return np.take_along_axis(gaps, np.abs(gaps).argmin(axis=1)[:, None], 1)[:, 0]

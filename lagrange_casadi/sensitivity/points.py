@@ -1,0 +1,164 @@
+"""Quantities at single points, a time and a ratio xi/l each, and their derivatives by all parameters: one CasADi function.
+
+The derivative is the total one, at a time that stands still. Driven coordinates change with the parameters of their laws, closed
+forms are differentiated as they stand, and iterated coordinates change by the implicit function theorem: where Phi(z, t, d, p) = 0
+the step -Phi_z^-1 Phi of Newton's method has the derivative of z by t, d and p for its own at fixed z. Nothing is differentiated
+through iterations.
+
+It is done backwards, from one quantity to all parameters, so it costs as much for many parameters as for one. The time derivative
+comes with it; so does what a place that moves along a link adds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from ..declare.mechanism import Mechanism
+from ..declare.motion import jerk_function
+from ..equations.checks import Column
+from ..equations.reciprocals import differentiable
+from ..equations.scene_graph import SceneGraph
+from ..quantities import Output
+from ..summits.sharpness import Kind, Sharpness, Watch
+from ..tables import table_of
+from .along import Along, Place
+
+SAME_PLACE = 1e-9
+"""How near to a station a peak along a link is that is at it, as a ratio to the length."""
+
+_DRIVES = ("d", "d_rate", "d_acceleration", "d_jerk")
+_SWITCHES = (Kind.SWITCH, Kind.STEP, Kind.ROOT, Kind.KNOT)
+
+
+@dataclass(frozen=True, eq=False)
+class PointFunction:
+    """``function(t, drives, z, p, xi, value, moving, chosen) -> (value, rate, slopes)`` of some quantities of a graph.
+
+    ``drives`` is what ``lead(t, p)`` gives where motions are by samples; else it is empty, and there is no ``lead``.
+    ``chosen`` has a 1 for the quantity that is meant, and 0 for the others; behind the ``quantities`` it may be one of the
+    ``switches``: see :class:`.Watch`. ``xi`` is the ratio at which a section force is meant; with ``moving`` it moves with the
+    station that is there, on the side on which the force is nearer to ``value``. ``rate`` is the derivative by time [1/s],
+    ``slopes`` (parameters,) are those by the parameters at that time.
+    """
+
+    quantities: tuple[Output, ...]
+    switches: tuple[Watch, ...]
+    function: Any
+    lead: Any | None
+
+    @classmethod
+    def of(cls, graph: SceneGraph, quantities: Sequence[Output], sharpness: Sharpness) -> PointFunction:
+        """That of some quantities: columns of a graph, resultants of such, section forces; and what makes kinks and jumps."""
+        sharp = [k for k, watch in enumerate(sharpness.watches) if watch.kind in _SWITCHES]
+        inner = _at_drives(graph, quantities, sharpness.watched, sharp)
+        given = {inner.name_in(k): inner.sx_in(k) for k in range(inner.n_in())}
+        t, p = (given[name] for name in ("t", "p"))
+        laws = graph.scene.laws
+        jerk = jerk_function({joint: laws[joint] for joint in graph.driven}, graph.scene.mechanism.symbols)
+        lead = None
+        if graph.motion.is_a("SXFunction"):
+            given["drives"] = ca.SX(0, 1)
+            drives = [*graph.motion.call([t, p]), jerk.expand()(t, p)]
+        else:
+            time, values = ca.MX.sym("t"), ca.MX.sym("p", p.numel())
+            lead = ca.Function("lead", [time, values], [ca.vertcat(*graph.motion.call([time, values]), jerk(time, values))])
+            given["drives"] = ca.SX.sym("drives", lead.size1_out(0))
+            drives = ca.vertsplit(given["drives"], len(graph.driven))
+        given |= dict(zip(_DRIVES, drives, strict=True))
+        found = inner.call([given[inner.name_in(k)] for k in range(inner.n_in())])
+        names = ["t", "drives", "z", "p", "xi", "value", "moving", "chosen"]
+        every = [given[name] for name in names]
+        made = ca.Function("at_point", every, found, names, ["found", "rate", "slopes"], {"cse": True})
+        return cls(tuple(quantities), tuple(sharpness.watches[k] for k in sharp), made, lead)
+
+
+def _at_drives(graph: SceneGraph, quantities: Sequence[Output], watched: Any, sharp: Sequence[int]) -> Any:
+    """The same function where the drives' coordinates, rates, accelerations and their rates are given."""
+    instant = differentiable(graph.instant)
+    t, d, rate, acceleration, z, p = inputs = instant.sx_in()
+    xi, value, moving, jerk = (
+        ca.SX.sym(name, size) for name, size in (("xi", 1), ("value", 1), ("moving", 1), ("jerk", d.numel()))
+    )
+    chosen = ca.SX.sym("chosen", len(quantities) + len(sharp))
+    out = instant(*inputs)
+    mechanism = graph.scene.mechanism
+    columns: dict[Column, Any] = {output: out[k] for output, k in graph.outputs.items()}
+    rows, weights = _rows(mechanism, columns, quantities, xi, value, moving, chosen)
+    rows += ca.vertsplit(differentiable(watched)(*inputs)[list(sharp)]) if sharp else []
+    weights += ca.vertsplit(chosen[len(quantities) :]) if sharp else []
+    rows, weights = ca.substitute([ca.vertcat(*rows), ca.vertcat(*weights)], [mechanism.symbols], [p])
+    # The weights choose, and are not differentiated.
+    held = ca.SX.sym("held", weights.numel())
+    adjoint = ca.jtimes(rows, ca.vertcat(*inputs), held, True)
+    by_t, by_d, by_rate, by_acceleration, by_z, by_p = ca.vertsplit(adjoint, _ends(inputs))
+    if graph.newton is not None:
+        step = graph.newton.step(z, t, d, p)[0]
+        more = ca.jtimes(step, ca.vertcat(t, d, p), by_z, True)
+        more_t, more_d, more_p = ca.vertsplit(more, _ends([t, d, p]))
+        by_t, by_d, by_p = by_t + more_t, by_d + more_d, by_p + more_p
+    in_time = by_t + ca.dot(by_d, rate) + ca.dot(by_rate, acceleration) + ca.dot(by_acceleration, jerk)
+    laws = graph.laws
+    smooth = laws.smooth(t, p)
+    own = [k for k, place in enumerate(laws.order) if place < smooth[0].numel()]
+    if own:
+        places = [laws.order[k] for k in own]
+        driven = ca.vertcat(*(part[places] for part in smooth))
+        by_p = by_p + ca.jtimes(driven, p, ca.vertcat(by_d[own], by_rate[own], by_acceleration[own]), True)
+    found = [ca.dot(held, rows), in_time, by_p]
+    found = [ca.densify(x) for x in ca.substitute(found, [held], [weights])]
+    names = ["t", *_DRIVES, "z", "p", "xi", "value", "moving", "chosen"]
+    every = [t, d, rate, acceleration, jerk, z, p, xi, value, moving, chosen]
+    return ca.Function("at_drives", every, found, names, ["found", "rate", "slopes"], {"cse": True})
+
+
+def _ends(parts: Sequence[Any]) -> list[int]:
+    """Where each of some parts that stand below each other begins, and where the last one ends."""
+    ends = [0]
+    for part in parts:
+        ends.append(ends[-1] + part.numel())
+    return ends
+
+
+def _rows(
+    mechanism: Mechanism, columns: dict[Column, Any], quantities: Sequence[Output], xi: Any, value: Any, moving: Any, chosen: Any
+) -> tuple[list[Any], list[Any]]:
+    """Rows of which a sum is the quantity that is meant, and their weights in it."""
+    table = table_of(mechanism.space)
+    rows: list[Any] = []
+    weights: list[Any] = []
+    links: dict[str, Along] = {}
+
+    def add(parts: Sequence[Any], weight: Any) -> None:
+        """A quantity, or several of which it is the size: the slope of a size is that of what goes along it."""
+        size = ca.sqrt(sum(part * part for part in parts)) if len(parts) > 1 else 1.0
+        rows.extend(parts)
+        weights.extend([weight * part / ca.if_else(size > 0.0, size, 1.0) for part in parts] if len(parts) > 1 else [weight])
+
+    for k, quantity in enumerate(quantities):
+        if quantity.group != "section":
+            add([columns[part] for part in quantity.components(table) if part in columns], chosen[k])
+            continue
+        link = links.setdefault(quantity.part, Along(mechanism, mechanism.links[quantity.part], columns))
+        names, left = table.parts("section", quantity.member), ca.SX(1.0)
+        marks = link.marks
+        here = {id(place): [link.force(name, place) for name in names] for place in marks}
+        sizes = {key: _size(parts) for key, parts in here.items()}
+        for place in marks:
+            twins = [other for other in marks if other.station == place.station and other is not place and place.station]
+            nearer = ca.SX(1.0)
+            for twin in twins:
+                own, others = (ca.fabs(sizes[id(each)] - value) for each in (place, twin))
+                nearer = own < others if place.seen else own <= others
+            taken = left * moving * (ca.fabs(xi - place.ratio) <= SAME_PLACE) * nearer
+            left = left - taken
+            add(here[id(place)], chosen[k] * taken)
+        add([link.force(name, Place(xi)) for name in names], chosen[k] * left)
+    return rows, weights
+
+
+def _size(parts: Sequence[Any]) -> Any:
+    return parts[0] if len(parts) == 1 else ca.sqrt(sum(part * part for part in parts))

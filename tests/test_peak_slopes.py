@@ -1,0 +1,144 @@
+"""How peaks change with parameters: beside closed forms, and beside differences of the peaks themselves."""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+from conftest import CASES
+from parametric import declared
+
+from lagrange_casadi import Mechanism, Scene, load_case, prepare
+from lagrange_casadi.density import polynomial as density
+from lagrange_casadi.errors import UnknownNameError
+from lagrange_casadi.motion import polynomial, samples
+from lagrange_casadi.sensitivity.peaks import PeakKind
+
+
+def gaps(f, parameters=None, **at):
+    """How far each slope is from Richardson's differences of the peaks, over the largest of its quantity; and the gradient."""
+    gradient = f.gradient(**at)
+    values = dict(zip(f.parameters, f._p[0].tolist(), strict=True))
+    sizes = np.nanmax(np.abs(gradient.slopes * f._p[0]), axis=1) + np.abs(gradient.value)
+    units: dict[str, float] = {}
+    for size, quantity in zip(sizes, f.quantities, strict=True):
+        group = quantity.split(":")[0]
+        units[group] = max(units.get(group, 0.0), size)
+    sizes += 1e-3 * np.array([units[quantity.split(":")[0]] for quantity in f.quantities])
+    found = {}
+    for name in parameters or f.parameters:
+        x = values[name]
+        step = 2e-5 * abs(x)
+        four = {k: f.peaks(**{**at, name: x + k * step}).value.copy() for k in (-2, -1, 1, 2)}
+        slopes = (8 * (four[1] - four[-1]) - (four[2] - four[-2])) / (12 * step)
+        own = gradient.slopes[:, f.parameters.index(name)]
+        found |= {(q, name): gap for q, gap in zip(f.quantities, np.abs(own - slopes) * abs(x) / sizes, strict=True)}
+    return found, gradient
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("name", ["slider_crank", "quick_return", "beam_pump", "excavator", "cardan_shaft", "arm6"])
+def test_slopes_of_peaks_are_those_of_their_differences(name):
+    """Smooth ones, at ends, and at kinks and jumps, whose times change with the parameters."""
+    scene = load_case(CASES / name).scene
+    f = prepare(scene, wanted=["effort", "reaction", "section"])
+    found, gradient = gaps(f)
+    assert not (gradient.kinds == PeakKind.UNTOLD).any()
+    worst = max(found, key=found.get)
+    assert found[worst] <= 1e-6, (worst, found[worst])
+
+
+def test_loops_that_are_iterated():
+    f = prepare(declared(CASES / "rrr3"), wanted=["effort", "section"])
+    found, _ = gaps(f, f.parameters[:: len(f.parameters) // 2])
+    assert max(found.values()) <= 1e-6
+
+
+def rotor(**motion):
+    """A link that turns; no gravity. Its axial force at the base is the density's first moment times the square of the rate."""
+    m = Mechanism("rotor")
+    m.set_gravity(0, 0)
+    speed, l = m.parameter("speed", 20.0, "rad/s"), m.parameter("l", 0.4, "m")
+    heavy, taper = m.parameter("heavy", 3.0, "kg/m"), m.parameter("taper", -1.0, "kg/m")
+    arm = m.link("arm", length=l, density=density(heavy, taper))
+    m.revolute("O", m.ground, arm)
+    return m, speed, l
+
+
+@pytest.mark.parametrize("backend", ["auto", "c", "vm"])
+def test_a_turning_link_has_the_slopes_of_its_closed_form(backend):
+    m, speed, _ = rotor()
+    f = prepare(Scene(m, {"O": polynomial(0.0, speed)}, t=(0.0, 0.1, 11)), wanted=["section"], backend=backend)
+    gradient = f.gradient(speed=30.0, l=0.5)
+    w, l, heavy, taper = 30.0, 0.5, 3.0, -1.0
+    moment = heavy / 2 + taper / 3
+    exact = {"speed": 2 * w * l**2 * moment, "l": 2 * w**2 * l * moment, "heavy": w**2 * l**2 / 2, "taper": w**2 * l**2 / 3}
+    for name, slope in gradient["section:arm:axial"].items():
+        assert abs(slope - exact[name]) <= 1e-14 * exact["l"]
+    with pytest.raises(UnknownNameError, match="quantity with a peak"):
+        gradient["effort:O"]
+
+
+@pytest.mark.parametrize("asked", ["times", "over"])
+def test_a_peak_at_an_end_goes_with_the_end(asked):
+    """The link speeds up as 10 t^2: at the last instant the effort's place and the rate are largest, and that instant moves."""
+    m, speed, _ = rotor()
+    law = polynomial(0.0, 0.0, 10.0)
+    at = {"t": (0.0, speed / 20, 21)} if asked == "times" else {"over": ("O", 0.1, speed / 2, 21)}
+    f = prepare(Scene(m, {"O": law}, t=(0.0, 1.0, 21)), wanted=["section", "motion"], **at)
+    gradient = f.gradient()
+    end = 1.0
+    by_speed = 1 / 20 if asked == "times" else 1 / 2 / (2 * 10.0 * end)
+    k = f.quantities.index("section:arm:axial")
+    assert gradient.kinds[k] == PeakKind.END
+    moment = 0.4**2 * (3.0 / 2 - 1.0 / 3)
+    assert gradient.value[k] == pytest.approx(moment * 400.0, rel=1e-12)
+    assert gradient["section:arm:axial"]["speed"] == pytest.approx(moment * 800.0 * end * by_speed, rel=1e-12)
+    assert gradient["section:arm:axial"]["l"] == pytest.approx(2 * gradient.value[k] / 0.4, rel=1e-12)
+
+
+def test_motions_by_samples():
+    """Scaled by a parameter, and beside a drive whose samples are numbers."""
+    times = np.linspace(0.0, 1.0, 9)
+    m = Mechanism("arm")
+    reach = m.parameter("reach", 0.8, "rad")
+    l = m.parameter("l", 0.4, "m")
+    upper, fore = m.link("upper", length=l, mass=2.0), m.link("fore", length=0.3, mass=1.0)
+    m.revolute("O", m.ground, upper)
+    m.revolute("A", upper.tip, fore)
+    swing = np.sin(math.pi * times) ** 2
+    laws = {"O": samples(times, reach * swing), "A": samples(times, (0.5 * swing).tolist())}
+    f = prepare(Scene(m, laws, t=(0.0, 1.0, 101)), wanted=["effort", "section"])
+    found, gradient = gaps(f)
+    assert abs(gradient["effort:O"]["reach"]) > 1.0
+    told = {key: gap for key, gap in found.items() if gradient.kinds[f.quantities.index(key[0])] != PeakKind.UNTOLD}
+    assert len(told) >= 14
+    assert max(told.values()) <= 1e-6
+
+
+def test_a_jump_of_the_users_own():
+    """A force that sets in at an angle: the peak of the effort is where it does, and the time of that goes with two parameters."""
+    m, speed, _ = rotor()
+    onset = m.parameter("onset", 1.0, "rad")
+    arm = m.bodies["arm"]
+    m.torque("brake", arm, -5.0 * (m.direction(arm) > onset) * ca.exp(-3.0 * m.time))
+    f = prepare(Scene(m, {"O": polynomial(0.0, speed)}, t=(0.0, 0.1, 41)), wanted=["effort"])
+    gradient = f.gradient()
+    assert PeakKind(gradient.kinds[0]) is PeakKind.SWITCH
+    at = 1.0 / 20.0
+    assert gradient.t[0] == pytest.approx(at, rel=1e-9)
+    exact = 5.0 * math.exp(-3.0 * at)
+    assert gradient.value[0] == pytest.approx(exact, rel=1e-9)
+    assert gradient["effort:O"]["onset"] == pytest.approx(-3.0 * exact / 20.0, rel=1e-9)
+    assert gradient["effort:O"]["speed"] == pytest.approx(3.0 * exact * at / 20.0, rel=1e-9)
+
+
+def test_a_peak_without_bound_has_no_slope():
+    """Where the skate's lead grows without bound the peak is infinite; others have theirs."""
+    f = prepare(declared(CASES / "sleigh"), wanted=["effort", "reaction"])
+    gradient = f.gradient()
+    endless = np.isinf(gradient.value)
+    assert endless.any()
+    assert not endless.all()
+    assert np.isnan(gradient.slopes[endless]).all()
+    assert np.isfinite(gradient.slopes[~endless]).all()

@@ -1,0 +1,108 @@
+"""Derivatives by parameters: beside differences in 50 digits, and beside closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+from balance import columns_at
+from conftest import CASES, PLANAR
+from parametric import declared
+from precise import precise
+
+from lagrange_casadi import derive, load_case
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.quantities import FORCES, Output
+from lagrange_casadi.sensitivity.slopes import Slopes
+from lagrange_casadi.summits.sharpness import Sharpness
+
+RATIOS = (0.1234567, 0.9034567)
+STEP = 2.0**-13
+OWN = {"beam_pump": ["r", "counterweight", "fluid"], "jansen_leg": ["push"]}
+"""Cases of which the oracle knows some lengths by number: parameters of theirs on which no motion depends."""
+
+
+def made(scene, backend="vm"):
+    """The slopes of all that a scene has, sections at the end."""
+    graph = derive(scene, ["all"])
+    quantities = [output for output in graph.outputs if not output.along]
+    quantities += [Output("section", link, force) for link in graph.links for force in FORCES]
+    return Slopes.of(graph, quantities, Sharpness.of(graph, []), Rung(backend))
+
+
+def slopes_at(slopes, t, p):
+    """Of every quantity at a time, and of every section force at ratios: value and slopes, by name and ratio."""
+    names = [(q, xi) for q in slopes.points.quantities for xi in (RATIOS if q.group == "section" else (math.nan,))]
+    chosen = np.array([slopes.numbers[q] for q, _ in names], np.intc)
+    times = np.full(len(names), t)
+    # Loops are followed to the time from the start.
+    z = slopes.iterated(np.linspace(slopes.graph.scene.t[0], t, 20), p, times)
+    found = slopes.at(times, z, p, chosen, np.array([xi for _, xi in names]))
+    return {(str(q), xi): (found.value[k], found.slopes[k]) for k, (q, xi) in enumerate(names)}
+
+
+def differences(scene, t, name, at=None, share=STEP):
+    """The derivatives of all quantities by a parameter in 50 digits: by four values, at doubles exactly as far apart."""
+    values_at = scene.mechanism.values(at)
+    x = values_at[name]
+    step = math.ldexp(share, math.frexp(x)[1])
+    _, held = columns_at(derive(scene, ["all"]), t, values_at)
+    values = {}
+    for k in (-2, -1, 1, 2):
+        moved = x + k * step
+        assert (moved - x) / k == step
+        found = precise(scene, t, held, parameters={**values_at, name: moved})
+        for quantity, value in found.items():
+            for xi in RATIOS if callable(value) else (math.nan,):
+                values.setdefault((quantity, xi), {})[k] = value(xi) if callable(value) else value
+    return {key: (8 * (v[1] - v[-1]) - (v[2] - v[-2])) / (12 * step) for key, v in values.items() if len(v) == 4}
+
+
+def unit(name):
+    group, _, *member = name.split(":")
+    return (group, *(m for m in member if group in ("reaction", "section")))
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("name", PLANAR)
+def test_slopes_are_those_of_differences_in_50_digits(name):
+    """Of every force and every place, by numbers of the declaration: lengths, masses, densities, places, gravity."""
+    scene = load_case(CASES / name).scene if name in OWN else declared(CASES / name)
+    start, stop, _ = scene.t
+    t = start + 0.37 * (stop - start)
+    slopes = made(scene)
+    parameters = list(scene.mechanism.parameters)
+    p = np.array(list(scene.mechanism.values().values()))
+    own = slopes_at(slopes, t, p)
+    # What a parameter changes if it doubles, the one that changes most.
+    sizes: dict[tuple, float] = {}
+    for key, (_, row) in own.items():
+        sizes[unit(key[0])] = max(sizes.get(unit(key[0]), 0.0), float(np.abs(row * p).max()))
+    for parameter in OWN.get(name, parameters[:: max(1, len(parameters) // 2)]):
+        j = parameters.index(parameter)
+        exact = differences(scene, t, parameter)
+        told = [key for key in exact if key in own]
+        assert len(told) >= 6
+        for key in told:
+            gap = abs(float(own[key][1][j] - exact[key]))
+            assert gap <= 1e-10 * sizes[unit(key[0])] / abs(p[j]), (key, parameter, gap, sizes[unit(key[0])])
+
+
+@pytest.mark.parametrize("share", [1e-3, 1e-6])
+def test_near_a_dead_centre(share):
+    """The rod is longer than the crank by a share; where the crank is across, the sine of the transmission angle is its root."""
+    scene = load_case(CASES / "slider_crank").scene
+    t = next(t for t in np.linspace(*scene.t).tolist() if across(scene, t) > 0.999999)
+    values = scene.mechanism.values({"r": 0.1, "l": 0.1 * (1.0 + share)})
+    own = slopes_at(made(scene), t, np.array(list(values.values())))
+    for name in ("r", "l", "m3"):
+        j = list(values).index(name)
+        exact = differences(scene, t, name, values, share=2.0**-40)
+        largest = max(abs(float(x)) for key, x in exact.items() if key in own)
+        assert largest > (1e3 if name != "m3" else 1.0)
+        for key in (key for key in exact if key in own):
+            size = max(abs(float(exact[key])), 1e-6 * largest)
+            assert abs(float(own[key][1][j] - exact[key])) <= 1e-7 * size, (name, key)
+
+
+def across(scene, t):
+    return abs(math.sin(float(derive(scene).motion(t, list(scene.mechanism.values().values()))[0])))
