@@ -1,7 +1,8 @@
-"""Laws of motion, for scenes: the public part of :mod:`.declare.motion`, :mod:`.declare.moves` and :mod:`.declare.rest_laws`."""
+"""Laws of motion, for scenes: the public part of :mod:`.declare.motion`, :mod:`.declare.moves`, :mod:`.declare.recordings`."""
 
 from .declare.motion import Motion, expression, harmonic, polynomial, samples
 from .declare.moves import Dwell, Move, dwell, move, moves
+from .declare.recordings import read_samples
 from .declare.rest_laws import s_curve, trapezoid
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "move",
     "moves",
     "polynomial",
+    "read_samples",
     "s_curve",
     "samples",
     "trapezoid",

@@ -45,6 +45,8 @@ def _law(law: Motion, symbol: Any) -> str:
     if law.spline:
         many = f"{len(law.knots)} " if law.knots else ""
         return f"a spline through {many}samples from {law.span[0]:g} to {law.span[1]:g} s"
+    if law.told:
+        return law.told
     if law.stretches:
         return f"{len(law.stretches)} moves and dwells{', over and over' if law.period is not None else ''}"
     return f"{_short(law.graph(symbol))} of the time t"

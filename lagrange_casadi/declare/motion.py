@@ -32,6 +32,7 @@ class Motion:
     ``spline`` tells that the graph needs ``casadi.MX``; ``span`` is the time the law covers, and ``knots`` are the times between
     which the second derivative of a spline is linear. Of a motion made of moves ``stretches`` are these, ``period`` is their time
     where they go on over and over, and ``demands`` are what parameters must hold to.
+    ``told`` says in words what a motion from a file is.
     """
 
     graph: Callable[[Any], Any]
@@ -41,6 +42,7 @@ class Motion:
     stretches: tuple[Stretch, ...] = ()
     period: Expression | None = None
     demands: tuple[Demand, ...] = ()
+    told: str = ""
 
     def __call__(self, x: Any) -> Any:
         """The law of an expression in place of the time, as of a joint's coordinate, for constraints and loads."""
