@@ -144,6 +144,7 @@ def _announce(graph: SceneGraph, count: int, rung: Rung, threads: int) -> None:
 
 def checked_span(scene: Scene, timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:
     """The first and the last of instants [s]. Raises :class:`DeclarationError` where there are none, or samples of a motion end."""
+    scene.checked(values)
     start, stop = span_of(scene.mechanism, scene.laws, timing, values)
     for joint, law in scene.laws.items():
         low, high = law.span

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -14,7 +15,7 @@ from ..declare.scene import Scene
 from ..declare.spatial import reference_posture
 from ..equations.kinematics import describe_coordinate
 
-_LONG, _LOOKS = 200, 1001
+_LONG, _LOOKS, _MOST_JUMPS = 200, 1001, 8
 
 
 def scene_lines(scene: Scene) -> Iterator[str]:
@@ -25,6 +26,7 @@ def scene_lines(scene: Scene) -> Iterator[str]:
     symbol, word = ca.SX.sym("t"), "drive" if scene.weights is None else "motion"
     for joint, law in scene.laws.items():
         yield f"  {word} {joint}: {_law(law, symbol)}; {_course(scene, joint)}"
+        yield from _moves(scene, joint) if law.stretches else ()
     yield from (f"load {name}: {_load(load, space=mechanism.space)}" for name, load in mechanism.loads.items())
     yield from (f"constraint {name}: 0 = {_short(constraint.phi)}" for name, constraint in mechanism.constraints.items())
     for name, row in mechanism.rows.items():
@@ -43,7 +45,32 @@ def _law(law: Motion, symbol: Any) -> str:
     if law.spline:
         many = f"{len(law.knots)} " if law.knots else ""
         return f"a spline through {many}samples from {law.span[0]:g} to {law.span[1]:g} s"
+    if law.told:
+        return law.told
+    if law.stretches:
+        return f"{len(law.stretches)} moves and dwells{', over and over' if law.period is not None else ''}"
     return f"{_short(law.graph(symbol))} of the time t"
+
+
+def _moves(scene: Scene, joint: str) -> Iterator[str]:
+    """What each move and dwell of a drive is with the default parameters, and where accelerations or jerks jump."""
+    table = scene.timetable(joint, scene.assembly)
+    unit = "m" if scene.guided.coordinates[joint][1].kind == "slide" else "rad"
+    for stretch in table.stretches:
+        when = f"    {stretch.name}: from {stretch.start:.6g} to {stretch.stop:.6g} s"
+        if not stretch.by:
+            yield f"{when}, rests at {stretch.at:.6g} {unit}"
+            continue
+        jerk = "" if math.isinf(stretch.jerk) else f", {stretch.jerk:.6g} {unit}/s^3"
+        yield (
+            f"{when}, from {stretch.at:.6g} by {stretch.by:.6g} {unit} ({stretch.law}), at most {stretch.speed:.6g} {unit}/s, "
+            f"{stretch.acceleration:.6g} {unit}/s^2{jerk}"
+        )
+    for what in ("acceleration", "jerk"):
+        places = [f"{jump.t:.6g} s {jump.where}" for jump in table.jumps if jump.what == what]
+        if places:
+            more = f" and {len(places) - _MOST_JUMPS} more" if len(places) > _MOST_JUMPS else ""
+            yield f"    the {what} jumps at {', '.join(places[:_MOST_JUMPS])}{more}"
 
 
 def _course(scene: Scene, joint: str) -> str:

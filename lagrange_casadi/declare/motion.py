@@ -20,7 +20,9 @@ from .ends import beyond_ends
 from .expressions import scalar, told
 from .kinks import Span, refuse_kinks
 from .parts import Expression
+from .possible import Demand
 from .scaled import Scaled
+from .stretches import Stretch
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,13 +30,25 @@ class Motion:
     """A law of motion as a function from the symbol t [s] to the coordinate [rad or m].
 
     ``spline`` tells that the graph needs ``casadi.MX``; ``span`` is the time the law covers, and ``knots`` are the times between
-    which the second derivative of a spline is linear.
+    which the second derivative of a spline is linear. Of a motion made of moves ``stretches`` are these, ``period`` is their time
+    where they go on over and over, and ``demands`` are what parameters must hold to.
+    ``told`` says in words what a motion from a file is.
     """
 
     graph: Callable[[Any], Any]
     spline: bool = False
     span: tuple[float, float] = (-math.inf, math.inf)
     knots: tuple[float, ...] = ()
+    stretches: tuple[Stretch, ...] = ()
+    period: Expression | None = None
+    demands: tuple[Demand, ...] = ()
+    told: str = ""
+
+    def __call__(self, x: Any) -> Any:
+        """The law of an expression in place of the time, as of a joint's coordinate, for constraints and loads."""
+        if self.spline:
+            raise DeclarationError("a motion by samples is of the time alone; expected lagrange_casadi.curve(x, y)(EXPRESSION)")
+        return self.graph(ca.SX(x))
 
 
 def polynomial(*coefficients: Expression) -> Motion:

@@ -9,6 +9,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NoReturn
 
+from ..arithmetic.compensated import Precision
 from ..errors import AngleError, DeclarationError, ParameterError, PickleError, UnknownNameError
 from .angles import angle
 from .density import Density
@@ -19,6 +20,8 @@ from .limits import no_sections, told_parameters
 from .mechanism import Mechanism
 from .motion import Motion
 from .parts import Expression
+from .possible import Demands, demands
+from .stretches import Timetable, timetable
 from .times import Instants, Over, Times, Timing, instants_of, span_of
 
 _KINDS = ("reaction", "multiplier", "load", "section", "output")
@@ -202,6 +205,7 @@ class Scene:
         except ParameterError as error:
             raise ParameterError(f"{error}{told_parameters(self.mechanism, {})}") from None
         numbers = self.mechanism.values(self.assembly)
+        self.checked(numbers)
         object.__setattr__(self, "assembly", MappingProxyType({name: numbers[name] for name in self.assembly}))
         if not timing.shared:
             self.span  # noqa: B018 - it refuses what has no instants
@@ -258,6 +262,29 @@ class Scene:
     def instants(self, timing: Timing, values: Mapping[str, float]) -> Instants:
         """Instants for values of all parameters. Raises :class:`.DeclarationError` where there are none."""
         return instants_of(self.guided, self.laws, timing, values)
+
+    def demands(self, precision: Precision = "double") -> Demands:
+        """What the mechanism's parts and the moves of its motion demand of the parameters; what a precision rounds is forgiven."""
+        parts, moved = demands(self.mechanism, precision), [demand for law in self.laws.values() for demand in law.demands]
+        return Demands(parts.symbols, (*parts.each, *moved)) if moved else parts
+
+    def checked(self, values: Mapping[str, float]) -> None:
+        """Raise :class:`.ParameterError` for values of all parameters with which a part or a move of the motion cannot be."""
+        if any(law.demands for law in self.laws.values()):
+            self.demands().check(list(values.values()), lambda expression: self.mechanism.number(expression, values))
+
+    def timetable(self, name: str, parameters: Mapping[str, float] | None = None) -> Timetable:
+        """The moves and dwells of a joint's motion in numbers, with their largest speeds and what jumps: :class:`.Timetable`.
+
+        Raises :class:`.UnknownNameError` for a joint without a motion, :class:`.DeclarationError` for one that is not of moves.
+        """
+        if name not in self.laws:
+            raise UnknownNameError("driven joint", name, self.laws)
+        law, values = self.laws[name], self.mechanism.values(parameters)
+        if not law.stretches:
+            raise DeclarationError(f"the motion of joint '{name}' is not made of moves, so it has no timetable")
+        self.checked(values)
+        return timetable(law.stretches, law.period, lambda expression: self.mechanism.number(expression, values))
 
     def __reduce__(self) -> NoReturn:
         """Raise :class:`PickleError`."""

@@ -16,7 +16,7 @@ from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array, Density
 from ..declare.mechanism import Mechanism
 from ..declare.parts import LineLoad, Link
-from ..declare.possible import demands
+from ..declare.scene import Scene
 from ..equations.gaps import extent
 from ..equations.kinematics import NEAR
 from ..equations.mobility import stations_of
@@ -90,7 +90,7 @@ class KeptOutputs:
         numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
         efforts = tuple(name for name in names if name.group in ("effort", "output"))
         along = tuple(_along(mechanism, link, at, table) for link in links)
-        matter, positive, margins = _matter(mechanism, links, along, rung.precision)
+        matter, positive, margins = _matter(graph.scene, links, along, rung.precision)
         columns = {column for columns in chosen.values() for column in columns}
         columns |= {k for link in along for k in (*link.law, *(k for part in (*link.stations, *link.spreads) for k in part))}
         sharpness = Sharpness.of(graph, sorted(columns))
@@ -157,11 +157,10 @@ def _checks(graph: SceneGraph, rung: Rung) -> list[tuple[int, str, float]]:
     return found
 
 
-def _matter(
-    mechanism: Mechanism, links: list[Link], along: tuple[Along, ...], precision: Precision
-) -> tuple[ca.Function, int, int]:
+def _matter(scene: Scene, links: list[Link], along: tuple[Along, ...], precision: Precision) -> tuple[ca.Function, int, int]:
     """What the reduction takes of the parts, and how many numbers must be positive, and not negative."""
-    positive, others = demands(mechanism, precision).in_order(mechanism.symbols)
+    mechanism = scene.mechanism
+    positive, others = scene.demands(precision).in_order(mechanism.symbols)
     positive = [extent(mechanism), *positive]
     rest: list[Any] = []
     for link, part in zip(links, along, strict=True):

@@ -16,7 +16,6 @@ from ..codegen.plain import plain
 from ..codegen.stages import controlled
 from ..declare.density import Array, Density
 from ..declare.motion import ends_function
-from ..declare.possible import demands
 from ..equations.checks import Check, Column
 from ..equations.gaps import extent
 from ..equations.scene_graph import SceneGraph
@@ -146,7 +145,7 @@ def _sound(graph: SceneGraph, symbols: Any, precision: Precision) -> tuple[Any, 
 
     Those come first.
     """
-    both = demands(graph.scene.mechanism, precision).in_order(symbols)
+    both = graph.scene.demands(precision).in_order(symbols)
     positive, others = ([value for value in values if _changes(value)] for values in both)
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *positive, *others))
     return ca.Function("sound", [symbols], [out], {"cse": True}), len(positive)

@@ -1,0 +1,347 @@
+"""Motions made of moves from rest to rest and of dwells, once or over and over."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import casadi as ca
+
+from ..errors import DeclarationError
+from ..system.numerals import readable
+from .expressions import check_name, scalar, typed
+from .motion import Motion
+from .parts import Expression
+from .possible import Demand, Evaluator
+from .rest_laws import Limits, RestLaw, plain, rest_law, s_curve_within, trapezoid_within
+from .stretches import Stretch
+
+_FORGIVEN = 1e-9
+"""Of itself: by how much a time may be too short, or a cycle not close, by rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Move:
+    """A move from rest to rest, from :func:`move`."""
+
+    name: str
+    to: Expression | str | None
+    by: Expression | str | None
+    time: Expression | None
+    law: object
+    limits: Limits
+
+
+@dataclass(frozen=True, eq=False)
+class Dwell:
+    """A rest, from :func:`dwell`; without a time it fills up the period."""
+
+    name: str
+    time: Expression | None
+
+
+def move(
+    to: Expression | str | None = None,
+    *,
+    by: Expression | str | None = None,
+    time: Expression | None = None,
+    law: object = None,
+    speed: Expression | None = None,
+    acceleration: Expression | None = None,
+    jerk: Expression | None = None,
+    name: str = "",
+) -> Move:
+    """A move from rest to rest for :func:`moves`: ``to`` a place or ``by`` a way [rad or m, or text as ``"90 deg"``].
+
+    It takes a ``time`` [s], or the shortest within its limits of ``speed``, ``acceleration`` and ``jerk``. With both, it takes the
+    time, and is refused where that breaks a limit. ``law`` is one of ``cycloidal``, ``modified_sine``, ``modified_trapezoid``,
+    ``polynomial_345``, ``polynomial_4567``, ``simple_harmonic``, ``trapezoid`` and ``s_curve``, or has shares of its own, as
+    ``trapezoid(0.25)``. Without one it is ``polynomial_345``, with limits of speed and acceleration the trapezoid that reaches
+    them, with all three limits the S-curve of seven segments that does.
+
+    All numbers may be expressions of parameters. Raises :class:`.DeclarationError` for what is no move.
+    """
+    what = f"move '{name}'" if name else "move"
+    if (to is None) == (by is None):
+        raise DeclarationError(f"{what}: expected one of to, a place, and by, a way")
+    return Move(_named(name), to, by, time, law, Limits(speed, acceleration, jerk))
+
+
+def dwell(time: Expression | None = None, *, name: str = "") -> Dwell:
+    """A rest of a ``time`` [s] for :func:`moves`; one of them may go without, and lasts as long as the period asks for."""
+    return Dwell(_named(name), time)
+
+
+def moves(
+    parts: Sequence[Move | Dwell],
+    *,
+    start: Expression | str = 0.0,
+    begin: Expression = 0.0,
+    cyclic: bool = False,
+    period: Expression | None = None,
+    advance: Expression | str = 0.0,
+    speed: Expression | None = None,
+    acceleration: Expression | None = None,
+    jerk: Expression | None = None,
+) -> Motion:
+    """A law of motion made of moves and dwells, one after the other, from the place ``start`` [rad or m] at the time ``begin`` [s].
+
+    Before and after it rests. A ``cyclic`` one goes on over and over, and must come back to its start, or be ``advance`` beyond it,
+    as an indexing table is. ``period`` [s] is the time of all; a dwell without a time fills it up. ``speed``, ``acceleration`` and
+    ``jerk`` are limits of every move that has none of its own.
+
+    Called with an expression, it is the same law of that: ``lift(m.coordinate(cam))`` rises by the angle of a cam, and its times
+    then are angles. Raises :class:`.DeclarationError` for moves that cannot be: too fast for their limits, a time that is not
+    positive, a cycle that does not close, a period that is not the sum of the times. Where parameters decide, they are refused as
+    others that make a part impossible.
+    """
+    each = _sequence(parts)
+    common = Limits(speed, acceleration, jerk)
+    origin, demands = _expression("moves: start", start, angle=True), _Demanded([])
+    place, way, found = origin, _Sum(origin), []
+    for number, part in enumerate(each):
+        what = _what(part, number)
+        if isinstance(part, Dwell):
+            law, time, by, after = None, part.time, 0.0, place
+        else:
+            by, after = _way(what, part, place, way)
+            law, time = _timed(what, part, by, common, demands)
+        found.append([part.name or f"part {number + 1}", law, time, place, by, after])
+        place = after
+    times = _filled(each, [row[2] for row in found], period, demands)
+    for number, (part, time) in enumerate(zip(each, times, strict=True)):
+        _demand_time(_what(part, number), time, demands)
+    first = _expression("moves: begin", begin)
+    total = _Sum(first)
+    seams = [first, *(total.then(time) for time in times)]
+    stretches = tuple(
+        Stretch(name, law, seams[k], seams[k + 1], times[k], at, by) for k, (name, law, _, at, by, _) in enumerate(found)
+    )
+    far = _expression("moves: advance", advance, angle=True)
+    length = None
+    if cyclic:
+        length = _Sum(0.0).then(*times)
+        _demand_closure(origin, place, far, demands)
+    elif not (isinstance(far, float) and far == 0.0):
+        raise DeclarationError("moves: advance is of a cyclic motion; expected cyclic=True")
+    each_demand = tuple(demands.each)
+    return Motion(_graph(stretches, place, length, far, each_demand), stretches=stretches, period=length, demands=each_demand)
+
+
+def _graph(stretches: tuple[Stretch, ...], last: Expression, period: Any, advance: Any, demands: tuple[Demand, ...]) -> Any:
+    """The law as a function of its argument: which stretch it is in is told once, and each law is written once."""
+    # What cannot be has no value, wherever the law is used.
+    sound: Any = 1.0
+    for demand in demands:
+        value = ca.SX(demand.value)
+        sound = sound * ca.if_else(value > 0.0 if demand.positive else value >= 0.0, 1.0, ca.SX.nan())
+
+    def graph(t: Any) -> Any:
+        x, gone = t, 0.0
+        begin = stretches[0].start
+        if period is not None:
+            # A remainder is exact; it is of the middle of the cycle.
+            middle = begin + period / 2.0
+            x = ca.remainder(t - middle, period) + middle
+            gone = advance * ca.floor((t - x) / period + 0.5)
+        rows = list(stretches)
+        later = [x >= stretch.start for stretch in rows]
+        if period is None:
+            later.append(x >= stretches[-1].stop)
+        inside = [here if k + 1 == len(later) else ca.logic_and(here, ca.logic_not(later[k + 1])) for k, here in enumerate(later)]
+        if period is None:
+            inside[-1] = later[-1]
+            before, after = ca.logic_not(later[0]), later[-1]
+            at = [(before, stretches[0].at), *((here, s.at) for here, s in zip(inside, rows, strict=False)), (after, last)]
+        else:
+            # By rounding an instant may be beside the first or the last seam.
+            inside[0] = ca.logic_not(later[1]) if len(later) > 1 else ca.SX(1)
+            at = [(here, s.at) for here, s in zip(inside, rows, strict=True)]
+        going = [(here, s) for here, s in zip(inside, rows, strict=False) if s.law is not None]
+        share = (x - _chosen((here, s.start) for here, s in going)) * _chosen((here, 1.0 / s.time) for here, s in going)
+        value = _chosen(at) + gone
+        for law in dict.fromkeys(s.law for _, s in going if s.law is not None):
+            value = value + _chosen((here, s.by) for here, s in going if s.law is law) * law.shape(share)
+        return value * sound
+
+    return graph
+
+
+def _chosen(rows: Any) -> Any:
+    """Of values, each with its condition of which one holds at most, the one that does; zero where none does."""
+    total: Any = 0.0
+    for here, value in rows:
+        if not (isinstance(value, float) and value == 0.0):
+            total = total + ca.if_else(here, value, 0.0)
+    return total
+
+
+class _Sum:
+    """A sum that goes on: of numbers as their decimals say, rounded once; else of expressions."""
+
+    def __init__(self, first: Expression) -> None:
+        self.terms = [first]
+
+    def then(self, *more: Expression) -> Expression:
+        self.terms += more
+        if any(isinstance(term, ca.SX) for term in self.terms):
+            return plain(sum(self.terms[1:], self.terms[0]))
+        return float(sum((Fraction(repr(term)) for term in self.terms), Fraction(0)))
+
+
+@dataclass(frozen=True)
+class _Demanded:
+    """Demands that are found: one of numbers is held at once, those that parameters decide are kept."""
+
+    each: list[Demand]
+
+    def add(self, demand: Demand) -> None:
+        value = plain(demand.value)
+        if isinstance(value, ca.SX):
+            self.each.append(demand)
+        elif not (math.isfinite(value) and (value > 0.0 or (value == 0.0 and not demand.positive))):
+            raise DeclarationError(demand.refusal(float))
+
+
+def _sequence(parts: Sequence[Move | Dwell]) -> list[Move | Dwell]:
+    each = list(parts) if isinstance(parts, Sequence) else []
+    if not each or not all(isinstance(part, Move | Dwell) for part in each):
+        raise DeclarationError(f"moves: expected a list of move(...) and dwell(...), got {parts!r}")
+    names = [part.name for part in each if part.name]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise DeclarationError(f"moves: two parts are called '{twice}'; expected names of their own, or none")
+    if not any(isinstance(part, Move) for part in each):
+        raise DeclarationError("moves: nothing but dwells; expected a move, or for what stands still polynomial(PLACE)")
+    return each
+
+
+def _what(part: Move | Dwell, number: int) -> str:
+    kind = "move" if isinstance(part, Move) else "dwell"
+    return f"{kind} '{part.name}'" if part.name else f"{kind} {number + 1} of the moves"
+
+
+def _named(name: str) -> str:
+    if name:
+        check_name("move", name)
+    return name
+
+
+def _expression(what: str, value: Any, *, angle: bool = False) -> Any:
+    value = typed(what, value) if angle else value
+    symbols = ca.symvar(value) if isinstance(value, ca.SX) else []
+    return plain(scalar(what, value, symbols, "parameter"))
+
+
+def _way(what: str, part: Move, place: Expression, way: _Sum) -> tuple[Expression, Expression]:
+    """How far a move goes, and where it ends."""
+    if part.by is not None:
+        by = _expression(f"{what}: by", part.by, angle=True)
+        return by, way.then(by)
+    to = _expression(f"{what}: to", part.to, angle=True)
+    way.terms[:] = [to]
+    negative = -place if isinstance(place, ca.SX) else float(-place)
+    return _Sum(to).then(negative), to
+
+
+def _timed(what: str, part: Move, by: Expression, common: Limits, demands: _Demanded) -> tuple[RestLaw, Expression]:
+    """The law of a move and its time, with what its limits demand."""
+    limits = _limits(what, part.limits if part.limits.told else common, demands)
+    if not limits.told and part.time is None:
+        raise DeclarationError(f"{what}: expected a time, or limits of speed, acceleration or jerk")
+    size = ca.fabs(ca.SX(by))
+    if limits.told and part.time is None:
+        demands.add(Demand(size, True, lambda _: f"{what}: it goes nowhere, so that limits give it no time; expected a dwell"))
+    told = frozenset(limits.told)
+    named = part.law if part.law is not None else "polynomial_345"
+    own = part.law is None or part.law in ("trapezoid", "s_curve")
+    if own and told == {"speed", "acceleration"} and part.law != "s_curve":
+        law = trapezoid_within(by, limits)
+    elif own and told == {"speed", "acceleration", "jerk"} and part.law != "trapezoid":
+        law = s_curve_within(by, limits)
+    else:
+        law = rest_law(what, named)
+    if "jerk" in told and isinstance(law.jerk, float) and math.isinf(law.jerk):
+        raise DeclarationError(f"{what}: accelerations of the law {law.name} jump, so no limit of jerk holds; expected another law")
+    if not limits.told:
+        return law, _expression(f"{what}: time", part.time)
+    least = plain(law.least_time(by, limits))
+    if part.time is None:
+        return law, least
+    time = _expression(f"{what}: time", part.time)
+
+    def refusal(number: Evaluator) -> str:
+        broken = ", ".join(f"{name} {readable(number(limit))}" for name, limit in limits.told.items())
+        asked, needed = f"{readable(abs(number(by)))} in {readable(number(time))} s", f"{number(least):.6g} s or more"
+        return f"{what}: {asked} by the law {law.name} breaks its limits ({broken}): it takes {needed}"
+
+    demands.add(Demand(time - (1.0 - _FORGIVEN) * least, False, refusal))
+    return law, time
+
+
+def _limits(what: str, limits: Limits, demands: _Demanded) -> Limits:
+    found: dict[str, Expression] = {}
+    for name, value in limits.told.items():
+        found[name] = _expression(f"{what}: {name}", value)
+        demands.add(Demand(found[name], True, _not_positive(f"{what}: {name}", found[name])))
+    return Limits(**found)
+
+
+def _filled(parts: list[Move | Dwell], times: list[Any], period: Any, demands: _Demanded) -> list[Expression]:
+    """The times of all parts, the dwell that has none filled up."""
+    known = [None if time is None else _expression(f"{_what(parts[k], k)}: time", time) for k, time in enumerate(times)]
+    lacking = [k for k, time in enumerate(known) if time is None]
+    told = [time for time in known if time is not None]
+    if period is None:
+        if lacking:
+            raise DeclarationError(f"{_what(parts[lacking[0]], lacking[0])}: expected a time, or a period of the moves to fill up")
+        return told
+    whole, total = _expression("moves: period", period), _Sum(0.0).then(*told)
+    if len(lacking) > 1:
+        raise DeclarationError(f"moves: {len(lacking)} dwells have no time; at most one can fill up the period")
+    if not lacking:
+        gap = ca.fabs(ca.SX(whole) - total)
+        demands.add(
+            Demand(
+                _FORGIVEN * ca.fabs(ca.SX(whole)) - gap,
+                False,
+                lambda n: f"moves: the times add up to {readable(n(total))} s, but the period is {readable(n(whole))} s",
+            )
+        )
+        return told
+    left = _Sum(whole).then(*(-time if isinstance(time, ca.SX) else float(-time) for time in told))
+    demands.add(
+        Demand(
+            left,
+            True,
+            lambda n: (
+                f"moves: the other parts take {readable(n(total))} s, which leaves nothing of the period of {readable(n(whole))} s"
+            ),
+        )
+    )
+    return [left if time is None else time for time in known]
+
+
+def _demand_time(what: str, time: Expression, demands: _Demanded) -> None:
+    demands.add(Demand(time, True, _not_positive(f"{what}: its time", time, " s")))
+
+
+def _not_positive(what: str, value: Expression, unit: str = "") -> Callable[[Evaluator], str]:
+    return lambda number: f"{what} must be positive, got {readable(number(value))}{unit}"
+
+
+def _demand_closure(start: Expression, end: Expression, advance: Expression, demands: _Demanded) -> None:
+    gap = ca.fabs(ca.SX(end) - start - advance)
+    size = ca.fabs(ca.SX(start)) + ca.fabs(ca.SX(end)) + ca.fabs(ca.SX(advance))
+
+    def refusal(number: Evaluator) -> str:
+        beyond = "" if isinstance(advance, float) and advance == 0.0 else f", {readable(number(advance))} beyond it"
+        return (
+            f"moves: a cyclic motion must end where it starts, at {readable(number(start))}{beyond}, but it ends at "
+            f"{readable(number(end))}; expected a move back, or advance={readable(number(end) - number(start))}"
+        )
+
+    demands.add(Demand(_FORGIVEN * size - gap, False, refusal))

@@ -1,0 +1,234 @@
+"""Motions that a controller has recorded or will play: columns of a CSV file, in its units, smoothed, as one smooth curve."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import DeclarationError, PathError, UnknownNameError, one_line
+from .curves import Curve, curve
+from .density import Array
+from .motion import Motion
+from .parts import Expression
+
+_UNITS = {
+    "rad": 1.0,
+    "deg": math.radians(1.0),
+    "turn": math.tau,
+    "m": 1.0,
+    "cm": 1e-2,
+    "mm": 1e-3,
+    "um": 1e-6,
+}
+_TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
+_DELIMITERS = (";", "\t", ",")
+_LEAST = 5
+"""So many rows are needed at least for four pieces."""
+
+_CLOSES = 6.0
+"""How many times the noise the ends of a cycle may differ."""
+
+_SAME = 1e-9
+"""Of the range: by how much they may differ where nothing is smoothed."""
+
+_FOURTH = 70.0
+"""The variance of the fourth difference of noise, over that of the noise: 1 + 16 + 36 + 16 + 1."""
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """Values over time as a file has them, times in s, values in their ``unit``, and how they are called."""
+
+    name: str
+    unit: str
+    t: Array
+    values: Array
+
+
+def read_samples(
+    path: str | Path,
+    *,
+    value: str | int = 2,
+    time: str | int = 1,
+    unit: str = "rad",
+    time_unit: str = "s",
+    smoothing: float | str = 0.0,
+    points: int | None = None,
+    periodic: bool = False,
+    period: float | None = None,
+    advance: float = 0.0,
+    ratio: Expression = 1.0,
+    offset: Expression = 0.0,
+    stretch: Expression = 1.0,
+) -> Motion:
+    """A motion through the values that a controller has recorded, or is to play, from a CSV file.
+
+    Parameters
+    ----------
+    path
+        The file. Columns are parted by semicolons, tabs or commas; where they are not parted by commas, a comma may be the decimal
+        point. Lines that begin with ``#`` are passed over.
+    value, time
+        The columns of the values and of the times: by their name in the first line, or by their number, from 1.
+    unit, time_unit
+        The units in the file: ``rad``, ``deg``, ``turn``, or ``m``, ``cm``, ``mm``, ``um``; ``s``, ``ms`` or ``us``.
+    smoothing
+        The noise of the values, in their unit: the law is the least bent curve whose distance from them, in the root mean square,
+        is so much. Zero passes through all of them; ``"estimated"`` takes the noise from their fourth differences, which is right
+        where times are even and noise is all that changes from one value to the next.
+    points
+        The curve is taken at so many even times, first and last included, and the law goes smoothly through these.
+    periodic, period, advance
+        Whether it goes on over and over. The last row then says again what the first says, or is ``advance`` beyond it [unit]. A
+        file that leaves out that row needs the ``period`` [time unit].
+    ratio, offset, stretch
+        Numbers or expressions of parameters: the law is offset [rad or m] + ratio times the values, and takes ``stretch`` times as
+        long.
+
+    Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for a line that is no row of numbers,
+    times that do not rise, and ends of a cycle that differ, and :class:`.UnknownNameError` for columns and units that are not.
+    """
+    path = Path(path)
+    units = ((unit, _UNITS, "unit"), (time_unit, _TIMES, "time unit"))
+    for name, valid, what in units:
+        if name not in valid:
+            raise UnknownNameError(what, str(name), valid, place=path.name)
+    recording = _read(path, time, value, unit, _TIMES[time_unit])
+    if periodic or period is not None:
+        recording = _closed(recording, None if period is None else period * _TIMES[time_unit], advance)
+    elif advance:
+        raise DeclarationError(f"{path.name}: advance is of a periodic motion; expected periodic=True")
+    noise = _noise(recording, smoothing)
+    return _law(recording, noise, points, periodic or period is not None, advance, (ratio, offset, stretch))
+
+
+def _read(path: Path, time: str | int, value: str | int, unit: str, second: float) -> Recording:
+    """The two columns of a file."""
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise PathError(f"{path}: cannot be read as text: {one_line(error)}") from None
+    kept = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
+    if not kept:
+        raise DeclarationError(f"{path.name}: it has no rows; expected columns of times and values")
+    delimiter = next((mark for mark in _DELIMITERS if mark in kept[0][1]), ",")
+    rows = [
+        (number, [cell.strip() for cell in row])
+        for (number, _), row in zip(kept, csv.reader([line for _, line in kept], delimiter=delimiter), strict=True)
+    ]
+    heads = rows[0][1]
+    if all(_number(cell, delimiter) is not None for cell in heads):
+        heads = []
+    wanted = [_column(path.name, column, heads, len(rows[0][1])) for column in (time, value)]
+    found: list[list[float]] = []
+    for number, row in rows[1 if heads else 0 :]:
+        cells = [row[column] if column < len(row) else "" for column in wanted]
+        numbers = [_number(cell, delimiter) for cell in cells]
+        for cell, read in zip(cells, numbers, strict=True):
+            if read is None:
+                raise DeclarationError(f"{path.name}, line {number}: expected a finite number, got {cell!r}")
+        if found and not numbers[0] > found[-1][0]:  # type: ignore[operator]
+            raise DeclarationError(f"{path.name}, line {number}: times must rise, but {cells[0]} follows {found[-1][0]:g}")
+        found.append([float(read) for read in numbers if read is not None])
+    if len(found) < _LEAST:
+        raise DeclarationError(f"{path.name}: expected at least {_LEAST} rows of numbers, got {len(found)}")
+    t, values = np.array(found).T
+    return Recording(path.name, unit, t * second, values)
+
+
+def _number(cell: str, delimiter: str) -> float | None:
+    try:
+        found = float(cell if delimiter == "," else cell.replace(",", "."))
+    except ValueError:
+        return None
+    return found if math.isfinite(found) else None
+
+
+def _column(place: str, column: str | int, heads: Sequence[str], count: int) -> int:
+    if isinstance(column, str):
+        if heads.count(column) != 1:
+            raise UnknownNameError("column", column, heads or [f"the numbers 1 to {count}"], place=place)
+        return heads.index(column)
+    if not 1 <= column <= count:
+        raise DeclarationError(f"{place}: column {column} is none of the {count} there are, numbered from 1")
+    return column - 1
+
+
+def _closed(recording: Recording, period: float | None, advance: float) -> Recording:
+    """A recording whose last row closes the cycle."""
+    if period is None:
+        return recording
+    t, values = recording.t, recording.values
+    end = t[0] + period
+    if not t[-1] < end:
+        lasts = f"its rows last {t[-1] - t[0]:.6g} s, but the period is {period:.6g} s"
+        raise DeclarationError(f"{recording.name}: {lasts}; expected the rows of one period")
+    return Recording(recording.name, recording.unit, np.append(t, end), np.append(values, values[0] + advance))
+
+
+def _noise(recording: Recording, smoothing: float | str) -> float:
+    """The noise that is to be smoothed away, in the unit of the values."""
+    if smoothing == "estimated":
+        return float(np.sqrt(np.mean(np.diff(recording.values, 4) ** 2) / _FOURTH))
+    if not isinstance(smoothing, (int, float)) or not 0.0 <= smoothing < math.inf:
+        raise DeclarationError(
+            f"{recording.name}: smoothing must be the noise [{recording.unit}], a number that is not negative, or 'estimated', "
+            f"got {smoothing!r}"
+        )
+    return float(smoothing)
+
+
+def _law(
+    recording: Recording, noise: float, points: int | None, periodic: bool, advance: float, scales: tuple[Expression, ...]
+) -> Motion:
+    t, values, size = recording.t, recording.values, _UNITS[recording.unit]
+    whole = float(t[-1] - t[0])
+    climb = advance / whole
+    level = values - climb * (t - t[0])
+    if periodic:
+        gap = float(level[-1] - level[0])
+        if abs(gap) > max(_CLOSES * noise, _SAME * float(np.ptp(values))):
+            beyond = f"{advance:g} {recording.unit} beyond the first" if advance else "the first"
+            raise DeclarationError(
+                f"{recording.name}: the last value of a periodic motion must be {beyond}, but it is off by {gap:.6g} "
+                f"{recording.unit}; expected advance, or the period of rows that do not close"
+            )
+        level[-1] = level[0]
+    found = _curve(recording.name, t, level, periodic, noise)
+    if points is not None:
+        if type(points) is not int or points < _LEAST:
+            raise DeclarationError(f"{recording.name}: points must be a whole number of at least {_LEAST}, got {points!r}")
+        even = np.linspace(t[0], t[-1], points)
+        found = _curve(recording.name, even, np.asarray(found(even)), periodic, 0.0)
+    off = float(np.abs(np.asarray(found(t)) - level).max())
+    ratio, offset, stretch = scales
+    start, rate = float(t[0]), climb * size
+
+    def graph(time: Any) -> Any:
+        at = time if isinstance(stretch, float) and stretch == 1.0 else time / stretch
+        value = size * found(at)
+        if rate:
+            value = value + rate * (at - start)
+        value = value if isinstance(ratio, float) and ratio == 1.0 else ratio * value
+        return value if isinstance(offset, float) and offset == 0.0 else offset + value
+
+    every = f", taken at {points} even times" if points else ""
+    smoothed = f", smoothed by {noise:.3g} {recording.unit}" if noise else ""
+    told = f"{t.size} samples of {recording.name} from {t[0]:g} to {t[-1]:g} s{', over and over' if periodic else ''}"
+    return Motion(graph, told=f"{told}{smoothed}{every}, at most {off:.3g} {recording.unit} off")
+
+
+def _curve(name: str, t: Array, values: Array, periodic: bool, noise: float) -> Curve:
+    values = values.copy()
+    if periodic:
+        values[-1] = values[0]
+    try:
+        return curve(t.tolist(), values.tolist(), periodic=periodic, smoothing=noise)
+    except DeclarationError as error:
+        raise DeclarationError(f"{name}: {one_line(error)}") from None

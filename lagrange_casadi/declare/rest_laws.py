@@ -1,0 +1,254 @@
+"""Laws of moves from rest to rest: the share of the way over the share of the time, of the literature on cams and servo drives.
+
+A law is s(u) with u from 0 to 1, s(0) = 0, s(1) = 1, at rest at both ends, and the same backwards: s(1 - u) = 1 - s(u). A move over
+a way h in a time T has the largest speed ``speed`` h/T, acceleration ``acceleration`` h/T^2 and jerk ``jerk`` h/T^3. R. L. Norton,
+*Cam Design and Manufacturing Handbook*, 2nd edition, 2009, chapter 3; VDI 2143, part 1.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from ..errors import DeclarationError, UnknownNameError
+from .parts import Expression
+
+_CUBE = 1.0 / 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class RestLaw:
+    """A law from rest to rest, ``shape(u)``, and its largest ``speed``, ``acceleration`` and ``jerk``, for one way in one time.
+
+    ``jerk`` is infinite where accelerations jump. ``begins`` are acceleration and jerk where the law begins; at its end they are
+    the same with the opposite sign, and the same. ``inner`` are places u within it at which they jump, each with by how much.
+    """
+
+    name: str
+    speed: Expression
+    acceleration: Expression
+    jerk: Expression
+    shape: Callable[[Any], Any]
+    begins: tuple[Expression, Expression] = (0.0, 0.0)
+    inner: tuple[tuple[Expression, tuple[Expression, Expression]], ...] = ()
+
+    def least_time(self, way: Expression, limits: Limits) -> Any:
+        """The shortest time [s] in which a way [rad or m] is made within limits."""
+        size, times = ca.fabs(ca.SX(way)), []
+        if limits.speed is not None:
+            times.append(self.speed * size / limits.speed)
+        if limits.acceleration is not None:
+            times.append(ca.sqrt(self.acceleration * size / limits.acceleration))
+        if limits.jerk is not None:
+            times.append((self.jerk * size / limits.jerk) ** _CUBE)
+        least = times[0]
+        for time in times[1:]:
+            least = ca.fmax(least, time)
+        return least
+
+
+@dataclass(frozen=True, eq=False)
+class Limits:
+    """What a move must keep to: the largest speed, acceleration and jerk, in rad or m and s; None is no limit."""
+
+    speed: Expression | None = None
+    acceleration: Expression | None = None
+    jerk: Expression | None = None
+
+    @property
+    def told(self) -> dict[str, Expression]:
+        """Those that there are, by name."""
+        each = {"speed": self.speed, "acceleration": self.acceleration, "jerk": self.jerk}
+        return {name: limit for name, limit in each.items() if limit is not None}
+
+
+def trapezoid(share: Expression = _CUBE) -> RestLaw:
+    """Constant acceleration, constant speed, constant deceleration: speeding up takes ``share`` of the time, 1/2 at most.
+
+    Raises :class:`.DeclarationError` for a number that is no such share.
+    """
+    _refuse_share("trapezoid: share", share, 0.5)
+    top, steep = 1.0 / (1.0 - share), 1.0 / (share * (1.0 - share))
+
+    def shape(u: Any) -> Any:
+        return _both_halves(u, lambda w: ca.if_else(w < share, steep * w * w / 2.0, top * (w - share / 2.0)))
+
+    inner = ((share, (-steep, 0.0)), (1.0 - share, (-steep, 0.0)))
+    return RestLaw("trapezoid", top, steep, math.inf, shape, (steep, 0.0), inner)
+
+
+def s_curve(share: Expression = _CUBE, rounding: Expression = 0.5) -> RestLaw:
+    """The S-curve of seven segments: speeding up takes ``share`` of the time, 1/2 at most; over ``rounding`` of that the
+    acceleration changes.
+
+    Raises :class:`.DeclarationError` for numbers that are no such shares.
+    """
+    _refuse_share("s_curve: share", share, 0.5)
+    _refuse_share("s_curve: rounding", rounding, 1.0)
+    third = share * rounding / 2.0
+    return _seven(1.0 - share, share - third, third)
+
+
+def s_curve_within(way: Expression, limits: Limits) -> RestLaw:
+    """The S-curve of the shortest time within all three limits: fewer than seven segments where a limit is not reached.
+
+    With a top speed v, acceleration a and jerk j it is a rectangle of h/v seconds, averaged over v/a and over j/a seconds.
+    """
+    assert limits.speed is not None
+    assert limits.acceleration is not None
+    assert limits.jerk is not None
+    size, jerk = ca.fabs(ca.SX(way)), limits.jerk
+    most = ca.fmin(ca.SX(limits.acceleration), ca.sqrt(limits.speed * jerk))
+    most = ca.fmin(most, (size * jerk * jerk / 2.0) ** _CUBE)
+    ramp = most * most / jerk
+    # The speed at which the way is used up by speeding up and slowing down.
+    top = ca.fmin(ca.SX(limits.speed), 2.0 * most * size / (ramp + ca.sqrt(ramp * ramp + 4.0 * most * size)))
+    each = size / top, top / most, most / jerk
+    whole = each[0] + each[1] + each[2]
+    return _seven(*(plain(part / whole) for part in each))
+
+
+def trapezoid_within(way: Expression, limits: Limits) -> RestLaw:
+    """The trapezoid of speed of the shortest time within a speed and an acceleration; a triangle where the speed is not reached."""
+    assert limits.speed is not None
+    assert limits.acceleration is not None
+    size = ca.fabs(ca.SX(way))
+    top = ca.fmin(ca.SX(limits.speed), ca.sqrt(limits.acceleration * size))
+    return trapezoid(plain((top / limits.acceleration) / (size / top + top / limits.acceleration)))
+
+
+def _seven(first: Expression, second: Expression, third: Expression) -> RestLaw:
+    """Of the shares of the time that the rectangle of speed and its two averages take, the longest first; their sum is one."""
+    top = 1.0 / first
+    steep = top / second
+    sharp = steep / third
+    ramp = second + third
+    end = top * ramp / 2.0  # the way of speeding up
+
+    def shape(u: Any) -> Any:
+        def half(w: Any) -> Any:
+            rising = sharp * w**3 / 6.0
+            x = w - third
+            steady = sharp * third**3 / 6.0 + x * (sharp * third * third / 2.0 + x * steep / 2.0)
+            left = ramp - w
+            fading = end - top * left + ca.if_else(left > 0.0, sharp * left**3 / 6.0, 0.0)
+            return ca.if_else(w < third, rising, ca.if_else(w < second, steady, fading))
+
+        return _both_halves(u, half)
+
+    places = (third, second, ramp)
+    inner = [(place, (0.0, -sharp if k < 2 else sharp)) for k, place in enumerate(places)]
+    inner += [(1.0 - place, (0.0, -jump[1])) for place, jump in reversed(inner)]
+    return RestLaw("s_curve", top, steep, sharp, shape, (0.0, sharp), tuple(inner))
+
+
+def _refuse_share(what: str, share: object, most: float) -> None:
+    if not isinstance(share, ca.SX) and not (isinstance(share, (int, float)) and 0.0 < share <= most):
+        raise DeclarationError(f"{what} must be above 0 and at most {most:g}, got {share!r}")
+
+
+def _both_halves(u: Any, half: Callable[[Any], Any]) -> Any:
+    """A law of which the first half is known."""
+    before = u < 0.5
+    way = half(ca.if_else(before, u, 1.0 - u))
+    return ca.if_else(before, way, 1.0 - way)
+
+
+def _modified_trapezoid(w: Any) -> Any:
+    c = 1.0 / (2.0 + math.pi)
+    rising = c * (2.0 * w - ca.sin(4.0 * math.pi * w) / (2.0 * math.pi))
+    x = w - 0.125
+    steady = c * (0.25 - 1.0 / (2.0 * math.pi) + x * (2.0 + 4.0 * math.pi * x))
+    y = w - 0.5
+    fading = 0.5 + c * (2.0 * (1.0 + math.pi) * y + ca.sin(4.0 * math.pi * y) / (2.0 * math.pi))
+    return ca.if_else(w < 0.125, rising, ca.if_else(w < 0.375, steady, fading))
+
+
+def _modified_sine(w: Any) -> Any:
+    c = 1.0 / (4.0 + math.pi)
+    rising = c * (math.pi * w - ca.sin(4.0 * math.pi * w) / 4.0)
+    y = w - 0.5
+    steady = 0.5 + c * (math.pi * y + 2.25 * ca.sin(4.0 * math.pi / 3.0 * y))
+    return ca.if_else(w < 0.125, rising, steady)
+
+
+_LAWS: dict[str, RestLaw] = {
+    law.name: law
+    for law in (
+        RestLaw(
+            "cycloidal",
+            2.0,
+            2.0 * math.pi,
+            4.0 * math.pi**2,
+            lambda u: u - ca.sin(2.0 * math.pi * u) / (2.0 * math.pi),
+            (0.0, 4.0 * math.pi**2),
+        ),
+        RestLaw(
+            "modified_sine",
+            4.0 * math.pi / (4.0 + math.pi),
+            4.0 * math.pi**2 / (4.0 + math.pi),
+            16.0 * math.pi**3 / (4.0 + math.pi),
+            lambda u: _both_halves(u, _modified_sine),
+            (0.0, 16.0 * math.pi**3 / (4.0 + math.pi)),
+        ),
+        RestLaw(
+            "modified_trapezoid",
+            2.0,
+            8.0 * math.pi / (2.0 + math.pi),
+            32.0 * math.pi**2 / (2.0 + math.pi),
+            lambda u: _both_halves(u, _modified_trapezoid),
+            (0.0, 32.0 * math.pi**2 / (2.0 + math.pi)),
+        ),
+        RestLaw(
+            "polynomial_345",
+            1.875,
+            10.0 / math.sqrt(3.0),
+            60.0,
+            lambda u: _both_halves(u, lambda w: w**3 * (10.0 + w * (6.0 * w - 15.0))),
+            (0.0, 60.0),
+        ),
+        RestLaw(
+            "polynomial_4567",
+            2.1875,
+            84.0 * math.sqrt(5.0) / 25.0,
+            52.5,
+            lambda u: _both_halves(u, lambda w: w**4 * (35.0 + w * (w * (70.0 - 20.0 * w) - 84.0))),
+        ),
+        RestLaw(
+            "simple_harmonic",
+            math.pi / 2.0,
+            math.pi**2 / 2.0,
+            math.inf,
+            lambda u: (1.0 - ca.cos(math.pi * u)) / 2.0,
+            (math.pi**2 / 2.0, 0.0),
+        ),
+    )
+}
+"""The laws that have no numbers of their own."""
+
+_SHAPED: dict[str, Callable[[], RestLaw]] = {"trapezoid": trapezoid, "s_curve": s_curve}
+
+LAWS = (*_LAWS, *_SHAPED)
+"""The names of all laws."""
+
+
+def rest_law(what: str, law: object) -> RestLaw:
+    """A law by its name, or one of :func:`trapezoid` and :func:`s_curve`. Raises :class:`DeclarationError`, naming ``what``."""
+    if isinstance(law, RestLaw):
+        return law
+    if not isinstance(law, str):
+        raise DeclarationError(f"{what}: law: expected a name, trapezoid(SHARE) or s_curve(SHARE, ROUNDING), got {law!r}")
+    if law in _SHAPED:
+        return _SHAPED[law]()
+    if law not in _LAWS:
+        raise UnknownNameError("law", law, LAWS, place=what)
+    return _LAWS[law]
+
+
+def plain(value: Any) -> Expression:
+    """A number where an expression is one."""
+    return float(value) if isinstance(value, ca.SX) and value.is_constant() else value
