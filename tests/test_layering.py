@@ -21,6 +21,7 @@ ORDER = (
     "system",
     "arithmetic",
     "geometry",
+    "beams",
     "declare",
     "equations",
     "summits",

@@ -8,6 +8,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..beams.told import told_beam
 from ..geometry.vectors import cross
 from .density import NumericDensity
 from .joints import Joint
@@ -176,11 +177,12 @@ def _described(
         if isinstance(body.mass, RigidMass):
             return {"length": length, "mass": number(body.mass.mass), "centre": centre(body.mass)}
         density = body.mass.at(number, length)
-        return {
+        found = {
             "length": length,
             "mass": density.mass,
             "density": {"breaks": list(density.breaks), "cells": [list(c) for c in density.cells]},
         }
+        return found if body.beam is None else found | {"beam": told_beam(body.beam, number)}
 
     def freedoms(joint: Joint) -> Description:
         if joint.turned is None:

@@ -1,10 +1,11 @@
-"""How the mass of a link is told: even, by a density, or by mass, centre and inertia."""
+"""How the mass of a link is told: even, by a density, by what it is made of, or by mass, centre and inertia."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from ..beams.beam import Beam
 from ..errors import DeclarationError
 from .density import Density, uniform
 from .parts import Expression, RigidMass
@@ -18,15 +19,20 @@ def matter_of(
     inertia: Any,
     checked: Callable[[str, Expression], Expression],
     rigid: Callable[[Any, Any], tuple[tuple[Expression, ...], Any]] | None = None,
+    beam: Beam | None = None,
 ) -> Density | RigidMass:
-    """The mass of a link by one of the three ways; ``checked`` takes what is said of an expression, and the expression.
+    """The mass of a link by one of the ways; ``checked`` takes what is said of an expression, and the expression.
 
     ``rigid`` reads a centre and moments of inertia; by default those of a plane, two places and one moment.
 
     Raises :class:`DeclarationError` for none of the ways, or more than one.
     """
+    if beam is not None and centre is None and mass is None and density is None:
+        return Density(beam.course.breaks, tuple(map(tuple, beam.masses())), per_length=True)
     if (mass is None) == (density is None):
         raise DeclarationError(f"{what}: give its mass, or a density")
+    if beam is not None and centre is not None:
+        raise DeclarationError(f"{what}: a beam has sections, and where centre and inertia are given there are none")
     if (centre is None) != (inertia is None) or (centre is not None and mass is None):
         raise DeclarationError(f"{what}: centre and inertia go together, and with a mass")
     if density is not None:
@@ -41,6 +47,15 @@ def matter_of(
         x, y = (checked(f"{what}: centre", c) for c in centre)
         return RigidMass(checked(f"{what}: mass", mass), (x, y), checked(f"{what}: inertia", inertia))
     return uniform(checked(f"{what}: mass", mass))
+
+
+def beam_of(what: str, beam: Beam | None, checked: Callable[[str, Expression], Expression]) -> Beam | None:
+    """What a link is made of, its dimensions looked at. Raises :class:`DeclarationError` for what is no beam."""
+    if beam is None:
+        return None
+    if not isinstance(beam, Beam):
+        raise DeclarationError(f"{what}: expected a beam of lagrange_casadi.beams, got {beam!r}")
+    return beam.mapped(lambda name, value: checked(f"{what}: {name} of its cross-section", value))
 
 
 def second_moments(inertia: Sequence[Sequence[Expression]]) -> list[list[Any]]:

@@ -13,6 +13,7 @@ from typing import Any, cast
 
 import casadi as ca
 
+from ..beams.beam import Beam
 from ..errors import DeclarationError
 from .density import Density
 from .expressions import check_line, check_name, typed
@@ -20,7 +21,7 @@ from .joints import Axis, Joint, JointKind
 from .kinks import refuse_kinks
 from .limits import check_connected, parameter_values
 from .line_loads import Between, Spread, line_load
-from .matter import matter_of
+from .matter import beam_of, matter_of
 from .measures import Measures
 from .ownership import Ownership
 from .parts import (
@@ -142,18 +143,19 @@ class Mechanism:
         density: Density | None = None,
         centre: tuple[Expression, Expression] | None = None,
         inertia: Expression = None,
+        beam: Beam | None = None,
     ) -> Link:
         """Declare a link of a length [m].
 
-        Its mass is one of: ``mass`` [kg] alone, a uniform rod; a ``density`` of :mod:`.density`; or ``mass``, ``centre`` (in the
-        link's axes [m]) and ``inertia`` about the centre [kg m^2], for a body whose sections are not wanted.
+        Its mass is one of: ``mass`` [kg] alone, a uniform rod; a ``density`` of :mod:`.density`; that of a ``beam`` of
+        :mod:`.beams` alone; or ``mass``, ``centre`` (in the link's axes [m]) and ``inertia`` about the centre [kg m^2], for a body
+        whose sections are not wanted.
         """
         self.own.free("link", name, self.bodies)
-        what = f"link '{name}'"
-        matter = matter_of(what, mass, density, centre, inertia, self.own.expression)
-        link = Link(name, self.own.expression(f"{what}: length", length), matter)
-        self.bodies[name] = link
-        return link
+        what, checked = f"link '{name}'", self.own.expression
+        beam = beam_of(what, beam, checked)
+        matter = matter_of(what, mass, density, centre, inertia, checked, beam=beam)
+        return cast(Link, self.bodies.setdefault(name, Link(name, checked(f"{what}: length", length), matter, beam)))
 
     def point_mass(self, name: str, mass: Expression) -> PointMass:
         """Declare a mass [kg] without extent, at a point; welded to a link it moves with the link."""
@@ -214,9 +216,7 @@ class Mechanism:
             raise DeclarationError(f"constraint '{name}' depends on rates; declare it with nonholonomic()")
         defaults = [parameter.default for parameter in self.parameters.values()]
         refuse_kinks(f"constraint '{name}'", phi, ca.vertcat(self.measures.places, self.time), self.symbols, defaults)
-        constraint = Constraint(name, phi)
-        self.constraints[name] = constraint
-        return constraint
+        return self.constraints.setdefault(name, Constraint(name, phi))
 
     def nonholonomic(self, name: str, expression: Any, *, replaces: Joint) -> Row:
         """Declare a non-holonomic constraint A(q) q' + b = 0 (paper eq. 3): an expression that is linear in rates and velocities.

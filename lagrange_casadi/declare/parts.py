@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from ..beams.beam import Beam
 from ..errors import ParameterError
 from ..geometry.vectors import Expression as Expression
 from ..geometry.vectors import Vector as Vector
@@ -115,11 +116,12 @@ class Link(Body):
     """A link: its axis runs from its base (station 0) to its tip (station ``length``).
 
     Its mass lies along the axis with a :class:`.Density`, which gives it a section law, or is known as a whole only
-    (:class:`RigidMass`), and then it has none.
+    (:class:`RigidMass`), and then it has none. ``beam`` says what it is made of, where that is told.
     """
 
     length: Expression
     mass: Density | RigidMass
+    beam: Beam | None = None
 
     @property
     def base(self) -> Point:

@@ -115,7 +115,10 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
             else [matter]
         )
         link = isinstance(body, Link)
-        yield f"{'link' if link else 'point mass'} '{body.name}'", [*([body.length] if isinstance(body, Link) else []), *made]
+        beam = body.beam if isinstance(body, Link) else None
+        made += [] if beam is None else [x for shape in beam.course.shapes() for x in shape.dimensions.values()]
+        told = [*([body.length] if isinstance(body, Link) else []), *made]
+        yield f"{'link' if link else 'point mass'} '{body.name}'", told
     for joint in mechanism.joints.values():
         places = [number for point in (joint.parent, joint.child) for number in point.place]
         yield f"joint '{joint.name}'", [*places, *joint.axis, joint.angle]
@@ -155,6 +158,7 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
     what = f"link '{body.name}'" if isinstance(body, Link) else f"point mass '{body.name}'"
     found: list[Demand] = []
     if isinstance(body, Link):
+        found += _of_beam(what, body)
         length = body.length
         found.append(Demand(length, True, lambda n: f"{what}: length must be positive, got {readable(n(length))} m"))
         if isinstance(body.mass, Density):
@@ -170,6 +174,16 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
         inertia = matter.inertia
         found.append(Demand(inertia, False, lambda n: f"{what}: inertia must not be negative, got {readable(n(inertia))} kg m^2"))
     return mass, found
+
+
+def _of_beam(what: str, link: Link) -> list[Demand]:
+    """That dimensions of its cross-section are some; between two breaks they are linear, and so are their demands."""
+
+    def demand(kind: str, value: Expression, words: str) -> Demand:
+        return Demand(value, True, lambda n: f"{what}: {words} of its {kind} must be positive, got {readable(n(value))}")
+
+    shapes = () if link.beam is None else link.beam.course.shapes()
+    return [demand(shape.kind, value, words) for shape in shapes for value, words in shape.demands()]
 
 
 def _of_inertia(what: str, matter: RigidMass) -> list[Demand]:

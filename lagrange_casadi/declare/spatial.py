@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..beams.beam import Beam
 from ..errors import DeclarationError
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import times
@@ -15,7 +16,7 @@ from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
 from .joints import IN_SPACE, Joint, JointKind, Triad
 from .line_loads import Between, Spread, line_load
-from .matter import matter_of
+from .matter import beam_of, matter_of
 from .measures import Measures
 from .mechanism import Mechanism
 from .parts import Body, Expression, Force, LineLoad, Link, Point, PointMass, Row, Torque, Vector
@@ -67,14 +68,15 @@ class SpatialMechanism(Mechanism):
         density: Density | None = None,
         centre: Vector | None = None,
         inertia: Any = None,
+        beam: Beam | None = None,
     ) -> Link:
         """Declare a link of a ``length`` [m], or one that lies ``between`` two places of the reference posture.
 
-        Its mass is one of: ``mass`` [kg] alone, a uniform slender rod; a ``density`` of :mod:`.density`, along a slender axis; or
-        ``mass``, ``centre`` [m] and ``inertia`` about the centre [kg m^2], three moments or a matrix of three rows, for a body
-        whose sections are not wanted. These are on the link's axes; of a link ``between`` places they are on the ground's, in the
-        reference posture. Its y axis is then the part across the link of the direction ``beside``, by default of the ground's axis
-        that is most across it.
+        Its mass is one of: ``mass`` [kg] alone, a uniform slender rod; a ``density`` of :mod:`.density`, along a slender axis;
+        that of a ``beam`` of :mod:`.beams` alone; or ``mass``, ``centre`` [m] and ``inertia`` about the centre [kg m^2], three
+        moments or a matrix of three rows, for a body whose sections are not wanted. These are on the link's axes; of a link
+        ``between`` places they are on the ground's, in the reference posture. Its y axis is then the part across the link of the
+        direction ``beside``, by default of the ground's axis that is most across it.
         """
         self.own.free("link", name, self.bodies)
         what = f"link '{name}'"
@@ -90,8 +92,9 @@ class SpatialMechanism(Mechanism):
             place, moments = self._vector(f"{what}: centre", centre), tensor(what, inertia, self.own.expression)
             return (place, moments) if reference is None else (reference.local(place), rotated(moments, reference))
 
-        matter = matter_of(what, mass, density, centre, inertia, self.own.expression, rigid)
-        link = Link(name, self.own.expression(f"{what}: length", length), matter)
+        beam = beam_of(what, beam, self.own.expression)
+        matter = matter_of(what, mass, density, centre, inertia, self.own.expression, rigid, beam)
+        link = Link(name, self.own.expression(f"{what}: length", length), matter, beam)
         self.bodies[name] = link
         if reference is not None:
             self.references[name] = reference

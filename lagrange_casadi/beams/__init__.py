@@ -1,0 +1,46 @@
+"""What links are made of: cross-sections, materials, and where stress concentrates."""
+
+from .beam import Beam, Notch
+from .material import Material, material
+from .properties import Fibre, Properties
+from .shape import (
+    Course,
+    Shape,
+    along,
+    box,
+    c_section,
+    ellipse,
+    given,
+    i_section,
+    polygon,
+    rectangle,
+    round_bar,
+    stepped,
+    t_section,
+    tapered,
+    tube,
+)
+
+__all__ = [
+    "Beam",
+    "Course",
+    "Fibre",
+    "Material",
+    "Notch",
+    "Properties",
+    "Shape",
+    "along",
+    "box",
+    "c_section",
+    "ellipse",
+    "given",
+    "i_section",
+    "material",
+    "polygon",
+    "rectangle",
+    "round_bar",
+    "stepped",
+    "t_section",
+    "tapered",
+    "tube",
+]

@@ -1,0 +1,95 @@
+"""What a link is made of: a cross-section along it, a material, and where stress concentrates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ..errors import DeclarationError
+from .material import Material
+from .shape import Course, Shape, course_of
+
+
+@dataclass(frozen=True)
+class Notch:
+    """A place where stress concentrates: the ratio ``at`` = xi/l, and the theoretical factors on nominal stress of axial force, of
+    bending, and of shear and torsion.
+
+    ``sensitivity``, from 0 to 1, is how much of it fatigue feels: K_f = 1 + q (K_t - 1).
+    """
+
+    at: float
+    axial: float = 1.0
+    bending: float = 1.0
+    shear: float = 1.0
+    sensitivity: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.at, (int, float)) and 0.0 <= self.at <= 1.0):
+            raise DeclarationError(f"notch: expected a ratio xi/l from 0 to 1, got {self.at!r}")
+        for name in ("axial", "bending", "shear"):
+            value = getattr(self, name)
+            if not (isinstance(value, (int, float)) and 1.0 <= value < math.inf):
+                raise DeclarationError(f"notch at xi/l = {self.at:g}: its {name} factor must be 1 or more, got {value!r}")
+        if not (isinstance(self.sensitivity, (int, float)) and 0.0 <= self.sensitivity <= 1.0):
+            raise DeclarationError(f"notch at xi/l = {self.at:g}: its sensitivity must be from 0 to 1, got {self.sensitivity!r}")
+
+
+@dataclass(frozen=True, eq=False)
+class Beam:
+    """A cross-section, a :class:`.Shape` or a :class:`.Course` of some, and a :class:`.Material`; notches along the link.
+
+    ``columns`` are the effective lengths of the link as a column over its length: where it bends along y, in the plane of motion of
+    a planar mechanism, and where it bends along z. By default joints tell them (:mod:`.buckling`).
+
+    Raises :class:`.DeclarationError` for what is none of these.
+    """
+
+    shape: Shape | Course
+    material: Material
+    notches: Sequence[Notch] = ()
+    columns: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        course_of("beam", self.shape)
+        if not isinstance(self.material, Material):
+            raise DeclarationError(f"beam: expected a material of lagrange_casadi.beams, got {self.material!r}")
+        object.__setattr__(self, "notches", tuple(self.notches))
+        for notch in self.notches:
+            if not isinstance(notch, Notch):
+                raise DeclarationError(f"beam: expected a notch of lagrange_casadi.beams, got {notch!r}")
+        if self.columns is not None:
+            pair = tuple(self.columns)
+            if len(pair) != 2 or not all(isinstance(k, (int, float)) and 0.0 < k < math.inf for k in pair):
+                raise DeclarationError(f"beam: expected two effective lengths, positive, got {self.columns!r}")
+            object.__setattr__(self, "columns", pair)
+
+    @property
+    def course(self) -> Course:
+        """How the cross-section goes along the link."""
+        return course_of("beam", self.shape)
+
+    def mapped(self, change: Callable[[str, Any], Any]) -> Beam:
+        """The same with other dimensions."""
+        return replace(self, shape=self.course.mapped(change))
+
+    def masses(self) -> list[list[Any]]:
+        """The mass per length [kg/m] between two breaks, as coefficients of rising powers of the ratio xi/l.
+
+        Dimensions are linear there, so areas are of degree two at most.
+        """
+        course, found = self.course, []
+        for a, b, (first, last) in zip(course.breaks, course.breaks[1:], course.cells, strict=False):
+            if first is last:
+                found.append([self.material.density * first.area])
+                continue
+            half = Shape(first.kind, {name: (x + last.dimensions[name]) / 2 for name, x in first.dimensions.items()})
+            start, stop = first.area, last.area
+            bend = 2 * (start + stop - 2 * half.area)
+            slope, width = stop - start - bend, b - a
+            # In powers of the ratio, not of what is beyond the break.
+            powers = (start - slope * a / width + bend * a * a / width**2, slope / width - 2 * bend * a / width**2, bend / width**2)
+            found.append([self.material.density * power for power in powers])
+        return found

@@ -1,0 +1,91 @@
+"""What a cross-section is in numbers or expressions: area, second moments, torsion, shear, and the fibres that are looked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+POISSON = 0.3
+"""Poisson's ratio in the coefficients of shear: from 0 to 0.5 they change by a twentieth."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fibre:
+    """A place of a cross-section whose stress is looked at: ``y`` and ``z`` from the centroid [m].
+
+    ``along_y`` and ``along_z`` are the shear stresses there, along y and along z, for a unit each of the shear force along y, the
+    shear force along z [1/m^2], and the torsional moment about the shear centre [1/m^3].
+    """
+
+    name: str
+    y: Any
+    z: Any
+    along_y: tuple[Any, Any, Any] = (0.0, 0.0, 0.0)
+    along_z: tuple[Any, Any, Any] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Properties:
+    """A cross-section about its centroid, on the link's axes y and z, in SI units.
+
+    ``iz`` is the integral of y^2, which bending in the plane of a planar mechanism sees, ``iy`` that of z^2, ``iyz`` that of y z.
+    ``torsion`` is Saint-Venant's constant, None where it is not known. ``shear_y`` and ``shear_z`` are the areas of Timoshenko's
+    beam. The shear centre is at (``centre_y``, ``centre_z``).
+    """
+
+    area: Any
+    iy: Any
+    iz: Any
+    fibres: tuple[Fibre, ...]
+    iyz: Any = 0.0
+    torsion: Any = None
+    shear_y: Any = None
+    shear_z: Any = None
+    centre_y: Any = 0.0
+    centre_z: Any = 0.0
+
+    @property
+    def wz(self) -> Any:
+        """The elastic modulus about z: iz over the largest distance of a fibre along y."""
+        return self.iz / _farthest([fibre.y for fibre in self.fibres])
+
+    @property
+    def wy(self) -> Any:
+        """The elastic modulus about y: iy over the largest distance of a fibre along z."""
+        return self.iy / _farthest([fibre.z for fibre in self.fibres])
+
+
+def symbolic(*values: Any) -> bool:
+    """Whether any of the values is an expression."""
+    return any(isinstance(value, ca.SX) for value in values)
+
+
+def larger(a: Any, b: Any) -> Any:
+    """The larger of two, of numbers, arrays or expressions."""
+    return ca.fmax(a, b) if symbolic(a, b) else np.maximum(a, b)
+
+
+def smaller(a: Any, b: Any) -> Any:
+    """The smaller of two."""
+    return ca.fmin(a, b) if symbolic(a, b) else np.minimum(a, b)
+
+
+def chosen(a: Any, b: Any, first: Any, second: Any) -> Any:
+    """``first`` where a is b or more, else ``second``."""
+    return ca.if_else(a >= b, first, second) if symbolic(a, b, first, second) else np.where(a >= b, first, second)
+
+
+def exponential(x: Any) -> Any:
+    """The exponential."""
+    return ca.exp(x) if symbolic(x) else np.exp(x)
+
+
+def _farthest(places: list[Any]) -> Any:
+    sizes = [larger(place, -place) for place in places]
+    found = sizes[0]
+    for size in sizes[1:]:
+        found = larger(found, size)
+    return found

@@ -1,0 +1,287 @@
+"""Cross-sections by their kind and dimensions, constant or changing along a link.
+
+Dimensions [m] are numbers or expressions in parameters. Heights are along the link's y, which in a planar mechanism is the axis n,
+in the plane of motion; widths are along its z. The centroid is on the link's axis.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..errors import DeclarationError
+from . import solid, walls
+from .properties import Fibre, Properties
+
+Demand = tuple[Any, str]
+"""What must be positive, and in words what it is."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A cross-section: its ``kind`` and its ``dimensions`` by name."""
+
+    kind: str
+    dimensions: Mapping[str, Any]
+
+    def properties(self, *, space: bool = True) -> Properties:
+        """Its properties; round ones have fewer fibres where bending is in one plane alone."""
+        return _FORMS[self.kind](dict(self.dimensions), space)
+
+    @property
+    def area(self) -> Any:
+        """Its area [m^2]."""
+        return _AREAS[self.kind](dict(self.dimensions))
+
+    def demands(self) -> Iterator[Demand]:
+        """What its dimensions demand."""
+        return _demands(self.kind, dict(self.dimensions))
+
+    def mapped(self, change: Callable[[str, Any], Any]) -> Shape:
+        """The same with other dimensions, by name and value."""
+        return Shape(self.kind, {name: change(name, value) for name, value in self.dimensions.items()})
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """How a cross-section goes along a link: between two ``breaks``, ratios xi/l, linear from one shape to another of its kind."""
+
+    breaks: tuple[float, ...]
+    cells: tuple[tuple[Shape, Shape], ...]
+
+    def mapped(self, change: Callable[[str, Any], Any]) -> Course:
+        """The same with other dimensions."""
+        made = {id(shape): shape.mapped(change) for cell in self.cells for shape in cell}
+        return Course(self.breaks, tuple((made[id(first)], made[id(last)]) for first, last in self.cells))
+
+    def shapes(self) -> Iterator[Shape]:
+        """Its shapes, each once."""
+        yield from {id(shape): shape for cell in self.cells for shape in cell}.values()
+
+
+def rectangle(height: Any, width: Any) -> Shape:
+    """A rectangle."""
+    return Shape("rectangle", {"height": height, "width": width})
+
+
+def round_bar(diameter: Any) -> Shape:
+    """A round bar."""
+    return Shape("round_bar", {"diameter": diameter})
+
+
+def tube(diameter: Any, wall: Any) -> Shape:
+    """A round tube, by its outer diameter and its wall."""
+    return Shape("tube", {"diameter": diameter, "wall": wall})
+
+
+def ellipse(height: Any, width: Any) -> Shape:
+    """An ellipse, by its two diameters."""
+    return Shape("ellipse", {"height": height, "width": width})
+
+
+def i_section(height: Any, width: Any, web: Any, flange: Any) -> Shape:
+    """An I, by its height, the width of its flanges, and the thickness of its web and of its flanges."""
+    return Shape("i_section", {"height": height, "width": width, "web": web, "flange": flange})
+
+
+def t_section(height: Any, width: Any, web: Any, flange: Any) -> Shape:
+    """A T, its flange on the side of +y."""
+    return Shape("t_section", {"height": height, "width": width, "web": web, "flange": flange})
+
+
+def c_section(height: Any, width: Any, web: Any, flange: Any) -> Shape:
+    """A C, its web on the side of -z."""
+    return Shape("c_section", {"height": height, "width": width, "web": web, "flange": flange})
+
+
+def box(height: Any, width: Any, web: Any, flange: Any) -> Shape:
+    """A box, by its outer height and width, and the thickness of its two webs and of its two flanges."""
+    return Shape("box", {"height": height, "width": width, "web": web, "flange": flange})
+
+
+def polygon(places: Sequence[tuple[Any, Any]]) -> Shape:
+    """A polygon by its corners (y, z), counter-clockwise from y to z; its centroid comes to lie on the link's axis.
+
+    Raises :class:`.DeclarationError` for less than three corners.
+    """
+    try:
+        corners = [(y, z) for y, z in places]
+    except (TypeError, ValueError):
+        raise DeclarationError(f"polygon: expected corners (y, z), got {places!r}") from None
+    if len(corners) < 3:
+        raise DeclarationError(f"polygon: expected three corners or more, got {len(corners)}")
+    return Shape("polygon", {f"{axis}{k}": x for k, corner in enumerate(corners, 1) for axis, x in zip("yz", corner, strict=True)})
+
+
+def given(
+    area: Any,
+    iz: Any,
+    iy: Any,
+    *,
+    top: Any,
+    side: Any,
+    bottom: Any = None,
+    iyz: Any = 0.0,
+    torsion: Any = None,
+    torsion_modulus: Any = None,
+    shear_y: Any = None,
+    shear_z: Any = None,
+) -> Shape:
+    """A cross-section by its properties, as tables of standards have them.
+
+    ``iz`` is the integral of y^2 [m^4], ``top`` and ``bottom`` the distances of the outermost fibres from the centroid along +y and
+    -y [m], ``side`` that along z. ``torsion`` is Saint-Venant's constant, ``torsion_modulus`` [m^3] what a torsional moment is
+    divided by for its largest shear stress; ``shear_y`` and ``shear_z`` [m^2] what shear forces are divided by for theirs, by
+    default two thirds of the area.
+    """
+    words = {"area": area, "iz": iz, "iy": iy, "iyz": iyz, "top": top, "bottom": top if bottom is None else bottom, "side": side}
+    if (torsion is None) != (torsion_modulus is None):
+        raise DeclarationError("given: torsion and torsion_modulus go together")
+    if torsion is not None:
+        words |= {"torsion": torsion, "torsion_modulus": torsion_modulus}
+    shears = {"shear_y": shear_y, "shear_z": shear_z}
+    return Shape("given", words | {name: 2 / 3 * area if value is None else value for name, value in shears.items()})
+
+
+def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
+    """Shapes of one kind at ratios xi/l from 0 to 1, dimensions linear between; where a ratio comes twice there is a step.
+
+    Raises :class:`.DeclarationError` for ratios that fall or do not reach from 0 to 1, and for shapes that do not fit together.
+    """
+    places = [float(ratio) for ratio in ratios]
+    if len(places) != len(shapes) or len(places) < 2:
+        raise DeclarationError(f"along: expected as many shapes as ratios, two or more, got {len(places)} and {len(shapes)}")
+    if any(not isinstance(shape, Shape) for shape in shapes):
+        raise DeclarationError(f"along: expected cross-sections, got {next(s for s in shapes if not isinstance(s, Shape))!r}")
+    if (places[0], places[-1]) != (0.0, 1.0) or any(b < a for a, b in itertools.pairwise(places)):
+        raise DeclarationError(f"along: ratios must rise from 0 to 1, got {', '.join(f'{place:g}' for place in places)}")
+    breaks, cells = [0.0], []
+    for (a, first), (b, last) in itertools.pairwise(zip(places, shapes, strict=True)):
+        if a == b:
+            continue
+        if (first.kind, list(first.dimensions)) != (last.kind, list(last.dimensions)):
+            raise DeclarationError(f"along: between xi/l = {a:g} and {b:g} a {first.kind} cannot become a {last.kind}; put a step")
+        breaks.append(b)
+        cells.append((first, last))
+    return Course(tuple(breaks), tuple(cells))
+
+
+def tapered(base: Shape, tip: Shape) -> Course:
+    """A cross-section whose dimensions are linear from those at the base to those at the tip."""
+    return along([0.0, 1.0], [base, tip])
+
+
+def stepped(steps: Sequence[float], shapes: Sequence[Shape]) -> Course:
+    """Constant cross-sections with steps between them, at ratios xi/l: one step fewer than shapes."""
+    if len(shapes) != len(steps) + 1:
+        raise DeclarationError(f"stepped: expected one step fewer than shapes, got {len(steps)} steps and {len(shapes)} shapes")
+    ends = [0.0, *steps, 1.0]
+    return along([x for pair in itertools.pairwise(ends) for x in pair], [shape for shape in shapes for _ in range(2)])
+
+
+def course_of(what: str, shape: object) -> Course:
+    """A shape as one that is constant along the link. Raises :class:`.DeclarationError` for what is none."""
+    if isinstance(shape, Shape):
+        return Course((0.0, 1.0), ((shape, shape),))
+    if not isinstance(shape, Course):
+        raise DeclarationError(f"{what}: expected a cross-section of lagrange_casadi.beams, got {shape!r}")
+    return shape
+
+
+def between(first: Shape, last: Shape, share: Any) -> Shape:
+    """The shape at a ``share`` of the way from one to another, a number or an array."""
+    if first is last:
+        return first
+    dimensions = {name: value + share * (last.dimensions[name] - value) for name, value in first.dimensions.items()}
+    return Shape(first.kind, dimensions)
+
+
+def kinds() -> tuple[str, ...]:
+    """The kinds of shapes."""
+    return tuple(_FORMS)
+
+
+def dimensions_of(kind: str) -> tuple[str, ...] | None:
+    """The names of the dimensions of a kind; None where they vary."""
+    return _NAMES.get(kind)
+
+
+_THIN = ("height", "width", "web", "flange")
+_NAMES = {
+    "rectangle": ("height", "width"),
+    "round_bar": ("diameter",),
+    "tube": ("diameter", "wall"),
+    "ellipse": ("height", "width"),
+    "i_section": _THIN,
+    "t_section": _THIN,
+    "c_section": _THIN,
+    "box": _THIN,
+}
+
+
+def _corners(d: Mapping[str, Any]) -> list[tuple[Any, Any]]:
+    return [(d[f"y{k}"], d[f"z{k}"]) for k in range(1, len(d) // 2 + 1)]
+
+
+def _given(d: Mapping[str, Any], _space: bool) -> Properties:
+    fibres = [
+        Fibre(f"corner {y_word} {z_word}", y, z)
+        for y, y_word in ((d["top"], "+y"), (-d["bottom"], "-y"))
+        for z, z_word in ((d["side"], "+z"), (-d["side"], "-z"))
+    ]
+    twist = 1 / d["torsion_modulus"] if "torsion" in d else 0.0
+    for sign in (1, -1) if "torsion" in d else (1,):
+        fibres.append(Fibre("inside, along y", 0.0, 0.0, along_y=(1 / d["shear_y"], 0.0, sign * twist)))
+        fibres.append(Fibre("inside, along z", 0.0, 0.0, along_z=(0.0, 1 / d["shear_z"], sign * twist)))
+    stiff = 5 / 6 * d["area"]
+    numbers = (d["area"], d["iy"], d["iz"], tuple(fibres), d["iyz"], d.get("torsion"))
+    return Properties(*numbers, shear_y=stiff, shear_z=stiff)
+
+
+_FORMS: dict[str, Callable[[dict[str, Any], bool], Properties]] = {
+    "rectangle": lambda d, _: solid.rectangle(**d),
+    "round_bar": lambda d, space: solid.ellipse(d["diameter"], d["diameter"], space=space),
+    "tube": lambda d, space: solid.tube(**d, space=space),
+    "ellipse": lambda d, space: solid.ellipse(**d, space=space),
+    "i_section": lambda d, _: walls.i_section(**d),
+    "t_section": lambda d, _: walls.t_section(**d),
+    "c_section": lambda d, _: walls.c_section(**d),
+    "box": lambda d, _: walls.box(**d),
+    "polygon": lambda d, _: solid.polygon(_corners(d)),
+    "given": _given,
+}
+
+_QUARTER_PI = 0.7853981633974483
+_AREAS: dict[str, Callable[[dict[str, Any]], Any]] = {
+    "rectangle": lambda d: d["height"] * d["width"],
+    "round_bar": lambda d: _QUARTER_PI * d["diameter"] ** 2,
+    "tube": lambda d: 4 * _QUARTER_PI * d["wall"] * (d["diameter"] - d["wall"]),
+    "ellipse": lambda d: _QUARTER_PI * d["height"] * d["width"],
+    "i_section": lambda d: 2 * d["width"] * d["flange"] + (d["height"] - 2 * d["flange"]) * d["web"],
+    "t_section": lambda d: d["width"] * d["flange"] + (d["height"] - d["flange"]) * d["web"],
+    "c_section": lambda d: 2 * d["width"] * d["flange"] + (d["height"] - 2 * d["flange"]) * d["web"],
+    "box": lambda d: 2 * (d["width"] * d["flange"] + (d["height"] - 2 * d["flange"]) * d["web"]),
+    "polygon": lambda d: solid.polygon_area(_corners(d)),
+    "given": lambda d: d["area"],
+}
+
+
+def _demands(kind: str, d: dict[str, Any]) -> Iterator[Demand]:
+    if kind == "polygon":
+        yield solid.polygon_area(_corners(d)), "area, of corners counter-clockwise,"
+        return
+    for name, value in d.items():
+        if name != "iyz":
+            yield value, name
+    if kind == "given":
+        yield d["iy"] * d["iz"] - d["iyz"] ** 2, "iy iz - iyz^2"
+    elif kind == "tube":
+        yield d["diameter"] - 2 * d["wall"], "inner diameter"
+    elif kind in ("i_section", "c_section", "box"):
+        yield d["height"] - 2 * d["flange"], "height between the flanges"
+        yield d["width"] - (2 if kind == "box" else 1) * d["web"], "width beside the web" + ("s" if kind == "box" else "")
+    elif kind == "t_section":
+        yield d["height"] - d["flange"], "height of the web"
+        yield d["width"] - d["web"], "width beside the web"
