@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lagrange_casadi import Mechanism, Scene, evaluate
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
 from lagrange_casadi.case import load_case
 from lagrange_casadi.motion import polynomial
 
@@ -38,6 +38,17 @@ def press(t=(0, 0.628, 9), wanted=("all",), unit="m"):
     m.prismatic("guide", m.ground, ram, axis=(0, 1))
     m.output("own", m.rate(drive), unit=unit)
     return evaluate(Scene(m, {"O": polynomial(0, 10)}, t=t, posture={"rod": 1.5}, wanted=list(wanted)), backend="vm")
+
+
+@functools.cache
+def snowed(space=False):
+    """A bar that turns under loads along a part of it, in the plane or in space."""
+    m = SpatialMechanism("snowed") if space else Mechanism("snowed")
+    bar = m.link("bar", length=m.parameter("l", 2.0, "m", low=0.0), mass=3.0)
+    m.revolute("O", m.ground, bar, **({"axis": (0, 0, 1)} if space else {}))
+    m.force("push", bar.at(0.7), x=1.0, y=20.0)
+    m.line_load("snow", bar, x=(1.0, 2.0), y=(-40.0, 0.0), **({"z": (5.0, 60.0)} if space else {}), between=(0.3, 1.4))
+    return evaluate(Scene(m, {"O": polynomial(0, 3)}, t=(0, 1, 9)), backend="vm")
 
 
 def hostile():

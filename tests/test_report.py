@@ -1,5 +1,6 @@
 """A report's page: it holds the solution's numbers to the last bit, no name of a user is markup, and it is whole or not there."""
 
+import functools
 import json
 import re
 from dataclasses import replace
@@ -9,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from drawn_scenes import every_kind
-from reports import HOSTILE, held, hostile, press, solved
+from reports import HOSTILE, held, hostile, press, snowed, solved
 
 from lagrange_casadi import evaluate, load, save, sweep
 from lagrange_casadi.case import load_case
@@ -37,10 +38,13 @@ def test_charts_hold_the_solution_to_the_last_bit(name):
             assert (places is None) == (series["places"] is None)
 
 
-@pytest.mark.parametrize("name", ["quick_return", "excavator", "engine", "rssr", "delta"])
-def test_the_section_law_of_a_page_is_that_of_the_solution(name):
+LAWS = {name: functools.partial(solved, name) for name in ("quick_return", "excavator", "engine", "rssr", "delta")}
+
+
+@pytest.mark.parametrize("what", [*LAWS, "loads along a link", "loads along a link in space"])
+def test_the_section_law_of_a_page_is_that_of_the_solution(what):
     """Summed up as the viewer does: terms, and what acts beyond a section at stations, which may slide."""
-    solution = solved(name)
+    solution = LAWS[what]() if what in LAWS else snowed(what.endswith("space"))
     found, array = held(page(solution))
     assert [entry["link"] for entry in found["sections"]] == list(solution.links_with_sections)
     for entry in found["sections"]:

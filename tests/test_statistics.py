@@ -11,10 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mechanisms import parallelogram, slider_crank
 
-from lagrange_casadi import LagrangeCasadiError, evaluate, load_case, refine, sweep
+from lagrange_casadi import LagrangeCasadiError, Mechanism, Scene, SpatialMechanism, evaluate, load_case, refine, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import UnknownNameError
 from lagrange_casadi.instants.statistics import Statistics
+from lagrange_casadi.motion import polynomial
 from lagrange_casadi.study.peaks import resultants
 
 pytestmark = pytest.mark.quick
@@ -148,6 +149,21 @@ def test_run_writes_rows(here, capsys, monkeypatch):
     assert [float(row[0]) for row in rows] == found.t.tolist()
     assert [float(row[1]) for row in rows] == found.effort("O").tolist()
     assert {len(row) for row in rows} == {len(head)} == {2 + 3 * 3}
+
+
+@pytest.mark.parametrize("kind", [Mechanism, SpatialMechanism])
+def test_a_load_at_the_tip_is_seen_where_a_force_is_smallest(kind):
+    """Between the load and the tip there is no section at which it is not felt: the pull is nowhere less than at the tip."""
+    m = kind("pulled")
+    length = m.parameter("l", 2.0, "m")
+    bar = m.link("bar", length=length, mass=3.0)
+    m.revolute("O", m.ground, bar, **({"axis": (0, 0, 1)} if kind is SpatialMechanism else {}))
+    m.force("pull", bar.at(length * 1.0), x=200.0, y=-400.0)
+    solution = evaluate(Scene(m, {"O": polynomial(0, -0.3)}, t=(0, 1, 9)), backend="vm")
+    for force in solution.table.forces:
+        smallest = solution.section("bar").law.on_grid(force, np.linspace(0.0, 1.0, 101)).min()
+        assert solution.statistics(f"section:bar:{force}").smallest.value == pytest.approx(smallest, rel=1e-12)
+    assert solution.statistics("section:bar:axial").smallest.value > 199.0
 
 
 def test_rows_have_a_place_of_their_own(here, capfd):

@@ -15,26 +15,17 @@ import numpy as np
 from ..arithmetic.compensated import Precision
 from ..declare.expressions import check_line
 from ..declare.scene import Scene
-from ..equations.derive import assembled, derive
-from ..equations.fingerprint import declaration
-from ..equations.scene_graph import SceneGraph
-from ..errors import CertificateError, DeclarationError, PathError
-from ..evaluate import checked_span, evaluate
-from ..instants.determinacy import determinate
-from ..instants.from_table import drive_of, table_of
+from ..errors import DeclarationError, PathError
 from ..instants.rung import Rung
-from ..judge.certificate import failure
 from ..system.publish import check_writable, filling
 from ..version import __version__
 from .companions import companions
-from .contract import Contract, contract
-from .data import check_size
+from .contract import Contract
 from .fmu import check_tools
 from .fmu import fmu as archive
-from .golden import golden
 from .header import header
-from .program import program
 from .source import Source
+from .sourced import sourced
 
 LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 """Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""
@@ -42,8 +33,6 @@ LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 MANIFEST, SCHEMA = "export.json", "lagrange-casadi export"
 _BUILD = "build"
 """Where README says to build: no obstacle to exporting once more, nor touched by it."""
-
-_ENOUGH = 8
 
 
 def export(
@@ -92,40 +81,17 @@ def export(
     check_writable(folder, folder=True)
     if fmu:
         check_tools()
-    values = scene.mechanism.values(parameters)
-    p = np.array(list(values.values()))
-    scene = assembled(scene, values, wanted, iterate=newton is not None)
-    graph = derive(scene, wanted, iterate=newton is not None)
-    if not graph.driven:
-        raise DeclarationError(f"export: '{scene.mechanism.name}' has no drive, and C without inputs computes nothing; evaluate it")
-    # What rounding alone makes of it: all steps that loops want, and no table.
-    enough = None if newton is None else max(newton, _ENOUGH)
-    checked_span(scene, scene.timing(), values)
-    instants = scene.instants(scene.timing(), values).t
-    graph, left_open = determinate(graph, instants, p, telling=table is None)
-    exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm", newton=enough)
-    if exact.failed:
-        raise CertificateError(f"cannot export {name or scene.mechanism.name}: {failure(exact)}")
-    plain = newton == enough and table is None
-    solution = exact
-    if not plain:
-        # It is held to the exact one, and as far off as that was asked for.
-        words: dict[str, Any] = {"parameters": values, "wanted": wanted, "newton": newton, "table": table}
-        solution = evaluate(scene, **words, backend="vm", certificate=False)
-    read = None if table is None else (drive_of(graph), table_of(graph, solution.t, p, rung))
-    agreed = contract(graph, name or scene.mechanism.name, precision, solution, left_open, fixed=table is not None)
-    emitted = program(graph, precision, newton, p, read)
-    check_size(emitted, LARGEST[precision] if largest is None else largest)
-    guess = graph.newton.guess if graph.newton is not None and read is None else ()
-    vectors = golden(graph, agreed, solution, exact, p)
-    source = Source(agreed, emitted, _hash(graph, values), guess, rung.options, values, vectors)
+    source = sourced(
+        scene, name or scene.mechanism.name, parameters, wanted, rung, LARGEST[precision] if largest is None else largest
+    )
+    agreed = source.contract
     texts = {f"{agreed.prefix}.h": header(source), f"{agreed.prefix}.c": source.code}
     texts |= companions(source)
     files = {file: text.encode() for file, text in texts.items()}
     unit = f"{agreed.prefix}.fmu"
     known = _check_free(folder, agreed.prefix, [*files, *([unit] if fmu else [])], force=force)
     if fmu:
-        files[unit] = archive(source, p)
+        files[unit] = archive(source, np.array(list(source.values.values())))
     files[MANIFEST] = _manifest(source, files).encode()
     with filling(folder) as draft:
         for file, content in files.items():
@@ -133,12 +99,6 @@ def export(
     for stale in known - files.keys():
         (folder / stale).unlink()
     return agreed
-
-
-def _hash(graph: SceneGraph, values: Mapping[str, float]) -> str:
-    """The hash of what is declared, wanted and set."""
-    declared = declaration(graph.scene, graph.wanted) or graph.dumps()
-    return hashlib.sha256("\0".join([declared, json.dumps(values)]).encode()).hexdigest()[:32]
 
 
 def _manifest(source: Source, files: Mapping[str, bytes]) -> str:

@@ -262,7 +262,8 @@ class SectionLaw:
         values[:, 3::2] = self.at(force, places[:, 3::2], side="base")
         inner = np.sort(np.stack([still, *stations, still + 1.0], axis=1), axis=1)
         low, high = inner[:, :-1], inner[:, 1:]
-        seen = [low + high < 2 * np.clip(load.station, 0.0, 1.0)[:, None] for load in self.loads]
+        acting = [np.clip(load.station, 0.0, 1.0)[:, None] for load in self.loads]
+        seen = [(low + high < 2 * station) | ((low >= 1.0) & (station >= 1.0)) for station in acting]
 
         def within(name: str, u: Array) -> Array:
             if len(parts := self._parts(name)) > 1:

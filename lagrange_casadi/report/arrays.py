@@ -14,14 +14,19 @@ from ..declare.density import Array
 
 @dataclass(eq=False)
 class Arrays:
-    """Arrays that are added one by one, each of which gets a number; one whose values are all the same takes no room."""
+    """Arrays that are added one by one, each of which gets a number; one whose values are all the same takes no room.
+
+    ``of`` has for each the full names of the outputs that it is, or the size of; none where it is anything else.
+    """
 
     places: list[dict[str, Any]] = field(default_factory=list)
+    of: list[tuple[str, ...]] = field(default_factory=list)
     _blocks: list[Array] = field(default_factory=list)
     _size: int = 0
 
-    def add(self, values: Array) -> int:
+    def add(self, values: Array, *of: str) -> int:
         """Take an array (n,), and return its number. Values that are not finite become NaN."""
+        self.of.append(of)
         values = np.where(np.isfinite(values), np.asarray(values, np.float64), np.nan) + 0.0
         if values.size and np.isfinite(values[0]) and (values == values[0]).all():
             self.places.append({"count": values.size, "value": float(values[0])})

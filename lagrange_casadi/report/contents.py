@@ -164,7 +164,8 @@ def _series(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) ->
         values, places = solution.extremes(output)
         words, unit = what(output, solution.table), solution.unit(output)
         along = None if places is None else arrays.add(places[chosen])
-        yield Series(str(output), output.group, output.part, words, unit, arrays.add(values[chosen]), along)
+        of = map(str, solution.made_of(output)) if places is None else ()
+        yield Series(str(output), output.group, output.part, words, unit, arrays.add(values[chosen], *of), along)
     for output, values in _residuals(solution):
         yield Series(str(output), output.group, "", what(output, solution.table), "1", arrays.add(values[chosen]))
 

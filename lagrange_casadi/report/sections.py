@@ -48,29 +48,41 @@ def section_entries(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Ar
     for link in solution.links_with_sections:
         law, table = solution.section(link).law, solution.table
         basis = law.basis(xi)
-        columns = {name: arrays.add(values[chosen]) for name, values in law.coefficients.items()}
+
+        def added(output: Output, chosen: npt.NDArray[np.intp] = chosen) -> int:
+            return arrays.add(solution.outputs[output][chosen], str(output))
+
+        columns = {name: added(Output("law", link, name)) for name in law.coefficients}
         of_force, of_moment = ([arrays.add(row) for row in rows] for rows in (basis.force, basis.bending))
         loads = [
-            {"name": load.name} | {member: arrays.add(getattr(load, member)[chosen]) for member in table.station}
+            {"name": load.name} | {member: added(Output("station", link, member, load.name)) for member in table.station}
             for load in law.loads
         ]
+        spread = {
+            direction: [
+                added(Output("spread", link, direction, load.name, power)) for load in law.spreads for power in range(load.powers)
+            ]
+            for direction in table.spread
+        }
         forces = []
         for name in table.forces:
             output = Output("section", link, name)
             rows = of_moment if name in table.sections and table.sections[name].arm else of_force
-            made = _made(name, table, columns, rows)
+            made = _made(name, table, columns, spread, rows)
             words = what(output, table), solution.unit(output), not solution.determined(output)
             forces.append(asdict(Force(name, *words, **made)))
         yield {"link": link, "length": law.length, "xi": arrays.add(xi), "forces": forces, "loads": loads}
 
 
-def _made(name: str, table: Table, columns: Mapping[str, int], rows: Sequence[int]) -> dict[str, Any]:
+def _made(
+    name: str, table: Table, columns: Mapping[str, int], spread: Mapping[str, Sequence[int]], rows: Sequence[int]
+) -> dict[str, Any]:
     """What a force is made of."""
     terms = table.sections.get(name)
     if terms is None:
         return {"parts": table.parts("section", name)}
-    signs = [1] + [terms.arm or 1] * (len(terms.coefficients) - 1)
-    told = zip(terms.coefficients, rows, signs, strict=False)
-    summed = tuple((columns[coefficient], row, sign) for coefficient, row, sign in told)
+    factors = [columns[coefficient] for coefficient in terms.coefficients] + list(spread.get(terms.spread, ()))
+    signs = [1] + [terms.arm or 1] * (len(factors) - 1)
+    summed = tuple(zip(factors, rows, signs, strict=False))
     across = table.sections[terms.shear].acting if terms.arm else ""
     return {"terms": summed, "acting": terms.acting, "across": across, "arm": terms.arm}
