@@ -215,6 +215,19 @@ def test_products_with_constants(precision, number, one):
 
 
 @both
+@pytest.mark.parametrize("name", [*OPERATIONS, "reduced"])
+@given(parts, parts)
+def test_constants_are_what_numbers_are_at_run_time(name, precision, one, two):
+    """CasADi folds them in doubles: in single precision they lost their rests, and were other numbers than those of a motion."""
+    operation = {**OPERATIONS, **PHASES}[name][0]
+    (x, _), (y, _) = pair(precision, one), pair(precision, two)
+    folded = operation(Pairs(precision), *(Pair(ca.SX(high), ca.SX(low)) for high, low in (x, y)))
+    found = [float(folded.high), 0.0 if folded.low is None else float(folded.low)]
+    at_run_time = of_pairs(operation, precision) if name in PHASES else function(name, precision)
+    assert found == run(at_run_time, precision, *x, *y)
+
+
+@both
 def test_a_number_alone_is_taken_as_exact(precision):
     """Sums and products of single numbers, whose pairs they then are, without a rounding."""
     x, y = ca.SX.sym("x"), ca.SX.sym("y")

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from compiled import EVALUATED, HARNESS, cc, compilers, present, told
+from conftest import SPATIAL
 from mechanisms import sampled_cam, slider_crank, spline_arm, truss_platform
 
 from lagrange_casadi import Mechanism, Scene, export, load_case, motion
@@ -72,6 +73,25 @@ def test_the_self_test_passes_under_sanitizers(name, options, tmp_path):
     ran = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert "0 wrong" in ran.stdout
+
+
+@pytest.mark.sampled(16)
+@pytest.mark.parametrize("precision", ["double", "single"])
+@pytest.mark.parametrize("name", SPATIAL)
+def test_mechanisms_in_space_pass_their_self_test(name, precision, tmp_path):
+    assert "0 wrong" in self_tested(load_case(name).scene, precision, tmp_path)
+
+
+def test_a_product_of_two_roundings_is_allowed_for(tmp_path):
+    """In single precision it is as much larger as the square of its roundings: the square of a shaft's rate across its axis."""
+    assert "0 wrong" in self_tested(load_case("cardan_shaft").scene, "single", tmp_path, wanted=["section:tube"])
+
+
+def self_tested(scene, precision, folder, **options):
+    """What the self-test of an exported folder says."""
+    made = export(scene, folder, precision=precision, **options)
+    assert cc(["cc", "-std=c99", "-O1", "-ffp-contract=off"], folder, f"{made.prefix}.c", "selftest.c").returncode == 0
+    return subprocess.run([folder / "program"], capture_output=True, text=True, check=False).stdout
 
 
 def test_the_self_test_passes_under_valgrind(tmp_path):

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import CASES
+from conftest import CASES, SPATIAL
 from importer import Instance, refusing, robot, signals, simulated, windy
 from machines import elsewhere
 from mechanisms import sampled_cam
@@ -13,9 +13,11 @@ from mechanisms import slider_crank as free
 from lagrange_casadi import derive, evaluate, load_case
 from lagrange_casadi.codegen import find_compiler
 from lagrange_casadi.export import export
+from lagrange_casadi.export.golden import ALLOWED
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy, of the extra 'fmu', is not installed")
 fmi2 = pytest.importorskip("fmpy.fmi2")
+validate_fmu = pytest.importorskip("fmpy.validation").validate_fmu
 pytestmark = pytest.mark.skipif(find_compiler() is None, reason="there is no C compiler to build an FMU with")
 
 WITHIN = 1e-12
@@ -31,7 +33,7 @@ SCENES = {
     "cam": sampled_cam,
     "planetary": elsewhere,
 }
-GUIDED = {"excavator": lambda: load_case(CASES / "excavator").scene}
+GUIDED = {name: lambda name=name: load_case(CASES / name).scene for name in ("excavator", *SPATIAL)}
 
 
 @pytest.fixture(scope="session")
@@ -66,8 +68,6 @@ def assert_alike(found, solution, names, rows=slice(None), within=WITHIN):
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", SCENES)
 def test_nothing_is_wrong_with_it(unit, name):
-    from fmpy.validation import validate_fmu
-
     assert validate_fmu(str(unit(name)[1])) == []
 
 
@@ -99,6 +99,22 @@ def test_the_motion_of_what_is_guided_is_an_input(unit):
     }
     assert "motion/bucket.angle_rate" in poses
     assert_alike(simulated(path, solution, **poses), solution, outputs(path))
+
+
+@pytest.mark.sampled(8)
+@pytest.mark.parametrize("name", SPATIAL)
+def test_mechanisms_in_space(unit, name):
+    """Drives of all kinds, poses that are given, loops of closed forms and iterated ones; what is zero may be rounding."""
+    scene, path = unit(name)
+    solution = evaluate(scene)
+    assert validate_fmu(str(path)) == []
+    for kind, ahead in (("ModelExchange", 0), ("CoSimulation", 1)):
+        found = simulated(path, solution, kind, ahead=ahead)
+        for told in outputs(path):
+            own = told.replace("/", ":")
+            expected = solution.series[own]
+            gap = np.abs(found[told] - expected)[ahead:].max()
+            assert gap <= WITHIN * np.abs(expected).max() + ALLOWED * solution.errors[own], told
 
 
 CHANGES = {"slider_crank": {"r": 0.08, "m3": 0.4}, "robot": {"shin": 0.29, "mass": 2.0}, "windy": {"gust": 9.0}}

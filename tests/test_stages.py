@@ -1,7 +1,9 @@
 """Phases that outlast any number of turns, against the scene's own graphs in 50 digits."""
 
+import dataclasses
 import functools
 import math
+from fractions import Fraction
 
 import casadi as ca
 import numpy as np
@@ -12,7 +14,8 @@ from estimates import kind as kind_of
 from mechanisms import counting, four_bar, harmonics, sampled, slider_crank
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate, load_case
-from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, plain, turns_many
+from lagrange_casadi.arithmetic.interpret import interpret, numpy_arithmetic
+from lagrange_casadi.codegen.stages import FEW_TURNS, compensated, controlled, plain, turns_many
 from lagrange_casadi.declare.motion import expression, harmonic, polynomial, samples
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.instants.backends import run
@@ -348,6 +351,21 @@ def test_from_few_turns_to_many():
 def test_what_counts(scene, instants, expected):
     graph = derive(scene(), ["load:load", "effort"])
     assert turns_many(graph, np.linspace(*instants, 101), values(graph)) is expected
+
+
+def test_fixed_parameters_keep_the_phase_of_a_motion():
+    """Numbers for parameters that come after the arithmetic of pairs is written would be folded in doubles: rests were lost."""
+    m = Mechanism("arm")
+    speed = m.parameter("speed", 7.3, "rad/s")
+    m.revolute("O", m.ground, m.link("arm", length=0.5, mass=1.0))
+    law = controlled(derive(Scene(m, {"O": polynomial(0.0, speed)}), ["effort"]), "single", (7.3,)).law
+    single = dataclasses.replace(numpy_arithmetic(), constant=np.float32)
+    for t in (1.1, 1e5 / 7, 1e6 / 3):
+        high = np.float32(t)
+        rest = np.float32(t - float(high))
+        found = interpret(law, [[high, rest], [np.float32(7.3)]], single)[0]
+        exact = Fraction(7.3) * (Fraction(float(high)) + Fraction(float(rest)))
+        assert abs(sum(Fraction(float(part)) for part in found) - exact) < 1e-13 * abs(exact)
 
 
 def test_what_cannot_be_followed_is_not_in_single():

@@ -90,6 +90,21 @@ def test_two_worker_processes_give_the_same_bytes(slider_crank, two_workers, who
     assert logging.getLogger("distributed").disabled == level
 
 
+SPACE = {
+    "rssr": {"grid": {"r": (0.05, 0.1, 60)}, "wanted": ["effort"]},
+    "cardan_shaft": {"grid": {"aside": (0.02, 0.1, 60)}, "wanted": ["effort"]},
+    "spatial_slider_crank": {"grid": {"l": (0.4, 0.5, 60)}, "wanted": ["effort", "section:rod"], "xi": (0, 1, 5)},
+}
+"""Loops of closed forms, iterated loops, and the peaks of resultants along a link."""
+
+
+@pytest.mark.parametrize("name", [*SPACE][:1] + [pytest.param(name, marks=pytest.mark.long) for name in [*SPACE][1:]])
+def test_mechanisms_in_space_give_the_same_bytes_too(name, two_workers, tmp_path):
+    case, asked = load_case(name), SPACE[name] | {"t": (0, 0.1, 17)}
+    local = sweep(case, **asked, out=tmp_path / "here.h5").path.read_bytes()
+    assert sweep(case, **asked, out=tmp_path / "there.h5", dask=two_workers).path.read_bytes() == local
+
+
 def test_ctrl_c_commits_what_is_under_way(slider_crank, two_workers, whole, tmp_path):
     path, asked = tmp_path / "x.h5", []
 

@@ -39,26 +39,6 @@ def closed(x: Any) -> Any:
     return ca.copysign(x, x)
 
 
-def _plus(a: Any, b: Any) -> Any:
-    return closed(a + b)
-
-
-def _minus(a: Any, b: Any) -> Any:
-    return closed(a - b)
-
-
-def _times(a: Any, b: Any) -> Any:
-    return closed(a * b)
-
-
-def _over(a: Any, b: Any) -> Any:
-    return closed(a / b)
-
-
-def _negative(a: Any) -> Any:
-    return closed(-a)
-
-
 @dataclass(frozen=True, eq=False)
 class Pair:
     """high + low, expressions of scalars; ``low`` is None where the value is exact. ``number`` is the value where it is known."""
@@ -70,7 +50,7 @@ class Pair:
     @property
     def value(self) -> Any:
         """The one number that is nearest."""
-        return self.high if self.low is None else _plus(self.high, self.low)
+        return self.high if self.low is None else closed(self.high + self.low)
 
 
 @dataclass(frozen=True)
@@ -104,10 +84,10 @@ class Pairs:
             ca.OP_SIN: self.sine,
             ca.OP_COS: self.cosine,
             ca.OP_TAN: lambda x: self.divide(self.sine(x), self.cosine(x)),
-            ca.OP_FABS: _size,
-            ca.OP_COPYSIGN: lambda x, y: _signed(_size(x), y.value),
-            ca.OP_FLOOR: _floor,
-            ca.OP_CEIL: lambda x: self.negate(_floor(self.negate(x))),
+            ca.OP_FABS: self._size,
+            ca.OP_COPYSIGN: lambda x, y: self._signed(self._size(x), y.value),
+            ca.OP_FLOOR: self._floor,
+            ca.OP_CEIL: lambda x: self.negate(self._floor(self.negate(x))),
             ca.OP_FMOD: self.remainder,
             ca.OP_REMAINDER: self.nearest_remainder,
             ca.OP_FMIN: lambda x, y: self._either(self._below(x, y), x, y),
@@ -116,7 +96,7 @@ class Pairs:
             ca.OP_ASSIGN: lambda x: x,
             ca.OP_CALL: lambda lookup, x: Pair(lookup.function(x.value)),
         }
-        return {code: _rounded(code) for code in _UNARY + _BINARY} | rules
+        return {code: self._once(code) for code in _UNARY + _BINARY} | rules
 
     def constant(self, value: float) -> Pair:
         """A double, in as many parts as it takes."""
@@ -134,14 +114,14 @@ class Pairs:
 
     def add(self, x: Pair, y: Pair) -> Pair:
         """x + y, to the last digits also where they nearly cancel."""
-        total, error = _sum(x.high, y.high)
+        total, error = self._sum(x.high, y.high)
         if x.low is None and y.low is None:
             return Pair(total, error)
         if x.low is None or y.low is None:
-            return _normal(total, _plus(error, y.low if x.low is None else x.low))
-        lows, rest = _sum(x.low, y.low)
-        first = _normal(total, _plus(error, lows))
-        return _normal(first.high, _plus(first.low, rest))
+            return self._normal(total, self._plus(error, y.low if x.low is None else x.low))
+        lows, rest = self._sum(x.low, y.low)
+        first = self._normal(total, self._plus(error, lows))
+        return self._normal(first.high, self._plus(first.low, rest))
 
     def subtract(self, x: Pair, y: Pair) -> Pair:
         """x - y."""
@@ -149,38 +129,38 @@ class Pairs:
 
     def negate(self, x: Pair) -> Pair:
         """-x."""
-        low, number = (None if x.low is None else _negative(x.low)), (None if x.number is None else -x.number)
-        return Pair(_negative(x.high), low, number)
+        low, number = (None if x.low is None else self._negative(x.low)), (None if x.number is None else -x.number)
+        return Pair(self._negative(x.high), low, number)
 
     def multiply(self, x: Pair, y: Pair) -> Pair:
         """x y; a power of two only scales."""
         for one, other in ((x, y), (y, x)):
             if other.number is not None and other.number and np.frexp(abs(other.number))[0] == 0.5:
-                return Pair(_times(one.high, other.high), None if one.low is None else _times(one.low, other.high))
+                return Pair(self._times(one.high, other.high), None if one.low is None else self._times(one.low, other.high))
         product, error = self._product(x.high, y.high)
         for part in ((x.high, y.low), (x.low, y.high)):
             if part[0] is not None and part[1] is not None:
-                error = _plus(error, _times(part[0], part[1]))
-        return _normal(product, error)
+                error = self._plus(error, self._times(part[0], part[1]))
+        return self._normal(product, error)
 
     def divide(self, x: Pair, y: Pair) -> Pair:
         """x / y by what a first quotient leaves."""
-        first = _over(x.high, y.high)
+        first = self._over(x.high, y.high)
         left = self.subtract(x, self.multiply(Pair(first), y))
-        return _normal(first, _over(left.value, y.high))
+        return self._normal(first, self._over(self._value(left), y.high))
 
     def root(self, x: Pair) -> Pair:
         """The square root, by what a first root leaves; of zero, zero."""
-        first = ca.sqrt(x.high)
+        first = self._rounded(ca.sqrt(x.high))
         left = self.subtract(x, self.multiply(Pair(first), Pair(first)))
-        return _normal(first, _over(left.value, _plus(_times(2.0, first), first == 0.0)))
+        return self._normal(first, self._over(self._value(left), self._plus(self._times(2.0, first), first == 0.0)))
 
     def reduced(self, x: Pair) -> Pair:
         """x less whole turns, between -pi and pi."""
-        turns = ca.floor(_plus(_times(x.high, 1.0 / _TURN[0]), 0.5))
+        turns = ca.floor(self._plus(self._times(x.high, self._rounded(1.0 / _TURN[0])), 0.5))
         for part in self._turn():
             product, error = self._product(turns, ca.SX(part))
-            x = self.add(x, Pair(_negative(product), _negative(error)))
+            x = self.add(x, Pair(self._negative(product), self._negative(error)))
         return x
 
     def sine(self, x: Pair) -> Pair:
@@ -189,20 +169,20 @@ class Pairs:
 
     def cosine(self, x: Pair) -> Pair:
         """The cosine of a counted angle."""
-        return self._turning(x, ca.cos, lambda angle: _negative(ca.sin(angle)))
+        return self._turning(x, ca.cos, lambda angle: self._negative(ca.sin(angle)))
 
     def remainder(self, x: Pair, y: Pair) -> Pair:
         """C's fmod: x less y as often as it goes into x, towards zero."""
-        size, period = _size(x), _size(y)
-        left = self.subtract(size, self.multiply(_floor(self.divide(size, period)), period))
-        return _signed(left, x.high)
+        size, period = self._size(x), self._size(y)
+        left = self.subtract(size, self.multiply(self._floor(self.divide(size, period)), period))
+        return self._signed(left, x.high)
 
     def nearest_remainder(self, x: Pair, y: Pair) -> Pair:
         """C's remainder: x less the multiple of y that is nearest."""
-        return self.subtract(x, self.multiply(_floor(self.add(self.divide(x, y), self.constant(0.5))), y))
+        return self.subtract(x, self.multiply(self._floor(self.add(self.divide(x, y), self.constant(0.5))), y))
 
     def _below(self, x: Pair, y: Pair) -> Any:
-        return self.subtract(x, y).value < 0.0
+        return self._value(self.subtract(x, y)) < 0.0
 
     def _either(self, where: Any, x: Pair, y: Pair) -> Pair:
         return self.add(_choose(where, x), _choose(ca.logic_not(where), y))
@@ -210,8 +190,9 @@ class Pairs:
     def _turning(self, x: Pair, function: Any, slope: Any) -> Pair:
         angle = self.reduced(x)
         if angle.low is None:
-            return Pair(function(angle.high))
-        return Pair(*_sum(function(angle.high), _times(slope(angle.high), angle.low)))
+            return Pair(self._rounded(function(angle.high)))
+        rough, change = self._rounded(function(angle.high)), self._rounded(slope(angle.high))
+        return Pair(*self._sum(rough, self._times(change, angle.low)))
 
     def _turn(self) -> tuple[float, ...]:
         if self.precision == "double":
@@ -225,11 +206,11 @@ class Pairs:
 
     def _product(self, a: Any, b: Any) -> tuple[Any, Any]:
         """a b and its error (Dekker)."""
-        product = _times(a, b)
+        product = self._times(a, b)
         (ah, al), (bh, bl) = self._split(a), self._split(b)
-        error = _minus(_times(ah, bh), product)
+        error = self._minus(self._times(ah, bh), product)
         for half, other in ((ah, bl), (al, bh), (al, bl)):
-            error = _plus(error, _times(half, other))
+            error = self._plus(error, self._times(half, other))
         return product, error
 
     def _split(self, a: Any) -> tuple[Any, Any]:
@@ -239,37 +220,66 @@ class Pairs:
             number, splitter = kind(float(a)), kind(_SPLITTER[self.precision])
             half = splitter * number - (splitter * number - number)
             return ca.SX(float(half)), ca.SX(float(number - half))
-        c = _times(_SPLITTER[self.precision], a)
-        high = _minus(c, _minus(c, a))
-        return high, _minus(a, high)
+        c = self._times(_SPLITTER[self.precision], a)
+        high = self._minus(c, self._minus(c, a))
+        return high, self._minus(a, high)
 
+    def _once(self, code: int) -> Any:
+        """An operation on the nearest numbers: what it gives is rounded once, as are its arguments."""
+        if code in _UNARY:
+            return lambda x: Pair(self._rounded(ca.SX.unary(code, self._value(x))))
+        return lambda x, y: Pair(self._rounded(ca.SX.binary(code, self._value(x), self._value(y))))
 
-def _sum(a: Any, b: Any) -> tuple[Any, Any]:
-    """a + b and its error (Knuth)."""
-    total = _plus(a, b)
-    other = _minus(total, a)
-    return total, _plus(_minus(a, _minus(total, other)), _minus(b, other))
+    def _plus(self, a: Any, b: Any) -> Any:
+        return self._closed(a + b)
 
+    def _minus(self, a: Any, b: Any) -> Any:
+        return self._closed(a - b)
 
-def _normal(high: Any, low: Any) -> Pair:
-    total = _plus(high, low)
-    return Pair(total, _minus(low, _minus(total, high)))
+    def _times(self, a: Any, b: Any) -> Any:
+        return self._closed(a * b)
 
+    def _over(self, a: Any, b: Any) -> Any:
+        return self._closed(a / b)
 
-def _signed(x: Pair, like: Any) -> Pair:
-    sign = ca.copysign(ca.SX(1.0), like)
-    return Pair(_times(x.high, sign), None if x.low is None else _times(x.low, sign))
+    def _negative(self, a: Any) -> Any:
+        return self._closed(-a)
 
+    def _closed(self, x: Any) -> Any:
+        return closed(self._rounded(x))
 
-def _size(x: Pair) -> Pair:
-    return _signed(x, x.high)
+    def _rounded(self, x: Any) -> Any:
+        """A constant as it is where the precision's own arithmetic makes it: CasADi folds constants in doubles."""
+        if not ca.SX(x).is_constant():
+            return x
+        with np.errstate(over="ignore"):
+            return ca.SX(float(DTYPES[self.precision].type(float(x))))
 
+    def _value(self, x: Pair) -> Any:
+        return self._rounded(x.value)
 
-def _floor(x: Pair) -> Pair:
-    high = ca.floor(x.high)
-    if x.low is None:
-        return Pair(high)
-    return _normal(high, _zero_unless(high == x.high, ca.floor(x.low)))
+    def _sum(self, a: Any, b: Any) -> tuple[Any, Any]:
+        """a + b and its error (Knuth)."""
+        total = self._plus(a, b)
+        other = self._minus(total, a)
+        return total, self._plus(self._minus(a, self._minus(total, other)), self._minus(b, other))
+
+    def _normal(self, high: Any, low: Any) -> Pair:
+        total = self._plus(high, low)
+        return Pair(total, self._minus(low, self._minus(total, high)))
+
+    def _signed(self, x: Pair, like: Any) -> Pair:
+        sign = ca.copysign(ca.SX(1.0), like)
+        return Pair(self._times(x.high, sign), None if x.low is None else self._times(x.low, sign))
+
+    def _size(self, x: Pair) -> Pair:
+        return self._signed(x, x.high)
+
+    def _floor(self, x: Pair) -> Pair:
+        high = ca.floor(x.high)
+        if x.low is None:
+            return Pair(high)
+        return self._normal(high, _zero_unless(high == x.high, ca.floor(x.low)))
 
 
 def _choose(where: Any, x: Pair) -> Pair:
@@ -278,13 +288,6 @@ def _choose(where: Any, x: Pair) -> Pair:
 
 def _zero_unless(where: Any, x: Any) -> Any:
     return ca.SX.binary(ca.OP_IF_ELSE_ZERO, where, x)
-
-
-def _rounded(code: int) -> Any:
-    """An operation on the nearest numbers: what it gives is rounded once, as are its arguments."""
-    if code in _UNARY:
-        return lambda x: Pair(ca.SX.unary(code, x.value))
-    return lambda x, y: Pair(ca.SX.binary(code, x.value, y.value))
 
 
 _UNARY = (

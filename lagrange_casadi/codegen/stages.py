@@ -89,10 +89,11 @@ class Controlled:
 
 
 @functools.lru_cache(maxsize=32)
-def controlled(graph: SceneGraph, precision: Precision) -> Controlled:
+def controlled(graph: SceneGraph, precision: Precision, fixed: tuple[float, ...] | None = None) -> Controlled:
     """The stages of a graph by its driven coordinates; in doubles the caller counts turns, in singles pairs do.
 
-    Raises :class:`DeclarationError` for a graph that cannot be followed in pairs.
+    Where parameters are ``fixed``, pairs have all the digits of these numbers, as of other constants. Raises
+    :class:`DeclarationError` for a graph that cannot be followed in pairs.
     """
     names = ["moment", "p"]
     if precision == "double":
@@ -103,9 +104,10 @@ def controlled(graph: SceneGraph, precision: Precision) -> Controlled:
     pairs, rows = Pairs(precision), 1 + len(graph.driven)
     moment, p = ca.SX.sym("moment", rows, 2), graph.instant.sx_in("p")
     t, *driven = (Pair(row[0], row[1]) for row in ca.vertsplit(moment))
-    handed, loops, instant = _counted(graph, pairs, t, driven, [Pair(x) for x in _split(p)])
+    known = [Pair(x) for x in _split(p)] if fixed is None else [pairs.constant(x) for x in fixed]
+    handed, loops, instant = _counted(graph, pairs, t, driven, known)
     count = ca.Function("count", [ca.vec(moment), p], [handed], names, ["counted"], {"cse": True})
-    return Controlled(_paired_law(laws.smooth, pairs, p), count, loops, instant, precision)
+    return Controlled(_paired_law(laws.smooth, pairs, p, known), count, loops, instant, precision)
 
 
 def _others(stages: Stages) -> tuple[Any | None, Any, Precision]:
@@ -116,10 +118,10 @@ def _rest(pair: Pair) -> Any:
     return ca.SX(0) if pair.low is None else pair.low
 
 
-def _paired_law(smooth: Any, pairs: Pairs, p: Any) -> Any:
-    """The motion of drives by a time in pairs, each coordinate as a pair."""
+def _paired_law(smooth: Any, pairs: Pairs, p: Any, known: Sequence[Pair]) -> Any:
+    """The motion of drives by a time in pairs, each coordinate as a pair; ``known`` are the parameters."""
     time = ca.SX.sym("t", 2)
-    values, *changes = interpret(smooth, [[Pair(time[0], time[1])], [Pair(x) for x in _split(p)]], pairs.arithmetic)
+    values, *changes = interpret(smooth, [[Pair(time[0], time[1])], known], pairs.arithmetic)
     found = [[x.high for x in values], [_rest(x) for x in values]]
     found += [[pair.value for pair in row] for row in changes]
     return ca.Function("law", [time, p], [_column([*found[0], *found[1]]), *(_column(row) for row in found[2:])], {"cse": True})

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
 
 from ..arithmetic.compensated import ROUNDING, Precision
+from ..codegen.stages import compensated
 from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
+from ..instants.backends import run
+from ..instants.rung import Rung
 from ..instants.solution import Solution
+from ..judge.accuracy import estimate
 from ..quantities import Output
 from .contract import FAINT, REST, Contract, Member
 
@@ -47,17 +51,17 @@ class Golden:
 def golden(graph: SceneGraph, contract: Contract, solution: Solution, exact: Solution, p: Array) -> Golden:
     """The golden vectors of a contract, over the scene's grid and in doubles: by ``exact``, which saves nothing.
 
-    ``solution`` is what the program's rung makes of it: what that misses is allowed, twice. Rounding is magnified by the precision.
+    ``solution`` is what the program's rung makes of it: what that misses is allowed, twice.
     """
     precision = contract.precision
-    scale, least = ALLOWED * ROUNDING[precision] / ROUNDING["double"], ALLOWED * ROUNDING[precision]
+    least, errors = ALLOWED * ROUNDING[precision], _errors(graph, precision, exact, p)
     count = solution.t.size
     stride = max(1, (count - 1) // (INSTANTS - 1))
     chosen = np.arange(0, count, stride)
     t = solution.t[chosen]
     inputs = np.stack([_input(graph, m.source, t, p, precision) for m in contract.inputs], axis=1)
     outputs = np.stack([exact.series[m.source][chosen] for m in contract.outputs], axis=1)
-    rounding = np.array([scale * exact.errors[m.source] for m in contract.outputs])
+    rounding = np.array([ALLOWED * errors[m.source] for m in contract.outputs])
     saved = np.array([_saved(m, solution, exact) for m in contract.outputs])
     off = rounding + 2.0 * saved + least * np.abs(outputs).max(axis=0)
     names = contract.table.forces
@@ -68,12 +72,25 @@ def golden(graph: SceneGraph, contract: Contract, solution: Solution, exact: Sol
         for k, force in enumerate(names):
             true, found = (law.at(force, np.tile(RATIOS, (exact.t.size, 1))) for law in laws)
             forces[:, i, :, k] = true[chosen]
-            forces_off[i, k] = scale * exact.errors[str(Output("section", link.name, force))] + least * np.abs(true).max()
+            forces_off[i, k] = ALLOWED * errors[str(Output("section", link.name, force))] + least * np.abs(true).max()
             forces_off[i, k] += 2.0 * np.abs(found - true).max()
     inputs_off = _MOTION * ROUNDING[precision] * np.abs(inputs).max(axis=0)
     steps = stride if graph.newton is not None else 1
     worst = _worst(contract, exact, rounding / ALLOWED + saved)
     return Golden(t, steps, inputs, outputs, forces, inputs_off, off, forces_off, worst)
+
+
+def _errors(graph: SceneGraph, precision: Precision, exact: Solution, p: Array) -> dict[str, float]:
+    """How far outputs and section forces may be off in a precision, by their names: as much further as its roundings are larger.
+
+    What is a product of roundings grows with their square; so the graph is followed in that precision too.
+    """
+    errors = {name: error * (ROUNDING[precision] / ROUNDING["double"]) for name, error in exact.errors.items()}
+    if precision == "single":
+        evaluated, _ = run(graph, exact.t, p, Rung("vm"))
+        own = estimate(graph, replace(evaluated, stages=compensated(graph, precision)), exact, p)
+        errors |= {str(output): max(errors[str(output)], error) for output, error in own.items()}
+    return errors
 
 
 def _worst(contract: Contract, exact: Solution, errors: Array) -> tuple[float, str]:

@@ -73,13 +73,14 @@ def program(
     Raises :class:`DeclarationError` for a motion by a spline that does not tell its knots.
     """
     evaluated = graph if read is None else read[0]
-    stages = controlled(evaluated, precision)
+    fixed = read is not None
+    stages = controlled(evaluated, precision, tuple(p.tolist()) if fixed else None)
     hidden = {*evaluated.checks("turns").values(), *evaluated.checks("multiplier").values()}
     kept = [k for k in range(len(evaluated.columns)) if k not in hidden]
     columns = tuple(evaluated.columns[k] for k in kept) if read is None else graph.columns
     constants, instant = hoisted(stages.instant, kept)
     mechanism = graph.scene.mechanism
-    symbols, fixed = mechanism.symbols, read is not None
+    symbols = mechanism.symbols
     gapped = read is None and any(isinstance(column, Check) and column.kind in ("gap", "open") for column in columns)
     sound, positive = _sound(graph, symbols, precision)
     functions = {

@@ -8,7 +8,7 @@ from lagrange_casadi.errors import LagrangeCasadiError
 
 from .target import RUNGS, exported, missing
 
-CASES = ("slider_crank", "four_bar", "andrews_squeezer", "rrr3")
+CASES = ("slider_crank", "four_bar", "andrews_squeezer", "rrr3", "spatial_slider_crank", "arm6", "five_link_suspension")
 
 
 def row(name, rung, optimized, folder):
