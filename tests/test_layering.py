@@ -22,6 +22,7 @@ ORDER = (
     "arithmetic",
     "geometry",
     "declare",
+    "elements",
     "equations",
     "summits",
     "codegen",
