@@ -37,6 +37,6 @@ def scene() -> Scene:
     return Scene(
         m,
         motion={"shoulder": axis("shoulder"), "motor": axis("motor")},
-        t=(0, CYCLE, 241),
+        t=(0, CYCLE, 201),
         posture={"inner": "10 deg", "elbow": "60 deg"},
     )
