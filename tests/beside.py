@@ -93,6 +93,15 @@ def _beam_pump(arithmetic, values):
     return {"loads": [lift], "extras": [bridle]}
 
 
+def _scara(arithmetic, values):
+    """A belt that ties the directions of the pulley and the outer arm."""
+    pulley, outer = ("pulley", 0, 0), ("outer", 0, 0)
+    belt = oracle.Extra(
+        "belt", lambda place: place(pulley)[2] - place(outer)[2], lambda place: [(pulley, 0, 0, 1), (outer, 0, 0, -1)]
+    )
+    return {"extras": [belt]}
+
+
 _CASES = {
     "engine": _engine,
     "quick_return": _quick_return,
@@ -101,4 +110,5 @@ _CASES = {
     "jansen_leg": _jansen_leg,
     "excavator": _excavator,
     "beam_pump": _beam_pump,
+    "scara": _scara,
 }

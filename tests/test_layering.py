@@ -23,6 +23,7 @@ ORDER = (
     "geometry",
     "beams",
     "declare",
+    "elements",
     "equations",
     "summits",
     "codegen",

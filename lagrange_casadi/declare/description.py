@@ -69,7 +69,8 @@ def in_space(description: Description) -> bool:
 def shape_of(value: Any) -> dict[str, Any]:
     """What a description is like: that of a planar mechanism, or that of one in space."""
     gravity = value.get("gravity") if isinstance(value, dict) else None
-    return IN_SPACE if isinstance(gravity, list) and len(gravity) > 2 else IN_PLANE
+    shape = IN_SPACE if isinstance(gravity, list) and len(gravity) > 2 else IN_PLANE
+    return shape | {"outlines": {str: [[float, float]]}} if isinstance(value, dict) and "outlines" in value else shape
 
 
 def density_of(body: Description) -> NumericDensity:
@@ -213,6 +214,7 @@ def _described(
         for name, parameter in mechanism.parameters.items()
     }
     paths = {name: place(path.point) for name, path in mechanism.paths.items()}
+    outlines = {name: [vector(corner) for corner in link.outline] for name, link in mechanism.links.items() if link.outline}
     return {
         "name": mechanism.name,
         "parameters": parameters,
@@ -222,4 +224,4 @@ def _described(
         "loads": loads,
         "rows": {name: row.replaces for name, row in mechanism.rows.items()},
         "constraints": list(mechanism.constraints),
-    } | ({"paths": paths} if paths else {})
+    } | {name: found for name, found in (("paths", paths), ("outlines", outlines)) if found}

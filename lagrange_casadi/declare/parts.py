@@ -116,12 +116,14 @@ class Link(Body):
     """A link: its axis runs from its base (station 0) to its tip (station ``length``).
 
     Its mass lies along the axis with a :class:`.Density`, which gives it a section law, or is known as a whole only
-    (:class:`RigidMass`), and then it has none. ``beam`` says what it is made of, where that is told.
+    (:class:`RigidMass`), and then it has none. ``beam`` says what it is made of, where that is told. ``outline`` are the corners of
+    what it is drawn as, in its own axes [m].
     """
 
     length: Expression
     mass: Density | RigidMass
     beam: Beam | None = None
+    outline: tuple[tuple[Expression, Expression], ...] = ()
 
     @property
     def base(self) -> Point:

@@ -59,8 +59,11 @@ def _extent(solution: Solution) -> tuple[dict[str, tuple[Array, Array]], tuple[f
     paths = {name: _place(solution, joint["child"]) for name, joint in solution.description["joints"].items()}
     paths |= {name: _place(solution, point) for name, point in solution.description.get("paths", {}).items()}
     ends = {name: _ends(solution, name) for name, body in solution.description["bodies"].items() if body["length"]}
-    x = np.concatenate([p[0] for p in paths.values()] + [e[k] for e in ends.values() for k in (0, 2)])
-    y = np.concatenate([p[1] for p in paths.values()] + [e[k] for e in ends.values() for k in (1, 3)])
+    corners: list[tuple[Array, Array]] = []
+    for name, outline in solution.description.get("outlines", {}).items():
+        corners += [_place(solution, {"body": name, "x": x, "y": y}) for x, y in outline]
+    x = np.concatenate([p[0] for p in (*paths.values(), *corners)] + [e[k] for e in ends.values() for k in (0, 2)])
+    y = np.concatenate([p[1] for p in (*paths.values(), *corners)] + [e[k] for e in ends.values() for k in (1, 3)])
     size = max(float(np.ptp(x)), float(np.ptp(y))) or 1.0
     box = (x.min() - 0.12 * size, x.max() + 0.12 * size, y.min() - 0.12 * size, y.max() + 0.12 * size)
     return paths, box, size
@@ -103,6 +106,11 @@ def _draw_body(axes: Any, solution: Solution, name: str, i: int, colour: str) ->
     points = [end for joint in solution.description["joints"].values() for end in (joint["parent"], joint["child"])]
     points += solution.description.get("paths", {}).values()
     own = [(point["x"], point["y"]) for point in points if point["body"] == name]
+    outline = solution.description.get("outlines", {}).get(name)
+    if outline:
+        corners = [_at(solution, name, i, *corner) for corner in outline]
+        axes.fill(*zip(*corners, strict=True), facecolor=colour, alpha=0.25, edgecolor=colour, linewidth=2.0, label=name, zorder=3)
+        return
     if "centre" in body:
         centre = (body["centre"]["x"], body["centre"]["y"])
         lines, width = [(centre, point) for point in own], 3.0

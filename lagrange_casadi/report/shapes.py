@@ -30,7 +30,7 @@ class Spot:
 
 @dataclass(frozen=True)
 class Shape:
-    """How a body is drawn: lines between places, and plates, each a convex polygon.
+    """How a body is drawn: lines between places, and plates, each a polygon.
 
     ``kind`` is "link" where it has an axis that is drawn, "rigid" where only its centre is known, "point" for a point mass. Of a
     rigid body that is held at its centre alone, as a gear or a rotor, there is a ``disc``, whose radius is the link's length.
@@ -83,7 +83,8 @@ def shapes(description: Description) -> Iterator[Shape]:
             yield Shape(name, "point", None, mass, (), (), (), (0.0, 0.0, 0.0), 0.0)
         elif "centre" in body:
             centre = _place(body["centre"])
-            plates = _plates(own)
+            outline = description.get("outlines", {}).get(name, ())
+            plates = (tuple((float(x), float(y), 0.0) for x, y in outline),) if outline else _plates(own)
             # Two joints hold a bar between them; arms from the centre hold any others that lie in no plane.
             ends = [(own[0], own[1])] if len(own) == 2 else [(centre, at) for at in own if at != centre]
             arms = () if plates else tuple(ends)

@@ -1,0 +1,117 @@
+"""Plates: rigid bodies of any polygon, whose mass, centre and moment of inertia follow from their corners."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Expression, Link, Point
+from ..errors import DeclarationError
+
+
+@dataclass(frozen=True, eq=False)
+class Plate:
+    """A plate: its ``link``, and its ``corners`` as points of it."""
+
+    link: Link
+    corners: tuple[Point, ...]
+
+    def corner(self, number: int) -> Point:
+        """A corner, the first is 0. Raises :class:`.DeclarationError` for a number of none."""
+        if type(number) is not int or not 0 <= number < len(self.corners):
+            raise DeclarationError(f"'{self.link.name}': corner {number!r} is none of 0 to {len(self.corners) - 1}")
+        return self.corners[number]
+
+    def at(self, x: Expression, y: Expression) -> Point:
+        """The place (x, y) in the axes in which the corners are told [m]."""
+        return self.link.at(x, y)
+
+
+def plate(
+    mechanism: Mechanism,
+    name: str,
+    corners: Sequence[Sequence[Expression]],
+    *,
+    mass: Expression | None = None,
+    per_area: Expression | None = None,
+) -> Plate:
+    """Declare a rigid plate in the plane, a polygon whose ``corners`` (x, y) [m] follow each other round it, either way.
+
+    They are in axes of the plate's own: the direction of the link ``name``, as in a posture, is that of these axes. The plate is
+    even: its ``mass`` [kg], or what it has ``per_area`` [kg/m^2], thickness times density. All may be expressions of parameters.
+    It has no sections; what is to have some is a :func:`.bent_bar`.
+
+    Raises :class:`.DeclarationError` for what is no polygon: fewer than three corners, edges that cross, no area.
+    """
+    what = f"plate '{name}'"
+    if mechanism.space:
+        raise DeclarationError(f"{what}: plates lie in a plane; in space declare a link with mass, centre and inertia")
+    if not isinstance(corners, Sequence) or len(corners) < 3:
+        raise DeclarationError(f"{what}: expected three corners or more")
+    places = []
+    for k, corner in enumerate(corners):
+        if not isinstance(corner, Sequence) or isinstance(corner, str) or len(corner) != 2:
+            raise DeclarationError(f"{what}: corner {k}: expected (x, y), got {corner!r}")
+        places.append(tuple(mechanism.own.expression(f"{what}: corner {k}", number) for number in corner))
+    if (mass is None) == (per_area is None):
+        raise DeclarationError(f"{what}: give its mass, or what it has per_area")
+    _refuse_crossing(what, places)
+    area, x, y, second = area_of(places)
+    if isinstance(area, float) and area == 0.0:
+        raise DeclarationError(f"{what}: its corners lie on a line")
+    whole: Any = mass if per_area is None else ca.fabs(ca.SX(area)) * per_area
+    farthest = ca.SX(0)
+    for corner in places:
+        farthest = ca.fmax(farthest, ca.sqrt(ca.SX(corner[0]) ** 2 + ca.SX(corner[1]) ** 2))
+    link = mechanism.link(name, length=_plain(farthest), mass=_plain(whole), centre=(x, y), inertia=_plain(whole * second))
+    link = replace(link, outline=tuple(places))
+    mechanism.bodies[name] = link
+    return Plate(link, tuple(link.at(*corner) for corner in places))
+
+
+def area_of(places: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
+    """The area of a polygon, with its sign, the place of its centre, and its second moment about that over its area [m^2].
+
+    Seen from the first corner, so that a plate far from its axes loses no digits.
+    """
+    x0, y0 = places[0]
+    ring = [(x - x0, y - y0) for x, y in places]
+    area, first_x, first_y, second = 0.0, 0.0, 0.0, 0.0
+    for (ax, ay), (bx, by) in zip(ring, [*ring[1:], ring[0]], strict=True):
+        cross = ax * by - bx * ay
+        area = area + cross / 2.0
+        first_x, first_y = first_x + cross * (ax + bx) / 6.0, first_y + cross * (ay + by) / 6.0
+        second = second + cross * (ax * ax + ax * bx + bx * bx + ay * ay + ay * by + by * by) / 12.0
+    if isinstance(area, float) and area == 0.0:
+        return 0.0, x0, y0, 0.0
+    x, y = first_x / area, first_y / area
+    return area, x0 + x, y0 + y, second / area - x * x - y * y
+
+
+def _plain(value: Any) -> Expression:
+    return float(value) if isinstance(value, ca.SX) and value.is_constant() else value
+
+
+def _refuse_crossing(what: str, places: Sequence[Any]) -> None:
+    """Raise for a polygon of numbers of which two edges cross."""
+    if any(isinstance(number, ca.SX) for corner in places for number in corner):
+        return
+    count = len(places)
+    edges = [(places[k], places[(k + 1) % count]) for k in range(count)]
+    for (i, first), (j, second) in itertools.combinations(enumerate(edges), 2):
+        if j - i not in (1, count - 1) and _cross(*first, *second):
+            raise DeclarationError(
+                f"{what}: the edges from corners {i} and {j} cross; expected the corners in their order round it"
+            )
+
+
+def _cross(a: Any, b: Any, c: Any, d: Any) -> bool:
+    def side(p: Any, q: Any, r: Any) -> float:
+        return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
+
+    return side(a, b, c) * side(a, b, d) < 0.0 and side(c, d, a) * side(c, d, b) < 0.0
