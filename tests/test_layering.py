@@ -28,6 +28,7 @@ ORDER = (
     "codegen",
     "instants",
     "judge",
+    "strength",
     "evaluate",
     "designs",
     "study",
@@ -47,7 +48,7 @@ ORDER = (
     "cli",
 )
 
-LATE = {("solution.py", "report"), ("scene.py", "report")}
+LATE = {("solution.py", "report"), ("scene.py", "report"), ("solution.py", "strength")}
 """What a user asks of a thing by a method, and what that looks for only when it is called."""
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arithmetic.compensated import Precision
 from ..declare.expressions import check_line
-from ..declare.scene import Scene
+from ..declare.scene import Scene, without_strength
 from ..equations.derive import assembled, derive
 from ..equations.fingerprint import declaration
 from ..equations.scene_graph import SceneGraph
@@ -92,6 +92,7 @@ def export(
     check_writable(folder, folder=True)
     if fmu:
         check_tools()
+    without_strength(scene.mechanism, wanted or (), "exports")
     values = scene.mechanism.values(parameters)
     p = np.array(list(values.values()))
     scene = assembled(scene, values, wanted, iterate=newton is not None)
