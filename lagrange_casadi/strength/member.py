@@ -115,8 +115,8 @@ class Member:
         values = np.stack([self.law.at(force, u, side) for force in self.forces])
         return values if scale is None else values * scale[:, None, None]
 
-    def during(self, instants: slice) -> Member:
-        """The same at some of the instants."""
+    def during(self, instants: Any) -> Member:
+        """The same at some of the instants, a slice or their numbers."""
         return Member(self.link, self.beam, self.law.during(instants), self.t[instants], self.xi, self.space)
 
     @cached_property

@@ -31,7 +31,7 @@ from .member import Cell, Member
 KINDS = {"normal": (1.0, 0.0), "shear": (0.0, 1.0), "von_mises": (1.0, 3.0), "tresca": (1.0, 4.0)}
 """Of each kind of stress the weights of s^2 and t^2 in its square."""
 
-_LOOKS, _BLOCK = 8, 1 << 21
+_LOOKS, _GLANCES, _BLOCK = 8, 4, 1 << 21
 _SIDES: tuple[Side, Side] = ("base", "tip")
 
 
@@ -102,7 +102,7 @@ class Stress:
 
     def largest(self, kind: str) -> Largest:
         """A stress largest in size at every instant, exactly along the link, whatever the grid of xi."""
-        values, places, fibres = zip(*(stress._largest(kind, each=True) for stress in self._blocks()), strict=True)
+        values, places, fibres = zip(*(stress._largest(kind) for stress in self._blocks()), strict=True)
         return Largest(np.concatenate(values), np.concatenate(places), tuple(itertools.chain.from_iterable(fibres)))
 
     def peak(self, kind: str, *, notches: bool = False) -> StressPeak:
@@ -111,12 +111,25 @@ class Stress:
             return max((self._at_notch(kind, notch) for notch in self.member.beam.notches), key=lambda peak: abs(peak.value))
         best: StressPeak | None = None
         for stress in self._blocks():
-            value, place, fibre = stress._largest(kind, each=False)
-            k = int(np.argmax(np.abs(value)))
-            if best is None or abs(value[k]) > abs(best.value):
-                best = StressPeak(kind, float(value[k]), float(stress.member.t[k]), float(place[k]), fibre[k])
+            found = stress._highest(kind, 0.0 if best is None else abs(best.value))
+            if best is None or (found is not None and abs(found.value) > abs(best.value)):
+                best = found
         assert best is not None
         return best
+
+    def _highest(self, kind: str, floor: float) -> StressPeak | None:
+        """The peak of a few instants; None where it is not above a floor. A coarse look leaves out instants that have it not."""
+        rows = [part for cell in self.member.cells for part in self._parts(cell)]
+        looked = [part.looked(_weights(kind), _GLANCES) for part in rows]
+        least = np.max([squares.max(axis=(1, 2)) for squares, _ in looked], axis=0)
+        most = np.max([squares.max(axis=(1, 2)) * bound for squares, bound in looked], axis=0)
+        chosen = np.flatnonzero((most >= least.max()) & (most >= floor**2))
+        if not chosen.size:
+            return None
+        near = Stress(self.member.during(chosen))
+        value, place, fibre = near._largest(kind)
+        k = int(np.argmax(np.abs(value)))
+        return StressPeak(kind, float(value[k]), float(near.member.t[k]), float(place[k]), fibre[k])
 
     def _at_notch(self, kind: str, notch: Notch) -> StressPeak:
         found = []
@@ -139,25 +152,18 @@ class Stress:
         for start in range(0, member.t.size, height):
             yield self if height >= member.t.size else Stress(member.during(slice(start, start + height)))
 
-    def _largest(self, kind: str, *, each: bool) -> tuple[Array, Array, list[str]]:
-        """Values, ratios and fibres at every instant; unless ``each`` is asked for, exact where the largest of all is."""
+    def _largest(self, kind: str) -> tuple[Array, Array, list[str]]:
+        """Values, ratios and fibres at every instant."""
         weights, count = _weights(kind), self.member.t.size
         rows = [part for cell in self.member.cells for part in self._parts(cell)]
-        best = np.zeros(count)
-        looked = [part.looked(weights) for part in rows]
-        for squares, _ in looked:
-            best = np.maximum(best, squares.max(axis=(1, 2)))
-        floor = best if each else np.full(count, best.max(initial=0.0))
+        looked = [part.looked(weights, _LOOKS) for part in rows]
+        floor = np.max([squares.max(axis=(1, 2)) for squares, _ in looked], axis=0)
         value, place, fibre = np.full(count, -1.0), np.zeros(count), np.zeros(count, int)
         names: list[tuple[str, ...]] = []
         signs = np.zeros(count)
         for number, (part, (squares, bound)) in enumerate(zip(rows, looked, strict=True)):
             names.append(part.cell.names)
-            chosen = squares.max(axis=2) * bound >= floor[:, None]
-            if not each:
-                # At other instants what was looked at is enough.
-                chosen |= squares.max(axis=2) >= best[:, None]
-            t, f = np.nonzero(chosen)
+            t, f = np.nonzero(squares.max(axis=2) * bound >= floor[:, None])
             if t.size:
                 square, u, sign = part.summits(t, f, weights)
                 order = np.lexsort((square, t))
@@ -204,10 +210,10 @@ class _Part:
             return self.cell.factors(np.full((1, 1), self.cell.low))
         return self.cell.factors(u if np.ptp(self.low) or np.ptp(self.high) else u[:1])
 
-    def looked(self, weights: tuple[float, float]) -> tuple[Array, float]:
+    def looked(self, weights: tuple[float, float], looks: int) -> tuple[Array, float]:
         """The squares (t, fibres, looks), both ends among them, and how many times higher they may be in between."""
         degree = 2 * self.degree
-        count = max(_LOOKS * degree // 2, 8)
+        count = max(looks * degree // 2, 8)
         places = np.concatenate([[-1.0], chebyshev.chebpts1(count), [1.0]])
         values = self.coefficients @ chebyshev.chebvander(places, self.degree).T
         # A square is not negative: it is bounded about half of what is largest.
