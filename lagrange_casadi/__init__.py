@@ -3,7 +3,7 @@
 from .system import interrupts, standard_streams  # noqa: F401 - before all that takes long, or opens a file
 
 # isort: split
-from . import density, figures, motion
+from . import beams, density, figures, motion, strength
 from .case import Case, load_case
 from .declare.curves import Curve, curve, table
 from .declare.mechanism import Mechanism
@@ -34,6 +34,7 @@ __all__ = [
     "SpatialMechanism",
     "Sweep",
     "__version__",
+    "beams",
     "best",
     "check",
     "curve",
@@ -49,6 +50,7 @@ __all__ = [
     "read_designs",
     "refine",
     "save",
+    "strength",
     "sweep",
     "table",
 ]

@@ -32,6 +32,14 @@ def _engine(arithmetic, values):
     return {"loads": [gas]}
 
 
+def _connecting_rod(arithmetic, values):
+    """The same diagram, of another largest pressure and bore."""
+    number = arithmetic.number
+    share = number(values["pressure"]) / 45 / 100_000 * number(0.1) ** 2
+    (gas,) = _engine(arithmetic, {**values, "bore": 1.0})["loads"]
+    return {"loads": [lambda place: [(point, x, share * y, z) for point, x, y, z in gas(place)]]}
+
+
 def _quick_return(arithmetic, values):
     cutting = arithmetic.number(values["cutting"])
 
@@ -103,6 +111,7 @@ def _scara(arithmetic, values):
 
 
 _CASES = {
+    "connecting_rod": _connecting_rod,
     "engine": _engine,
     "quick_return": _quick_return,
     "andrews_squeezer": _andrews_squeezer,

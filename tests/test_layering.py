@@ -29,6 +29,7 @@ ORDER = (
     "codegen",
     "instants",
     "judge",
+    "strength",
     "evaluate",
     "sensitivity",
     "designs",
@@ -49,7 +50,7 @@ ORDER = (
     "cli",
 )
 
-LATE = {("solution.py", "report"), ("scene.py", "report")}
+LATE = {("solution.py", "report"), ("scene.py", "report"), ("solution.py", "strength")}
 """What a user asks of a thing by a method, and what that looks for only when it is called."""
 
 

@@ -11,7 +11,7 @@ import click
 from ..arithmetic.compensated import Precision
 from ..case import load_case
 from ..export import export as write
-from .options import arithmetic, parameters, setting
+from .options import arithmetic, parameters, separated, setting
 
 
 @click.command()
@@ -24,6 +24,7 @@ from .options import arithmetic, parameters, setting
 @click.option(
     "--want",
     multiple=True,
+    callback=separated,
     metavar="OUTPUT",
     help="effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; repeatable.",
 )

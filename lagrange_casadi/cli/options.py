@@ -97,6 +97,11 @@ def parameters(settings: Sequence[tuple[str, float | str]]) -> dict[str, Any]:
     return found
 
 
+def separated(_context: click.Context, _parameter: click.Parameter, words: Sequence[str]) -> tuple[str, ...]:
+    """Names of an option that is repeatable, and of which one may hold several, with commas between."""
+    return tuple(name.strip() for word in words for name in word.split(","))
+
+
 def table(text: str) -> float:
     """A number of nodes, or an accuracy."""
     try:

@@ -20,7 +20,7 @@ from ..report.instants import shown_instants
 from ..store.runs import load
 from ..store.untrusted import told_as
 from ..system.publish import check_writable
-from .options import EVEN_POINTS, even_points, parameters, setting
+from .options import EVEN_POINTS, even_points, parameters, separated, setting
 from .options import over as by_drive
 
 _FILES = (".h5", ".hdf5")
@@ -35,7 +35,13 @@ _UNSHOWN = "cannot be shown"
 )
 @click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Of a case: instants [s]; default: its own.")
 @by_drive
-@click.option("--want", multiple=True, metavar="OUTPUT", help="Of a case: what is shown besides motion; default: what it wants.")
+@click.option(
+    "--want",
+    multiple=True,
+    callback=separated,
+    metavar="OUTPUT",
+    help="Of a case: what is shown besides motion; default: what it wants.",
+)
 def report(
     target: Path,
     out: Path | None,

@@ -28,11 +28,12 @@ from ..system.publish import check_free, check_writable, filling
 from ..system.room import MOST_THREADS
 from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
-from .options import EVEN_POINTS, even_points, parameters, rung, setting
+from .options import EVEN_POINTS, even_points, parameters, rung, separated, setting
 from .options import over as by_drive
 from .replaced import figures_in, replaced_lines
 from .report import report_lines
 from .rows import rows_of, write_csv
+from .strength_lines import strength_lines
 
 
 @click.command()
@@ -46,6 +47,7 @@ from .rows import rows_of, write_csv
 @click.option(
     "--want",
     multiple=True,
+    callback=separated,
     metavar="OUTPUT",
     help="effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; repeatable.",
 )
@@ -126,6 +128,8 @@ def run(
     say(f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {backend_used}; {what}:")
     names = [*forces(solution), *resultants(solution)]
     for line in report_lines(solution, refine(loaded.scene, solution, names) if refine_peaks else ()):
+        say(line)
+    for line in strength_lines(solution, loaded.scene.mechanism, want or loaded.scene.wanted):
         say(line)
     told = np.array([[parameter["value"] for parameter in solution.description["parameters"].values()]])
     for note in (*solution.notes, turned.note(loaded.scene, loaded.scene.timing(t, over), told)):

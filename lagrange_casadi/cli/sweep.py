@@ -20,7 +20,7 @@ from ..sweep import sweep as carry_out
 from ..sweep.axes import counted, grouped
 from ..sweep.turning import turning_note
 from ..system.room import MOST_THREADS
-from .options import AXIS, EVEN_POINTS, axis, even_points, parameters, setting, untabled_rung
+from .options import AXIS, EVEN_POINTS, axis, even_points, parameters, separated, setting, untabled_rung
 from .options import over as by_drive
 from .progress import shown
 
@@ -52,6 +52,7 @@ from .progress import shown
 @click.option(
     "--want",
     multiple=True,
+    callback=separated,
     metavar="OUTPUT",
     help="An output that info CASE lists; all leaves out the motion; repeatable.",
 )

@@ -18,7 +18,7 @@ from ..instants.rung import Rung
 from ..study.trade import RUNGS, Trade
 from ..study.trade import trade as measure
 from ..system.publish import check_writable, writing
-from .options import EVEN_POINTS, even_points, parameters, setting
+from .options import EVEN_POINTS, even_points, parameters, separated, setting
 from .options import over as by_drive
 
 
@@ -32,6 +32,7 @@ from .options import over as by_drive
 @click.option(
     "--want",
     multiple=True,
+    callback=separated,
     metavar="OUTPUT",
     help="effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; repeatable.",
 )

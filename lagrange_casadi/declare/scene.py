@@ -25,6 +25,9 @@ from .stretches import Timetable, timetable
 from .times import Instants, Over, Times, Timing, instants_of, span_of
 
 _KINDS = ("reaction", "multiplier", "load", "section", "output")
+STRENGTH = ("stress", "safety", "life")
+"""What is told of links that have a beam: it follows from their sections, which are wanted with it."""
+
 _TURNS = 4.0 * math.pi
 """The largest direction of a posture [rad]: what is beyond was meant in degrees."""
 
@@ -69,7 +72,7 @@ class Wanted:
     @classmethod
     def of(cls, mechanism: Mechanism, names: Sequence[str]) -> Wanted:
         """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``, ``load:NAME``, ``section:LINK``,
-        ``output:NAME``, ``all``.
+        ``output:NAME``, ``all``; and of links with a beam ``stress:LINK``, ``safety:LINK``, ``life:LINK``.
 
         A kind alone, as ``section``, is all that the mechanism has of it. What an output of the user's own is made of is wanted
         with it.
@@ -82,9 +85,11 @@ class Wanted:
             if name not in choices:
                 _refuse_output(mechanism, name)
                 raise UnknownNameError("output", name, choices)
+            _check_material(mechanism, name)
         chosen = set(every if "all" in names else names)
         own = (output for name, output in mechanism.outputs.items() if chosen & {"output", f"output:{name}"})
         chosen |= {asked.wanted for output in own for asked in output.made_of}
+        chosen |= {f"section:{link}" for kind in STRENGTH for link in strength_of(mechanism, kind, names)}
         if not chosen:
             raise DeclarationError(f"no output wanted; valid: {', '.join(choices)}")
 
@@ -107,18 +112,54 @@ def outputs(mechanism: Mechanism) -> list[str]:
     loads = [f"load:{name}" for name in mechanism.loads]
     sections = [f"section:{name}" for name, link in mechanism.links.items() if isinstance(link.mass, Density)]
     own = [f"output:{name}" for name in mechanism.outputs]
-    return ["all", "effort", "motion", *reactions, *multipliers, *loads, *sections, *own]
+    strength = [f"{kind}:{name}" for kind in STRENGTH for name in _made_of_something(mechanism)]
+    return ["all", "effort", "motion", *reactions, *multipliers, *loads, *sections, *own, *strength]
+
+
+def strength_of(mechanism: Mechanism, kind: str, names: Sequence[str]) -> list[str]:
+    """The links of which a kind of strength is among wanted names."""
+    return [link for link in _made_of_something(mechanism) if {"all", kind, f"{kind}:{link}"} & set(names)]
+
+
+def without_strength(mechanism: Mechanism, names: Sequence[str], what: str) -> tuple[str, ...]:
+    """Wanted names for what tells no strength. Raises :class:`.DeclarationError` where one asks for it."""
+    for name in names if not isinstance(names, str) else ():
+        if isinstance(name, str) and name.partition(":")[0] in STRENGTH:
+            links = ", ".join(f"section:{link}" for link in strength_of(mechanism, name.partition(":")[0], [name]))
+            raise DeclarationError(f"output '{name}': {what} tell no strength; want {links}, and evaluate designs one by one")
+    return tuple(names)
+
+
+def _check_material(mechanism: Mechanism, name: str) -> None:
+    """Raise :class:`.DeclarationError` where a material lacks a number that what is wanted of a link needs."""
+    kind, _, link = name.partition(":")
+    if kind not in STRENGTH or not link:
+        return
+    beam = mechanism.links[link].beam
+    assert beam is not None
+    needs = {"safety": ("elasticity", "yield_strength"), "life": ("ultimate", "endurance")}
+    beam.material.needs(f"output '{name}'", *needs.get(kind, ()))
+
+
+def _made_of_something(mechanism: Mechanism) -> list[str]:
+    """The links that have sections and a beam."""
+    return [name for name, link in mechanism.links.items() if isinstance(link.mass, Density) and link.beam is not None]
 
 
 def kinds(mechanism: Mechanism) -> list[str]:
     """The kinds of output of which a mechanism has any beside the efforts and the motion: each can be wanted as a whole."""
-    return [kind for kind in _KINDS if any(name.startswith(f"{kind}:") for name in outputs(mechanism))]
+    return [kind for kind in (*_KINDS, *STRENGTH) if any(name.startswith(f"{kind}:") for name in outputs(mechanism))]
 
 
 def _refuse_output(mechanism: Mechanism, name: str) -> None:
     kind, _, part = name.partition(":")
-    if name in _KINDS:
+    if name in (*_KINDS, *STRENGTH):
         raise DeclarationError(f"output '{name}': mechanism '{mechanism.name}' has none; valid: {', '.join(outputs(mechanism))}")
+    if kind in STRENGTH and part in mechanism.links:
+        raise DeclarationError(
+            f"output '{name}': link '{part}' has no beam, which says what it is made of; links with one: "
+            f"{', '.join(_made_of_something(mechanism)) or 'none'}"
+        )
     if kind == "section" and part in mechanism.bodies:
         why = no_sections(part, link=part in mechanism.links, links=mechanism.links)
         raise DeclarationError(f"output '{name}': {why}")

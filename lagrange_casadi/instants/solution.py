@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     import xarray
 
     from ..report import View
+    from ..strength import Life, Safety, Stress
 
 
 @dataclass(frozen=True)
@@ -190,6 +191,24 @@ class Solution:
             raise DeclarationError(f"the sections of link '{link}' were not wanted; want section:{link} too")
         links = [name for name, body in bodies.items() if body["length"] is not None]
         raise DeclarationError(no_sections(link, link=link in links, links=links))
+
+    def stress(self, link: str) -> Stress:
+        """The stresses in a link that has a beam. Raises what :func:`.strength.stress` does."""
+        from ..strength import stress
+
+        return stress(self, link)
+
+    def safety(self, link: str, *, criterion: str = "goodman", yielding: str = "von_mises") -> Safety:
+        """The factors of safety of a link that has a beam: see :func:`.strength.safety`."""
+        from ..strength import safety
+
+        return safety(self, link, criterion=criterion, yielding=yielding)
+
+    def life(self, link: str, *, criterion: str = "goodman") -> Life:
+        """How long a link that has a beam lasts: see :func:`.strength.life`."""
+        from ..strength import life
+
+        return life(self, link, criterion=criterion)
 
     @property
     def links_with_sections(self) -> tuple[str, ...]:

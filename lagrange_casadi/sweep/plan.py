@@ -16,7 +16,7 @@ import numpy as np
 from ..declare.density import Array
 from ..declare.description import Description, shape_of
 from ..declare.even_points import EvenPoints, points
-from ..declare.scene import Scene, Wanted, checked_ratios, outputs
+from ..declare.scene import STRENGTH, Scene, Wanted, checked_ratios, outputs, without_strength
 from ..declare.times import Over, Times, Timing
 from ..designs.engine import DesignEngine
 from ..equations.derive import derive
@@ -257,9 +257,12 @@ def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
     """Output names; ``all`` are all but the motion, whose peaks size nothing."""
     names = tuple(scene.wanted if wanted is None else wanted)
     Wanted.of(scene.mechanism, names)
+    if wanted is not None:
+        without_strength(scene.mechanism, names, "sweeps")
     if "all" not in names or "motion" in names:
         return names
-    return tuple(name for name in outputs(scene.mechanism) if name not in ("all", "motion"))
+    own = (name for name in outputs(scene.mechanism) if name.partition(":")[0] not in STRENGTH)
+    return tuple(name for name in own if name not in ("all", "motion"))
 
 
 def signature(scene: Scene, task: Task, provenance: Provenance) -> dict[str, Any]:

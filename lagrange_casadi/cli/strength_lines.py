@@ -1,0 +1,75 @@
+"""Strength in lines: stresses, factors of safety with what governs, lives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from ..declare.mechanism import Mechanism
+from ..declare.scene import strength_of
+from ..errors import DeclarationError
+from ..instants.solution import Solution
+from ..strength.safety import Life, Safety
+from ..strength.stress import KINDS, StressPeak
+
+_BAR = 40
+_GUESS = 1e3
+"""Cycles below which a life is a guess."""
+
+
+def strength_lines(solution: Solution, mechanism: Mechanism, wanted: Sequence[str]) -> Iterator[str]:
+    """What is wanted of links that have a beam; where it is not asked for by name, why it cannot be told."""
+    if links := strength_of(mechanism, "stress", wanted):
+        yield "stresses along the links, largest in size:"
+        for link in links:
+            yield from _told(link, lambda name: list(_stresses(solution, name)))
+    if links := strength_of(mechanism, "safety", wanted):
+        yield "factors of safety, and utilisation, which is one over the least of them:"
+        for link in links:
+            yield from _told(link, lambda name: list(safety_lines(solution.safety(name))))
+    if links := strength_of(mechanism, "life", wanted):
+        yield f"lives, {solution.t[-1] - solution.t[0]:.5g} s repeated:"
+        for link in links:
+            yield from _told(link, lambda name: [_life(solution.life(name))])
+
+
+def safety_lines(found: Safety) -> Iterator[str]:
+    """The factors of safety of a link, a bar of its utilisation first."""
+    share = found.utilisation
+    bar = "#" * min(_BAR, math.ceil(share * _BAR)) if math.isfinite(share) else "#" * _BAR
+    fails = ", FAILS" if share > 1.0 else ""
+    yield f"  {found.link:<20} {share:>8.4g} |{bar:<{_BAR}}| {found.governs.against} governs{fails}"
+    for verdict in found.verdicts:
+        yield f"    {verdict.against:<18} {verdict.factor:>8.4g} {verdict.where}"
+    for word in found.is_open:
+        yield f"    open: {word}"
+
+
+def _told(link: str, lines: object) -> Iterator[str]:
+    assert callable(lines)
+    try:
+        yield from lines(link)
+    except DeclarationError as error:
+        yield f"  {link:<20} {'open':>8} {error}"
+
+
+def _stresses(solution: Solution, link: str) -> Iterator[str]:
+    stress = solution.stress(link)
+    for kind in KINDS:
+        yield _peak(link, stress.peak(kind))
+    if stress.member.beam.notches:
+        yield _peak(link, stress.peak("von_mises", notches=True))
+
+
+def _peak(link: str, peak: StressPeak) -> str:
+    where = f"t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}, {peak.fibre}{', with the factors of its notch' if peak.notch else ''}"
+    return f"  {f'stress:{link}:{peak.kind}':<28}{peak.value / 1e6 + 0.0:>13.6g} MPa at {where}"
+
+
+def _life(found: Life) -> str:
+    if math.isinf(found.cycles):
+        return (
+            f"  {found.link:<20}  endless: no swing is above the endurance limit; nearest at xi/l = {found.xi:.4f}, {found.fibre}"
+        )
+    guess = ", a guess: the S-N line begins at 1000 cycles" if found.cycles < _GUESS else ""
+    return f"  {found.link:<20} {found.cycles:>8.4g} cycles, {found.hours:.4g} h, at xi/l = {found.xi:.4f}, {found.fibre}{guess}"

@@ -1,0 +1,27 @@
+"""Strength of links: stresses, factors of safety against yielding, buckling and fatigue, and lives."""
+
+from .buckling import Column, critical_stress, effective_lengths
+from .fatigue import CRITERIA, cycles, factor, reversed_amplitude
+from .rainflow import Swing, rainflow
+from .safety import Life, Safety, Verdict, life, safety, stress
+from .stress import Stress, StressPeak
+
+__all__ = [
+    "CRITERIA",
+    "Column",
+    "Life",
+    "Safety",
+    "Stress",
+    "StressPeak",
+    "Swing",
+    "Verdict",
+    "critical_stress",
+    "cycles",
+    "effective_lengths",
+    "factor",
+    "life",
+    "rainflow",
+    "reversed_amplitude",
+    "safety",
+    "stress",
+]

@@ -1,0 +1,171 @@
+"""A link as a part that may fail: its section law, and what it is made of, in numbers."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..beams.beam import Beam
+from ..beams.properties import Properties
+from ..beams.shape import between
+from ..beams.told import beam_told
+from ..declare.density import Array
+from ..declare.description import in_space
+from ..errors import DeclarationError
+from ..instants.section_law import SectionLaw, Side
+from ..instants.solution import Solution
+from ..summits.polynomials import interpolation
+
+FORCES = {False: ("axial", "shear", "bending"), True: ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z")}
+"""The section forces that stresses are linear in: in the plane, and in space."""
+
+_EXACT, _DEGREES, _NARROW = 1e-13, (0, 4, 8, 12), 2.0**-12
+"""How closely a polynomial must give what forces are multiplied by, its degrees, and a part of a link too short to cut."""
+
+_TWIST = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """A part of a link, from one ratio to another, on which its cross-section is smooth.
+
+    ``degree`` is that of polynomials that give what stresses take of section forces there.
+    """
+
+    low: float
+    high: float
+    member: Member
+    index: int
+    degree: int
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The names of its fibres."""
+        return tuple(fibre.name for fibre in self.member.properties(self.index, np.zeros(1)).fibres)
+
+    def factors(self, u: Array) -> Array:
+        """What stresses, normal and along y and along z, take of each force at ratios ``u``: (3, fibres, forces, u...)."""
+        return self.member.factors(self.index, u)
+
+
+@dataclass(frozen=True, eq=False)
+class Member:
+    """A link of a solution with its beam, whose numbers are those of the solution's parameters."""
+
+    link: str
+    beam: Beam
+    law: SectionLaw
+    t: Array
+    xi: Array
+    space: bool
+
+    @classmethod
+    def of(cls, solution: Solution, link: str) -> Member:
+        """A link of a solution.
+
+        Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, equilibrium leaves its forces
+        open, or its cross-section bears torsion of which its stiffness is not known.
+        """
+        law, body = solution.section(link).law, solution.description["bodies"][link]
+        if "beam" not in body:
+            having = ", ".join(name for name, other in solution.description["bodies"].items() if "beam" in other)
+            raise DeclarationError(f"link '{link}' has no beam, which says what it is made of; links with one: {having or 'none'}")
+        space = in_space(solution.description)
+        if open_ := [force for force in FORCES[space] if not solution.determined(f"section:{link}:{force}")]:
+            raise DeclarationError(f"link '{link}': equilibrium does not determine {' and '.join(open_)}, so its strength is open")
+        member = cls(link, beam_told(body["beam"]), law, solution.t, solution.xi, space)
+        member._check_torsion()
+        return member
+
+    @property
+    def forces(self) -> tuple[str, ...]:
+        """The names of the section forces that stresses are made of."""
+        return FORCES[self.space]
+
+    def properties(self, index: int, u: Any) -> Properties:
+        """The properties between two breaks at ratios ``u``."""
+        course = self.beam.course
+        first, last = course.cells[index]
+        share = (u - course.breaks[index]) / (course.breaks[index + 1] - course.breaks[index])
+        return between(first, last, share).properties(space=self.space)
+
+    def factors(self, index: int, u: Array) -> Array:
+        """What stresses take of section forces between two breaks, at ratios ``u``: (3, fibres, forces, u...)."""
+        p = self.properties(index, u)
+        found = np.zeros((3, len(p.fibres), 6, *np.shape(u)))
+        whole = p.iz * p.iy - p.iyz**2
+        for k, fibre in enumerate(p.fibres):
+            found[0, k, 0] = 1.0 / p.area
+            found[0, k, 4] = (p.iz * fibre.z - p.iyz * fibre.y) / whole
+            found[0, k, 5] = (p.iyz * fibre.z - p.iy * fibre.y) / whole
+            for row, (by_y, by_z, twist) in ((1, fibre.along_y), (2, fibre.along_z)):
+                # Section forces act at the centroid, torsion counts from the shear centre.
+                found[row, k, 1] = by_y + p.centre_z * twist
+                found[row, k, 2] = by_z - p.centre_y * twist
+                found[row, k, 3] = twist
+        return found if self.space else found[:, :, [0, 1, 5]]
+
+    def at(self, u: Array, side: Side = "tip", scale: Array | None = None) -> Array:
+        """The section forces at ratios ``u`` (t, n), each times its ``scale``: (forces, t, n)."""
+        values = np.stack([self.law.at(force, u, side) for force in self.forces])
+        return values if scale is None else values * scale[:, None, None]
+
+    def during(self, instants: Any) -> Member:
+        """The same at some of the instants, a slice or their numbers."""
+        return Member(self.link, self.beam, self.law.during(instants), self.t[instants], self.xi, self.space)
+
+    @cached_property
+    def cells(self) -> tuple[Cell, ...]:
+        """Its parts, in order along the link."""
+        breaks = self.beam.course.breaks
+        return tuple(c for k, (a, b) in enumerate(itertools.pairwise(breaks)) for c in self._cells(k, a, b))
+
+    @property
+    def degree(self) -> int:
+        """The degree along the link of its section forces, between two marks."""
+        cells = max(map(len, self.law.density.cells)) + 2
+        return max(cells, *(spread.powers + 1 for spread in self.law.spreads), 0)
+
+    @property
+    def marks(self) -> list[Array]:
+        """Ratios (t,) between which section forces are polynomials: stations, ends of loads, and breaks of the density."""
+        still = np.zeros_like(self.t)
+        found = [load.station for load in self.law.loads] + [mark for spread in self.law.spreads for mark in spread.marks]
+        return [np.clip(mark, 0.0, 1.0) for mark in (*found, *(still + b for b in self.law.density.breaks[1:-1]))]
+
+    def cell_at(self, u: float, side: Side) -> Cell:
+        """The part in which a ratio is; at a border that on one of its sides."""
+        inside = [c for c in self.cells if c.low <= u <= c.high]
+        return inside[-1] if side == "tip" else inside[0]
+
+    def _cells(self, index: int, low: float, high: float) -> Iterator[Cell]:
+        """A part as one cell, or where no polynomial gives what it should, cut in halves."""
+        first, last = self.beam.course.cells[index]
+        for degree in _DEGREES if first is not last else _DEGREES[:1]:
+            nodes, weights = interpolation(degree)
+            finer = np.linspace(-1.0, 1.0, 2 * degree + 3)
+            here, there = (self.factors(index, low + (high - low) * (x + 1) / 2) for x in (nodes, finer))
+            told = here @ weights @ np.polynomial.chebyshev.chebvander(finer, degree).T
+            # Of each force its own unit.
+            size = np.abs(there).max(axis=(0, 1, 3), keepdims=True)
+            if np.all(np.abs(told - there) <= _EXACT * size) or (high - low < _NARROW and degree == _DEGREES[-1]):
+                yield Cell(low, high, self, index, degree)
+                return
+        middle = (low + high) / 2
+        yield from self._cells(index, low, middle)
+        yield from self._cells(index, middle, high)
+
+    def _check_torsion(self) -> None:
+        if not self.space or self.properties(0, 0.0).torsion is not None:
+            return
+        ends = np.zeros((self.t.size, 1)) + np.linspace(0.0, 1.0, 9)
+        twist, bending = (np.abs(self.law.at(force, ends)).max() for force in ("torsion", "bending"))
+        if twist > _TWIST * (twist + bending):
+            kind = self.beam.course.cells[0][0].kind
+            how = "give its properties by beams.given, with its torsion"
+            raise DeclarationError(f"link '{self.link}' is twisted, and for torsion of a {kind} there is no formula; {how}")

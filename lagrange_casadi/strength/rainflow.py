@@ -1,0 +1,78 @@
+"""Rainflow counting by ASTM E1049-85: which swings a history of loads is made of."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..declare.density import Array
+from ..errors import DeclarationError
+
+
+class Swing(NamedTuple):
+    """A swing between two values of a history, at the indices ``first`` and ``last``; it comes 1 or 1/2 ``times``."""
+
+    size: float
+    mean: float
+    times: float
+    first: int
+    last: int
+
+
+def reversals(history: Array) -> Array:
+    """The indices at which a history turns, its ends among them; of equal neighbours the first."""
+    moved = np.flatnonzero(np.diff(history) != 0.0)
+    if not moved.size:
+        return np.zeros(1, int)
+    kept = np.append(0, moved + 1)
+    rising = np.diff(history[kept]) > 0.0
+    turns = np.flatnonzero(rising[1:] != rising[:-1]) + 1
+    return np.concatenate([kept[:1], kept[turns], kept[-1:]])
+
+
+def rainflow(history: Sequence[float] | Array, *, repeating: bool = False) -> list[Swing]:
+    """The swings of a history (section 5.4.4), or of one that repeats for ever (5.4.5), of which each counts whole.
+
+    One that repeats begins at its largest value. Raises :class:`.DeclarationError` for what are no finite numbers.
+    """
+    values = np.asarray(history, float)
+    if values.ndim != 1 or not values.size or not np.isfinite(values).all():
+        raise DeclarationError("rainflow: expected a row of finite numbers")
+    order = np.arange(values.size)
+    if repeating:
+        start = int(np.argmax(values))
+        order = np.append(np.roll(order, -start), start)
+    turns = order[reversals(values[order])]
+    found: list[Swing] = []
+    stack: list[int] = []
+
+    def swing(first: int, last: int, times: float) -> None:
+        a, b = float(values[first]), float(values[last])
+        found.append(Swing(abs(b - a), (a + b) / 2, times, first, last))
+
+    level = values.tolist()
+    for index in turns.tolist():
+        stack.append(index)
+        while len(stack) > 2:
+            newest, before = abs(level[stack[-1]] - level[stack[-2]]), abs(level[stack[-2]] - level[stack[-3]])
+            if newest < before:
+                break
+            if len(stack) == 3 and not repeating:
+                swing(stack[0], stack[1], 0.5)
+                del stack[0]
+            elif len(stack) == 3:
+                break
+            else:
+                swing(stack[-3], stack[-2], 1.0)
+                del stack[-3:-1]
+    if repeating:
+        # What is left goes from the largest value down to the smallest and back.
+        if len(stack) > 1:
+            swing(stack[0], stack[1], 1.0)
+        return found
+    for first, last in itertools.pairwise(stack):
+        swing(first, last, 0.5)
+    return found

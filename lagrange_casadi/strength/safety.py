@@ -1,0 +1,151 @@
+"""Is a link strong enough: factors of safety against yielding, buckling and fatigue, what governs, and how long it lasts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..instants.solution import Solution
+from .buckling import Column, column, effective_lengths, load_factor
+from .fatigue import Loaded, cycles, factor, reversed_amplitude, strengths, worst
+from .member import Member
+from .stress import Stress
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A factor of safety against a way to fail: by how much all loads may grow; and where it is decided, in words."""
+
+    against: str
+    factor: float
+    where: str
+
+
+@dataclass(frozen=True)
+class Safety:
+    """The factors of safety of a link; what ``is_open`` could not be looked at, each with its reason."""
+
+    link: str
+    verdicts: tuple[Verdict, ...]
+    is_open: tuple[str, ...] = ()
+
+    @property
+    def governs(self) -> Verdict:
+        """The smallest of them."""
+        return min(self.verdicts, key=lambda verdict: verdict.factor)
+
+    @property
+    def factor(self) -> float:
+        """The smallest factor of safety."""
+        return self.governs.factor
+
+    @property
+    def utilisation(self) -> float:
+        """One over the smallest factor of safety: above 1 the link fails."""
+        return 1.0 / self.factor if self.factor > 0.0 else math.inf
+
+    def against(self, what: str) -> float:
+        """The factor of safety against ``yield``, ``buckling`` or ``fatigue``; NaN where it is open."""
+        return next((verdict.factor for verdict in self.verdicts if verdict.against == what), math.nan)
+
+
+@dataclass(frozen=True)
+class Life:
+    """How long a link lasts, its span of time repeated: ``damage`` by Miner's sum of one span, ``cycles`` and ``hours`` until it is
+    1, infinite where no swing is above the endurance limit; and where, by ratio xi/l and fibre.
+
+    A life below a thousand cycles is told by a line that begins there, and is a guess.
+    """
+
+    link: str
+    damage: float
+    cycles: float
+    hours: float
+    xi: float
+    fibre: str
+
+
+def stress(solution: Solution, link: str) -> Stress:
+    """The stresses in a link. Raises :class:`.DeclarationError` where it has no beam, or no sections."""
+    return Stress(Member.of(solution, link))
+
+
+def safety(solution: Solution, link: str, *, criterion: str = "goodman", yielding: str = "von_mises") -> Safety:
+    """The factors of safety of a link against yielding, buckling and fatigue, over all instants.
+
+    Yielding is by nominal stresses, for ductile parts; fatigue has the factors of notches. It is open where the material has no
+    endurance limit. Raises :class:`.DeclarationError` where it lacks any other number that is needed, and
+    :class:`.UnknownNameError` for a ``criterion`` or a kind of stress that is none.
+    """
+    member = Member.of(solution, link)
+    found = Stress(member)
+    material = member.beam.material
+    (strength,) = material.needs("safety against yielding", "yield_strength")
+    peak = found.peak(yielding)
+    where = f"{yielding} {peak.value / 1e6:.4g} MPa at t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}, {peak.fibre}"
+    verdicts = [Verdict("yield", _over(strength, peak.value), where)]
+    verdicts.append(buckling(member, as_column(solution, member)))
+    if material.endurance is None:
+        return Safety(link, tuple(verdicts), (f"fatigue: material '{material.name}' has no endurance",))
+    strengths(material, criterion)
+
+    def score(swings: Loaded) -> tuple[float]:
+        return (float(np.min(factor(swings.amplitude, swings.mean, material, criterion))),)
+
+    (value,), place, fibre, swings = worst(found, score)
+    k = int(np.argmin(factor(swings.amplitude, swings.mean, material, criterion)))
+    told = f"{swings.mean[k] / 1e6:.4g} +- {swings.amplitude[k] / 1e6:.4g} MPa by {criterion}"
+    verdicts.append(Verdict("fatigue", value, f"{told} at xi/l = {place.xi:.4f}, {fibre}{', notch' if place.notch else ''}"))
+    return Safety(link, tuple(verdicts))
+
+
+def as_column(solution: Solution, member: Member) -> Column:
+    """A link as a column, by the effective lengths of its beam or its joints."""
+    return column(member, member.beam.columns or effective_lengths(solution.description, member.link))
+
+
+def buckling(member: Member, of: Column) -> Verdict:
+    """The factor of safety of a link against buckling, with the largest moment along it at every instant."""
+    law = member.law
+    compression = -law.reached("axial")[1][0]
+    names = ("bending_z", "bending_y") if member.space else ("bending",)
+    moments = [np.abs(law.extreme(name)[1]) for name in names]
+    both = (moments[0], moments[1] if member.space else np.zeros_like(compression))
+    factors = load_factor(compression, both, of)
+    k = int(np.argmin(factors))
+    if not np.isfinite(factors[k]):
+        return Verdict("buckling", math.inf, "nothing is compressed")
+    axis = int(np.argmin(of.critical))
+    way = ("along y", "along z")[axis] if member.space else ("in the plane", "out of the plane")[axis]
+    kind = "Euler" if of.critical[axis] >= of.euler[axis] * (1.0 - 1e-12) else "Johnson"
+    load = f"{kind}'s {of.critical[axis]:.4g} N {way}, slenderness {of.slenderness[axis]:.3g}"
+    return Verdict(
+        "buckling", float(factors[k]), f"{load}; {compression[k]:.4g} N and {both[0][k]:.4g} N m at t = {member.t[k]:.5g} s"
+    )
+
+
+def life(solution: Solution, link: str, *, criterion: str = "goodman") -> Life:
+    """How long a link lasts, its span of time repeated for ever: rainflow counting, the mean by a criterion, Miner's sum.
+
+    Raises what :func:`safety` does, and :class:`.DeclarationError` where the material has no endurance limit.
+    """
+    member = Member.of(solution, link)
+    material = member.beam.material
+    material.needs("a life", "endurance", "ultimate")
+    strengths(material, criterion)
+
+    def score(swings: Loaded) -> tuple[float, float]:
+        sizes = reversed_amplitude(swings.amplitude, swings.mean, material, criterion)
+        with np.errstate(divide="ignore"):
+            return -float(np.sum(swings.times / cycles(sizes, material))), -float(np.max(sizes))
+
+    (most, _), place, fibre, _ = worst(Stress(member), score)
+    many = math.inf if most == 0.0 else -1.0 / most
+    span = float(solution.t[-1] - solution.t[0])
+    return Life(link, 0.0 - most, many, many * span / 3600.0, place.xi, fibre)
+
+
+def _over(strength: float, size: float) -> float:
+    return strength / abs(size) if size else math.inf

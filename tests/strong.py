@@ -1,0 +1,36 @@
+"""Mechanisms whose links are made of something."""
+
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams
+from lagrange_casadi.motion import harmonic, polynomial
+
+STEEL = beams.material("C45+QT")
+
+
+def press(shape, notches=(), *, material=STEEL, push=-300.0, columns=None, t=(0, 0.2094395, 121), sliding=False):
+    """A slider-crank upright, a load on its rod beside the middle, and where asked a pin that slides along the rod."""
+    m = Mechanism("press")
+    beam = beams.Beam(shape, material, notches, columns)
+    crank, rod = m.link("crank", length=m.parameter("r", 0.1, "m"), mass=1.2), m.link("rod", length=0.4, beam=beam)
+    ram = m.point_mass("ram", 15.0)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, ram)
+    m.prismatic("guide", m.ground, ram, axis=(0, 1))
+    m.force("push", rod.at(0.13), x=push)
+    m.line_load("wind", rod, y=lambda x: 200.0 * x, between=(0.1, 0.35))
+    if sliding:
+        sleeve = m.link("sleeve", length=0.1, mass=0.5, centre=(0.0, 0.0), inertia=1e-3)
+        m.prismatic("along", rod, sleeve, axis=(1, 0))
+        return Scene(m, {"O": polynomial(0, 30.0), "along": harmonic(0.2, 0.1, 5.0)}, t=t, posture={"rod": 1.5})
+    return Scene(m, {"O": polynomial(0, 30.0)}, t=t, posture={"rod": 1.5})
+
+
+def robot(shape, material=STEEL):
+    """An arm in space whose upper link bends about both axes, is twisted and pulled."""
+    m = SpatialMechanism("robot")
+    upper = m.link("upper", length=0.5, beam=beams.Beam(shape, material))
+    fore = m.link("fore", length=0.4, mass=3.0)
+    m.revolute("turn", m.ground, upper, axis=(0.3, 0.5, 1.0))
+    m.revolute("elbow", upper.tip, fore, axis=(0.2, 1.0, 0.4))
+    m.force("load", fore.tip, x=120.0, y=-80.0, z=60.0)
+    return Scene(m, {"turn": harmonic(0.0, 1.0, 1.0), "elbow": harmonic(0.7, 0.5, 2.0)}, t=(0, 1, 61))

@@ -1,0 +1,113 @@
+"""The case of a connecting rod, number by number against its textbook.
+
+R. S. Khurmi and J. K. Gupta, A Textbook of Machine Design, chapter 32, sections 32.14 and 32.15 and example 32.3.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from lagrange_casadi import evaluate, load_case
+from lagrange_casadi.cli import main
+from lagrange_casadi.strength.member import Member
+from lagrange_casadi.strength.safety import as_column
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+T, LENGTH, RADIUS = 7e-3, 0.38, 0.095
+EVEN = {"big": 1.0, "small": 1.0}
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return load_case("connecting_rod").scene
+
+
+@pytest.fixture(scope="module")
+def running(scene):
+    return evaluate(scene)
+
+
+@pytest.fixture(scope="module")
+def even(scene):
+    """The section of the middle throughout, as the textbook has it, so slow that gas alone acts."""
+    return evaluate(scene, parameters={**EVEN, "rpm": 2.0}, certificate=False)
+
+
+def test_the_cross_section_of_11_t_t(even):
+    p = Member.of(even, "rod").properties(0, 0.5)
+    assert p.area == pytest.approx(11 * T**2, rel=1e-12)
+    assert p.iz == pytest.approx(419 / 12 * T**4, rel=1e-12)
+    assert p.iy == pytest.approx(131 / 12 * T**4, rel=1e-12)
+    assert 3.0 < p.iz / p.iy < 3.5
+    assert even.description["bodies"]["rod"]["mass"] == pytest.approx(11 * T**2 * 8000 * LENGTH)
+
+
+def test_the_gas_force(even):
+    """pi/4 100^2 3.15 = 24 740 N on the piston, 15 degrees behind the dead centre; the rod leans a little."""
+    lean = math.asin(RADIUS * math.sin(math.radians(15)) / LENGTH)
+    least = even.section("rod").law.reached("axial")[1][0].min()
+    assert -least == pytest.approx(24_740 / math.cos(lean), rel=5e-3)
+
+
+def test_buckling_in_the_plane_and_out_of_it(even):
+    """Pinned in the plane, held out of it; Rankine's formula with a = 1/7500 gives the book 153 kN, which is near Johnson's."""
+    of = as_column(even, Member.of(even, "rod"))
+    assert of.effective == (1.0, 0.5)
+    assert of.slenderness[0] == pytest.approx(380 / (1.78 * 7), rel=2e-3)
+    rankine = 320e6 * 11 * T**2 / (1 + (380 / (1.78 * 7)) ** 2 / 7500)
+    assert rankine > 6 * 24_740  # the book's t is rounded upward
+    assert of.critical[0] == pytest.approx(rankine, rel=0.09)
+    assert of.critical[1] > of.critical[0]  # "buckling about the other axis need not be looked at"
+
+
+def test_bending_by_its_own_inertia(scene):
+    """m r w^2 l^2 / (9 sqrt 3) supposes a rod at right angles to the crank, and that its motion is a pure turning there."""
+    whipped = evaluate(scene, parameters={**EVEN, "pressure": 0.0}, certificate=False)
+    formula = 11 * T**2 * 8000 * RADIUS * (1800 * 2 * math.pi / 60) ** 2 * LENGTH**2 / (9 * math.sqrt(3))
+    peak = whipped.peak("section:rod:bending")
+    assert abs(peak.value) == pytest.approx(formula, rel=0.04)
+    # From the piston's pin it is 1/sqrt 3 of the length away.
+    assert 1 - peak.xi == pytest.approx(1 / math.sqrt(3), abs=0.02)
+    stress = whipped.stress("rod")
+    upper, lower = (stress.at(peak.xi)[0, stress.fibres(peak.xi).index(f"corner {side}y +z")] for side in "+-")
+    bending = (upper - lower)[int(np.argmin(abs(whipped.t - peak.t)))] / 2
+    assert abs(bending) == pytest.approx(abs(peak.value) / (419 / 30 * T**3), rel=1e-9)
+
+
+def test_what_governs(running, capsys):
+    rod, crank = running.safety("rod"), running.safety("crank")
+    assert running.certified
+    assert (rod.governs.against, crank.governs.against) == ("fatigue", "fatigue")
+    expected = {"yield": 7.88, "buckling": 6.79, "fatigue": 4.65}
+    for against, factor in expected.items():
+        assert rod.against(against) == pytest.approx(factor, rel=2e-3)
+    assert math.isinf(running.life("rod").cycles)
+
+
+def test_fatigue_by_hand(running):
+    """At the outermost fibres s = N/A -+ M/W, over ratios of a grid; in the flanges beside the web shear adds a little."""
+    solution = running
+    u = np.linspace(0.0, 1.0, 2001)
+    heights = 0.035 * np.interp(u, [0, 0.5, 1], [1.2, 1.0, 0.9])
+    area = 2 * 4 * T * T + (heights - 2 * T) * T
+    second = (4 * T * heights**3 - 3 * T * (heights - 2 * T) ** 3) / 12
+    law = solution.section("rod").law
+    n, m = (law.at(force, np.broadcast_to(u, (solution.t.size, u.size))) for force in ("axial", "bending"))
+    worst = min(_goodman(n / area + e * m * heights / 2 / second) for e in (1, -1))
+    assert solution.safety("rod").against("fatigue") == pytest.approx(worst, rel=1e-3)
+
+
+def _goodman(stress):
+    high, low = stress.max(axis=0), stress.min(axis=0)
+    return (1 / ((high - low) / 2 / 180e6 + np.maximum(high + low, 0.0) / 2 / 540e6)).min()
+
+
+def test_run_prints_every_part(here, capsys):
+    assert main(["run", "connecting_rod", "--no-figures", "--no-certificate", "--backend", "vm"]) == 0
+    out = capsys.readouterr().out
+    for part in ("rod", "crank"):
+        assert f"\n  {part:<20} " in out
+    assert out.count("| fatigue governs\n") == 2
+    assert out.count("endless: no swing is above the endurance limit") == 2
