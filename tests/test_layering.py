@@ -36,6 +36,7 @@ ORDER = (
     "draw",
     "report",
     "animation",
+    "optimise",
     "density",
     "motion",
     "figures",
