@@ -109,12 +109,12 @@ def _print(found: Optimum) -> None:
     if found.stopped:
         click.echo("stopped: the best design so far")
     for limit in found.limits:
-        kept = "active" if limit.active else "holds"
-        kept = kept if limit.constraint.excess(limit.value) <= 1e-6 * abs(limit.constraint.limit or 1.0) else "VIOLATED"
-        relaxed = f", a unit more gains {limit.multiplier:.4g}" if limit.active else ""
+        excess = limit.constraint.excess(limit.value)
+        kept = "active" if limit.active else f"VIOLATED by {excess:.4g}" if excess > 0.0 else "holds"
+        relaxed = f", a unit more gains {limit.multiplier:.4g}" if limit.active and found.feasible else ""
         click.echo(f"  {limit.constraint}: {limit.value:.8g}, {kept}{relaxed}")
     for name, multiplier in found.bounds.items():
-        if multiplier:
+        if multiplier and found.feasible:
             click.echo(
                 f"  {name} is at its {'least' if multiplier < 0.0 else 'largest'} value, a unit more gains {abs(multiplier):.4g}"
             )
