@@ -16,6 +16,7 @@ from .errors import LagrangeCasadiError
 from .evaluate import evaluate
 from .export import export
 from .instants.solution import Peak, Solution
+from .optimise import Optimum, optimise
 from .store.runs import check, load, save
 from .study.peaks import refine
 from .sweep import Sweep, best, read_designs, sweep
@@ -27,6 +28,7 @@ __all__ = [
     "LagrangeCasadiError",
     "LagrangeSystem",
     "Mechanism",
+    "Optimum",
     "Peak",
     "Prepared",
     "Scene",
@@ -46,6 +48,7 @@ __all__ = [
     "load",
     "load_case",
     "motion",
+    "optimise",
     "prepare",
     "read_designs",
     "refine",

@@ -39,6 +39,7 @@ ORDER = (
     "draw",
     "report",
     "animation",
+    "optimise",
     "density",
     "motion",
     "figures",

@@ -27,6 +27,7 @@ from .drawing import drawn_ways
 from .export import export
 from .info import info
 from .new import new
+from .optimise import optimise
 from .plot import plot
 from .report_page import report
 from .run import run
@@ -74,7 +75,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (run, sweep, best, table, trade, export, plot, report, animate, info, check, cases, new, cache)
+_COMMANDS = (run, sweep, best, table, optimise, trade, export, plot, report, animate, info, check, cases, new, cache)
 
 
 @click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})

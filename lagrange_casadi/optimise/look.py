@@ -1,0 +1,105 @@
+"""A design looked at over its whole motion: where its quantities have peaks, and how near its loops are to a dead centre."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..declare.density import Array, Density
+from ..equations.scene_graph import SceneGraph
+from ..instants.backends import Evaluated, run
+from ..instants.rung import Rung
+from ..instants.signals import SectionForce
+from ..instants.sizes import size_of
+from ..quantities import Output
+from ..tables import table_of
+
+
+@dataclass(frozen=True)
+class Point:
+    """A time [s] and a place of a quantity: a ratio ``xi``, and which of the places of :meth:`.PointValues.of` is meant.
+
+    ``value`` is the quantity there, ``guess`` the iterated coordinates. ``turn`` and ``reach`` say how the point follows its peak:
+    see :class:`.Followed`.
+    """
+
+    t: float
+    xi: float
+    place: int
+    value: float
+    guess: tuple[float, ...]
+    turn: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    reach: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """A design over instants: ``t`` (t,), the graph's columns (columns, t) and iterated coordinates (z, t) there."""
+
+    graph: SceneGraph
+    t: Array
+    p: Array
+    found: Evaluated
+
+    @classmethod
+    def at(cls, graph: SceneGraph, t: Array, p: Array, rung: Rung) -> Look:
+        """A design looked at; what has no result is NaN there."""
+        found, _ = run(graph, t, p, rung)
+        return cls(graph, t, p, found)
+
+    def points(self, output: Output, sign: float) -> list[Point]:
+        """The local peaks over time of a quantity times ``sign``, or of its size where that is 0, the largest first."""
+        found: list[Point] = []
+        for number, (places, values) in enumerate(zip(*self._curves(output), strict=True)):
+            sized = np.abs(values) if sign == 0.0 else sign * values
+            sized = np.where(np.isfinite(sized), sized, -np.inf)
+            padded = np.concatenate([[-np.inf], sized, [-np.inf]])
+            tops = (sized >= padded[:-2]) & (sized > padded[2:]) | (sized > padded[:-2]) & (sized >= padded[2:])
+            if sized.size == 1:
+                tops = np.isfinite(sized)
+            for k in np.flatnonzero(tops & np.isfinite(sized)).tolist():
+                found.append(self._point(k, float(places[k]), self._place(output, number), float(values[k])))
+        return sorted(found, key=lambda point: -(abs(point.value) if sign == 0.0 else sign * point.value))
+
+    def closures(self) -> Array:
+        """The squares of the sines of the transmission angles (loops, t), NaN or below zero where loops do not close."""
+        names = self.graph.checks("closure")
+        rows = [self.found.out[k] for k in names.values()]
+        rows = [row * np.abs(row) if self.graph.iterates(name) else row for name, row in zip(names, rows, strict=True)]
+        return np.array(rows).reshape(len(rows), self.t.size)
+
+    def instant(self, k: int) -> Point:
+        """An instant by its number, as a point."""
+        return self._point(k, 0.0, 0, 0.0)
+
+    def _point(self, k: int, xi: float, place: int, value: float) -> Point:
+        return Point(float(self.t[k]), xi, place, value, tuple(self.found.iterated[:, k].tolist()))
+
+    def _curves(self, output: Output) -> tuple[Sequence[Array], Sequence[Array]]:
+        """Ratios and values of a quantity's curves, (t,) each."""
+        out, mechanism = np.asarray(self.found.out, float), self.graph.scene.mechanism
+        if output.group != "section":
+            rows = out[
+                [self.graph.outputs[part] for part in output.components(table_of(mechanism.space)) if part in self.graph.outputs]
+            ]
+            return [np.zeros(self.t.size)], [rows[0] if len(rows) == 1 else size_of(rows)]
+        values = dict(zip(mechanism.parameters, self.p.tolist(), strict=True))
+
+        def number(expression: Any) -> float:
+            return mechanism.number(expression, values)
+
+        link = mechanism.links[output.part]
+        assert isinstance(link.mass, Density)
+        length = number(link.length)
+        own = {o: k for o, k in self.graph.outputs.items() if o.along and o.part == output.part}
+        with np.errstate(all="ignore"):
+            places, curves = SectionForce(output.member, output.part, own, length, link.mass.at(number, length)).curves(out)
+        return list(places), list(curves)
+
+    def _place(self, output: Output, curve: int) -> int:
+        """Which place of :meth:`.PointValues.of` a curve of :meth:`.SectionLaw.curves` is at: after the ends come the stations."""
+        stations = sum(1 for o in self.graph.outputs if o.group == "station" and o.part == output.part and o.member == "station")
+        return curve - 1 if output.group == "section" and 2 <= curve < 2 + 2 * stations else 0

@@ -1,0 +1,102 @@
+"""What is made small, and what is held within limits: a peak, a largest or smallest value, a mean, or a parameter."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from ..errors import DeclarationError
+from ..quantities import Output
+from ..system.numerals import real
+
+Kind: TypeAlias = Literal["peak", "max", "min", "mean", "rms", "parameter"]
+
+KINDS = {
+    "peak": "the largest size of a quantity over the motion",
+    "max": "its largest value",
+    "min": "its smallest value",
+    "mean": "the mean of an effort or an output",
+    "rms": "the root of its mean square",
+}
+"""What a term may begin with."""
+
+_UPPER: tuple[Kind, ...] = ("peak", "max", "rms")
+_CONSTRAINT = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*")
+_EXAMPLE = "peak:section:rod:bending <= 12"
+
+
+@dataclass(frozen=True)
+class Term:
+    """A number that a design has: a ``kind``, and the quantity it is of by full name, or the parameter."""
+
+    kind: Kind
+    name: str
+
+    @classmethod
+    def parse(cls, text: str, parameters: Mapping[str, object]) -> Term:
+        """Read ``peak:effort:O``, ``rms:effort:O`` or the like, or a parameter's name. Raises :class:`DeclarationError`."""
+        if not isinstance(text, str):
+            raise DeclarationError(f"expected a text such as 'peak:effort:O', got {text!r}")
+        kind, _, name = text.strip().partition(":")
+        for known in KINDS:
+            if kind == known and name:
+                try:
+                    return cls(known, str(Output.of(name)))  # type: ignore[arg-type]
+                except KeyError:
+                    break
+        if text.strip() in parameters:
+            return cls("parameter", text.strip())
+        raise DeclarationError(
+            f"'{text}' is neither a parameter nor {', '.join(f'{kind}:QUANTITY' for kind in KINDS)}; an example is peak:effort:O"
+        )
+
+    @property
+    def averaged(self) -> bool:
+        """Whether it is made of all instants."""
+        return self.kind in ("mean", "rms")
+
+    @property
+    def output(self) -> Output | None:
+        """The quantity, None of a parameter."""
+        return None if self.kind == "parameter" else Output.of(self.name)
+
+    def __str__(self) -> str:
+        return self.name if self.kind == "parameter" else f"{self.kind}:{self.name}"
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """A term that is at most, or with ``least`` at least, a ``limit``."""
+
+    term: Term
+    limit: float
+    least: bool = False
+
+    @classmethod
+    def parse(cls, text: str, parameters: Mapping[str, object]) -> Constraint:
+        """Read ``TERM <= NUMBER`` or ``TERM >= NUMBER``. Raises :class:`DeclarationError`."""
+        found = _CONSTRAINT.fullmatch(text) if isinstance(text, str) else None
+        try:
+            if found is None or not math.isfinite(limit := real(found[3])):
+                raise ValueError
+        except ValueError:
+            raise DeclarationError(f"expected a constraint such as '{_EXAMPLE}', got {text!r}") from None
+        term, least = Term.parse(found[1], parameters), found[2].startswith(">")
+        if least and term.kind in _UPPER:
+            advice = f"use min:{term.name}" if term.kind == "max" else "it can be limited from above only"
+            raise DeclarationError(f"'{text}': {advice}")
+        if not least and term.kind == "min":
+            raise DeclarationError(f"'{text}': use max:{term.name}, for a smallest value can be limited from below only")
+        if term.kind == "peak" and limit < 0.0:
+            raise DeclarationError(f"'{text}': a peak is a size, which is not below {limit:g}")
+        return cls(term, limit, least)
+
+    def excess(self, value: float) -> float:
+        """By how much a value is beyond the limit; below zero where it is within."""
+        return self.limit - value if self.least else value - self.limit
+
+    def __str__(self) -> str:
+        return f"{self.term} {'>=' if self.least else '<='} {self.limit:g}"

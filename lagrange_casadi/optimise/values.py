@@ -1,0 +1,136 @@
+"""Quantities of a graph at a point as CasADi functions of the parameters, with derivatives of any order.
+
+Iterated coordinates are the solution of the loops there, by ``casadi.rootfinder``: its derivatives are those of the implicit
+function theorem.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+
+from ..equations.checks import Column
+from ..equations.reciprocals import differentiable
+from ..equations.scene_graph import SceneGraph
+from ..quantities import Output
+from ..sensitivity.along import Along, Place
+from ..tables import table_of
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """A quantity at a point, which may follow its peak as parameters change.
+
+    ``value(t, guess, p, xi, place)``; ``slopes`` of the same are its derivatives by t and xi (2,); ``moved`` is the value where one
+    step of Newton's method leads, which takes ``turn`` and ``reach`` too: less the inverse of the second derivatives, three
+    numbers, and how far to go in t and in xi at most. ``place`` has ``size`` numbers.
+
+    A peak of F(t, p) is at F_t = 0. With F_tt of the parameters that are known, t - F_t(t, p)/F_tt is there but for the square of
+    what the parameters change, and F is the peak's value but for the fourth power.
+    """
+
+    value: Any
+    slopes: Any
+    moved: Any
+    size: int
+
+    @classmethod
+    def of(cls, value: Any, size: int) -> Followed:
+        """That of a function."""
+        smooth = value.is_a("SXFunction")
+        kind, names = (ca.SX if smooth else ca.MX), ["t", "guess", "p", "xi", "place"]
+        given: list[Any] = [kind.sym(name, value.size1_in(k)) for k, name in enumerate(names)]
+        t, guess, p, xi, place = given
+        turn, reach = (kind.sym(name, n) for name, n in (("turn", 3), ("reach", 2)))
+        further: list[Any] = [turn, reach]
+        at = ca.densify(ca.gradient(value(*given), ca.vertcat(t, xi))) if smooth else None
+        if at is None:
+            at = ca.vertcat(*(ca.densify(ca.gradient(value(*given), x)) for x in (t, xi)))
+        away: list[Any] = [turn[0] * at[0] + turn[1] * at[1], turn[1] * at[0] + turn[2] * at[1]]
+        limits: list[Any] = [reach[0], reach[1]]
+        there = [x + ca.fmin(ca.fmax(far, -most), most) for x, far, most in zip((t, xi), away, limits, strict=True)]
+        options = {"cse": True} if smooth else {}
+        slopes = ca.Function("slopes", given, [at], options)
+        moved = value(there[0], guess, p, there[1], place)
+        return cls(value, slopes, ca.Function("moved", [*given, *further], [moved], options), size)
+
+
+@dataclass(frozen=True, eq=False)
+class PointValues:
+    """The functions of a graph's quantities at points."""
+
+    graph: SceneGraph
+
+    def of(self, quantity: Output) -> Followed:
+        """A quantity at a point.
+
+        ``place`` has a 1 where a section force is meant, and 0 elsewhere: first at ``xi``, then at each side of each station.
+        """
+        t, d, rate, acceleration, z, p = inputs = self._instant.sx_in()
+        xi = ca.SX.sym("xi")
+        out = self._instant(*inputs)
+        mechanism, table = self.graph.scene.mechanism, table_of(self.graph.scene.mechanism.space)
+        columns: dict[Column, Any] = {output: out[k] for output, k in self.graph.outputs.items()}
+        if quantity.group == "section":
+            link = Along(mechanism, mechanism.links[quantity.part], columns)
+            places = [Place(xi), *(mark for mark in link.marks if mark.station)]
+            names = table.parts("section", quantity.member)
+            sizes = [_size([link.force(name, place) for name in names]) for place in places]
+        else:
+            sizes = [_size([columns[part] for part in quantity.components(table) if part in columns])]
+        place = ca.SX.sym("place", len(sizes))
+        # What is not meant may have no value, as a size at zero has no slope.
+        value = sum((ca.if_else(place[k] > 0, size, 0) for k, size in enumerate(sizes)), ca.SX(0))
+        value = ca.substitute(ca.SX(value), mechanism.symbols, p)
+        return Followed.of(self._at_time([t, d, rate, acceleration, z, p, xi, place], value), len(sizes))
+
+    def closures(self) -> Any | None:
+        """``value(t, guess, p, xi, place)``: the squares of the sines of all loops' transmission angles, None without loops.
+
+        Of an iterated loop it is the square of its volume.
+        """
+        names = self.graph.checks("closure")
+        if not names:
+            return None
+        inputs = self._instant.sx_in()
+        out = self._instant(*inputs)
+        found = [out[k] * out[k] * ca.sign(out[k]) if self.graph.iterates(name) else out[k] for name, k in names.items()]
+        return self._at_time([*inputs, ca.SX.sym("xi"), ca.SX.sym("place", 1)], ca.vertcat(*found))
+
+    @cached_property
+    def _instant(self) -> Any:
+        return differentiable(self.graph.instant)
+
+    def _at_time(self, inputs: list[Any], value: Any) -> Any:
+        """The function with its drives and loops inside."""
+        graph = self.graph
+        at_drives = ca.Function("at_drives", inputs, [ca.densify(value)], {"cse": True})
+        smooth = graph.motion.is_a("SXFunction") and graph.newton is None
+        kind = ca.SX if smooth else ca.MX
+        sizes = [1, graph.instant.size1_in("z"), graph.instant.size1_in("p"), 1, inputs[-1].numel()]
+        given: list[Any] = [kind.sym(name, n) for name, n in zip(("t", "guess", "p", "xi", "place"), sizes, strict=True)]
+        t, guess, p, xi, place = given
+        d, rate, acceleration = graph.motion.call([t, p])
+        z = guess
+        if graph.newton is not None:
+            z = self._loops(guess, ca.vertcat(t, d, p))
+        found = at_drives.call([t, d, rate, acceleration, z, p, xi, place])
+        return ca.Function("at_time", given, found, {"cse": True} if smooth else {})
+
+    @cached_property
+    def _loops(self) -> Any:
+        """The loops' solution near a guess."""
+        assert self.graph.newton is not None
+        step = self.graph.newton.step
+        z, t, d, p = step.sx_in()
+        correction = step(z, t, d, p)[0]
+        residual = ca.Function("residual", [z, ca.vertcat(t, d, p)], [correction])
+        options = {"abstol": 1e-13, "max_iter": 50, "error_on_fail": False}
+        return ca.rootfinder("loops", "newton", residual, options)
+
+
+def _size(parts: list[Any]) -> Any:
+    return parts[0] if len(parts) == 1 else ca.sqrt(sum(part * part for part in parts))
