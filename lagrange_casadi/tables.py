@@ -86,7 +86,7 @@ _LOAD = (
     Quantity("load", "fy", ("t",), FORCE, "applied force, y", _ON_FIRST),
 )
 _FRICTION = (
-    Quantity("friction", "", ("t",), "{Q}", "friction along the joint's coordinate, on the child", _ALONG),
+    Quantity("friction", "along", ("t",), "{Q}", "friction along the joint's coordinate, on the child", _ALONG),
     Quantity("friction", "loss", ("t",), "W", "power that friction takes from the mechanism", "positive where it brakes"),
 )
 _OTHERS = (

@@ -9,7 +9,7 @@ import casadi as ca
 from ..errors import DeclarationError
 from .joints import Axis, Joint
 from .ownership import Ownership
-from .parts import Expression, Friction
+from .parts import POSITIVE, Expression, Friction
 
 TURNING, SLIDING = ("revolute",), ("prismatic", "slot")
 
@@ -56,8 +56,8 @@ def _axis(own: Ownership, what: str, joint: Joint) -> Axis:
     if not joint.axes:
         points = [body.name for body in joint.bodies if not body.oriented]
         raise DeclarationError(
-            f"{what}: joint '{joint.name}' has no angle, for '{points[0]}' is a point mass and has no direction; declare it as a link "
-            "with mass, centre and inertia"
+            f"{what}: joint '{joint.name}' has no angle, for '{points[0]}' is a point mass and has no direction; declare it "
+            "as a link with mass, centre and inertia"
         )
     return joint.axes[0]
 
@@ -88,9 +88,7 @@ def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expressi
 
 
 def _number(own: Ownership, what: str, value: Expression) -> Expression:
-    found = own.expression(what, value)
-    key = what.rpartition(" ")[2]
-    if isinstance(found, float) and (found < 0.0 or (found == 0.0 and key in ("radius", "length", "stribeck", "smooth"))):
-        least = "positive" if key in ("radius", "length", "stribeck", "smooth") else "not negative"
-        raise DeclarationError(f"{what} must be {least}, got {found:g}")
+    found, positive = own.expression(what, value), what.rpartition(" ")[2] in POSITIVE
+    if isinstance(found, float) and (found < 0.0 or (found == 0.0 and positive)):
+        raise DeclarationError(f"{what} must be {'positive' if positive else 'at least 0'}, got {found:g}")
     return found

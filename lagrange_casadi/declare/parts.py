@@ -267,6 +267,10 @@ class LineLoad:
         return (self.link.at(end / 2 if self.whole else (start + end) / 2),)
 
 
+POSITIVE = ("radius", "length", "stribeck", "smooth")
+"""What of a friction must not be zero."""
+
+
 @dataclass(frozen=True, eq=False)
 class Friction:
     """Friction in a joint along a coordinate of its, that follows what the joint bears; ``symbol`` stands for it until it is found.

@@ -78,7 +78,7 @@ class Solved:
 
     symbols: Any
     values: Any
-    checks: Mapping[Column, Any]
+    checks: dict[Column, Any]
     forces: Mapping[str, Any]
     lost: Mapping[str, Any]
 

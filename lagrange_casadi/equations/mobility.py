@@ -133,7 +133,7 @@ def internal_forces(
     known = ca.substitute(column(columns.values()), acting.symbols, acting.values)
     columns = dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True))
     for name in frictions:
-        columns |= {Output("friction", name): acting.forces[name], Output("friction", name, "loss"): acting.lost[name]}
+        columns |= {Output("friction", name, "along"): acting.forces[name], Output("friction", name, "loss"): acting.lost[name]}
     return InternalForces(columns | acting.checks | held, free, acting)
 
 

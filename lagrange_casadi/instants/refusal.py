@@ -24,7 +24,7 @@ from .backends import Evaluated, run
 from .rules import Rule, rules
 from .rung import Rung
 
-_JAM = "what they bring about presses as hard as what they come of; take less mu, a longer guide, or move where it is pushed"
+_JAM = "friction there has no force that holds its law, or several; expected less mu, a longer guide, or a push nearer to its line"
 _TRIALS, _WIDE = 100, 0.1
 
 
@@ -76,7 +76,7 @@ _MEANINGS = {
     Status.TURNED: "an angle that a load sees with its turns might be a turn further",
     Status.PEAK_NOT_TOLD: "a peak cannot be told: too much may hide between the instants; more instants may help",
     Status.BEYOND_ENDS: "what is put into a curve is beyond its ends",
-    Status.JAMS: "frictions hold each other: the mechanism may jam, or move in several ways",
+    Status.JAMS: "the mechanism jams: friction has no force that holds its law, or several",
     Status.AT_REST: "a joint that rubs is at rest: its friction is open",
     Status.NO_INSTANTS: "its instants cannot be: the motion does not go where they are asked for, or they end before they start",
 }
@@ -272,9 +272,9 @@ def _why(
             )
         if rule.kind == "JAM":
             what = "frictions" if ", " in part else "friction"
-            return Status.JAMS, f"{what} {part}: the mechanism may jam {at}, for {_JAM}"
+            return Status.JAMS, f"{what} '{part}': the mechanism jams {at}: {_JAM}"
         if rule.kind == "SLIP":
-            return Status.JAMS, f"the laws of friction {part} are not met {at}, by {value:.3g} of its size: it nearly jams"
+            return Status.JAMS, f"the laws of friction '{part}' are not met {at}, by {value:.3g} of its size: it nearly jams"
         if rule.kind == "ROW":
             return Status.ROW_VIOLATED, f"the motion violates the non-holonomic constraint '{part}' by {value:.6g} {at}"
     if evaluated.status[i] == SLOW:

@@ -42,12 +42,13 @@ Kind: TypeAlias = Literal[
 class Rule:
     """What a column must keep to, so that an instant has a result.
 
-    A ``CLOSURE``, of a loop, of three turns or of what drives hold, must be above its limit, and above its opposite unless links do
-    not reach; so must a ``BRANCH``, whose loop iteration follows. ``GAP`` and ``TURNED`` must be within it by size, a ``GAP`` times
-    the mechanism's extent. A ``MISFIT`` and what is ``BEYOND`` the ends of a curve must not be above it, nor a ``ROW`` by size,
-    times the column ``beside``, which is the size of its terms. What is ``OPEN`` must not be above it, an ``OPEN_MOMENT`` times the
-    extent: else the output ``part`` is not determined. What tells of a ``JAM`` must be above its limit, what is left of frictions' laws,
-    a ``SLIP``, must not be above it. A friction at ``REST`` is above it: what depends on it is no number there, and the rest is.
+    A ``CLOSURE``, of a loop, of three turns or of what drives hold, must be above its limit, and above its opposite unless links
+    do not reach; so must a ``BRANCH``, whose loop iteration follows. ``GAP`` and ``TURNED`` must be within it by size, a ``GAP``
+    times the mechanism's extent. A ``MISFIT`` and what is ``BEYOND`` the ends of a curve must not be above it, nor a ``ROW`` by
+    size, times the column ``beside``, which is the size of its terms. What is ``OPEN`` must not be above it, an ``OPEN_MOMENT``
+    times the extent: else the output ``part`` is not determined. What tells of a ``JAM`` must be above its limit, what is left of
+    frictions' laws, a ``SLIP``, must not be above it. A friction at ``REST`` is above it: what depends on it is no number there,
+    and the rest is.
     """
 
     kind: Kind

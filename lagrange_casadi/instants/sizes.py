@@ -16,7 +16,7 @@ def size_of(components: Iterable[Array]) -> Array:
 
 
 def largest(values: Array, axis: int | None = None) -> Array:
-    """The place of the value that is largest in size, as ``np.argmax`` tells it; of what is no number only where nothing else is."""
+    """The place of the value that is largest in size, as of ``np.argmax``; of what is no number only where nothing else is."""
     sizes = np.abs(values)
     return np.asarray(np.argmax(np.where(np.isnan(sizes), -1.0, sizes), axis=axis))
 

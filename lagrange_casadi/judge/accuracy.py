@@ -115,8 +115,8 @@ def _chosen(graph: SceneGraph, evaluated: Evaluated) -> Array:
     spread = np.linspace(0, n - 1, min(n, INSTANTS)).astype(int)
     closures = [k for kind in _DEAD for k in graph.checks(kind).values()]
     peaks = [int(np.argmin(row) if k in closures else largest(row)) for k, row in enumerate(evaluated.out)]
-    chosen = np.unique([*spread, *peaks])
-    return chosen[~resting(graph, evaluated.out)[chosen]]
+    chosen: Array = np.unique([*spread, *peaks])
+    return np.asarray(chosen[~resting(graph, evaluated.out)[chosen]])
 
 
 def _open(instants: Instants) -> Array:

@@ -25,7 +25,8 @@ def law_gaps(solution: Solution, bodies: dict[str, Moving]) -> tuple[Array, floa
             continue
         told, joint = load["friction"], solution.description["joints"][load["friction"]["coordinate"]]
         value, rate = (
-            solution.outputs.get(output) for output in (Output("friction", name), Output("motion", told["coordinate"], "rate"))
+            solution.outputs.get(output)
+            for output in (Output("friction", name, "along"), Output("motion", told["coordinate"], "rate"))
         )
         if value is None or rate is None or Output("reaction", told["coordinate"], "fx") not in solution.outputs:
             continue
