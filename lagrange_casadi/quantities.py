@@ -48,7 +48,7 @@ _COORDINATE = ".coordinate"
 
 
 class Declared(Protocol):
-    """What the units of outputs depend on: the coordinates and the user's outputs of a mechanism, by name."""
+    """What the units of outputs depend on: coordinates, frictions and the user's outputs of a mechanism, by name."""
 
     @property
     def coordinates(self) -> Mapping[str, tuple[Any, Any]]:
@@ -57,6 +57,10 @@ class Declared(Protocol):
     @property
     def outputs(self) -> Mapping[str, Any]:
         """The user's outputs."""
+
+    @property
+    def loads(self) -> Mapping[str, Any]:
+        """The loads, frictions among them."""
 
 
 @dataclass(frozen=True)
@@ -135,6 +139,8 @@ class Output:
         """The unit in a mechanism."""
         if self.group == "output":
             return str(mechanism.outputs[self.part].unit)
+        if self.group == "friction":
+            return self.quantity.unit_for(mechanism.loads[self.part].axis.kind)
         found = mechanism.coordinates.get(self.part) if self.group in ("motion", "effort") else None
         return self.quantity.unit_for("angle" if found is None else found[1].kind)
 

@@ -85,11 +85,17 @@ _LOAD = (
     Quantity("load", "fx", ("t",), FORCE, "applied force, x", _ON_FIRST),
     Quantity("load", "fy", ("t",), FORCE, "applied force, y", _ON_FIRST),
 )
+_FRICTION = (
+    Quantity("friction", "along", ("t",), "{Q}", "friction along the joint's coordinate, on the child", _ALONG),
+    Quantity("friction", "loss", ("t",), "W", "power that friction takes from the mechanism", "positive where it brakes"),
+)
 _OTHERS = (
+    *_FRICTION,
     Quantity("output", "", ("t",), "1", "output of the user's own"),
     Quantity("certificate", "balance", ("t",), "1", "Newton-Euler balance of all bodies, over the largest force of the cycle"),
     Quantity("certificate", "power", ("t",), "1", "balance of power, over the largest force times speed of the cycle"),
     Quantity("certificate", "closure", ("t",), "1", "gaps of joints, and what users' equations miss, over the length of all links"),
+    Quantity("certificate", "friction", ("t",), "1", "frictions and their laws, over the largest friction of the cycle"),
     Quantity("certificate", "ends", ("t",), "1", "sections at the base and what acts there, over the largest force of the cycle"),
     Quantity("certificate", "condition", ("t",), "1", "how much the loops magnify: 1/sin(transmission angle), or 2/volume"),
     Quantity("section", "axial", ("t", "xi"), FORCE, "axial force", f"tension is positive: {ON_INBOARD}, along the axis"),

@@ -88,7 +88,7 @@ def rows(quantities, *axes):
     yield "| --- | --- | --- | --- | --- |"
     yield from axes
     places = {"motion": "/motion/JOINT", "pose": "/pose/BODY/", "effort": "/effort/JOINT", "reaction": "/reaction/JOINT/"}
-    places |= {"multiplier": "/multiplier/NAME", "load": "/load/NAME/", "output": "/output/NAME"}
+    places |= {"multiplier": "/multiplier/NAME", "load": "/load/NAME/", "friction": "/friction/NAME/", "output": "/output/NAME"}
     places |= {"certificate": "/certificate/"}
     places |= {
         "section": "/section/LINK/",

@@ -22,5 +22,5 @@ def test_numbers_in_c_stay():
     assert list(STATUSES) == [
         *("OK", "NOT_PREPARED", "BAD_PARAMETER", "BAD_INPUT", "BAD_TIME", "BAD_RATIO", "NO_LINK", "NOT_ASSEMBLED", "DEAD_CENTRE"),
         *("NOT_CONVERGED", "JUMPED", "SLOW", "INCONSISTENT", "NOT_CLOSED", "UNDETERMINED", "NOT_FINITE", "TURNED"),
-        "BEYOND_ENDS",
+        *("BEYOND_ENDS", "JAMS", "AT_REST"),
     ]

@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from ..declare.motion import Motion, motion_function
-from ..declare.parts import Force, LineLoad, Load, Torque
+from ..declare.parts import Force, Friction, LineLoad, Load, Torque
 from ..declare.scene import Scene
 from ..declare.spatial import reference_posture
 from ..equations.kinematics import describe_coordinate
@@ -96,6 +96,9 @@ def _load(load: Load, *, space: bool) -> str:
         part = "" if load.whole else f" between {_short(load.between[0])} and {_short(load.between[1])} m"
         return f"line load on {first}{part}, {', '.join(told)}, {axes}"
     second = load.points[1].body.name
+    if isinstance(load, Friction):
+        words = ", ".join(f"{word} {_short(number)}" for word, number in load.numbers.items())
+        return f"friction in joint {load.joint.name}, on {first} against {second}, {words}"
     if isinstance(load, Torque):
         if space:
             return f"torque on {first} against {second}, {_components(load, 'N m', space)}"

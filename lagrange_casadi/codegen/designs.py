@@ -49,10 +49,11 @@ CALL = Call(
 )
 """What :data:`DESIGNS` takes; the C says of each what it reads and writes."""
 
-CHECKS = ("CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT", "TURNED", "BEYOND")
+CHECKS = ("CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "ROWSIZE", "OPEN", "OPEN_MOMENT", "TURNED", "BEYOND", "JAM", "SLIP", "REST")
 """What is checked at every instant: a closure, one whose branch iteration may leave, what is left of a loop's equations, beside the
 mechanism's extent, a misfit, a row's residual and its size, and how far a force is open, a moment beside the extent, the swing
-of an angle, and how far what is put into curves is beyond their ends."""
+of an angle, how far what is put into curves is beyond their ends, and of frictions how far they are from a jam,
+what is left of their laws, and whether one is at rest."""
 
 INSIDE, ROUNDS = 17, 7
 """Instants at which a dead centre between two others is looked for, and how often, ever closer."""

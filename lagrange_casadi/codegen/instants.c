@@ -180,6 +180,12 @@ static int designs_why(const designs_now* now, casadi_int i) {
       if (x > limit || x < -limit) return DESIGNS_NOT_CLOSED;
     } else if (designs_kind[k] == DESIGNS_IS_MISFIT) {
       if (x > limit) return DESIGNS_MISFIT;
+    } else if (designs_kind[k] == DESIGNS_IS_JAM) {
+      if (!(x > limit)) return DESIGNS_JAMS;
+    } else if (designs_kind[k] == DESIGNS_IS_REST) {
+      if (x > limit) return DESIGNS_AT_REST;
+    } else if (designs_kind[k] == DESIGNS_IS_SLIP) {
+      if (x > limit) return DESIGNS_JAMS;
     } else if (designs_kind[k] == DESIGNS_IS_TURNED) {
       if (!(x <= limit && x >= -limit)) return DESIGNS_TURNED;
       x = i + 1 < now->n ? designs_row(now, DESIGNS_CHECKED + k)[i + 1] - x : 0;
@@ -208,7 +214,9 @@ static int designs_refused(const designs_now* now) {
     } else if (designs_kind[k] == DESIGNS_IS_GAP) {
       limit = designs_limit[k]*designs_lane(now->matter, 0);
       for (i = 0; i < now->n; ++i) bad |= !(row[i] <= limit && -row[i] <= limit);
-    } else if (designs_kind[k] == DESIGNS_IS_MISFIT || designs_kind[k] == DESIGNS_IS_BEYOND) {
+    } else if (designs_kind[k] == DESIGNS_IS_JAM) {
+      for (i = 0; i < now->n; ++i) bad |= !(row[i] > designs_limit[k]);
+    } else if (designs_kind[k] == DESIGNS_IS_MISFIT || designs_kind[k] == DESIGNS_IS_BEYOND || designs_kind[k] == DESIGNS_IS_SLIP) {
       for (i = 0; i < now->n; ++i) bad |= !(row[i] <= designs_limit[k]);
     } else if (designs_kind[k] == DESIGNS_IS_ROW) {
       limit = designs_limit[k]*designs_most(now, k + 1);

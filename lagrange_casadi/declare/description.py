@@ -13,7 +13,7 @@ from ..geometry.vectors import cross
 from .density import NumericDensity
 from .joints import Joint
 from .mechanism import Mechanism
-from .parts import Link, Load, Point, PointMass, RigidMass
+from .parts import Friction, Link, Load, Point, PointMass, RigidMass
 
 Description = dict[str, Any]
 
@@ -204,6 +204,9 @@ def _described(
 
     def load_of(load: Load) -> Description:
         found = {"kind": type(load).__name__.lower(), "points": [place(point) for point in load.points]}
+        if isinstance(load, Friction):
+            numbers = {word: number(value) for word, value in load.numbers.items()}
+            return found | {"friction": {"coordinate": load.axis.coordinate, "numbers": numbers}}
         return found | {"turning": getattr(load, "turning", False)} if mechanism.space else found
 
     bodies = {body.name: matter(body) for body in mechanism.moving}

@@ -15,10 +15,11 @@ import casadi as ca
 
 from ..beams.beam import Beam
 from ..errors import DeclarationError
+from .constraints import constraint, row
 from .density import Density
 from .expressions import check_line, check_name, typed
+from .friction import friction
 from .joints import Axis, Joint, JointKind
-from .kinks import refuse_kinks
 from .limits import check_connected, parameter_values
 from .line_loads import Between, Spread, line_load
 from .matter import beam_of, matter_of
@@ -29,6 +30,7 @@ from .parts import (
     Constraint,
     Expression,
     Force,
+    Friction,
     Ground,
     LineLoad,
     Link,
@@ -206,17 +208,7 @@ class Mechanism:
         The force of its multiplier lambda is + lambda dPhi/dq (paper eq. 2). It acts on what Phi is written in: on a joint's
         coordinate between the joint's bodies, on a place from the ground.
         """
-        self.own.free("constraint", name, self.constraints)
-        phi = self.own.expression(f"constraint '{name}'", phi, moving=True)
-        if not isinstance(phi, ca.SX) or not ca.depends_on(phi, self.measures.places):
-            raise DeclarationError(
-                f"constraint '{name}' depends on no coordinate; build it from coordinate(JOINT), place(POINT) or direction(LINK)"
-            )
-        if ca.depends_on(phi, self.measures.rates):
-            raise DeclarationError(f"constraint '{name}' depends on rates; declare it with nonholonomic()")
-        defaults = [parameter.default for parameter in self.parameters.values()]
-        refuse_kinks(f"constraint '{name}'", phi, ca.vertcat(self.measures.places, self.time), self.symbols, defaults)
-        return self.constraints.setdefault(name, Constraint(name, phi))
+        return self.constraints.setdefault(name, constraint(self.own, name, phi))
 
     def nonholonomic(self, name: str, expression: Any, *, replaces: Joint) -> Row:
         """Declare a non-holonomic constraint A(q) q' + b = 0 (paper eq. 3): an expression that is linear in rates and velocities.
@@ -224,19 +216,7 @@ class Mechanism:
         ``replaces`` is a driven joint. Its motion is prescribed and must satisfy the constraint; the constraint's multiplier then
         takes the place of the joint's effort.
         """
-        self.own.free("non-holonomic constraint", name, self.rows)
-        what = f"non-holonomic constraint '{name}'"
-        expression = self.own.expression(what, expression, moving=True)
-        if not isinstance(expression, ca.SX) or not ca.depends_on(expression, self.measures.rates):
-            raise DeclarationError(f"{what} depends on no rate; build it from rate(JOINT) or velocity(POINT)")
-        if ca.depends_on(ca.jacobian(expression, self.measures.rates), self.measures.rates):
-            raise DeclarationError(f"{what} must be linear in the rates")
-        row = Row(name, expression, self.own.joint(replaces).name)
-        for other in self.rows.values():
-            if other.replaces == row.replaces:
-                raise DeclarationError(f"{what}: '{other.name}' already replaces the drive of joint '{row.replaces}'")
-        self.rows[name] = row
-        return row
+        return self.rows.setdefault(name, row(self.own, name, expression, replaces))
 
     def force(self, name: str, point: Body | Point, *, x: Expression = 0.0, y: Expression = 0.0, turning: bool = False) -> Force:
         """Apply a force [N] at a point, in ground axes, or in the body's own where ``turning``."""
@@ -302,6 +282,24 @@ class Mechanism:
 
     def _turn_back(self, name: str, joint: Joint, value: Expression) -> Torque:
         return self.torque(name, joint.child, value, against=joint.parent)
+
+    def friction(
+        self,
+        name: str,
+        joint: Joint,
+        *,
+        mu: Expression | None = None,
+        radius: Expression | None = None,
+        length: Expression | None = None,
+        viscous: Expression | None = None,
+        static: Expression | None = None,
+        stribeck: Expression | None = None,
+        smooth: Expression | None = None,
+    ) -> Friction:
+        """Let a joint rub: a pin of a ``radius`` [m], or a guide of a ``length`` [m], by what it bears: :class:`.Friction`."""
+        told = {"mu": mu, "radius": radius, "length": length, "viscous": viscous}
+        told |= {"static": static, "stribeck": stribeck, "smooth": smooth}
+        return cast(Friction, self.loads.setdefault(name, friction(self.own, name, joint, told)))
 
     def output(self, name: str, expression: Any, *, unit: str = "1") -> OwnOutput:
         """Declare an output of one's own, ``output:NAME``, with its unit: an expression of what loads see and of `results`."""

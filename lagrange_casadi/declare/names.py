@@ -7,12 +7,13 @@ from collections.abc import Iterable, Mapping
 from ..errors import DeclarationError
 from .expressions import check_name
 from .joints import Joint
-from .parts import Body, Constraint, Force, Ground, LineLoad, Link, Load, Parameter, Path, PointMass, Row, Spring, Torque
+from .parts import Body, Constraint, Force, Friction, Ground, LineLoad, Link, Load, Parameter, Path, PointMass, Row, Spring, Torque
 from .results import OwnOutput
 
 _WORDS: dict[type[object], str] = {
     Constraint: "a constraint",
     Force: "a load",
+    Friction: "a load",
     Ground: "the ground",
     Joint: "a joint",
     LineLoad: "a load",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 import numpy as np
+import numpy.typing as npt
 
 from ..quantities import Output
 from .density import Array
@@ -14,8 +15,9 @@ _EDGE = 1e-9
 """Of a link's length: what leaves it by so little does so by rounding."""
 
 
-def notes(t: Array, outputs: Mapping[Output, Array], description: Description) -> Iterator[str]:
-    """More drives than motions; and each joint whose point slides beyond the end of a link that has sections, and how far it goes.
+def notes(t: Array, outputs: Mapping[Output, Array], description: Description, resting: npt.NDArray[np.bool_]) -> Iterator[str]:
+    """More drives than motions; where a joint that rubs is ``resting``; and each joint whose point slides beyond the end of a link
+    that has sections, and how far it goes.
 
     As far as efforts, the motion of the joint, or the sections of the link, are among the outputs.
     """
@@ -24,6 +26,11 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description) -
     if len(drives) > moved and Output("effort", drives[0]) in outputs:
         told = f"{len(drives)} drives ({', '.join(drives)}) make {moved} motion{'s' if moved > 1 else ''}"
         yield f"{told}: of all efforts that do, these have the least weighted sum of squares"
+    if resting.any():
+        open_ = [o.part for o, values in outputs.items() if (o.group, o.member) == ("friction", "along") and np.isnan(values).any()]
+        frictions = f" ({', '.join(open_)})" if open_ else ""
+        when = f"at {int(np.count_nonzero(resting))} of {t.size} instants, first at t = {t[np.flatnonzero(resting)[0]]:.6g} s"
+        yield f"a joint that rubs is at rest {when}: what depends on its friction{frictions} is open there, and NaN"
     for name, joint in description["joints"].items():
         body, ways = description["bodies"].get(joint["parent"]["body"], {}), _along(name, joint)
         if not ways or "density" not in body:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from ..beams.beam import Beam
 from ..errors import ParameterError
@@ -13,6 +13,9 @@ from ..geometry.vectors import Vector as Vector
 from ..system.numerals import readable
 from .angles import angle
 from .density import Density
+
+if TYPE_CHECKING:
+    from .joints import Axis, Joint
 
 End = Literal["base", "tip"]
 
@@ -268,7 +271,52 @@ class LineLoad:
         return (self.link.at(end / 2 if self.whole else (start + end) / 2),)
 
 
-Load = Force | Torque | Spring | LineLoad
+POSITIVE = ("radius", "length", "stribeck", "smooth")
+"""What of a friction must not be zero."""
+
+
+@dataclass(frozen=True, eq=False)
+class Friction:
+    """Friction in a joint along a coordinate of its, that follows what the joint bears; ``symbol`` stands for it until it is found.
+
+    With the rate v of the coordinate and sigma its sign, or tanh(v/``smooth``), the force or couple along the coordinate is
+
+        -sigma mu radius |R| - viscous v                    in a pin that bears the force R,
+        -sigma mu (|N/2 + M/length| + |N/2 - M/length|) - viscous v   in a guide that bears N across its line and the moment M.
+
+    ``static`` is the coefficient where sliding starts: mu + (static - mu) exp(-(speed/stribeck)^2), by the speed of sliding [m/s].
+    """
+
+    name: str
+    joint: Joint
+    axis: Axis
+    symbol: Any
+    mu: Expression
+    radius: Expression | None = None
+    length: Expression | None = None
+    viscous: Expression = 0.0
+    static: Expression | None = None
+    stribeck: Expression | None = None
+    smooth: Expression | None = None
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Where it acts: on the joint's child, and back on its parent."""
+        return (self.joint.child, self.joint.parent)
+
+    @property
+    def numbers(self) -> dict[str, Expression]:
+        """What is told of it, by the words that declare it."""
+        words = ("mu", "radius", "length", "viscous", "static", "stribeck", "smooth")
+        return {word: getattr(self, word) for word in words if getattr(self, word) is not None}
+
+    @property
+    def dry(self) -> bool:
+        """Whether it follows what the joint bears."""
+        return not (isinstance(self.mu, float) and self.mu == 0.0 and self.static is None)
+
+
+Load: TypeAlias = Force | Torque | Spring | LineLoad | Friction
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,7 +23,7 @@ from .joints import Joint
 from .limits import END, margins
 from .lowest import lowest
 from .matter import inertias, second_moments
-from .parts import Expression, LineLoad, Link, PointMass, RigidMass, Vector
+from .parts import POSITIVE, Expression, Friction, LineLoad, Link, PointMass, RigidMass, Vector
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
@@ -98,6 +98,9 @@ def _of(mechanism: Mechanism, precision: Precision) -> Demands:
         if isinstance(load, LineLoad):
             found += _of_part(load, precision)
             continue
+        if isinstance(load, Friction):
+            found += _of_friction(load)
+            continue
         for point in load.points:
             found += _of_station(f"load '{load.name}'", point, precision, space=mechanism.space)
     return Demands(mechanism.symbols, tuple(found))
@@ -124,7 +127,8 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
         yield f"joint '{joint.name}'", [*places, *joint.axis, joint.angle]
     for load in mechanism.loads.values():
         at_points = [number for point in load.points for number in point.place]
-        yield f"load '{load.name}'", [*load.between] if isinstance(load, LineLoad) else at_points
+        own = load.between if isinstance(load, LineLoad) else load.numbers.values() if isinstance(load, Friction) else at_points
+        yield f"load '{load.name}'", [*own]
     yield "gravity", [*mechanism.gravity]
 
 
@@ -151,6 +155,19 @@ def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:
     margins = (start + END[precision] * link.length, (link.length - end) + END[precision] * link.length)
     rising = Demand(load.reach, True, lambda number: f"{told(number)}; it must end beyond where it begins")
     return [*(Demand(margin, False, beyond) for margin in margins), rising]
+
+
+def _of_friction(friction: Friction) -> Iterator[Demand]:
+    """The numbers of a friction are not negative, and what it divides by is not zero."""
+    for word, number in friction.numbers.items():
+        positive, value = word in POSITIVE, number
+        least = "positive" if positive else "at least 0"
+
+        def refusal(evaluated: Evaluator, value: Any = value, told: str = f"{word} must be {least}") -> str:
+            return f"friction '{friction.name}': {told}, got {readable(evaluated(value))}"
+
+        if isinstance(number, ca.SX):
+            yield Demand(number, positive, refusal)
 
 
 def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, list[Demand]]:

@@ -19,12 +19,12 @@ from .guiding import guided, laws_of
 from .limits import no_sections, told_parameters
 from .mechanism import Mechanism
 from .motion import Motion
-from .parts import Expression
+from .parts import Expression, Friction
 from .possible import Demands, demands
 from .stretches import Timetable, timetable
 from .times import Instants, Over, Times, Timing, instants_of, span_of
 
-_KINDS = ("reaction", "multiplier", "load", "section", "output")
+_KINDS = ("reaction", "multiplier", "load", "friction", "section", "output")
 STRENGTH = ("stress", "safety", "life")
 """What is told of links that have a beam: it follows from their sections, which are wanted with it."""
 
@@ -66,13 +66,14 @@ class Wanted:
     reactions: tuple[str, ...]
     multipliers: tuple[str, ...]
     loads: tuple[str, ...]
+    frictions: tuple[str, ...]
     sections: tuple[str, ...]
     own: tuple[str, ...]
 
     @classmethod
     def of(cls, mechanism: Mechanism, names: Sequence[str]) -> Wanted:
-        """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``, ``load:NAME``, ``section:LINK``,
-        ``output:NAME``, ``all``; and of links with a beam ``stress:LINK``, ``safety:LINK``, ``life:LINK``.
+        """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``, ``load:NAME``, ``friction:NAME``,
+        ``section:LINK``, ``output:NAME``, ``all``; and of links with a beam ``stress:LINK``, ``safety:LINK``, ``life:LINK``.
 
         A kind alone, as ``section``, is all that the mechanism has of it. What an output of the user's own is made of is wanted
         with it.
@@ -90,6 +91,8 @@ class Wanted:
         own = (output for name, output in mechanism.outputs.items() if chosen & {"output", f"output:{name}"})
         chosen |= {asked.wanted for output in own for asked in output.made_of}
         chosen |= {f"section:{link}" for kind in STRENGTH for link in strength_of(mechanism, kind, names)}
+        loads = (name for name, load in mechanism.loads.items() if isinstance(load, Friction))
+        chosen |= {f"friction:{name}" for name in loads if chosen & {"load", f"load:{name}"}}
         if not chosen:
             raise DeclarationError(f"no output wanted; valid: {', '.join(choices)}")
 
@@ -102,7 +105,7 @@ class Wanted:
     @property
     def forces(self) -> bool:
         """Whether any force is wanted that equilibrium gives."""
-        return bool(self.effort or self.reactions or self.multipliers or self.sections)
+        return bool(self.effort or self.reactions or self.multipliers or self.frictions or self.sections)
 
 
 def outputs(mechanism: Mechanism) -> list[str]:
@@ -110,10 +113,11 @@ def outputs(mechanism: Mechanism) -> list[str]:
     reactions = [f"reaction:{joint}" for joint in mechanism.joints]
     multipliers = [f"multiplier:{name}" for name in (*mechanism.constraints, *mechanism.rows)]
     loads = [f"load:{name}" for name in mechanism.loads]
+    frictions = [f"friction:{name}" for name, load in mechanism.loads.items() if isinstance(load, Friction)]
     sections = [f"section:{name}" for name, link in mechanism.links.items() if isinstance(link.mass, Density)]
     own = [f"output:{name}" for name in mechanism.outputs]
     strength = [f"{kind}:{name}" for kind in STRENGTH for name in _made_of_something(mechanism)]
-    return ["all", "effort", "motion", *reactions, *multipliers, *loads, *sections, *own, *strength]
+    return ["all", "effort", "motion", *reactions, *multipliers, *loads, *frictions, *sections, *own, *strength]
 
 
 def strength_of(mechanism: Mechanism, kind: str, names: Sequence[str]) -> list[str]:

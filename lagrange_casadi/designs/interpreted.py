@@ -13,7 +13,7 @@ from ..declare.mechanism import Mechanism
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import Evaluated, run
 from ..instants.determinacy import undetermined
-from ..instants.refusal import Status, refusal
+from ..instants.refusal import Status, refusal, resting
 from ..instants.rung import Rung
 from ..instants.signals import Quantity, SectionForce, Signals
 from ..tables import table_of
@@ -42,6 +42,8 @@ def columns_of(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton:
     rung = Rung("vm", newton=newton)
     evaluated, _ = run(graph, t, p, rung)
     why = refusal(graph, evaluated, t, p, rung)
+    if why is None and resting(graph, evaluated.out).any():
+        return Status.AT_REST, None
     return (Status.OK, evaluated) if why is None else (why.status, None)
 
 

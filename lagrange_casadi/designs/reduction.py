@@ -88,7 +88,7 @@ class KeptOutputs:
             raise DeclarationError("designs: nothing is wanted that has a peak")
         units = tuple(output.unit(mechanism) for output in names)
         numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
-        efforts = tuple(name for name in names if name.group in ("effort", "output"))
+        efforts = tuple(name for name in names if name.group in ("effort", "friction", "output"))
         along = tuple(_along(mechanism, link, at, table) for link in links)
         matter, positive, margins = _matter(graph.scene, links, along, rung.precision)
         columns = {column for columns in chosen.values() for column in columns}

@@ -196,7 +196,9 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     specs: list[Spec] = []
     groups: dict[tuple[str, str], list[str]] = {}
     for output, values in solution.outputs.items():
-        drawn = output.group in ("effort", "reaction", "multiplier", "load", "output") or output == Output("motion", output.part)
+        drawn = output.group in ("effort", "reaction", "multiplier", "load", "friction", "output") or output == Output(
+            "motion", output.part
+        )
         if drawn and solution.determined(output) and np.any(values):
             own = "_own" if output.member.endswith(("u", "v", "w")) else ""
             if own and all(solution.determined(other) for other in _in_ground_axes(output)):

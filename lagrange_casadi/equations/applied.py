@@ -8,7 +8,7 @@ from typing import Any
 import casadi as ca
 
 from ..declare.joints import Axis, Joint
-from ..declare.parts import Force, LineLoad, Link, Load, Point, Spring, Torque, Vector
+from ..declare.parts import Force, Friction, LineLoad, Link, Load, Point, Spring, Torque, Vector
 from ..geometry.frames import Velocities
 from ..geometry.vectors import AXES, ZERO, cross, dot, minus, nil, plus, times
 from .growing import Grown
@@ -31,6 +31,8 @@ def applied_by(load: Load, resting: Grown) -> list[Applied]:
         return [Applied(load.name, point, couple=value) for point, value in ends]
     if isinstance(load, LineLoad):
         return [_along(load, resting)]
+    if isinstance(load, Friction):
+        return [*_along_coordinate(resting, load.name, load.joint, load.axis, load.symbol)]
     assert isinstance(load, Spring)
     at = resting.at_state
     first, second = (resting.frames[point.body.name] for point in (load.first, load.second))

@@ -147,8 +147,12 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
             reactions=want.reactions,
             multipliers=want.multipliers,
             sections=want.sections,
+            frictions=want.frictions,
             weights=scene.weights,
         )
+        if forces.rubbed.symbols.numel():
+            placed = ca.substitute(column(columns.values()), forces.rubbed.symbols, forces.rubbed.values)
+            columns = dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True))
         acting, free = gathered(forces.columns, forces.free, mechanism.links.values(), body.coordinates), forces.free
         # Beside the start of the motion, for a drive through a gear moves little of what it drives, and holds it all the same.
         for check in [check for check in acting if isinstance(check, Check) and check.kind == "hold"]:

@@ -33,6 +33,7 @@ from ..geometry.vectors import ZERO, cross, dot, plus, times
 from ..quantities import Output, force_members, law_members, own_members, station_members
 from .checks import Check, Column
 from .drives import solve_efforts
+from .friction import Solved, frictions_of, needed, rubbing, solve
 from .gaps import reach
 from .joints import borne, reaction, slide
 from .kinematics import Kinematics
@@ -47,15 +48,17 @@ class InternalForces:
 
     ``free`` are the symbols of what equilibrium leaves open in an over-constrained mechanism. Among the columns, a check tells how
     far drives are from a place where they cannot make the motion, where they are others than the joints whose motion is given.
+    ``rubbed`` are the forces of frictions.
     """
 
     columns: dict[Column, Any]
     free: Any
+    rubbed: Solved
 
 
 def needed_reactions(mechanism: Mechanism, reactions: Sequence[str], sections: Sequence[str]) -> tuple[str, ...]:
-    """The joints whose reaction some output needs: those wanted, and those that load a wanted link beyond its base."""
-    needed = set(reactions)
+    """The joints whose reaction some output needs: those wanted, those that load a wanted link beyond its base, those that rub."""
+    needed = {*reactions, *(friction.joint.name for friction in frictions_of(mechanism).values())}
     for joint in mechanism.joints.values():
         for point in (joint.parent, joint.child):
             moves = joint.slides and point is joint.parent
@@ -72,11 +75,13 @@ def internal_forces(
     reactions: Sequence[str],
     multipliers: Sequence[str],
     sections: Sequence[str],
+    frictions: Sequence[str],
     weights: Mapping[str, Any] | None,
 ) -> InternalForces:
     """Efforts of the drives, reactions of the named joints, multipliers of constraints and rows, and the laws of links.
 
-    ``weights`` are those of the drives, where these are others than the joints whose motion is given.
+    ``weights`` are those of the drives, where these are others than the joints whose motion is given; ``frictions`` those that are
+    wanted themselves.
     """
     along, across = multibody.terms()
     along = kinematics.evaluate(along)
@@ -98,9 +103,8 @@ def internal_forces(
     starts = itertools.accumulate((rates.numel() for rates in multibody.mobilities.values()), initial=0)
     by_joint = dict(zip(multibody.mobilities, ca.vertsplit(across, [*starts]), strict=True))
     joints = multibody.mechanism.joints
-    found = {
-        name: _reaction(multibody, joints[name], by_joint) for name in needed_reactions(multibody.mechanism, reactions, sections)
-    }
+    borne_by = needed_reactions(multibody.mechanism, reactions, sections)
+    found = {name: _reaction(multibody, joints[name], by_joint) for name in borne_by}
     columns: dict[Column, Any] = {Output("effort", joint): force for joint, force in drives.items()} if effort else {}
     for name in reactions:
         members = force_members(multibody.mechanism.space, moment=joints[name].bears_moment)
@@ -116,9 +120,21 @@ def internal_forces(
         columns |= _section_law(multibody, name, found, drives)
     # All at once, for a substitution visits the whole graph; and mobilities rest.
     rates = multibody.mobility_rates
-    resting = ca.substitute(column(columns.values()), rates, ca.SX.zeros(rates.numel()))
-    known = ca.substitute(kinematics.evaluate(resting), unknowns, values)
-    return InternalForces(dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True)) | held, free)
+    rubbed = {
+        name: rubbing(multibody, friction, found[friction.joint.name].force, found[friction.joint.name].couple)
+        for name, friction in frictions_of(multibody.mechanism).items()
+    }
+    rows = [*columns.values(), *(row for one in rubbed.values() for row in one.rows)]
+    resting = ca.substitute(column(rows), rates, ca.SX.zeros(rates.numel()))
+    every = iter(ca.vertsplit(ca.substitute(kinematics.evaluate(resting), unknowns, values)) if rows else ())
+    columns = {name: next(every) for name in columns}
+    rubbed = {name: one.of_rows([next(every) for _ in one.rows]) for name, one in rubbed.items()}
+    acting = solve([rubbed[name] for name in needed(column(columns.values()), rubbed, frictions)])
+    known = ca.substitute(column(columns.values()), acting.symbols, acting.values)
+    columns = dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True))
+    for name in frictions:
+        columns |= {Output("friction", name, "along"): acting.forces[name], Output("friction", name, "loss"): acting.lost[name]}
+    return InternalForces(columns | acting.checks | held, free, acting)
 
 
 @dataclass(frozen=True, eq=False)

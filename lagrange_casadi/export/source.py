@@ -343,6 +343,12 @@ class Source:
                 yield f"if ({fabs}(y[{k}]) > {beside}) return {P}_NOT_CLOSED;"
             elif rule.kind in ("OPEN", "OPEN_MOMENT"):
                 yield f"if (!(y[{k}] <= {beside if rule.kind == 'OPEN_MOMENT' else limit})) return {P}_UNDETERMINED;"
+            elif rule.kind == "JAM":
+                yield f"if (!(y[{k}] > {limit})) return {P}_JAMS;"
+            elif rule.kind == "SLIP":
+                yield f"if (y[{k}] > {limit}) return {P}_JAMS;"
+            elif rule.kind == "REST":
+                yield f"if (y[{k}] > {limit}) return {P}_AT_REST;"
             elif rule.kind == "TURNED":
                 yield f"if (!({fabs}(y[{k}]) <= {limit})) return {P}_TURNED;"
             elif rule.kind == "MISFIT":

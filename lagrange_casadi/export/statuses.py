@@ -15,6 +15,8 @@ SHARED = {
     "NOT_FINITE": (Status.NOT_FINITE,),
     "TURNED": (Status.TURNED,),
     "BEYOND_ENDS": (Status.BEYOND_ENDS,),
+    "JAMS": (Status.JAMS,),
+    "AT_REST": (Status.AT_REST,),
 }
 """What is said in the words of :class:`.Status`."""
 
@@ -32,7 +34,7 @@ _OWN = {
 _ORDER = (
     *("OK", "NOT_PREPARED", "BAD_PARAMETER", "BAD_INPUT", "BAD_TIME", "BAD_RATIO", "NO_LINK", "NOT_ASSEMBLED", "DEAD_CENTRE"),
     *("NOT_CONVERGED", "JUMPED", "SLOW", "INCONSISTENT", "NOT_CLOSED", "UNDETERMINED", "NOT_FINITE", "TURNED"),
-    "BEYOND_ENDS",
+    *("BEYOND_ENDS", "JAMS", "AT_REST"),
 )
 
 STATUSES = {name: _OWN.get(name) or ", or ".join(status.meaning for status in SHARED[name]) for name in _ORDER}

@@ -25,6 +25,7 @@ from .backends import Evaluated, run
 from .rules import Rule, rules
 from .rung import Rung
 
+_JAM = "friction there has no force that holds its law, or several; expected less mu, a longer guide, or a push nearer to its line"
 _TRIALS, _WIDE = 100, 0.1
 
 
@@ -49,6 +50,8 @@ class Status(enum.IntEnum):
     PEAK_NOT_TOLD = 15
     BEYOND_ENDS = 16
     NO_INSTANTS = 17
+    JAMS = 18
+    AT_REST = 19
 
     @property
     def meaning(self) -> str:
@@ -74,6 +77,8 @@ _MEANINGS = {
     Status.TURNED: "an angle that a load sees with its turns might be a turn further",
     Status.PEAK_NOT_TOLD: "a peak cannot be told: too much may hide between the instants; more instants may help",
     Status.BEYOND_ENDS: "what is put into a curve is beyond its ends",
+    Status.JAMS: "the mechanism jams: friction has no force that holds its law, or several",
+    Status.AT_REST: "a joint that rubs is at rest: its friction is open",
     Status.NO_INSTANTS: "its instants cannot be: the motion does not go where they are asked for, or they end before they start",
 }
 
@@ -95,7 +100,8 @@ def refuse(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: Ru
 
 def refusal(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: Rung) -> Refusal | None:
     """Why the first instant that has no result has none; None where all have."""
-    held, extent, bad = rules(graph, evaluated.stages.precision, rung.newton), graph.extent(p), evaluated.status != OK
+    held, extent = rules(graph, evaluated.stages.precision, rung.newton), graph.extent(p)
+    bad = (evaluated.status != OK) & ~((evaluated.status == NOT_FINITE) & resting(graph, evaluated.out))
     passed: dict[Rule, npt.NDArray[np.bool_]] = {}
     for rule in held:
         bad |= broken(rule, evaluated.out, extent)
@@ -118,6 +124,14 @@ def refusal(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: R
     return Refusal(status, _beyond(graph, p, evaluated.stages.precision, at) or why)
 
 
+def resting(graph: SceneGraph, out: Array) -> npt.NDArray[np.bool_]:
+    """At which instants of the columns ``out`` (columns, t) a joint that rubs is at rest: what depends on its friction is open."""
+    found = np.zeros(out.shape[-1], dtype=bool)
+    for row in graph.checks("rest").values():
+        found |= np.asarray(out[row]) > 0.5
+    return found
+
+
 def broken(rule: Rule, out: Array, extent: float) -> npt.NDArray[np.bool_]:
     """At which instants of the columns ``out`` (columns, t) a rule is broken; what is open is no reason to refuse the rest."""
     column = np.asarray(out[rule.column], float)
@@ -129,6 +143,11 @@ def broken(rule: Rule, out: Array, extent: float) -> npt.NDArray[np.bool_]:
         return np.asarray(~(column <= rule.limit))
     if rule.kind == "BEYOND":
         # Where a loop is open it is no number, and the loop says why.
+        return np.asarray(column > rule.limit)
+    if rule.kind == "JAM":
+        return np.asarray(~(column > rule.limit))
+    if rule.kind == "SLIP":
+        # At rest it is no number, and a rule of its own says so.
         return np.asarray(column > rule.limit)
     if rule.kind == "ROW":
         # Where all stands still, what rounding leaves of rates violates nothing.
@@ -252,6 +271,11 @@ def _why(
                 Status.TURNED,
                 f"{what} {swing}: it might be a turn further; take defaults and a motion that show how far it goes",
             )
+        if rule.kind == "JAM":
+            what = "frictions" if ", " in part else "friction"
+            return Status.JAMS, f"{what} '{part}': the mechanism jams {at}: {_JAM}"
+        if rule.kind == "SLIP":
+            return Status.JAMS, f"the laws of friction '{part}' are not met {at}, by {value:.3g} of its size: it nearly jams"
         if rule.kind == "ROW":
             return Status.ROW_VIOLATED, f"the motion violates the non-holonomic constraint '{part}' by {value:.6g} {at}"
     if evaluated.status[i] == SLOW:

@@ -30,18 +30,25 @@ _COUNTED = 1e-3
 _DEAD = 64.0
 """Roundings below which a closure says nothing but that it is zero."""
 
-Kind: TypeAlias = Literal["BEYOND", "CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "TURNED", "OPEN", "OPEN_MOMENT"]
+SLIP: dict[Precision, float] = {"double": 1e-9, "single": 1e-4}
+"""How far the laws of frictions may miss, of their forces."""
+
+Kind: TypeAlias = Literal[
+    "BEYOND", "CLOSURE", "BRANCH", "GAP", "MISFIT", "ROW", "TURNED", "OPEN", "OPEN_MOMENT", "JAM", "SLIP", "REST"
+]
 
 
 @dataclass(frozen=True)
 class Rule:
     """What a column must keep to, so that an instant has a result.
 
-    A ``CLOSURE``, of a loop, of three turns or of what drives hold, must be above its limit, and above its opposite unless links do
-    not reach; so must a ``BRANCH``, whose loop iteration follows. ``GAP`` and ``TURNED`` must be within it by size, a ``GAP`` times
-    the mechanism's extent. A ``MISFIT`` and what is ``BEYOND`` the ends of a curve must not be above it, nor a ``ROW`` by size,
-    times the column ``beside``, which is the size of its terms. What is ``OPEN`` must not be above it, an ``OPEN_MOMENT`` times the
-    extent: else the output ``part`` is not determined.
+    A ``CLOSURE``, of a loop, of three turns or of what drives hold, must be above its limit, and above its opposite unless links
+    do not reach; so must a ``BRANCH``, whose loop iteration follows. ``GAP`` and ``TURNED`` must be within it by size, a ``GAP``
+    times the mechanism's extent. A ``MISFIT`` and what is ``BEYOND`` the ends of a curve must not be above it, nor a ``ROW`` by
+    size, times the column ``beside``, which is the size of its terms. What is ``OPEN`` must not be above it, an ``OPEN_MOMENT``
+    times the extent: else the output ``part`` is not determined. What tells of a ``JAM`` must be above its limit, what is left of
+    frictions' laws, a ``SLIP``, must not be above it. A friction at ``REST`` is above it: what depends on it is no number there,
+    and the rest is.
     """
 
     kind: Kind
@@ -74,6 +81,12 @@ def rules(graph: SceneGraph, precision: Precision, newton: int | None) -> tuple[
             found.append(Rule("MISFIT", k, part, misfit_limit(precision, newton)))
         elif check.kind == "row":
             found.append(Rule("ROW", k, part, misfit_limit(precision, newton), graph.checks("rowsize")[part]))
+        elif check.kind == "jam":
+            found.append(Rule("JAM", k, part, _DEAD * ROUNDING[precision]))
+        elif check.kind == "slip":
+            found.append(Rule("SLIP", k, part, SLIP[precision] if newton is None else max(_COUNTED, SLIP[precision])))
+        elif check.kind == "rest":
+            found.append(Rule("REST", k, part, 0.5))
         elif check.kind == "turned":
             found.append(Rule("TURNED", k, part, REACH))
     return tuple(found)

@@ -15,6 +15,12 @@ def size_of(components: Iterable[Array]) -> Array:
     return np.asarray(functools.reduce(np.hypot, components))
 
 
+def largest(values: Array, axis: int | None = None) -> Array:
+    """The place of the value that is largest in size, as of ``np.argmax``; of what is no number only where nothing else is."""
+    sizes = np.abs(values)
+    return np.asarray(np.argmax(np.where(np.isnan(sizes), -1.0, sizes), axis=axis))
+
+
 def growth_of_size(components: Sequence[Array], changes: Sequence[Array]) -> Array:
     """By how much the size changes with the components; nothing of it cancels."""
     before = size_of(components)

@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from ..declare.density import Array
 from ..declare.description import Description, coordinates_of, density_of, in_space, parts_of
@@ -22,7 +23,7 @@ from ..quantities import Output
 from ..tables import Table, table_of
 from .frames import dataset, frame
 from .laws import law_of, made_of
-from .sizes import size_of
+from .sizes import largest, size_of
 from .statistics import Statistics
 from .views import JointMotion, Pose, Reaction, Section
 
@@ -217,10 +218,21 @@ class Solution:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is worth a word though all is right: points that slide beyond the end of a link."""
-        return tuple(notes(self.t, self.outputs, self.description))
+        """What is worth a word though all is right: points that slide beyond the end of a link, joints that rub and are at rest."""
+        known = {output: values for output, values in self.outputs.items() if output not in self.left_open}
+        return tuple(notes(self.t, known, self.description, self.resting))
 
-    def during(self, instants: slice) -> Solution:
+    @cached_property
+    def resting(self) -> npt.NDArray[np.bool_]:
+        """At which instants (t,) a joint that rubs is at rest: what depends on its friction is NaN there."""
+        found = np.zeros(self.t.size, dtype=bool)
+        if any("friction" in load for load in self.description["loads"].values()):
+            for output, values in self.outputs.items():
+                if output not in self.left_open:
+                    found |= np.isnan(values)
+        return found
+
+    def during(self, instants: slice | npt.NDArray[np.bool_]) -> Solution:
         """The same at some of the instants."""
         outputs = {output: values[instants] for output, values in self.outputs.items()}
         certificate = {name: values[instants] for name, values in self.certificate.items()}
@@ -255,8 +267,10 @@ class Solution:
             self._of_section(output)
         if output.group == "output":
             return str(self.description["outputs"][output.part])
-        kind = coordinates_of(self.description).get(output.part, "angle")
-        return output.quantity.unit_for(kind if output.group in ("motion", "effort") else "angle")
+        kinds = coordinates_of(self.description)
+        if output.group == "friction":
+            return output.quantity.unit_for(kinds[self.description["loads"][output.part]["friction"]["coordinate"]])
+        return output.quantity.unit_for(kinds.get(output.part, "angle") if output.group in ("motion", "effort") else "angle")
 
     def array(self, name: str | Output) -> Array:
         """A quantity by its full name: (t,), or (t, xi) for ``section:LINK:FORCE``.
@@ -283,7 +297,7 @@ class Solution:
         Between the instants it may be larger: :func:`.refine` gives the largest over all times.
         """
         values, places = self.extremes(name)
-        i = int(np.argmax(np.abs(values)))
+        i = int(largest(values))
         xi = None if places is None else float(places[i])
         over = None if self.over is None else float(self.over.values[i])
         return Peak(str(name), float(values[i]), self.unit(name), float(self.t[i]), xi, over=over)

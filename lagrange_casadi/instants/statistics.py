@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ..declare.density import Array
+from .sizes import largest
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,7 @@ class Statistics:
     def over(cls, name: str, unit: str, t: Array, values: Array) -> Statistics:
         """Those of values (t,) at increasing times."""
         weights = _weights(t)
-        chosen = (np.argmin(values), np.argmax(values), np.argmax(np.abs(values)))
+        chosen = (*_ends(values, values), largest(values))
         ends = (Extreme(float(values[i]), float(t[i])) for i in map(int, chosen))
         return cls(name, unit, float(values @ weights), float(np.sqrt(values**2 @ weights)), *ends)
 
@@ -49,9 +51,14 @@ class Statistics:
 
         Places and values are (3, t).
         """
-        chosen = (np.argmin(values[0]), np.argmax(values[1]), np.argmax(np.abs(values[2])))
+        chosen = (*_ends(values[0], values[1]), largest(values[2]))
         ends = (Extreme(float(values[k, i]), float(t[i]), float(places[k, i])) for k, i in enumerate(map(int, chosen)))
         return cls(name, unit, None, None, *ends)
+
+
+def _ends(low: Array, high: Array) -> tuple[Any, Any]:
+    """Where values are smallest and largest; what is no number is neither."""
+    return np.argmin(np.where(np.isnan(low), np.inf, low)), np.argmax(np.where(np.isnan(high), -np.inf, high))
 
 
 def _weights(t: Array) -> Array:

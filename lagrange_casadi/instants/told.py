@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from ..quantities import Output
 from .solution import Solution
 
-_GROUPS = ("effort", "reaction", "section", "output")
+_GROUPS = ("effort", "reaction", "friction", "section", "output")
 
 
 def told(solution: Solution) -> Iterator[Output]:

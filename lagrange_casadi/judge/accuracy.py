@@ -20,6 +20,8 @@ from ..equations.checks import Kind
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import Evaluated
 from ..instants.cycle_table import CycleTable
+from ..instants.refusal import resting
+from ..instants.sizes import largest
 from ..instants.solution import Solution
 from ..quantities import Output
 from .digits import blur
@@ -29,7 +31,7 @@ INSTANTS = 48
 _MANY, _FIRST, _WORST = 2000, 10, 30
 _CLOSED = 10.0
 _DEAD: tuple[Kind, ...] = ("closure", "gimbal", "hold")
-_FORCES = ("effort", "reaction", "multiplier", "section", "law", "station", "spread", "output")
+_FORCES = ("effort", "reaction", "multiplier", "friction", "section", "law", "station", "spread", "output")
 _UNEXPLAINED = 100.0
 _SUMS = 64.0
 _ALONG = np.linspace(0.0, 1.0, 5)
@@ -49,10 +51,10 @@ def estimate(graph: SceneGraph, evaluated: Evaluated, solution: Solution, p: Arr
     found, angles = [], np.array([column in graph.loop_angles for column in graph.columns])
     for some in instants.blocks(np.union1d(_chosen(graph, evaluated), _open(instants))):
         found.append(_worst(graph, solution, *effects(instants.at(some), np.asarray(evaluated.out[:, some], float), angles)))
-    largest = {output: max(errors[output] for errors in found) for output in found[0]}
+    worst = {output: max(errors[output] for errors in found) for output in found[0]} if found else {}
     # What was exact at all these instants may be rounded once at others; and what underflows is in no trial.
     once, least = ROUNDING[evaluated.stages.precision], float(np.finfo(DTYPES[evaluated.stages.precision]).tiny)
-    return {output: max(least, error or once * abs(solution.peak(output).value)) for output, error in largest.items()}
+    return {output: max(least, error or once * abs(solution.peak(output).value)) for output, error in worst.items()}
 
 
 def _worst(graph: SceneGraph, solution: Solution, changes: Array, columns: Array) -> dict[Output, float]:
@@ -80,8 +82,8 @@ def explained(solution: Solution, residuals: Mapping[str, Array], errors: Mappin
     Such a residual is then taken for the relative error of every force: not rounding is at work, but something is wrong.
     """
     worst = max((float(np.max(values)) for values in residuals.values()), default=0.0)
-    largest = {output: float(np.max(np.abs(values), initial=0.0)) for output, values in solution.outputs.items()}
-    relative = [error / largest[o] for o, error in errors.items() if o.group in _FORCES and largest.get(o, 0.0) > error]
+    sizes = {output: _largest(values) for output, values in solution.outputs.items()}
+    relative = [error / sizes[o] for o, error in errors.items() if o.group in _FORCES and sizes.get(o, 0.0) > error]
     if not errors or worst <= _UNEXPLAINED * max([*relative, blur(solution)]):
         return dict(errors)
     forces = [output for output in solution.quantities() if output.group in _FORCES and solution.determined(output)]
@@ -93,11 +95,11 @@ def _of_cycle(graph: SceneGraph, cycle: CycleTable, solution: Solution) -> dict[
     # A table of singles was itself looked at for what it rounds, over its period; angles go on counting.
     rounding = _SUMS * ROUNDING["double"] if cycle.dtype.itemsize == 8 else 2 * ROUNDING["single"]
     missed = cycle.errors * cycle.peaks
-    largest: dict[str, float] = {}
+    sizes: dict[str, float] = {}
     for output, k in graph.outputs.items():
-        reached = max(float(cycle.peaks[k]), float(np.max(np.abs(solution.outputs[output]), initial=0.0)))
-        largest[solution.unit(output)] = max(largest.get(solution.unit(output), 0.0), reached)
-    errors = {output: float(missed[k]) + rounding * largest[solution.unit(output)] for output, k in graph.outputs.items()}
+        reached = max(float(cycle.peaks[k]), _largest(solution.outputs[output]))
+        sizes[solution.unit(output)] = max(sizes.get(solution.unit(output), 0.0), reached)
+    errors = {output: float(missed[k]) + rounding * sizes[solution.unit(output)] for output, k in graph.outputs.items()}
     nothing = {output: np.zeros(1) for output in solution.left_open}
     bounds = replace(solution, outputs=nothing | {output: np.array([error]) for output, error in errors.items()})
     for link in bounds.links_with_sections:
@@ -112,8 +114,9 @@ def _chosen(graph: SceneGraph, evaluated: Evaluated) -> Array:
     n = evaluated.status.size
     spread = np.linspace(0, n - 1, min(n, INSTANTS)).astype(int)
     closures = [k for kind in _DEAD for k in graph.checks(kind).values()]
-    peaks = [int(np.argmin(row if k in closures else -np.abs(row))) for k, row in enumerate(evaluated.out)]
-    return np.unique([*spread, *peaks])
+    peaks = [int(np.argmin(row) if k in closures else largest(row)) for k, row in enumerate(evaluated.out)]
+    chosen: Array = np.unique([*spread, *peaks])
+    return np.asarray(chosen[~resting(graph, evaluated.out)[chosen]])
 
 
 def _open(instants: Instants) -> Array:

@@ -23,6 +23,7 @@ from . import digits
 from .digits import LOOSE as LOOSE
 from .digits import TOLERANCE as TOLERANCE
 from .digits import blur as blur
+from .friction import law_gaps
 from .placing import Complex, Moving, axis_of, measured, oriented, place
 from .spatial_certificate import residuals as spatial_residuals
 from .written import Written
@@ -63,13 +64,22 @@ def certify(
     hidden: Mapping[Output, Array] | None = None,
     phases: Mapping[Output, Array] | None = None,
 ) -> dict[str, Array]:
-    """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``, ``ends``, each where it can be had.
+    """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``, ``ends``, ``friction``, each where it
+    can be had; where a joint that rubs is at rest, ``closure`` alone.
 
     ``equations`` are the constraints and rows of its mechanism, which a solution does not hold: without them, a solution of a
     mechanism that has some is looked at for ``closure`` alone. ``hidden`` are forces that it does not give: multipliers that were
     not wanted, and what is open, which takes some value all the same. ``phases`` are angles that are known up to whole turns more
     closely than they are reported.
     """
+    resting = solution.resting
+    if resting.any() and not resting.all():
+        merged: dict[str, Array] = {}
+        for some in (~resting, resting):
+            pick = ({output: values[some] for output, values in (more or {}).items()} for more in (hidden, phases))
+            for name, gaps in certify(solution.during(some), equations, *pick).items():
+                merged.setdefault(name, np.zeros_like(solution.t))[some] = gaps
+        return merged
     whole = replace(solution, outputs={**solution.outputs, **(hidden or {})}, left_open=())
     turned = replace(whole, outputs={**whole.outputs, **(phases or {})})
     found: dict[str, list[Array]] = {}
@@ -103,6 +113,8 @@ def _residuals(solution: Solution, turned: Solution, equations: Sequence[Written
         matter = {name: _matter(body) for name, body in description["bodies"].items()}
         acting = [*_acting(solution, bodies), *(push for e in equations or () for push in _held(solution, bodies, e))]
         tally = _tally(solution, bodies, acting, matter)
+        if (rubbed := law_gaps(solution, bodies)) is not None:
+            found["friction"] = rubbed
         found["balance"], found["power"] = _balance(solution, bodies, tally, matter)
         if solution.links_with_sections:
             found["ends"] = _ends(solution, bodies, acting, matter)
@@ -189,7 +201,9 @@ def _acting(solution: Solution, bodies: dict[str, Moving]) -> Iterator[_Action]:
     for name, load in solution.description["loads"].items():
         fx, fy, mz = (solution.outputs[Output("load", name, k)] for k in ("fx", "fy", "mz"))
         for point, sign in zip(load["points"], (1.0, -1.0), strict=False):
-            at = bodies[point["body"]].point(point["x"], point["y"])[0]
+            # What a joint's parent does to its child comes back where the child is.
+            place = load["points"][0] if "friction" in load else point
+            at = bodies[place["body"]].point(place["x"], place["y"])[0]
             yield point["body"], at, sign * (fx + 1j * fy), sign * mz, True
 
 

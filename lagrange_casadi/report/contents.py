@@ -28,7 +28,7 @@ from .words import GROUPS, what
 VERSION = 1
 """Of what a page holds."""
 
-_CHARTED = ("effort", "reaction", "output", "motion", "load", "multiplier", "pose")
+_CHARTED = ("effort", "reaction", "output", "motion", "load", "friction", "multiplier", "pose")
 
 
 @dataclass(frozen=True)

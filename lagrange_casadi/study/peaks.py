@@ -190,16 +190,17 @@ class _ContinuousSolution:
         if not all(output in self.rows for output in outputs):
             return False
         outputs = [output for output in outputs if output not in self.graph.loop_angles]
-        some = np.array([0, solution.t.size // 2, solution.t.size - 1])
+        moving = np.flatnonzero(solution.resting.all() | ~solution.resting)
+        some = moving[[0, moving.size // 2, -1]]
         out = self.stages.instant(*self.stages.drive(solution.t[None, some], self.p), self.z[:, some], self.p).full()
         units = [solution.unit(output) for output in outputs]
         sizes = dict.fromkeys(units, 0.0)
         for output, unit in zip(outputs, units, strict=True):
-            sizes[unit] = max(sizes[unit], float(np.max(np.abs(solution.outputs[output]))))
+            sizes[unit] = max(sizes[unit], float(np.fmax.reduce(np.abs(solution.outputs[output]))))
         rounding = _NOTHING * max(sizes.values(), default=0.0)
         gaps = [np.abs(out[self.rows[output]] - solution.outputs[output][some]) for output in outputs]
         limits = [_SAME * sizes[unit] + rounding for unit in units]
-        return bool(np.all([gap <= limit for gap, limit in zip(gaps, limits, strict=True)], axis=0).any())
+        return bool(np.all([~(gap > limit) for gap, limit in zip(gaps, limits, strict=True)], axis=0).any())
 
     def in_equal_steps(self) -> _ContinuousSolution:
         """The same from as many instants in equal steps of time, between which peaks are sought."""
@@ -219,6 +220,13 @@ class _ContinuousSolution:
     def peaks(self, sampled: Sequence[Peak]) -> list[Peak]:
         """The peaks over all times, of quantities whose peaks over some instants are known."""
         solution = self.solution
+        if solution.resting.any():
+            # What has no value at some instants hides what is beside it, and is sought by itself.
+            whole = [bool(np.isfinite(solution.extremes(peak.name)[0]).all()) for peak in sampled]
+            if any(whole) and not all(whole):
+                parts = {k: [peak for peak, own in zip(sampled, whole, strict=True) if own is k] for k in (True, False)}
+                refined = {peak.name: peak for part in parts.values() for peak in self.peaks(part)}
+                return [refined[peak.name] for peak in sampled]
         found = {Output.of(peak.name): peak for peak in sampled}
         sought = [output for output in found if solution.determined(output)]
         if not sought or solution.t.size == 1:

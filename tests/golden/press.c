@@ -516,6 +516,10 @@ const char* press_message(press_status status) {
     return "an angle that a load sees with its turns might be a turn further";
   case PRESS_BEYOND_ENDS:
     return "what is put into a curve is beyond its ends";
+  case PRESS_JAMS:
+    return "the mechanism jams: friction has no force that holds its law, or several";
+  case PRESS_AT_REST:
+    return "a joint that rubs is at rest: its friction is open";
   }
   return "no status of this mechanism";
 }

@@ -60,7 +60,9 @@ typedef enum {
   PRESS_UNDETERMINED = 14 /* equilibrium does not determine all outputs: the mechanism has more constraints than it needs */,
   PRESS_NOT_FINITE = 15 /* a result is not finite: the mechanism is singular, or its numbers overflow */,
   PRESS_TURNED = 16 /* an angle that a load sees with its turns might be a turn further */,
-  PRESS_BEYOND_ENDS = 17 /* what is put into a curve is beyond its ends */
+  PRESS_BEYOND_ENDS = 17 /* what is put into a curve is beyond its ends */,
+  PRESS_JAMS = 18 /* the mechanism jams: friction has no force that holds its law, or several */,
+  PRESS_AT_REST = 19 /* a joint that rubs is at rest: its friction is open */
 } press_status;
 
 /* Numbers that may change without generating anything again. */

@@ -1,0 +1,94 @@
+"""Friction in joints: what may be declared as one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import casadi as ca
+
+from ..errors import DeclarationError
+from .joints import Axis, Joint
+from .ownership import Ownership
+from .parts import POSITIVE, Expression, Friction
+
+TURNING, SLIDING = ("revolute",), ("prismatic", "slot")
+
+
+def friction(own: Ownership, name: str, joint: Joint, told: Mapping[str, Expression | None]) -> Friction:
+    """Friction in a joint of a mechanism, with the numbers that are ``told`` of it.
+
+    Raises :class:`DeclarationError` where the joint has no such friction, and where a number is missing or says nothing.
+    """
+    own.free("load", name, own.mechanism.loads)
+    what = f"friction '{name}'"
+    axis = _axis(own, what, joint)
+    numbers = {key: _number(own, f"{what}: {key}", value) for key, value in told.items() if value is not None}
+    _require(what, joint, axis, numbers)
+    if numbers.get("static") is not None and "stribeck" not in numbers:
+        raise DeclarationError(f"{what}: static needs stribeck, the speed of sliding [m/s] within which mu falls from static")
+    if "stribeck" in numbers and "static" not in numbers:
+        raise DeclarationError(f"{what}: stribeck goes with static, the friction coefficient at the start of sliding")
+    return Friction(
+        name,
+        joint,
+        axis,
+        ca.SX.sym(f"friction_{name}"),
+        numbers.get("mu", 0.0),
+        numbers.get("radius"),
+        numbers.get("length"),
+        numbers.get("viscous", 0.0),
+        numbers.get("static"),
+        numbers.get("stribeck"),
+        numbers.get("smooth"),
+    )
+
+
+def _axis(own: Ownership, what: str, joint: Joint) -> Axis:
+    own.joint(joint)
+    if own.mechanism.space:
+        raise DeclarationError(
+            f"{what}: friction that follows reactions is there for planar mechanisms; in space take torque() or force()"
+        )
+    if joint.kind not in (*TURNING, *SLIDING):
+        raise DeclarationError(
+            f"{what}: joint '{joint.name}' is a {joint.kind} joint, which does not rub; valid: revolute, prismatic, slot"
+        )
+    if not joint.axes:
+        points = [body.name for body in joint.bodies if not body.oriented]
+        raise DeclarationError(
+            f"{what}: joint '{joint.name}' has no angle, for '{points[0]}' is a point mass and has no direction; declare it "
+            "as a link with mass, centre and inertia"
+        )
+    return joint.axes[0]
+
+
+def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expression]) -> None:
+    """Raise for a length or radius that is missing, or that has no meaning."""
+    if "mu" not in numbers and "viscous" not in numbers:
+        raise DeclarationError(f"{what}: expected mu, a friction coefficient, or viscous")
+    if "mu" not in numbers:
+        needless = [key for key in ("radius", "length", "static", "stribeck", "smooth") if key in numbers]
+        if needless:
+            raise DeclarationError(f"{what}: {needless[0]} goes with mu, a friction coefficient")
+        return
+    if axis.kind == "angle":
+        if "radius" not in numbers:
+            raise DeclarationError(f"{what}: joint '{joint.name}' turns; expected radius, that of its pin [m]")
+        if "length" in numbers:
+            raise DeclarationError(f"{what}: joint '{joint.name}' turns and has no length of guidance; valid: radius")
+        return
+    if "radius" in numbers:
+        raise DeclarationError(f"{what}: joint '{joint.name}' slides and has no radius; valid: length")
+    if joint.bears_moment and "length" not in numbers:
+        raise DeclarationError(
+            f"{what}: joint '{joint.name}' bears a moment; expected length, that of its guidance [m], on whose two edges it rests"
+        )
+    if not joint.bears_moment and "length" in numbers:
+        raise DeclarationError(f"{what}: joint '{joint.name}' bears no moment, and needs no length of guidance")
+
+
+def _number(own: Ownership, what: str, value: Expression) -> Expression:
+    found, positive = own.expression(what, value), what.rpartition(" ")[2] in POSITIVE
+    if isinstance(found, float) and (found < 0.0 or (found == 0.0 and positive)):
+        raise DeclarationError(f"{what} must be {'positive' if positive else 'at least 0'}, got {found:g}")
+    return found

@@ -1,0 +1,327 @@
+"""Friction that follows reactions: forces and reactions solved together, at every instant.
+
+All forces are linear in the frictions' forces s along their coordinates, so what presses on each joint is R(s) = R0 + A s. The law
+
+    s_j = -sigma_j sum_k c_k |R_k(s)| - viscous_j v_j
+
+is solved friction by friction where these are explicit, in blocks where they depend on each other: by a fixed number of Newton
+steps, from s of the frictionless R0. With B_jk = sum c |A_k|, which is not negative, I - B is an M-matrix where all pivots of its
+elimination are positive (Berman, Plemmons, *Nonnegative Matrices in the Mathematical Sciences*, chapter 6). Then the law is a
+contraction in a weighted norm: there is one solution, and only one. Else the mechanism may jam.
+
+At rest the sign is open, and so is all that depends on it: no number. Where a rate passes through zero, as at the end of a stroke,
+the sign is the one of the acceleration, that of the instants right after.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Friction, Vector
+from ..geometry.vectors import dot
+from .checks import Check, Column
+from .gaps import reach
+from .multibody import Multibody, column, rates_along
+
+STEPS = 4
+"""Newton's steps: the error goes as the 4th, 10th, 22nd, 46th power of how much of itself a friction brings about."""
+
+_REST = 1e-12
+"""Of the fastest motion in the mechanism: a rate below is that of rest, but for rounding."""
+
+_NOTHING = 1e-30
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """What presses on a rubbing place [N], of one component or two, and the ``arm`` that its friction has: 1 or a radius [m]."""
+
+    arm: Any
+    pressing: tuple[Any, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Rubbing:
+    """A friction as expressions of an instant: its contacts, and rate and acceleration of its coordinate.
+
+    ``slowest`` is the rate below which it rests, and the change of rate below which it goes on to.
+    """
+
+    friction: Friction
+    contacts: tuple[Contact, ...]
+    rate: Any
+    acceleration: Any
+    slowest: tuple[Any, Any]
+
+    @property
+    def rows(self) -> list[Any]:
+        """All its expressions, in an order that :meth:`of_rows` knows."""
+        return [*(x for contact in self.contacts for x in contact.pressing), self.rate, self.acceleration, *self.slowest]
+
+    def of_rows(self, rows: Sequence[Any]) -> Rubbing:
+        """The same with other expressions."""
+        left = iter(rows)
+        contacts = tuple(Contact(c.arm, tuple(next(left) for _ in c.pressing)) for c in self.contacts)
+        rate, acceleration, *slowest = left
+        return Rubbing(self.friction, contacts, rate, acceleration, (slowest[0], slowest[1]))
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """Symbols of frictions and their values; by name the forces and the power that is lost; and the checks of them."""
+
+    symbols: Any
+    values: Any
+    checks: dict[Column, Any]
+    forces: Mapping[str, Any]
+    lost: Mapping[str, Any]
+
+
+def frictions_of(mechanism: Mechanism) -> dict[str, Friction]:
+    """The frictions of a mechanism by name."""
+    return {name: load for name, load in mechanism.loads.items() if isinstance(load, Friction)}
+
+
+def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vector) -> Rubbing:
+    """A friction in a joint whose parent does this to its child, in ground axes, the couple about the child's point."""
+    joint, coordinates = friction.joint, multibody.coordinates
+    rate, acceleration = rates_along(joint, friction.axis, multibody.frames, coordinates)
+    unit, fastest, quickest = reach(multibody.mechanism), ca.SX(0), ca.SX(0)
+    for own in (coordinate for coordinate in coordinates if coordinate.driven):
+        size = 1 if own.kind == "angle" else unit
+        fastest += ca.fabs(own.rate) / size
+        quickest += ca.fabs(own.acceleration) / size
+    quickest += fastest * fastest
+    least = _REST * (1 if friction.axis.kind == "angle" else unit)
+    contacts: tuple[Contact, ...] = ()
+    if friction.dry and friction.axis.kind == "angle":
+        contacts = (Contact(friction.radius, (force[0], force[1])),)
+    elif friction.dry:
+        across = multibody.frames[joint.parent.body.name].rotation.apply(joint.triad[1])
+        pressing = dot(force, across)
+        if friction.length is None:
+            contacts = (Contact(1.0, (pressing,)),)
+        else:
+            tilt = couple[2] / friction.length
+            contacts = tuple(Contact(1.0, (pressing / 2 + sign * tilt,)) for sign in (1, -1))
+    return Rubbing(friction, contacts, rate, acceleration, (least * fastest, least * quickest))
+
+
+def solve(found: Sequence[Rubbing]) -> Solved:
+    """The forces of frictions, along their coordinates, from what presses on them, which is linear in the symbols of all."""
+    symbols = column(one.friction.symbol for one in found)
+    n = len(found)
+    pressing = column(x for one in found for contact in one.contacts for x in contact.pressing)
+    slopes = ca.jacobian(pressing, symbols)
+    free = ca.substitute(pressing, symbols, ca.SX.zeros(n))
+    laws: list[_Law] = []
+    first = 0
+    for one in found:
+        parts = []
+        for contact in one.contacts:
+            rows = range(first, first + len(contact.pressing))
+            first += len(contact.pressing)
+            parts.append(
+                _Pressed(contact.arm, [free[row] for row in rows], [[_entry(slopes, row, k) for k in range(n)] for row in rows])
+            )
+        laws.append(_Law.of(one, parts))
+    values: list[Any] = [None] * n
+    checks: dict[Column, Any] = {Check("rest", law.name): law.rest for law in laws if law.rest is not None}
+    for block in _blocks(laws):
+        checks |= _solve_block([laws[j] for j in block], block, values)
+    lost = {one.friction.name: -value * one.rate for one, value in zip(found, values, strict=True)}
+    forces = {one.friction.name: value for one, value in zip(found, values, strict=True)}
+    return Solved(symbols, column(values), checks, forces, lost)
+
+
+@dataclass(frozen=True, eq=False)
+class _Pressed:
+    """A contact as R0 + A s: ``free`` is R0, ``slopes`` the rows of A, None where nothing."""
+
+    arm: Any
+    free: list[Any]
+    slopes: list[list[Any]]
+
+    def at(self, values: Sequence[Any]) -> list[Any]:
+        """R for values of all frictions, None where they count as zero."""
+        return [_sum(row, values, start) for row, start in zip(self.slopes, self.free, strict=True)]
+
+    def seen(self, k: int) -> Any:
+        """How much it changes at most with a friction; None where not at all."""
+        column_ = [row[k] for row in self.slopes if row[k] is not None]
+        return None if not column_ else self.arm * _size(column_)
+
+
+@dataclass(frozen=True, eq=False)
+class _Law:
+    """s = -sigma mu sum arm |R(s)| - steady."""
+
+    name: str
+    pressed: list[_Pressed]
+    mu: Any
+    sigma: Any
+    steady: Any
+    rest: Any
+
+    @classmethod
+    def of(cls, one: Rubbing, pressed: list[_Pressed]) -> _Law:
+        friction, v = one.friction, one.rate
+        steady = None if _nil(friction.viscous) else friction.viscous * v
+        if not pressed:
+            return cls(friction.name, [], 0.0, 0.0, steady, None)
+        mu = friction.mu
+        if friction.static is not None:
+            speed = v * (1.0 if friction.radius is None else friction.radius) / friction.stribeck
+            mu = mu + (friction.static - mu) * ca.exp(-(speed * speed))
+        if friction.smooth is not None:
+            return cls(friction.name, pressed, mu, ca.tanh(v / friction.smooth), steady, None)
+        moves, turns = ca.fabs(v) > one.slowest[0], ca.fabs(one.acceleration) > one.slowest[1]
+        rest = ca.if_else(moves, 0, ca.if_else(turns, 0, 1))
+        way = ca.if_else(moves, v, ca.if_else(turns, one.acceleration, 0))
+        # At rest it is 0 times infinity, which is no number.
+        return cls(friction.name, pressed, mu, ca.sign(way) / (1 - rest), steady, rest)
+
+    def pushed(self, sizes: Sequence[Any]) -> Any:
+        """The force where contacts press so much."""
+        dry = -self.sigma * (self.mu * sum((part.arm * size for part, size in zip(self.pressed, sizes, strict=True)), ca.SX(0)))
+        return dry if self.steady is None else dry - self.steady
+
+    def depends(self, k: int) -> bool:
+        """Whether it depends on a friction."""
+        return any(part.seen(k) is not None for part in self.pressed)
+
+
+def _solve_block(laws: Sequence[_Law], block: Sequence[int], values: list[Any]) -> dict[Column, Any]:
+    """Put the values of frictions that depend on each other into ``values``; and the checks of them."""
+    known = list(values)
+    for j, law in zip(block, laws, strict=True):
+        values[j] = law.pushed([_size(part.at(known)) for part in law.pressed])
+    if not any(law.depends(k) for law in laws for k in block):
+        return {}
+    for _ in range(STEPS):
+        left, matrix = [], []
+        for j, law in zip(block, laws, strict=True):
+            at = [part.at(values) for part in law.pressed]
+            sizes = [_size(pressing) for pressing in at]
+            left.append(values[j] - law.pushed(sizes))
+            row: list[Any] = []
+            for k in block:
+                slopes = [
+                    part.arm * towards
+                    for part, pressing, size in zip(law.pressed, at, sizes, strict=True)
+                    if (towards := _towards(pressing, size, [line[k] for line in part.slopes])) is not None
+                ]
+                entry = None if not slopes else law.sigma * (law.mu * sum(slopes[1:], slopes[0]))
+                row.append(entry if j != k else 1 if entry is None else 1 + entry)
+            matrix.append(row)
+        for j, correction in zip(block, _eliminated(matrix, left)[0], strict=True):
+            values[j] = values[j] - correction
+    missed, size = ca.SX(0), ca.SX(_NOTHING)
+    for j, law in zip(block, laws, strict=True):
+        push = law.pushed([_size(part.at(values)) for part in law.pressed])
+        missed, size = missed + ca.fabs(values[j] - push), size + ca.fabs(push)
+    name = ", ".join(law.name for law in laws)
+    return {Check("jam", name): _least_pivot(laws, block), Check("slip", name): missed / size}
+
+
+def _least_pivot(laws: Sequence[_Law], block: Sequence[int]) -> Any:
+    """The least pivot of I - B: positive where there is one solution."""
+    matrix: list[list[Any]] = []
+    for j, law in zip(block, laws, strict=True):
+        row: list[Any] = []
+        for k in block:
+            sizes = [size for part in law.pressed if (size := part.seen(k)) is not None]
+            entry = None if not sizes else -law.mu * sum(sizes[1:], sizes[0])
+            row.append(entry if j != k else 1 if entry is None else 1 + entry)
+        matrix.append(row)
+    pivots = _eliminated(matrix, [ca.SX(0)] * len(matrix))[1]
+    least = ca.SX(pivots[0])
+    for pivot in pivots[1:]:
+        least = ca.fmin(least, pivot)
+    return least
+
+
+def _eliminated(matrix: list[list[Any]], right: list[Any]) -> tuple[list[Any], list[Any]]:
+    """The solution of a system by elimination without exchange of rows, and its pivots; None stands for zero."""
+    n, rows, right = len(right), [list(row) for row in matrix], list(right)
+    for i in range(n):
+        for j in range(i + 1, n):
+            if rows[j][i] is None:
+                continue
+            factor = rows[j][i] / rows[i][i]
+            for k in range(i + 1, n):
+                if rows[i][k] is not None:
+                    rows[j][k] = (0 if rows[j][k] is None else rows[j][k]) - factor * rows[i][k]
+            right[j] = right[j] - factor * right[i]
+    found: list[Any] = [None] * n
+    for i in reversed(range(n)):
+        rest = right[i]
+        for k in range(i + 1, n):
+            if rows[i][k] is not None:
+                rest = rest - rows[i][k] * found[k]
+        found[i] = rest / rows[i][i]
+    return found, [rows[i][i] for i in range(n)]
+
+
+def _blocks(laws: Sequence[_Law]) -> list[list[int]]:
+    """Frictions that depend on each other, those first that depend on no others."""
+    n = len(laws)
+    reached = np.array([[j == k or law.depends(k) for k in range(n)] for j, law in enumerate(laws)], bool).reshape(n, n)
+    for k in range(n):
+        reached |= np.outer(reached[:, k], reached[k])
+    found = {tuple(np.flatnonzero(reached[j] & reached[:, j]).tolist()): int(reached[j].sum()) for j in range(n)}
+    return [list(block) for block in sorted(found, key=lambda block: (found[block], block))]
+
+
+def needed(forces: Any, found: Mapping[str, Rubbing], wanted: Collection[str]) -> list[str]:
+    """The frictions on which forces depend, or which are ``wanted``, and those on which these depend."""
+    names = [name for name, one in found.items() if name in wanted or ca.depends_on(forces, one.friction.symbol)]
+    while True:
+        rows = column(x for name in names for contact in found[name].contacts for x in contact.pressing)
+        more = [name for name, one in found.items() if name in names or ca.depends_on(rows, one.friction.symbol)]
+        if more == names:
+            return names
+        names = more
+
+
+def _sum(row: Sequence[Any], values: Sequence[Any], start: Any) -> Any:
+    """A row of A times values, and R0."""
+    total = None
+    for slope, value in zip(row, values, strict=True):
+        if slope is not None and value is not None:
+            total = slope * value if total is None else total + slope * value
+    return start if total is None else start + total
+
+
+def _size(components: Sequence[Any]) -> Any:
+    return (
+        ca.fabs(components[0])
+        if len(components) == 1
+        else ca.sqrt(sum((x * x for x in components[1:]), components[0] * components[0]))
+    )
+
+
+def _towards(pressing: Sequence[Any], size: Any, slopes: Sequence[Any]) -> Any:
+    """How a size changes with a friction by which its components change so; None where not."""
+    terms = [(x, slope) for x, slope in zip(pressing, slopes, strict=True) if slope is not None]
+    if not terms:
+        return None
+    if len(pressing) == 1:
+        return ca.sign(pressing[0]) * terms[0][1]
+    along = sum((x * slope for x, slope in terms[1:]), terms[0][0] * terms[0][1])
+    return along / ca.fmax(size, _NOTHING)
+
+
+def _entry(matrix: Any, row: int, k: int) -> Any:
+    entry = matrix[row, k]
+    return None if not entry.nnz() or entry.is_zero() else entry
+
+
+def _nil(value: Any) -> bool:
+    return isinstance(value, float) and value == 0.0

@@ -1,0 +1,100 @@
+"""Friction beside the oracle: its law by fixed-point iteration, to convergence, around vector Newton-Euler on free bodies.
+
+It shares nothing with the package: rates come from the oracle's power series. Reactions are linear in the frictions' forces, so a
+balance of all bodies for each of these alone tells them all; the one with what was found in the end must agree.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from oracle import Joint, Oracle, Result
+
+PASSES = 20000
+
+
+@dataclass
+class Rub:
+    """Friction in a joint of the oracle's, by the numbers that declare it."""
+
+    joint: Joint
+    mu: float = 0.0
+    radius: float | None = None
+    length: float | None = None
+    viscous: float = 0.0
+    static: float | None = None
+    stribeck: float = 1.0
+    smooth: float | None = None
+    force: float = field(default=0.0, init=False)
+
+    def acts(self, place: Callable) -> list:
+        """What it does to the joint's child, and back to its parent, where the child's point is."""
+        parent, child = self.joint.parent[0], self.joint.child
+        if not self.joint.slides:
+            return [(child, 0.0, 0.0, self.force), (self.joint.parent, 0.0, 0.0, -self.force)]
+        x, y = self.axis(place)
+        (bx, by, turned), (cx, cy, _) = place((parent, 0.0, 0.0)), place(child)
+        c, s = math.cos(turned.v), math.sin(turned.v)
+        dx, dy = cx.v - bx.v, cy.v - by.v
+        there = (parent, c * dx + s * dy, c * dy - s * dx)
+        return [(child, self.force * x, self.force * y, 0.0), (there, -self.force * x, -self.force * y, 0.0)]
+
+    def axis(self, place: Callable) -> tuple[float, float]:
+        turned = place((self.joint.parent[0], 0.0, 0.0))[2].v
+        (x, y), c, s = self.joint.axis, math.cos(turned), math.sin(turned)
+        return c * x - s * y, s * x + c * y
+
+    def rate(self, place: Callable) -> float:
+        """The rate of the joint's coordinate: of the angle, or of the distance along the carried line."""
+        (px, py, turned), (cx, cy, other) = place(self.joint.parent), place(self.joint.child)
+        if not self.joint.slides:
+            return other.d - turned.d
+        x, y = self.axis(place)
+        dx, dy = cx.v - px.v, cy.v - py.v
+        return x * (cx.d - px.d) + y * (cy.d - py.d) + turned.d * (-y * dx + x * dy)
+
+    def law(self, reaction, place: Callable) -> float:
+        """What the law says of a reaction."""
+        v, (fx, fy, mz) = self.rate(place), reaction
+        if not self.joint.slides:
+            pressed, speed = self.radius * math.hypot(fx, fy), v * self.radius
+        else:
+            x, y = self.axis(place)
+            normal, speed = -y * fx + x * fy, v
+            pressed = abs(normal)
+            if self.length is not None:
+                pressed = abs(normal / 2 + mz / self.length) + abs(normal / 2 - mz / self.length)
+        mu = self.mu
+        if self.static is not None:
+            mu += (self.static - mu) * math.exp(-((speed / self.stribeck) ** 2))
+        sign = math.tanh(v / self.smooth) if self.smooth else math.copysign(1.0, v)
+        return -sign * mu * pressed - self.viscous * v
+
+
+def solve_rubbing(oracle: Oracle, rubs: Sequence[Rub], drives, guess) -> Result:
+    """The instant with friction. Fails where the iteration does not converge."""
+    rubbed = replace(oracle, loads=(*oracle.loads, *(rub.acts for rub in rubs)))
+
+    def balanced(forces):
+        for rub, force in zip(rubs, forces, strict=True):
+            rub.force = force
+        result = rubbed.solve(drives, guess)
+        return result, np.array([result.reactions[rub.joint.name] for rub in rubs])
+
+    n = len(rubs)
+    result, alone = balanced(np.zeros(n))
+    place = rubbed.places(result)
+    size = 1.0 + np.max(np.abs(alone))
+    slopes = np.stack([(balanced(size * unit)[1] - alone) / size for unit in np.eye(n)], axis=-1)
+    forces = np.zeros(n)
+    for _ in range(PASSES):
+        before, forces = forces, np.array([rub.law(r, place) for rub, r in zip(rubs, alone + slopes @ forces, strict=True)])
+        if np.max(np.abs(forces - before)) <= 1e-15 * size:
+            break
+    result, reactions = balanced(forces)
+    left = max(abs(rub.law(r, place) - rub.force) for rub, r in zip(rubs, reactions, strict=True))
+    assert left <= 1e-11 * size, "the friction of the oracle does not converge"
+    return result

@@ -1,0 +1,189 @@
+"""Where friction has no result, or no one result: jams, rest, reversals; the same for values, designs and exported C."""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+from compiled import told
+
+from lagrange_casadi import Mechanism, Scene, evaluate, export, refine
+from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.errors import AssemblyError
+from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.motion import expression, polynomial
+from lagrange_casadi.store.runs import check, load, save
+
+WEIGHT, ARM = 50.0, 0.2
+every = pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
+
+
+def pushed_beside():
+    """A block on a guide, pushed along it at an arm: it locks where the guide is shorter than 2 mu times the arm."""
+    m = Mechanism("drawer")
+    mu, length = m.parameter("mu", 0.2), m.parameter("length", 0.1, "m")
+    block = m.link("block", length=0.3, mass=2.0)
+    pusher = m.link("pusher", length=0.1, mass=0.0)
+    m.set_gravity(0.0, 0.0)
+    m.prismatic("O", m.ground.at(0.0, ARM), pusher, axis=(1, 0))
+    guide = m.prismatic("guide", m.ground, block, axis=(1, 0))
+    m.slot("hand", pusher, block.at(0.0, ARM), axis=(0, 1))
+    m.force("load", block, x=-WEIGHT)
+    m.friction("rub", guide, mu=mu, length=length)
+    return Scene(m, {"O": polynomial(0.0, 0.5)}, t=(0, 0.1, 9))
+
+
+@every
+def test_a_drawer_pushed_beside_its_guide(backend):
+    """F = W/(1 - 2 mu e/b) closed form; without end where b comes to 2 mu e, and none beyond."""
+    scene = pushed_beside()
+    for mu, length in ((0.2, 0.1), (0.2, 0.081), (0.35, 0.9), (0.0, 0.01)):
+        solution = evaluate(scene, parameters={"mu": mu, "length": length}, backend=backend)
+        assert solution.certified
+        force = WEIGHT / (1 - 2 * mu * ARM / length)
+        assert solution.effort("O") == pytest.approx(force, rel=1e-12 / (1 - 2 * mu * ARM / length))
+        assert solution.series["friction:rub:along"] == pytest.approx(WEIGHT - force, rel=1e-10, abs=1e-12)
+        assert solution.series["friction:rub:loss"] == pytest.approx(0.5 * (force - WEIGHT), rel=1e-10, abs=1e-12)
+    for length in (0.08, 0.0799999, 0.05):
+        with pytest.raises(AssemblyError, match=r"friction 'rub': the mechanism jams at t = 0 s, where O = 0 m: "):
+            evaluate(scene, parameters={"length": length}, backend=backend)
+
+
+@every
+def test_designs_that_jam_have_their_status(backend):
+    designs = DesignEngine.of(pushed_beside(), rung=Rung(backend))
+    p = np.array([[0.2, 0.1], [0.2, 0.08], [0.2, 0.05], [0.1, 0.05]])
+    found = designs.evaluate(p)
+    assert found.status.tolist() == [Status.OK, Status.JAMS, Status.JAMS, Status.OK]
+    forces = found.value[:, [str(name) for name in designs.kept.quantities].index("effort:O")]
+    assert forces[[0, 3]] == pytest.approx([WEIGHT / (1 - 0.8), WEIGHT / (1 - 0.8)], rel=1e-11)
+    assert np.isnan(forces[1:3]).all()
+
+
+SHORT = """
+  parameters.length = %s;
+  status = @_prepare(&model, &parameters);
+  status = @_motion(&model, 0.05, &inputs);
+  status = @_evaluate(&model, &inputs, &outputs);
+"""
+
+
+def test_exported_c_refuses_a_jam(tmp_path):
+    made = export(pushed_beside(), tmp_path)
+    status, force, _ = told(tmp_path, made, SHORT % "0.1")
+    assert (status, force) == (0, pytest.approx(WEIGHT / (1 - 0.8), rel=1e-5))
+    status, _, sentence = told(tmp_path, made, SHORT % "0.05")
+    assert status != 0
+    assert sentence == Status.JAMS.meaning
+
+
+def reciprocating(motion, **options):
+    m = Mechanism("reciprocating")
+    mu = m.parameter("mu", 0.15)
+    crank, rod = m.link("crank", length=0.1, mass=0.8), m.link("rod", length=0.25, mass=1.1)
+    piston = m.link("piston", length=0.05, mass=0.6, centre=(0.0, 0.0), inertia=1e-4)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    wrist = m.revolute("B", rod.tip, piston)
+    bore = m.prismatic("bore", m.ground, piston, axis=(1, 0))
+    m.force("gas", piston, x=-900.0)
+    m.friction("ring", bore, mu=mu, length=0.06)
+    m.friction("pin", wrist, mu=mu, radius=0.01)
+    return Scene(m, {"O": motion}, posture={"rod": 0.0}, **options)
+
+
+TURN = 2 * math.pi / 30.0
+
+
+@every
+def test_at_a_dead_centre_the_sign_is_that_of_the_instants_right_after(backend):
+    """The end of a stroke is an instant among others: it has the values right after, on either side of the stroke."""
+    scene = reciprocating(polynomial(0.0, 30.0), t=(0, TURN, 9))
+    solution, after = (evaluate(scene, backend=backend, t=t) for t in ((0, TURN, 9), (1e-11, TURN + 1e-11, 9)))
+    assert solution.certified
+    assert not solution.resting.any()
+    assert solution.motion("bore").rate[[0, 4, 8]] == pytest.approx(0.0, abs=1e-12)
+    ring = solution.series["friction:ring:along"]
+    assert ring == pytest.approx(after.series["friction:ring:along"], rel=1e-6)
+    assert solution.effort("O") == pytest.approx(after.effort("O"), rel=1e-6, abs=1e-6)
+    assert ring[0] > 0.0 > ring[4]
+
+
+def start_and_stop(t):
+    """From rest to rest in half a second, then at rest."""
+    u = ca.fmin(t / 0.5, 1.0)
+    return 0.3 + 10 * u**3 - 15 * u**4 + 6 * u**5
+
+
+@pytest.mark.parametrize("options", [{"backend": "lanes"}, {"backend": "c"}, {"backend": "vm"}, {"precision": "single"}])
+def test_at_rest_friction_is_open_and_all_else_is_not(options, tmp_path):
+    scene = reciprocating(expression(start_and_stop), t=(0, 1, 41))
+    solution = evaluate(scene, **options)
+    resting = solution.t >= 0.5
+    resting[0] = True
+    assert solution.resting.tolist() == resting.tolist()
+    assert solution.certified
+    for name in ("effort:O", "friction:ring:along", "friction:pin:loss", "reaction:bore:fy", "load:pin:mz"):
+        assert np.isnan(solution.array(name)[resting]).all(), name
+        assert np.isfinite(solution.array(name)[~resting]).all(), name
+        assert np.isfinite(solution.peak(name).value), name
+    assert np.isfinite(solution.motion("bore").value).all()
+    assert np.isfinite(solution.series["load:gas:fx"]).all()
+    (note,) = solution.notes
+    assert note.startswith("a joint that rubs is at rest at 22 of 41 instants, first at t = 0 s")
+    assert "ring, pin" in note
+    save(solution, tmp_path / "rest.h5")
+    assert check(tmp_path / "rest.h5") == []
+    assert load(tmp_path / "rest.h5").resting.tolist() == resting.tolist()
+
+
+@every
+def test_a_design_at_rest_has_its_status(backend):
+    scene = reciprocating(expression(start_and_stop), t=(0, 1, 41), wanted=["effort"])
+    assert DesignEngine.of(scene, rung=Rung(backend)).evaluate(np.array([[0.1]])).status.tolist() == [Status.AT_REST]
+    moving = DesignEngine.of(scene, t=(0.1, 0.4, 41), rung=Rung(backend))
+    assert moving.evaluate(np.array([[0.1]])).status.tolist() == [Status.OK]
+
+
+def test_what_friction_does_not_reach_is_told_at_rest_too():
+    """A crank alone rubs: the rod's forces know nothing of it."""
+    m = Mechanism("free_end")
+    arm, other = m.link("arm", length=0.3, mass=1.0), m.link("other", length=0.2, mass=0.5)
+    first, second = m.revolute("O", m.ground, arm), m.revolute("P", arm.tip, other)
+    m.friction("rub", first, mu=0.1, radius=0.02)
+    scene = Scene(m, {"O": polynomial(0.4), "P": polynomial(0.1, 2.0)}, t=(0, 1, 5))
+    solution = evaluate(scene)
+    assert second.name == "P"
+    assert np.isnan(solution.effort("O")).all()
+    assert np.isfinite(solution.effort("P")).all()
+    assert np.isfinite(solution.reaction("O").fy).all()
+    assert solution.certified
+
+
+def test_smoothed_friction_passes_through_rest():
+    m = Mechanism("smooth")
+    arm = m.link("arm", length=0.3, mass=1.0)
+    m.friction("rub", m.revolute("O", m.ground, arm), mu=0.1, radius=0.02, smooth=0.5)
+    scene = Scene(m, {"O": expression(start_and_stop)}, t=(0, 1, 41))
+    solution = evaluate(scene)
+    assert solution.certified
+    rate = solution.motion("O").rate
+    size = 0.1 * 0.02 * np.hypot(solution.reaction("O").fx, solution.reaction("O").fy)
+    assert solution.series["friction:rub:along"] == pytest.approx(-np.tanh(rate / 0.5) * size, abs=1e-15)
+
+
+def test_peaks_beside_a_reversal_are_found():
+    """The largest effort of a cycle is just before the friction turns round, between two instants."""
+    scene = reciprocating(polynomial(0.05, 30.0), t=(0, TURN, 62))
+    solution = evaluate(scene, backend="vm")
+    dense = evaluate(scene, t=(0, TURN, 20001), certificate=False)
+    names = ["effort:O", "friction:ring:along", "friction:ring:loss", "section:rod:axial", "reaction:bore:resultant"]
+    found = refine(scene, solution, names)
+    designs = DesignEngine.of(scene, rung=Rung("c"))
+    row = designs.evaluate(np.array([[0.15]])).value[0]
+    swept = dict(zip(map(str, designs.kept.quantities), row, strict=True))
+    for peak in found:
+        sampled = abs(dense.peak(peak.name).value)
+        assert sampled * (1 - 1e-12) <= abs(peak.value) <= sampled * (1 + 1e-3), peak
+        assert swept[peak.name] == pytest.approx(peak.value, rel=1e-7), peak
