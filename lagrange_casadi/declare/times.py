@@ -90,6 +90,11 @@ class Timing:
         start, stop, around = (_values(bound, p) for bound in (self.start, self.stop, self.around))
         return start, stop, around
 
+    def ends(self, symbols: Any) -> tuple[Any, Any]:
+        """Start and stop as expressions of the parameters' symbols."""
+        start, stop = (_function(bound)(symbols) if isinstance(bound, str) else bound for bound in (self.start, self.stop))
+        return start, stop
+
     def words(self, symbols: Any) -> list[Any]:
         """The same for JSON: start, stop, count, and where there is one the joint and around; expressions as text that tells them
         apart."""
