@@ -35,6 +35,7 @@ from .options import arithmetic, parameters, separated, setting
 @click.option(
     "--fmu", is_flag=True, help="Also write DIR/CASE.fmu, a unit of FMI 2.0 for simulation tools; needs FMPy and a C compiler."
 )
+@click.option("--wasm", is_flag=True, help="Also write DIR/CASE.wasm for web pages, with a wrapper in JavaScript; needs ziglang.")
 @click.option("--force", is_flag=True, help="Write into a folder that holds other files too; these are not touched.")
 def export(
     case: Path,
@@ -47,6 +48,7 @@ def export(
     table: float | None,
     largest: int | None,
     fmu: bool,
+    wasm: bool,
     force: bool,
 ) -> None:
     """Write CASE as C for other programs: a library, a self-test and an example, in a folder that stands alone."""
@@ -63,6 +65,7 @@ def export(
         largest=largest,
         force=force,
         fmu=fmu,
+        wasm=wasm,
     )
     for own, called in made.mapped.items():
         click.echo(f"{own} is called {called} in C")
@@ -70,4 +73,6 @@ def export(
     click.echo(f"wrote {out}: {p}.h, {p}.c and what goes with them; {len(made.inputs)} inputs, {len(made.outputs)} outputs")
     if fmu:
         click.echo(f"wrote {out / f'{p}.fmu'}: FMI 2.0, for Model Exchange and Co-Simulation")
+    if wasm:
+        click.echo(f"wrote {out / f'{p}.wasm'} and {p}.js: README.wasm.md says how a web page uses them")
     click.echo(f"try it: cd {shlex.quote(str(out))} && cmake -B build && cmake --build build && ctest --test-dir build")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -9,13 +10,12 @@ import click
 
 from ..case import load_case
 from ..declare.even_points import EvenPoints
-from ..declare.scene import Scene
 from ..declare.times import Over
 from ..errors import CertificateError
 from ..evaluate import evaluate
 from ..instants.solution import Solution
 from ..judge.certificate import failure
-from ..report import ENDINGS, write_report
+from ..report import ENDINGS, Live, with_motion, write_report
 from ..report.instants import shown_instants
 from ..store.runs import load
 from ..store.untrusted import told_as
@@ -42,6 +42,9 @@ _UNSHOWN = "cannot be shown"
     metavar="OUTPUT",
     help="Of a case: what is shown besides motion; default: what it wants.",
 )
+@click.option(
+    "--live", is_flag=True, help="Of a case: put the engine into the page, with sliders for the parameters; needs ziglang."
+)
 def report(
     target: Path,
     out: Path | None,
@@ -49,14 +52,15 @@ def report(
     t: EvenPoints | None,
     over: Over | None,
     want: Sequence[str],
+    live: bool,
 ) -> None:
     """Write a page that shows FILE.h5, or CASE evaluated, in any browser: one file, which needs no network and no Python.
 
     The mechanism moves, with its forces on it; charts and tables are beside it.
     """
     file = target.suffix in _FILES
-    if file and (settings or t or over or want):
-        raise click.UsageError("--set, --t, --over and --want go with a case, not with a file")
+    if file and (settings or t or over or want or live):
+        raise click.UsageError("--set, --t, --over, --want and --live go with a case, not with a file")
     if out and out.suffix.lower() not in ENDINGS:
         raise click.UsageError(f"--out {out}: expected a name that ends in {' or '.join(ENDINGS)}")
     if file:
@@ -69,16 +73,13 @@ def report(
         case = load_case(target)
         out = out or Path(f"{case.name}.html")
         check_writable(out)
-        wanted = _with_motion(case.scene, want)
+        wanted = with_motion(want or case.scene.wanted)
+        engine = (
+            Live(case.scene, case.scene.timing(t, over), wanted, f"lagrange-casadi run {shlex.quote(case.name)}") if live else None
+        )
         solution = evaluate(case.scene, parameters=parameters(settings), t=t, over=over, wanted=wanted)
-        write_report(solution, out)
+        write_report(solution, out, engine)
     _tell(solution, out)
-
-
-def _with_motion(scene: Scene, want: Sequence[str]) -> list[str]:
-    """What is wanted, and motion, without which nothing can be shown."""
-    wanted = list(want or scene.wanted)
-    return wanted if {"all", "motion"} & set(wanted) else [*wanted, "motion"]
 
 
 def _tell(solution: Solution, out: Path) -> None:

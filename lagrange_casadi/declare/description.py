@@ -144,16 +144,24 @@ def motions_of(description: Description) -> dict[str, str]:
     return driven | {str(name): str(kind) for name, kind in description.get("motions", {}).items()}
 
 
-@functools.lru_cache(maxsize=32)
-def _numbers(mechanism: Mechanism) -> ca.Function:
-    """All numbers of a description at once, in the order in which it asks for them."""
+def numbered(mechanism: Mechanism) -> tuple[Description, list[Any]]:
+    """A description with places in the place of its numbers, and the expressions of the parameters that stand at these places.
+
+    A link's mass and density are no such places: they are made of others.
+    """
     asked: list[Any] = []
 
     def number(expression: Any) -> float:
         asked.append(expression)
-        return 1.0
+        return len(asked) - 1.0
 
-    _described(mechanism, dict.fromkeys(mechanism.parameters, 1.0), (), number)
+    return _described(mechanism, dict.fromkeys(mechanism.parameters, 1.0), (), number), asked
+
+
+@functools.lru_cache(maxsize=32)
+def _numbers(mechanism: Mechanism) -> ca.Function:
+    """All numbers of a description at once, in the order in which it asks for them."""
+    _, asked = numbered(mechanism)
     return ca.Function("numbers", [mechanism.symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *asked))])
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -288,6 +289,24 @@ class Scene:
         from ..report import scene_summary
 
         return scene_summary(self)
+
+    def report(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        parameters: Mapping[str, float] | None = None,
+        wanted: Sequence[str] | None = None,
+        live: bool = False,
+    ) -> None:
+        """Evaluate the scene, and write a page that shows it in a browser; with ``live`` one that evaluates other parameters.
+
+        ``parameters`` and ``wanted`` are those of :func:`.evaluate`; motion is always wanted. Raises what that raises, and
+        :meth:`.Solution.report`; with ``live`` :class:`.LagrangeCasadiError` where ziglang is missing, :class:`.DeclarationError`
+        where there is no parameter to change.
+        """
+        from ..report import scene_report
+
+        scene_report(self, path, parameters, wanted, live)
 
     def timing(self, t: Times | None = None, over: Over | None = None) -> Timing:
         """How its instants are asked for, or others: ``t`` or ``over`` in place of its own.

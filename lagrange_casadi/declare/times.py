@@ -98,6 +98,11 @@ class Timing:
                 row[:] = ca.densify(_function(bound).factory("slopes", ["p"], ["jac:bound:p"])(p)).full().ravel()
         return found
 
+    def ends(self, symbols: Any) -> tuple[Any, Any]:
+        """Start and stop as expressions of the parameters' symbols."""
+        start, stop = (_function(bound)(symbols) if isinstance(bound, str) else bound for bound in (self.start, self.stop))
+        return start, stop
+
     def words(self, symbols: Any) -> list[Any]:
         """The same for JSON: start, stop, count, and where there is one the joint and around; expressions as text that tells them
         apart."""

@@ -26,6 +26,8 @@ from .fmu import fmu as archive
 from .header import header
 from .source import Source
 from .sourced import sourced
+from .wasm import check_zig
+from .wasm import wasm as for_pages
 
 LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 """Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""
@@ -48,6 +50,7 @@ def export(
     largest: int | None = None,
     force: bool = False,
     fmu: bool = False,
+    wasm: bool = False,
 ) -> Contract:
     """Write a scene as C into the folder ``out``: header, source, self-test, example, build files, README.
 
@@ -68,6 +71,8 @@ def export(
         an export's are never touched; those of an earlier one that this one has not are removed, unless they were changed.
     fmu
         Write ``<prefix>.fmu``, too: a unit of FMI 2.0. Needs FMPy and a C compiler.
+    wasm
+        Write ``<prefix>.wasm``, too, with a wrapper in JavaScript, its types and ``README.wasm.md``. Needs ziglang.
 
     Returns the names, units, signs and ranges of the parameters, inputs and outputs of the C. Raises :class:`PathError` where the
     folder is taken, :class:`SizeError` for a table that is too large, :class:`CompilerError` for an FMU without a compiler, and
@@ -81,6 +86,8 @@ def export(
     check_writable(folder, folder=True)
     if fmu:
         check_tools()
+    if wasm:
+        check_zig("WebAssembly")
     source = sourced(
         scene, name or scene.mechanism.name, parameters, wanted, rung, LARGEST[precision] if largest is None else largest
     )
@@ -88,6 +95,8 @@ def export(
     texts = {f"{agreed.prefix}.h": header(source), f"{agreed.prefix}.c": source.code}
     texts |= companions(source)
     files = {file: text.encode() for file, text in texts.items()}
+    if wasm:
+        files |= for_pages(source)
     unit = f"{agreed.prefix}.fmu"
     known = _check_free(folder, agreed.prefix, [*files, *([unit] if fmu else [])], force=force)
     if fmu:

@@ -1,6 +1,8 @@
 """A report that opens in a browser: the mechanism moving, its forces on it, charts and tables, in one file."""
 
+from .live import Live
 from .notebook import View, scene_summary, summary, view
+from .of_scene import scene_report, with_motion
 from .page import ENDINGS, page, write_report
 
-__all__ = ["ENDINGS", "View", "page", "scene_summary", "summary", "view", "write_report"]
+__all__ = ["ENDINGS", "Live", "View", "page", "scene_report", "scene_summary", "summary", "view", "with_motion", "write_report"]

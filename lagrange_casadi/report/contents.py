@@ -21,6 +21,7 @@ from ..judge.certificate import failure, summary
 from ..quantities import Output
 from .arrays import Arrays, finite
 from .instants import shown_instants
+from .live import Live
 from .sections import section_entries
 from .shapes import joint_shapes, load_shapes, path_spots, shapes
 from .words import GROUPS, what
@@ -75,15 +76,15 @@ class Row:
     rms: float | None = None
 
 
-def contents(solution: Solution) -> dict[str, Any]:
-    """All of a page about a solution.
+def contents(solution: Solution, live: Live | None = None) -> dict[str, Any]:
+    """All of a page about a solution; with ``live`` the engine that evaluates its scene for other parameters, too.
 
     Raises :class:`.DeclarationError` where the solution does not have the poses of all bodies, which the picture is made of.
     """
     require_poses(solution)
     arrays, chosen = Arrays(), shown_instants(solution)
     description = solution.description
-    return {
+    found = {
         "version": VERSION,
         "case": solution.case,
         "conventions": solution.table.conventions,
@@ -104,9 +105,10 @@ def contents(solution: Solution) -> dict[str, Any]:
         "notes": list(solution.notes),
         "undetermined": list(solution.undetermined),
         "provenance": asdict(solution.provenance) | {"versions": dict(solution.provenance.versions)},
-        "arrays": arrays.places,
-        "numbers": arrays.block(),
     }
+    if live:
+        found["live"] = live.entry(solution, chosen, arrays)
+    return found | {"arrays": arrays.places, "numbers": arrays.block()}
 
 
 def require_poses(solution: Solution, what: str = "a report") -> None:

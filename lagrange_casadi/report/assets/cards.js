@@ -29,16 +29,21 @@ class Card {
   }
 
   renew() {
+    this.stale = live.moving && !this.seen;
+    if (this.stale) return;
     showTip(null);
-    this.plot = this.make(this);
-    this.field.replaceChildren(this.plot ? this.plot.sheet.body : element("p", { class: "none" }, "Nothing is chosen."));
+    const without = designState() === "none";
+    this.plot = without ? null : this.make(this);
+    const words = without ? "There is no such design." : "Nothing is chosen.";
+    this.field.replaceChildren(this.plot ? this.plot.sheet.body : element("p", { class: "none" }, words));
     this.drawLegend();
     this.draw();
   }
 
   draw() {
-    const width = this.field.clientWidth;
-    if (this.plot && width) this.plot.draw(width);
+    // A width that is asked for while much is new costs a whole layout.
+    this.width = live.moving && this.width ? this.width : this.field.clientWidth;
+    if (this.plot && this.width) this.plot.draw(this.width);
     this.mark(player.instant);
   }
 

@@ -30,7 +30,7 @@ function titleOf(one) {
   return one.part && one.what ? `${one.part}: ${one.what}` : one.part || one.what;
 }
 
-const largest = new WeakMap();
+let largest = new WeakMap();
 
 /** The largest size among values, those that are no numbers left out. */
 function largestOf(values) {

@@ -54,9 +54,10 @@ class Heat {
     const canvas = element("canvas", { width: 12, height: 120 });
     const context = canvas.getContext("2d");
     const image = context.createImageData(12, 120);
+    const { colours } = this;
     for (let row = 0; row < 120; row += 1) {
       const value = this.most + (row / 119) * (least - this.most);
-      for (let column = 0; column < 12; column += 1) paintPoint(image, column, row, value, this.most, this.colours);
+      for (let column = 0; column < 12; column += 1) paintPoint(image, column, row, value, this.most, colours);
     }
     context.putImageData(image, 0, 0);
     const text = (value, y) => drawn("text", { x: x + 6, y, class: "key" }, `${format(value * scale.factor, 3)}`);
@@ -66,23 +67,22 @@ class Heat {
     ];
   }
 
+  /** The colours that the page has now; the stage reads all of them at once. */
   get colours() {
-    const style = getComputedStyle(document.documentElement);
-    const rgb = (name) => {
-      const text = style.getPropertyValue(`--${name}`).trim();
-      return [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16));
-    };
-    return { positive: rgb("map-positive"), negative: rgb("map-negative"), none: rgb("map-none") };
+    const rgb = (text) => [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16));
+    const { inks } = deck.stage.paper;
+    return { positive: rgb(inks["map-positive"]), negative: rgb(inks["map-negative"]), none: rgb(inks["map-none"]) };
   }
 
   picture(width, height) {
     const { section, force } = this;
-    const columns = Math.min(width, Math.max(instants.count, 2), 700);
+    const columns = Math.min(width, Math.max(instants.count, 2), live.moving ? 160 : 700);
     const rows = section.xi.length;
-    const wide = columns < 240 ? 2 * columns : columns;
-    const canvas = element("canvas", { width: wide, height: 2 * rows });
+    const wide = columns < 240 && !live.moving ? 2 * columns : columns;
+    const high = live.moving ? 51 : 2 * rows;
+    const canvas = element("canvas", { width: wide, height: high });
     const context = canvas.getContext("2d");
-    const image = context.createImageData(wide, 2 * rows);
+    const image = context.createImageData(wide, high);
     const { colours } = this;
     let seen = 0;
     const values = new Float64Array(rows);
@@ -92,11 +92,14 @@ class Heat {
       if (over) seen = nearest(this.x.values, x, seen);
       else seen = instantAt(x);
       if (seen !== known) {
-        for (let row = 0; row < rows; row += 1) values[row] = sectionForce(section, force.name, seen, row);
+        for (let row = 0; row < high; row += 1) {
+          const at = Math.round((row / (high - 1)) * (rows - 1));
+          values[at] = sectionForce(section, force.name, seen, at);
+        }
         known = seen;
       }
-      for (let row = 0; row < 2 * rows; row += 1) {
-        const at = Math.round(((2 * rows - 1 - row) / (2 * rows - 1)) * (rows - 1));
+      for (let row = 0; row < high; row += 1) {
+        const at = Math.round(((high - 1 - row) / (high - 1)) * (rows - 1));
         paintPoint(image, column, row, values[at], this.most, colours);
       }
     }

@@ -15,6 +15,11 @@ function buildPage() {
   const gestures = listenTo(stage, { point: (found, event) => pointAt(stage, found, event), pin: (found) => pinSection(found) });
   frame.append(viewBar(stage, gestures));
   left.append(transportBar(), showBar(stage));
+  if (contents.live) {
+    const panel = element("section", { class: "alive", "aria-label": "Parameters" });
+    frame.before(panel);
+    comeAlive(panel);
+  }
   stage.layOut();
   firstCards();
   watch(stage, canvas);
@@ -24,8 +29,18 @@ function buildPage() {
 
 /** The name, what was evaluated, whether it was certified, and the switches. */
 function headOf() {
-  const { state } = contents.certificate;
-  const badge = { certified: [forcesChecked ? "✓ certified" : "✓ motion certified", "certified"], failed: ["✗ the certificate fails", "failed"], none: ["no certificate", "none"] }[state];
+  const states = {
+    certified: [forcesChecked ? "✓ certified" : "✓ motion certified", "certified"], failed: ["✗ the certificate fails", "failed"], none: ["no certificate", "none"],
+    other: ["another design, not certified", "doubt"], impossible: ["no such design", "failed"],
+  };
+  const badge = element("span");
+  const verdict = () => {
+    const [words, kind] = states[{ file: contents.certificate.state, other: "other", none: "impossible" }[designState()]];
+    badge.className = `badge ${kind}`;
+    badge.textContent = words;
+  };
+  verdict();
+  reading.watchers.add(verdict);
   const shownOf = instants.count < instants.total ? `, ${instants.count} of them shown` : "";
   const span = () => `${instants.total} instant${instants.total > 1 ? "s" : ""}${shownOf}, t = ${[0, -1].map((k) => shown(instants.t.at(k), "s", 5, Math.abs(instants.t.at(-1)))).join(" to ")}`;
   const told = element("p", { class: "told" }, span());
@@ -45,23 +60,23 @@ function headOf() {
   const print = element("button", { type: "button", class: "switch", click: () => window.print() }, "Print");
   return element("header", { class: "head" },
     element("div", {}, element("h1", {}, contents.case), told),
-    element("span", { class: `badge ${badge[1]}` }, badge[0]),
+    badge,
     element("div", { class: "switches" }, si, theme, print));
 }
 
 /** What is largest, at a glance: press one to see when and where it is. */
 function glanceOf() {
   const groups = [["effort", () => true], ["reaction", (row) => row.name.endsWith(":resultant")], ["section", (row) => row.name.endsWith(":axial")], ["section", (row) => row.name.endsWith(":shear")], ["section", (row) => row.name.endsWith(":bending")]];
-  const tiles = groups.flatMap(([group, filter]) => {
+  const tiles = () => groups.flatMap(([group, filter]) => {
     const rows = contents.rows.filter((row) => row.group === group && !row.open && filter(row));
     return rows.length ? [rows.reduce((best, row) => (Math.abs(row.peak.value) > Math.abs(best.peak.value) ? row : best))] : [];
   });
-  const fill = () => tiles.map((row) => {
+  const fill = () => tiles().map((row) => {
     const where = row.peak.xi === null ? "" : ` · ξ/l = ${row.peak.xi.toFixed(2)}`;
     return element("button", { type: "button", class: "tile", title: "Show when and where", click: () => showRow(row) },
       element("span", { class: "what" }, `Largest ${row.what.replace("resultant ", "")}`),
-      element("b", {}, shown(row.peak.value, row.unit, 4)),
-      element("span", { class: "where" }, `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}`));
+      element("b", {}, Number.isFinite(row.peak.value) ? shown(row.peak.value, row.unit, 4) : "–"),
+      element("span", { class: "where" }, Number.isFinite(row.peak.value) ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result"));
   });
   const bar = element("div", { class: "glance" }, fill());
   reading.watchers.add(() => bar.replaceChildren(...fill()));

@@ -86,10 +86,12 @@ function cloud() {
   return found.filter((place) => place.every(Number.isFinite));
 }
 
-const allPlaces = cloud();
+let allPlaces = cloud();
 
 /** The middle of the mechanism over all instants, and its largest extent [m]. */
-const extent = (() => {
+let extent = extentNow();
+
+function extentNow() {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
   for (const place of allPlaces) {
@@ -100,7 +102,13 @@ const extent = (() => {
   }
   const middle = low.map((value, k) => (value + high[k]) / 2);
   return { low, high, middle, size: Math.max(...high.map((value, k) => value - low[k])) || 1 };
-})();
+}
+
+/** Find both anew. */
+function measureAll() {
+  allPlaces = cloud();
+  extent = extentNow();
+}
 
 /** Half the width of a link as it is drawn [m]: of the mechanism's size, and no more than a short link bears. */
 const girth = 0.013 * extent.size;

@@ -18,6 +18,12 @@ class Player {
     for (const watcher of this.watchers) watcher(this.instant);
   }
 
+  /** Take the times that there are now. */
+  renew() {
+    this.time = instants.t[this.instant];
+    this.span = instants.t[instants.count - 1] - instants.t[0];
+  }
+
   step(count) {
     this.pause();
     this.seek((this.instant + count + instants.count) % instants.count);

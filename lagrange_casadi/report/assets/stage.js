@@ -48,6 +48,14 @@ class Stage {
     this.draw();
   }
 
+  /** Take the scales and the room that the motion needs now. */
+  renew() {
+    this.measure();
+    this.ends = arrowEnds(this.shows, this.scale);
+    if (this.touched) this.draw();
+    else this.fit();
+  }
+
   show(what, value) {
     this.shows[what] = value;
     this.measure();
@@ -59,6 +67,10 @@ class Stage {
     const { paper, shows } = this;
     paper.begin();
     drawFloor(paper);
+    if (designState() === "none") {
+      paper.end();
+      return;
+    }
     if (shows.traces) drawTraces(paper);
     if (shows.ribbon && this.scale.ribbon) drawRibbons(paper, instant, shows.ribbon, this.scale.ribbon);
     for (const body of bodies.values()) drawBody(paper, body, instant);
@@ -123,7 +135,9 @@ function roundDistance(rough) {
   return power * [1, 2, 5, 10].find((part) => part * power >= rough * 0.999);
 }
 
-const traces = (() => {
+let traces = tracesNow();
+
+function tracesNow() {
   const step = Math.max(1, Math.ceil(instants.count / 240));
   const numbers = Array.from({ length: Math.ceil(instants.count / step) }, (_, k) => k * step);
   if (numbers.at(-1) !== instants.count - 1) numbers.push(instants.count - 1);
@@ -132,7 +146,7 @@ const traces = (() => {
   const joints = contents.joints.map((joint) => ({ own: false, points: of(joint.child) }));
   const paths = contents.paths.map((path) => ({ own: true, points: of(path) }));
   return [...joints, ...paths].filter((trace) => moved(trace.points));
-})();
+}
 
 function drawTraces(paper) {
   for (const { own, points } of traces) {

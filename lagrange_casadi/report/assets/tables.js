@@ -56,7 +56,7 @@ function sortedTable(caption, heads, rows, { chosen = null, aside = null, plain 
   } }, "copy as CSV");
   const table = element("table", {}, element("thead", {}, element("tr", {}, cells)), body);
   table.setAttribute("aria-label", caption);
-  reading.watchers.add(fill);
+  reading.tables.add(fill);
   fill();
   return { fill, body: element("section", { class: "table" }, element("header", {}, element("h2", {}, caption), aside, copy), element("div", { class: "scroll" }, table)) };
 }
@@ -95,8 +95,8 @@ function resultTables(show) {
     state.all = event.target.checked;
     renew();
   } }), ` also what is zero (${nothing})`);
-  const value = (one, row) => (one === null || one === undefined ? "" : shown(one, row.unit, 6, Math.abs(row.peak.value)));
-  const when = (mark) => (mark ? shown(mark.t, "s", 5, Math.max(Math.abs(instants.t[0]), Math.abs(instants.t.at(-1)))) : "");
+  const value = (one, row) => (one === null || one === undefined ? "" : Number.isNaN(one) ? "–" : shown(one, row.unit, 6, Math.abs(row.peak.value)));
+  const when = (mark) => (mark && !Number.isNaN(mark.t) ? shown(mark.t, "s", 5, Math.max(Math.abs(instants.t[0]), Math.abs(instants.t.at(-1)))) : "");
   const names = [["name", (row) => row.name], ["part", (row) => row.part], ["quantity", whatOf], ["unit", (row) => row.unit]];
   const driveHead = over && [`${over.joint} [${over.unit}]`, (row) => row.peak.over];
   const drive = over ? [[over.joint, (row) => shown(row.peak.over, over.unit), (row) => row.peak.over]] : [];
@@ -111,7 +111,7 @@ function resultTables(show) {
         ["may be off by", error, (row) => row.error ?? -1],
         ...drive,
         ["t", (row) => when(row.peak), (row) => row.peak.t],
-        ["ξ/l", (row) => (row.peak.xi === null ? "" : row.peak.xi.toFixed(3)), (row) => row.peak.xi ?? -1],
+        ["ξ/l", (row) => (row.peak.xi === null || Number.isNaN(row.peak.xi) ? "" : row.peak.xi.toFixed(3)), (row) => row.peak.xi ?? -1],
       ],
       rows,
       {
@@ -178,7 +178,9 @@ function certificateText() {
   const alarm = state === "failed" && element("p", { class: "alarm" }, words);
   const forces = "The reported motions, reactions, efforts and loads were put into Newton's and Euler's equations of every body anew, in plain arithmetic, at every instant.";
   const sentence = forcesChecked ? forces : "The bodies were placed anew by the reported motion, in plain arithmetic, at every instant.";
-  return element("section", { class: "text" }, element("h2", {}, "Certificate"), element("p", { class: `verdict ${state}` }, head), alarm,
+  const other = element("p", { class: "alarm other", hidden: true }, "This is the certificate of the file's design. Other designs are evaluated by the same code, which refuses what it finds impossible, but nothing certifies them; the command line does.");
+  reading.watchers.add(() => (other.hidden = designState() === "file"));
+  return element("section", { class: "text" }, element("h2", {}, "Certificate"), other, element("p", { class: `verdict ${state}` }, head), alarm,
     state !== "none" && element("p", {}, sentence),
     element("dl", {}, lines.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)])), limit, loops);
 }

@@ -1,11 +1,11 @@
 // Units that a person reads, chosen by how large values are; or those of the file, on a switch.
 
-const reading = { si: false, watchers: new Set() };
+const reading = { si: false, watchers: new Set(), tables: new Set() };
 
 /** Switch between readable units and SI, and have all that shows numbers do it anew. */
 function setSi(si) {
   reading.si = si;
-  for (const watcher of reading.watchers) watcher();
+  for (const watcher of [...reading.watchers, ...reading.tables]) watcher();
 }
 
 const STEPS = [

@@ -1,0 +1,310 @@
+// The engine in the page: for other parameters it evaluates the whole cycle, and puts what it finds in the place of what is shown.
+
+const BLOCK = 1024; // Instants that are evaluated at once.
+
+class Alive {
+  constructor(instance) {
+    const told = contents.live;
+    this.told = told;
+    this.engine = new Engine(instance, told.layout);
+    this.values = Float64Array.from(contents.parameters, (one) => one.value);
+    this.file = { values: this.values.slice(), defaults: told.defaults, rows: structuredClone(contents.rows), t: instants.t.slice() };
+    this.why = null;
+    this.read();
+    const kept = [...this.targets, ...this.paths, ...this.curves.flatMap((curve) => [...curve.series.values()].flat())].map((one) => one.array);
+    this.unknown = contents.series.filter((one) => one.group === "certificate").map((one) => array(one.values));
+    this.shown = [...kept, ...this.unknown];
+    const rows = contents.sections.flatMap((entry) => entry.forces.flatMap((force) => force.terms.map(([, row]) => array(row))));
+    this.kept = [...new Set([instants.t, ...(over ? [array(over.values)] : []), ...this.shown, ...rows])].map((values) => [values, values.slice()]);
+  }
+
+  /** Find what each array of the page is made of. */
+  read() {
+    const { told } = this;
+    const of = new Map(told.of);
+    const rows = new Map(contents.rows.map((row) => [row.name, row]));
+    const single = (number) => of.get(number)[0] - told.layout.inputs;
+    const named = new Map(contents.series.map((one) => [one.values, one.name]));
+    this.targets = told.of.map(([number, sources]) => ({ array: array(number), sources, row: rows.get(named.get(number)) }));
+    this.paths = contents.bodies.flatMap((body) => {
+      const sources = told.poses[body.name];
+      return body.pose.map((number, k) => ({ array: array(number), source: sources[k], body: body.name }));
+    });
+    this.bars = contents.bodies.filter((body) => told.poses[body.name].slice(6).some((source) => source < 0)).map((body) => body.pose.map(array));
+    // What equilibrium leaves open is not in the module.
+    this.curves = contents.sections.filter((entry) => told.links[entry.link] && knownForces(sectionByLink.get(entry.link)).length).map((entry) => {
+      const curve = new Along(entry, told.links[entry.link], this.engine, single);
+      entry.forces.forEach((force, k) => {
+        const one = seriesByName.get(`section:${entry.link}:${force.name}`);
+        const row = rows.get(`section:${entry.link}:${force.name}`);
+        if (one) curve.series.set(k, [{ array: array(one.values) }, { array: array(one.places) }]);
+        if (row && !row.open) curve.rows = (curve.rows ?? new Map()).set(k, row);
+      });
+      return curve;
+    });
+    this.position = null;
+    if (told.shown) {
+      this.position = new Int32Array(told.timing.count).fill(-1);
+      told.shown.forEach((instant, k) => (this.position[instant] = k));
+    }
+  }
+
+  /** Whether the design is the file's own. */
+  get own() {
+    return this.values.every((value, k) => value === this.file.values[k]);
+  }
+
+  /** Show a design. What it is without, as where it cannot be assembled, is then said by `why`. */
+  show(values) {
+    this.values = Float64Array.from(values);
+    contents.parameters.forEach((one, k) => (one.value = this.values[k]));
+    this.why = null;
+    if (this.own) {
+      for (const [array, before] of this.kept) array.set(before);
+      contents.rows.forEach((row, k) => Object.assign(row, structuredClone(this.file.rows[k])));
+      this.engine.prepare(this.values);
+      this.place();
+      return;
+    }
+    try {
+      this.evaluate();
+    } catch (error) {
+      if (!(error instanceof NoResult)) throw error;
+      this.why = error.message;
+      for (const values of this.shown) values.fill(NaN);
+      for (const row of contents.rows) if (!row.open) lose(row);
+    }
+  }
+
+  evaluate() {
+    const { engine, told } = this;
+    this.check(engine.prepare(this.values), null);
+    const numbers = this.place();
+    const times = this.times(numbers[0], numbers[1]);
+    if (told.loops) this.close(times[0]);
+    const tallies = [...this.targets.filter((target) => target.row && !target.row.open), ...this.curves.flatMap((curve) => [...(curve.rows ?? new Map()).values()].map((row) => ({ row, along: true })))]
+      .map((one) => [one.row.name, new Tally(one.row, one.along)]);
+    this.tallies = new Map(tallies);
+    const weights = weightsOf(times);
+    this.turns = told.wrapped.map(() => null);
+    for (let from = 0; from < times.length; from += BLOCK) this.block(times, weights, from, Math.min(BLOCK, times.length - from));
+    for (const [name, tally] of this.tallies) Object.assign(rowByName.get(name), tally.told(times, this.coordinates));
+    for (const bar of this.bars) complete(bar);
+    for (const values of this.unknown) values.fill(NaN);
+  }
+
+  block(times, weights, from, count) {
+    const { engine, told, position } = this;
+    engine.fit(count);
+    for (let i = 0; i < count; i += 1) this.check(engine.motion(times[from + i], i), times[from + i]);
+    if (engine.evaluate(count)) {
+      const i = engine.statuses.findIndex(Boolean);
+      this.check(engine.statuses[i], times[from + i]);
+    }
+    const many = [told.layout.inputs, told.layout.outputs];
+    const views = [engine.inputs.slice(), engine.outputs.slice()];
+    const reader = (source) => (source < many[0] ? [views[0], many[0], source] : [views[1], many[1], source - many[0]]);
+    told.wrapped.forEach((output, k) => (this.turns[k] = unwrap(views[1], many[1], output, count, this.turns[k])));
+    const at = (i) => (position ? position[from + i] : from + i);
+    for (const { array: into, sources, row } of this.targets) {
+      const readers = sources.map(reader);
+      const tally = row && this.tallies.get(row.name);
+      for (let i = 0; i < count; i += 1) {
+        let value = readers[0][0][i * readers[0][1] + readers[0][2]];
+        for (let k = 1; k < readers.length; k += 1) value = Math.hypot(value, readers[k][0][i * readers[k][1] + readers[k][2]]);
+        const place = at(i);
+        if (place >= 0) into[place] = value;
+        tally?.add(value, from + i, weights[from + i]);
+      }
+    }
+    for (const { array: into, source } of this.paths) {
+      if (source < 0) continue;
+      const [view, stride, start] = reader(source);
+      for (let i = 0; i < count; i += 1) if (at(i) >= 0) into[at(i)] = view[i * stride + start];
+    }
+    for (let i = 0; i < count; i += 1) {
+      const place = at(i);
+      if (place >= 0) instants.t[place] = times[from + i];
+      if (over && place >= 0) array(over.values)[place] = this.coordinates[from + i];
+    }
+    for (const curve of this.curves) this.along(curve, views[1], many[1], from, count, at);
+  }
+
+  along(curve, outputs, many, from, count, at) {
+    if (from === 0) curve.prepare(this.lengths[curve.entry.link], outputs);
+    const tallies = curve.entry.forces.map((force) => this.tallies.get(`section:${curve.entry.link}:${force.name}`));
+    for (let i = 0; i < count; i += 1) {
+      const place = at(i);
+      curve.reach((output) => outputs[i * many + output]).forEach((ends, number) => {
+        if (Number.isNaN(ends[0])) return;
+        const series = curve.series.get(number);
+        if (series && place >= 0) [series[0].array[place], series[1].array[place]] = [ends[4], ends[5]];
+        tallies[number]?.reach(ends, from + i);
+      });
+    }
+  }
+
+  /** The times of the instants: equal steps, or when the drive's coordinate takes equal steps. */
+  times(start, stop) {
+    const { count, joint, coordinate } = this.told.timing;
+    if (!(Number.isFinite(start) && Number.isFinite(stop)) || (joint ? start === stop : stop < start)) throw new NoResult("there are no instants between the ends that these parameters give");
+    const even = Float64Array.from({ length: count }, (_, i) => (i === count - 1 ? stop : start + i * ((stop - start) / (count - 1))));
+    this.coordinates = joint ? even : null;
+    if (!joint) return even;
+    const found = new Float64Array(count);
+    const scale = Math.max(Math.abs(start), Math.abs(stop));
+    const { engine } = this;
+    const at = (t) => {
+      this.check(engine.motion(t), t);
+      return [engine.inputs[coordinate], engine.inputs[coordinate + 1]];
+    };
+    engine.fit(1);
+    let t = this.file.t[0];
+    for (let i = 0; i < count; i += 1) {
+      let [best, least] = [t, Infinity];
+      for (let k = 0; k < 60; k += 1) {
+        const [d, rate] = at(t);
+        const miss = Math.abs(d - even[i]);
+        if (miss < least) [best, least] = [t, miss];
+        else if (k > 0) break;
+        if (miss === 0) break;
+        t -= (d - even[i]) / rate;
+      }
+      if (!(least <= 1e-13 * scale) || (i > 0 && !(best > found[i - 1]))) throw new NoResult(`the motion of ${joint} does not go all the way from ${format(start)} to ${format(stop)}`);
+      found[i] = best;
+      t = best + (i + 1 < count ? (even[i + 1] - even[i]) / at(best)[1] : 0);
+    }
+    return found;
+  }
+
+  /** Have iterated loops begin where they stand in this design: from that of the file in steps, the fewer the better. */
+  close(time) {
+    const { engine, told, file } = this;
+    const loops = () => new Float64Array(engine.calls.memory.buffer, engine.model + told.loops[0], told.loops[1]);
+    const closes = (values, from) => {
+      const status = engine.prepare(values);
+      if (status) return status;
+      if (from) loops().set(from);
+      engine.fit(1);
+      return engine.motion(time) || engine.evaluate(1);
+    };
+    let status = closes(this.values, null);
+    for (let many = 4; status && many <= 64; many *= 4) {
+      status = closes(file.values, null);
+      for (let k = 1; k <= many && !status; k += 1) {
+        const before = loops().slice();
+        status = closes(this.values.map((value, n) => file.values[n] + (k / many) * (value - file.values[n])), before);
+      }
+    }
+    const found = loops().slice();
+    this.check(status, time);
+    this.check(engine.prepare(this.values), null);
+    loops().set(found);
+  }
+
+  /** Evaluate lengths, places and axes, and put them into the picture's parts; returns all numbers of the design. */
+  place() {
+    const { engine, told } = this;
+    engine.calls.live_numbers(engine.given, engine.more);
+    const numbers = new Float64Array(engine.calls.memory.buffer, engine.more, told.numbers).slice();
+    const at = (places) => places.map((place) => (place < 0 ? 0 : numbers[place]));
+    const { picture } = told;
+    this.lengths = {};
+    contents.joints.forEach((joint, k) => {
+      const own = picture.joints[k];
+      joint.parent.at = at(own.parent);
+      joint.child.at = at(own.child);
+      if (own.axes) joint.axes = own.axes.map(at);
+      if (own.turned) joint.second = own.turned.map((row) => dot(at(row), joint.axes[1]));
+    });
+    contents.loads.forEach((load, k) => load.spots.forEach((spot, i) => (spot.at = at(picture.loads[k][i]))));
+    contents.paths.forEach((path, k) => (path.at = at(picture.paths[k])));
+    const spots = [
+      ...contents.joints.flatMap((joint) => [joint.parent, joint.child]),
+      ...contents.loads.filter((load) => load.kind === "spring").flatMap((load) => load.spots),
+      ...contents.paths,
+    ];
+    for (const body of contents.bodies) {
+      const own = picture.bodies[body.name];
+      const length = own.length < 0 ? null : numbers[own.length];
+      const shape = shapeOf(body.kind, length, own.centre && at(own.centre), spots.filter((spot) => spot.body === body.name).map((spot) => spot.at));
+      for (const one of [body, bodies.get(body.name)]) Object.assign(one, shape, { mass: numbers[own.mass] });
+      this.lengths[body.name] = length;
+      if (sectionByLink.has(body.name)) sectionByLink.get(body.name).length = length;
+    }
+    return numbers;
+  }
+
+  check(status, t) {
+    if (status) throw new NoResult(`${this.engine.message(status)}${t === null ? "" : `, at t = ${shown(t, "s")}`}`);
+  }
+}
+
+/** Why a design has no numbers. */
+class NoResult extends Error {}
+
+/** What a quantity is over all instants. */
+class Tally {
+  constructor(row, along) {
+    Object.assign(this, { row, along, low: [Infinity], high: [-Infinity], most: [0, 0, null], sum: 0, squares: 0 });
+  }
+
+  add(value, instant, weight) {
+    if (value < this.low[0]) this.low = [value, instant, null];
+    if (value > this.high[0]) this.high = [value, instant, null];
+    if (Math.abs(value) > Math.abs(this.most[0])) this.most = [value, instant, null];
+    this.sum += weight * value;
+    this.squares += weight * value * value;
+  }
+
+  reach(ends, instant) {
+    if (ends[0] < this.low[0]) this.low = [ends[0], instant, ends[1]];
+    if (ends[2] > this.high[0]) this.high = [ends[2], instant, ends[3]];
+    if (this.most[2] === null || Math.abs(ends[4]) > Math.abs(this.most[0])) this.most = [ends[4], instant, ends[5]];
+  }
+
+  told(times, coordinates) {
+    const mark = ([value, instant, xi]) => ({ value, t: times[instant], xi, over: coordinates ? coordinates[instant] : null });
+    const ends = { peak: mark(this.most), smallest: mark(this.low), largest: mark(this.high), error: null };
+    return this.along ? ends : { ...ends, mean: this.sum, rms: Math.sqrt(this.squares) };
+  }
+}
+
+/** A row of which nothing is known. */
+function lose(row) {
+  for (const end of ["peak", "smallest", "largest"]) row[end] = { value: NaN, t: NaN, xi: row[end].xi === null ? null : NaN, over: NaN };
+  Object.assign(row, { error: null, mean: row.mean === null ? null : NaN, rms: row.rms === null ? null : NaN });
+}
+
+/** The part of the time that each instant stands for, by trapezia. */
+function weightsOf(t) {
+  const found = new Float64Array(t.length);
+  for (let i = 1; i < t.length; i += 1) {
+    found[i - 1] += t[i] - t[i - 1];
+    found[i] += t[i] - t[i - 1];
+  }
+  const sum = found.reduce((all, weight) => all + weight, 0);
+  return sum ? found.map((weight) => weight / sum) : found.fill(1 / t.length);
+}
+
+/** Let an angle go on where it jumps by a turn; `before` is where it was. Returns where it is at last. */
+function unwrap(view, stride, start, count, before) {
+  let last = before;
+  for (let i = 0; i < count; i += 1) {
+    const at = i * stride + start;
+    if (last !== null) view[at] += 2 * Math.PI * Math.round((last - view[at]) / (2 * Math.PI));
+    last = view[at];
+  }
+  return last;
+}
+
+/** Of a body whose own x axis alone is known: two axes that go with it. */
+function complete(pose) {
+  for (let i = 0; i < pose[0].length; i += 1) {
+    const x = [3, 4, 5].map((k) => pose[k][i]);
+    const least = [0, 1, 2].reduce((best, k) => (Math.abs(x[k]) < Math.abs(x[best]) ? k : best), 0);
+    const y = unit(cross([0, 1, 2].map((k) => Number(k === least)), x));
+    const z = cross(x, y);
+    for (let k = 0; k < 3; k += 1) [pose[6 + k][i], pose[9 + k][i]] = [y[k], z[k]];
+  }
+}

@@ -1,0 +1,52 @@
+// How bodies are drawn, from the numbers of a design: as the package finds it for the design of the file.
+
+const FLAT = 1e-6; // Over a body's size: points that are no farther from a plane, or from a line, lie in it.
+
+/** Axis, arms, plates and disc of a body; `own` are the places on it at which something holds or pulls it, or that are declared. */
+function shapeOf(kind, length, centre, own) {
+  const places = own.filter((at, k) => own.findIndex((other) => other.every((value, i) => value === at[i])) === k);
+  if (kind === "point") return { length: null, axis: [], arms: [], plates: [], centre: [0, 0, 0], disc: 0 };
+  if (kind === "rigid") {
+    const plates = platesOf(places);
+    const ends = places.length === 2 ? [places] : places.filter((at) => sizeOf(less(at, centre))).map((at) => [centre, at]);
+    const arms = plates.length ? [] : ends;
+    return { length, axis: [], arms, plates, centre, disc: arms.length || plates.length ? 0 : Math.max(length, 0) };
+  }
+  const axis = [[0, 0, 0], [length, 0, 0]];
+  const beside = places.filter((at) => Math.hypot(at[1], at[2]) > FLAT * (Math.abs(length) || 1) || !(at[0] >= 0 && at[0] <= length));
+  const plates = beside.length ? platesOf([...axis, ...beside]) : [];
+  const arms = plates.length ? [] : beside.map((at) => [[Math.min(Math.max(at[0], 0), length), 0, 0], at]);
+  return { length, axis, arms, plates, centre: null, disc: 0 };
+}
+
+/** The convex polygon of three places or more that lie in one plane and not in a line; else nothing. */
+function platesOf(places) {
+  if (places.length < 3) return [];
+  const middle = times(places.reduce((sum, at) => plus(sum, at)), 1 / places.length);
+  const from = places.map((at) => less(at, middle));
+  const size = Math.max(...from.flat().map(Math.abs)) || 1;
+  const farthest = from.reduce((best, at) => (sizeOf(at) > sizeOf(best) ? at : best));
+  const first = unit(farthest);
+  const rests = from.map((at) => plus(at, first, -dot(at, first)));
+  const widest = rests.reduce((best, at) => (sizeOf(at) > sizeOf(best) ? at : best));
+  if (sizeOf(widest) < 1e3 * FLAT * size) return [];
+  const second = unit(widest);
+  const normal = cross(first, second);
+  if (from.some((at) => Math.abs(dot(at, normal)) > 1e3 * FLAT * size)) return [];
+  return [hullOf(from.map((at) => [dot(at, first) / size, dot(at, second) / size])).map((k) => places[k])];
+}
+
+/** The corners of a convex polygon around points of a plane, in sequence (Andrew's monotone chain). */
+function hullOf(points) {
+  const order = points.map((_, k) => k).sort((a, b) => points[a][0] - points[b][0] || points[a][1] - points[b][1]);
+  const turn = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+  const chain = (numbers) => {
+    const found = [];
+    for (const k of numbers) {
+      while (found.length > 1 && turn(points[found.at(-2)], points[found.at(-1)], points[k]) <= FLAT) found.pop();
+      found.push(k);
+    }
+    return found.slice(0, -1);
+  };
+  return [...chain(order), ...chain([...order].reverse())];
+}

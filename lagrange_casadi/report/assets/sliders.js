@@ -1,0 +1,124 @@
+// The parameters of a live page: a slider each; what one changes is evaluated at once, and all that is shown goes with it.
+
+const STRETCH = 2; // Where a range has no end, a slider goes to so many times the value of the file, or to the file's value over it.
+
+/** Start the engine of a live page, and put its sliders under the picture; says so where a browser has none. */
+async function comeAlive(panel) {
+  try {
+    const text = atob(contents.live.module);
+    const { instance } = await WebAssembly.instantiate(Uint8Array.from(text, (letter) => letter.charCodeAt(0)), {});
+    live.engine = new Alive(instance);
+    panel.append(...slidersOf(live.engine));
+  } catch (error) {
+    panel.append(element("p", { class: "alarm" }, `This browser does not run the engine of this page (${error.message}). What is shown is the design of the file.`));
+    if (!(error instanceof WebAssembly.CompileError)) throw error;
+  }
+}
+
+const live = { engine: null, alarm: null, asked: null, moving: false, late: 0 };
+
+const LATE = 150; // After so many milliseconds without a change, what is slow follows: tables, fine maps, what is out of sight.
+
+/** What the page is about now: the file's own design, another one, or one that has no result. */
+function designState() {
+  if (!live.engine || live.engine.own) return "file";
+  return live.engine.why ? "none" : "other";
+}
+
+/** The ends of a parameter's slider: its declared range, as far as that has ends. */
+function rangeOf({ value, low, high }) {
+  const size = Math.abs(value) || 1;
+  const [from, to] = value > 0 ? [value / STRETCH, value * STRETCH] : [value - STRETCH * size, value + STRETCH * size];
+  // A length or mass of nothing is no end that a slider should reach.
+  const least = low === null ? from : low === 0 && value > 0 ? from : low;
+  return [least, high ?? Math.max(to, least + size)];
+}
+
+function slidersOf(engine) {
+  const fields = [];
+  const rows = contents.parameters.map((one, k) => {
+    const [low, high] = rangeOf(one);
+    const set = (value, from) => {
+      for (const other of [slider, field]) if (other !== from) other.value = value;
+      ask(engine.values.map((before, n) => (n === k ? value : (live.asked ?? engine.values)[n])));
+    };
+    const words = { "aria-label": `${one.name}${one.unit === "1" ? "" : `, ${one.unit}`}` };
+    const slider = element("input", { type: "range", min: low, max: high, step: "any", value: one.value, ...words, input: () => set(shortest(Number(slider.value), high - low), slider), change: settle });
+    const field = element("input", { type: "number", step: "any", min: one.low, max: one.high, value: one.value, ...words, input: () => {
+      if (field.value !== "" && Number.isFinite(Number(field.value))) set(Number(field.value), field);
+    }, change: settle });
+    const reads = element("output", {});
+    const tell = () => (reads.textContent = ["m", "rad", "1"].includes(one.unit) && !scaleFor(one.unit, Math.abs(engine.values[k])).unit ? "" : shown(engine.values[k], one.unit, 5));
+    fields.push({ slider, field, tell });
+    tell();
+    return element("label", {}, element("span", { class: "name" }, one.name), slider, field, reads);
+  });
+  const own = signButton("↺", "The design of the file", () => {
+    engine.file.values.forEach((value, k) => (fields[k].slider.value = fields[k].field.value = value));
+    ask(engine.file.values);
+    settle();
+  });
+  const copy = element("button", { type: "button", class: "copy", click: async () => {
+    await copyText(commandOf(engine));
+    copy.textContent = "copied";
+    announce("command line copied");
+    setTimeout(() => (copy.textContent = "copy as --set"), 1500);
+  } }, "copy as --set");
+  live.alarm = element("p", { class: "alarm", role: "alert", hidden: true });
+  reading.watchers.add(() => fields.forEach((one) => one.tell()));
+  return [element("header", {}, element("h3", {}, "Parameters"), own, copy), element("div", { class: "sliders" }, rows), live.alarm];
+}
+
+/** A value of a slider with no more digits than it can be set to. */
+function shortest(value, wide) {
+  const digits = Math.max(0, Math.min(15, 3 - Math.floor(Math.log10(wide || 1))));
+  return Number(value.toFixed(digits));
+}
+
+/** The command line that evaluates the design. */
+function commandOf(engine) {
+  const quoted = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'"'"'`)}'`);
+  const changed = contents.parameters.filter((_, k) => engine.values[k] !== engine.file.defaults[k]);
+  return [contents.live.command, ...changed.map((one) => `--set ${quoted(`${one.name}=${one.value}`)}`)].join(" ");
+}
+
+/** Have a design shown, once for each picture of the screen. */
+function ask(values) {
+  if (!live.asked) requestAnimationFrame(answer);
+  live.asked = Float64Array.from(values);
+}
+
+function answer() {
+  const values = live.asked;
+  live.asked = null;
+  live.engine.show(values);
+  live.moving = true;
+  renewAll();
+  clearTimeout(live.late);
+  live.late = setTimeout(() => {
+    live.moving = false;
+    for (const fill of reading.tables) fill();
+    for (const card of deck.cards) if (card.stale || card.plot instanceof Heat) card.renew();
+  }, LATE);
+}
+
+/** Have all that is shown show what the arrays hold now. */
+function renewAll() {
+  const { why } = live.engine;
+  largest = new WeakMap();
+  framesOf = -1;
+  traces = tracesNow();
+  player.renew();
+  live.alarm.hidden = !why;
+  live.alarm.textContent = why ? `There is no such design: ${why}.` : "";
+  for (const watcher of reading.watchers) watcher();
+}
+
+/** When a slider is let go: scales and the sheet fit what is shown now. */
+function settle() {
+  requestAnimationFrame(() => {
+    if (live.engine.why) return;
+    measureAll();
+    deck.stage.renew();
+  });
+}

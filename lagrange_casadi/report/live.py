@@ -1,0 +1,168 @@
+"""The engine itself in a page: the exported C as WebAssembly, and which of its numbers go where.
+
+The page evaluates the whole cycle anew for other parameters. What it shows are arrays with numbers (:mod:`.arrays`); here stands of
+which outputs each is made, and where the numbers of the picture come from: lengths, places and axes are expressions of parameters,
+and are evaluated in the module too.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from ..codegen.plain import plain
+from ..declare.density import Density
+from ..declare.description import Description, numbered
+from ..declare.mechanism import Mechanism
+from ..declare.scene import Scene
+from ..declare.times import Timing
+from ..errors import DeclarationError
+from ..export.folder import LARGEST
+from ..export.sourced import sourced
+from ..export.wasm import check_zig, layout, module, places
+from ..instants.rung import Rung
+from ..instants.solution import Solution
+from ..quantities import Output
+from .arrays import Arrays
+
+_NUMBERS = """#include <math.h>
+typedef double casadi_real;
+{functions}
+void live_numbers(const double* p, double* numbers) {{
+  const casadi_real* arg[1];
+  casadi_real* res[1];
+  arg[0] = p;
+  res[0] = numbers;
+  numbers_of(arg, res);
+}}
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Live:
+    """What a page comes alive with: the scene of its solution, how its instants were asked for, and what was wanted.
+
+    ``command`` is how a command line begins that evaluates the same. Raises :class:`.DeclarationError` where a scene has no
+    parameter, and :class:`.LagrangeCasadiError` where ziglang is missing.
+    """
+
+    scene: Scene
+    timing: Timing
+    wanted: Sequence[str] | None
+    command: str
+
+    def __post_init__(self) -> None:
+        mechanism = self.scene.mechanism
+        if not mechanism.parameters:
+            raise DeclarationError(f"live: mechanism '{mechanism.name}' has no parameter to change; declare one, or leave live out")
+        check_zig("a live report")
+
+    def entry(self, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Any]:
+        """What a page needs beside its solution: the module, and what its inputs, outputs and numbers are.
+
+        ``chosen`` are the instants that are shown, by number.
+        """
+        return _entry(self, solution, chosen, arrays)
+
+
+def _entry(live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) -> dict[str, Any]:
+    scene, timing = live.scene, live.timing
+    values = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
+    source = sourced(scene, scene.mechanism.name, values, live.wanted, Rung("auto", "double"), LARGEST["double"])
+    described, asked = numbered(scene.mechanism)
+    masses = _masses(scene.mechanism)
+    start, stop = timing.ends(scene.mechanism.symbols)
+    numbers = ca.densify(ca.vertcat(start, stop, *asked, *masses.values()))
+    function = ca.Function("numbers_of", [scene.mechanism.symbols], [numbers], {"cse": True})
+    text = _NUMBERS.format(functions=plain({"numbers_of": function}, "double"))
+    contract = source.contract
+    known = {member.source: k for k, member in enumerate((*contract.inputs, *contract.outputs))}
+    return {
+        "module": base64.b64encode(module(source, {"live.c": text}, ["live_numbers"])).decode("ascii"),
+        "layout": layout(source) | {"more": numbers.numel()},
+        "defaults": [parameter.default for parameter in scene.mechanism.parameters.values()],
+        "loops": [places(source)["loops"], source.program.sizes["loops"]] if source.iterated else None,
+        "wrapped": [k for k, member in enumerate(contract.outputs) if member.wrapped],
+        "of": [
+            [number, [known[name] for name in names]]
+            for number, names in enumerate(arrays.of)
+            if names and known.keys() >= set(names)
+        ],
+        "poses": {body: _pose(body, solution, known) for body in solution.description["bodies"]},
+        "links": {link.name: _link(scene.mechanism, link.name, k, solution, known) for k, link in enumerate(contract.links)},
+        "forces": solution.table.forces,
+        "timing": {"count": timing.count, "joint": timing.joint, "coordinate": known.get(f"motion:{timing.joint}", -1)},
+        "shown": None if chosen.size == timing.count else chosen.tolist(),
+        "numbers": numbers.numel(),
+        "picture": _picture(described, 2, {body: 2 + len(asked) + k for k, body in enumerate(masses)}),
+        "command": live.command,
+    }
+
+
+def _masses(mechanism: Mechanism) -> dict[str, Any]:
+    """The masses of the bodies, as expressions."""
+    found: dict[str, Any] = {}
+    for body in mechanism.moving:
+        mass: Any = body.mass
+        if isinstance(mass, Density):
+            base, tip, _ = mass.ends(body.length)  # type: ignore[union-attr]
+            mass = base + tip
+        found[body.name] = getattr(mass, "mass", mass)
+    return found
+
+
+def _pose(body: str, solution: Solution, known: Mapping[str, int]) -> list[int]:
+    """Where the numbers of a body's pose are, -1 for those that it has not; in the plane three, in space twelve."""
+    members = ["x", "y", "angle"]
+    if len(solution.description["gravity"]) > 2:
+        members = ["x", "y", "z", *(axis + component for axis in "xyz" for component in "xyz")]
+    return [known.get(str(Output("pose", body, member)), -1) for member in members]
+
+
+def _link(mechanism: Mechanism, link: str, number: int, solution: Solution, known: Mapping[str, int]) -> dict[str, Any]:
+    """Where a link's functions along it are polynomials: the breaks of its density, loads along it, and the highest degree."""
+    density, law = mechanism.links[link].mass, solution.section(link).law
+    assert isinstance(density, Density)
+    spreads = [[known[str(Output("spread", link, member, load.name))] for member in ("width", "end")] for load in law.spreads]
+    degree = max([*map(len, density.cells), *(load.powers for load in law.spreads)]) + 2
+    return {"number": number, "breaks": density.breaks, "degree": degree, "spreads": spreads}
+
+
+def _picture(described: Description, first: int, masses: Mapping[str, int]) -> dict[str, Any]:
+    """The numbers that a picture is made of, as their places behind ``first``; -1 is nothing."""
+
+    def at(number: float | None) -> int:
+        return -1 if number is None else first + int(number)
+
+    def place(point: Description) -> list[int]:
+        return [at(point["x"]), at(point["y"]), at(point.get("z"))]
+
+    def vector(components: Sequence[float]) -> list[int]:
+        return [*map(at, components), *[-1] * (3 - len(components))]
+
+    def joint(told: Description) -> dict[str, Any]:
+        ends = {"parent": place(told["parent"]), "child": place(told["child"])}
+        if "turned" in told:
+            second = told["kind"] == "universal" and len(told["axes"]) > 1
+            return ends | {"axes": [*map(vector, told["axes"])], "turned": [*map(vector, told["turned"])] if second else None}
+        return ends | {"axes": [vector(told["axis"])] if told["kind"] in ("prismatic", "slot") else None, "turned": None}
+
+    return {
+        "bodies": {
+            name: {
+                "length": at(body["length"]),
+                "mass": masses[name],
+                "centre": place(body["centre"]) if "centre" in body else None,
+            }
+            for name, body in described["bodies"].items()
+        },
+        "joints": [joint(told) for told in described["joints"].values()],
+        "loads": [[place(point) for point in load["points"]] for load in described["loads"].values()],
+        "paths": [place(point) for point in described.get("paths", {}).values()],
+    }

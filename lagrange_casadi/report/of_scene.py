@@ -1,0 +1,27 @@
+"""A page of a scene: evaluated with all that the page shows, and alive where that is asked for."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Mapping, Sequence
+
+from ..declare.scene import Scene
+from ..evaluate import evaluate
+from .live import Live
+from .page import write_report
+
+
+def scene_report(
+    scene: Scene, path: str | os.PathLike[str], parameters: Mapping[str, float] | None, wanted: Sequence[str] | None, live: bool
+) -> None:
+    """Evaluate a scene and write its page: see :meth:`.Scene.report`."""
+    asked = with_motion(wanted or scene.wanted)
+    command = f"lagrange-casadi run {shlex.quote(scene.mechanism.name)}"
+    engine = Live(scene, scene.timing(), asked, command) if live else None
+    write_report(evaluate(scene, parameters=parameters, wanted=asked), path, engine)
+
+
+def with_motion(wanted: Sequence[str]) -> list[str]:
+    """What is wanted, and motion, without which nothing can be shown."""
+    return list(wanted) if {"all", "motion"} & set(wanted) else [*wanted, "motion"]
