@@ -19,7 +19,10 @@ pytestmark = pytest.mark.quick
 ROOT = Path(__file__).parent.parent
 PAGES = [
     "README.md",
-    *(f"docs/{page}.md" for page in ("method", "declaring", "machines", "space", "strength", "sweeps", "report", "animations", "optimise")),
+    *(
+        f"docs/{page}.md"
+        for page in ("method", "declaring", "machines", "space", "strength", "sweeps", "report", "animations", "optimise")
+    ),
 ]
 PROSE = ["README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md"))]
 LINKING = [*PROSE, "cases/slider_crank/README.md"]
