@@ -19,6 +19,7 @@ from .limits import no_sections, told_parameters
 from .mechanism import Mechanism
 from .motion import Motion
 from .parts import Expression
+from .shaking import refuse_late
 from .times import Instants, Over, Times, Timing, instants_of, span_of
 
 _KINDS = ("reaction", "multiplier", "load", "section", "output")
@@ -193,6 +194,7 @@ class Scene:
                 )
         if self.drives is not None:
             object.__setattr__(self, "drives", MappingProxyType(weighed(self.mechanism, self.drives, self.needs_drives)))
+        refuse_late(self.mechanism)
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)
         checked_ratios(self.xi)
