@@ -8,6 +8,7 @@ from .case import Case, load_case
 from .declare.curves import Curve, curve, table
 from .declare.mechanism import Mechanism
 from .declare.scene import Scene
+from .declare.shaking import shaking
 from .declare.spatial import SpatialMechanism
 from .designs.prepared import Prepared, prepare
 from .equations.derive import derive
@@ -53,6 +54,7 @@ __all__ = [
     "read_designs",
     "refine",
     "save",
+    "shaking",
     "strength",
     "sweep",
     "table",

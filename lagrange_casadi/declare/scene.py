@@ -22,6 +22,7 @@ from .mechanism import Mechanism
 from .motion import Motion
 from .parts import Expression, Friction
 from .possible import Demands, demands
+from .shaking import refuse_late
 from .stretches import Timetable, timetable
 from .times import Instants, Over, Times, Timing, instants_of, span_of
 
@@ -242,6 +243,7 @@ class Scene:
                 )
         if self.drives is not None:
             object.__setattr__(self, "drives", MappingProxyType(weighed(self.mechanism, self.drives, self.needs_drives)))
+        refuse_late(self.mechanism)
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)
         checked_ratios(self.xi)

@@ -1,0 +1,146 @@
+"""Shaking force and moment: beside what the ground's joints bear, and the classics of balancing."""
+
+import math
+
+import numpy as np
+import pytest
+from conftest import CASES
+
+from lagrange_casadi import Mechanism, Scene, evaluate, load_case, optimise, shaking
+from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.motion import harmonic, polynomial
+
+
+def weightless(name, about=()):
+    """A case without gravity, and with its shaking force and moment."""
+
+    def freeze(mechanism, *, own=Mechanism.freeze):
+        if "shaking_fx" not in mechanism.outputs:
+            mechanism.gravity = tuple(0.0 for _ in mechanism.gravity)
+            shaking(mechanism, about=about)
+        own(mechanism)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Mechanism, "freeze", freeze)
+        return load_case(CASES / name).scene
+
+
+@pytest.mark.parametrize("name", ["slider_crank", "six_bar", "arm", "arm6"])
+def test_without_weight_and_loads_it_is_what_the_ground_bears(name):
+    """The ground's joints hold the mechanism with the opposite of it: the sum of their forces, moments and efforts."""
+    scene = weightless(name)
+    space = scene.mechanism.space
+    wanted = ["reaction", "effort", "output"]
+    solution = evaluate(scene, t=(*scene.t[:2], 17), wanted=wanted, backend="vm", certificate=False)
+    force, moment = np.zeros((2, 3, 17))
+    for joint in scene.mechanism.joints.values():
+        if joint.parent.body is not scene.mechanism.ground:
+            continue
+        values = {m: solution.series.get(f"reaction:{joint.name}:{m}", np.zeros(17)) for m in ("fx", "fy", "fz", "mx", "my", "mz")}
+        f, m = (np.array([values[f"{kind}{x}"] for x in "xyz"]) for kind in "fm")
+        assert {axis.kind for axis in joint.axes} <= {"angle"} or f"effort:{joint.name}" not in solution.series
+        m[2] += solution.series.get(f"effort:{joint.name}", 0.0)  # all these drives turn about z
+        place = np.array([float(scene.mechanism.number(x, scene.mechanism.values())) for x in joint.parent.place])
+        if joint.name == "guide":
+            place = np.zeros(3) + 0.0
+            slider = evaluate(scene, t=(*scene.t[:2], 17), wanted=["motion"], backend="vm", certificate=False).pose("slider")
+            moment += np.cross(np.array([slider.x, slider.y, 0 * slider.x]), f, axis=0)
+        force += f
+        moment += m + np.cross(place, f.T).T
+    size = np.abs(force).max() + np.abs(moment).max()
+    for k, x in enumerate("xyz"[: 2 + space]):
+        np.testing.assert_allclose(solution.output(f"shaking_f{x}"), -force[k], rtol=0, atol=1e-12 * size)
+    for k, x in enumerate("xyz"):
+        if space or x == "z":
+            np.testing.assert_allclose(solution.output(f"shaking_m{x}"), -moment[k], rtol=0, atol=1e-12 * size)
+
+
+def test_about_another_point():
+    """The moment about a point is less by the arm's moment of the force."""
+    first, second = (
+        evaluate(scene, wanted=["output"], t=(0, 0.08, 9), backend="vm", certificate=False)
+        for scene in (weightless("slider_crank"), weightless("slider_crank", about=(0.2, 0.1)))
+    )
+    fx, fy = first.output("shaking_fx"), first.output("shaking_fy")
+    np.testing.assert_allclose(
+        second.output("shaking_mz"), first.output("shaking_mz") - (0.2 * fy - 0.1 * fx), rtol=0, atol=1e-12 * np.abs(fy).max()
+    )
+
+
+@pytest.mark.parametrize("coupler", [1.0, 3.0])
+def test_a_four_bar_is_balanced_as_berkof_and_lowen_say(coupler):
+    """Its coupler's mass is shared between its pins, and each share and link is balanced about its pin on the ground.
+
+    Then the centre of all mass rests, however the drive moves: the shaking force is zero.
+    """
+    a, b, c, base = 0.1, 0.35, 0.25, 0.35
+    found = []
+    for balanced in (False, True):
+        m = Mechanism("balanced")
+        crank, rod, rocker = (
+            m.link("crank", length=a, mass=1.0),
+            m.link("rod", length=b, mass=coupler),
+            m.link("rocker", length=c, mass=2.0),
+        )
+        m.revolute("O", m.ground, crank)
+        m.revolute("A", crank.tip, rod)
+        m.revolute("B", rod.tip, rocker.tip)
+        m.revolute("C", m.ground.at(base, 0), rocker)
+        for link, length, mass in ((crank, a, 1.0), (rocker, c, 2.0)) if balanced else ():
+            # Half of the coupler at the tip: m_w r_w = (m/2 + m_coupler/2) l, at half the length beyond the pin.
+            tail = m.link(f"{link.name}_tail", length=length / 2, mass=0.0)
+            m.weld(f"{link.name}_rear", link, tail, angle=math.pi)
+            m.weld(f"{link.name}_weight", tail.tip, m.point_mass(f"{link.name}_mass", mass + coupler))
+        shaking(m)
+        scene = Scene(m, {"O": harmonic(0.3, 2.0, 1.0)}, t=(0, 1, 41), posture={"rod": 0.5, "rocker": 1.2})
+        found.append(evaluate(scene, wanted=["output"], backend="vm", certificate=False))
+    plain, without = ({x: np.abs(one.output(f"shaking_{x}")).max() for x in ("fx", "fy", "mz")} for one in found)
+    assert max(without["fx"], without["fy"]) <= 1e-12 * plain["fx"]
+    assert without["mz"] > 0.1 * plain["mz"]  # balanced forces, not moments
+
+
+def yoke():
+    """A Scotch yoke with a counterweight: the slide goes as r cos, the weight turns."""
+    m = Mechanism("yoke")
+    weight = m.parameter("weight", 0.2, "kg", low=0.0)
+    r = 0.1
+    crank = m.link("crank", length=r, mass=1e-9)
+    m.revolute("O", m.ground, crank)
+    tail = m.link("tail", length=r, mass=1e-9)
+    m.weld("rear", crank, tail, angle=math.pi)
+    m.weld("held", tail.tip, m.point_mass("counterweight", weight))
+    slide = m.point_mass("slide", 2.0)
+    m.prismatic("guide", m.ground, slide, axis=(1, 0))
+    m.constraint("slot", m.place(slide)[0] - m.place(crank.tip)[0])
+    shaking(m)
+    return Scene(m, {"O": polynomial(0.0, 20.0)}, t=(0, math.tau / 20, 65), posture={"guide": 0.1})
+
+
+def test_a_counterweight_trades_one_direction_for_the_other():
+    """Along the slide (slide - weight) r w^2 is left, across it weight r w^2: one newton more here is one less there."""
+    found = optimise(
+        yoke(),
+        minimise="peak:output:shaking_fx",
+        over={"weight": (0.0, 1.9)},
+        subject_to=["peak:output:shaking_fy <= 30"],
+        starts=2,
+    )
+    per_kilogram = 0.1 * 20.0**2
+    assert found.converged
+    assert found.values["weight"] == pytest.approx(30 / per_kilogram, rel=1e-6)
+    assert found.objective == pytest.approx(2.0 * per_kilogram - 30, rel=1e-6)
+    assert found.limits[0].multiplier == pytest.approx(1.0, rel=1e-5)
+
+
+def test_mistakes():
+    m = Mechanism("late")
+    with pytest.raises(DeclarationError, match="there are none"):
+        shaking(m)
+    arm = m.link("arm", length=0.3, mass=1.0)
+    m.revolute("O", m.ground, arm)
+    with pytest.raises(DeclarationError, match="expected a place \\(x, y\\) for about"):
+        shaking(m, about=(1.0, 2.0, 3.0))
+    shaking(m)
+    m.weld("held", arm.tip, m.point_mass("late", 1.0))
+    with pytest.raises(DeclarationError, match="body 'late' was declared after it; call shaking after all bodies"):
+        Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 5))
