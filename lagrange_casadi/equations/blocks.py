@@ -141,7 +141,8 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
         sizes[row][unknown[k]] = float(np.where(np.isnan(values), np.inf, values).max())
     found = []
     for k, (loop, row) in enumerate((own, row) for own in loops for row in range(own.gap.numel())):
-        least = _ABSENT * max(sizes[k].values(), default=0.0)
+        # What has no value at such points may be anything.
+        least = _ABSENT * max((size for size in sizes[k].values() if np.isfinite(size)), default=0.0)
         present = frozenset(c for c, size in sizes[k].items() if size > least)
         parts = ca.vertcat(*(expressions[k] for expressions in motion))
         written = {symbol.element_hash() for symbol in ca.symvar(parts)}
