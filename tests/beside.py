@@ -6,6 +6,7 @@ import bisect
 import math
 
 import oracle
+from jets import Jet, functions
 
 ANGLES = (0, 20, 180, 220, 260, 300, 320, 335, 350, 360, 368, 375, 390, 410, 440, 480, 520, 540, 560, 600, 700, 720)
 PRESSURES = (0.3, -0.2, -0.2, 0.1, 0.9, 3.4, 6.5, 10.5, 18, 27, 42, 45, 30, 15, 6.5, 3.2, 2.0, 1.4, 0.6, 0.3, 0.3, 0.3)
@@ -110,6 +111,53 @@ def _scara(arithmetic, values):
     return {"extras": [belt]}
 
 
+def _roller_cam(arithmetic, values):
+    """The contact along the normal of the pitch curve, from the lift's formulas; and the spring."""
+    number, sqrt = arithmetic.number, arithmetic.sqrt
+    sin, cos = (functions(arithmetic)[name] for name in ("sin", "cos"))
+    pi, h, offset = number(math.pi), number(values["lift"]), number(6) / 1000
+    up, top, back = (angle * pi / 180 for angle in (100, 20, 120))
+    prime = number(values["base"]) + number(12) / 1000
+    least = sqrt(prime * prime - offset * offset)
+    stem, cam = ("stem", 0, 0), ("cam", 0, 0)
+
+    def rise(turn):
+        """The lift and its slope at an angle, a jet."""
+        at = turn.v % (2 * pi)
+        inside = turn - (turn.v - at)
+        if at < up:
+            u, c = inside / up, h / (4 + pi)
+            where = at / up
+            if where < number(1) / 8 or where >= number(7) / 8:
+                whole = 0 if where < number(1) / 2 else 4
+                return c * (u * pi - sin(u * (4 * pi)) / 4 + whole), c / up * (pi - pi * cos(u * (4 * pi)))
+            wave = u * (4 * pi / 3) + pi / 3
+            return c * (2 + u * pi - sin(wave) * 9 / 4), c / up * (pi - 3 * pi * cos(wave))
+        if at < up + top:
+            return inside * 0 + h, inside * 0
+        if at < up + top + back:
+            u = (inside - up - top) / back
+            return h - h * (u - sin(u * (2 * pi)) / (2 * pi)), (cos(u * (2 * pi)) - 1) * (h / back)
+        return inside * 0, inside * 0
+
+    def gap(place):
+        return place(stem)[1] - rise(place(cam)[2])[0] - least
+
+    def effect(place):
+        s, slope = (x.v for x in rise(Jet(place(cam)[2].v)))
+        height = s + least
+        tangent = (slope - offset) / height
+        size = sqrt(1 + tangent * tangent)
+        x, y = -tangent / size, 1 / size
+        return [(stem, x, y, 0), (cam, -x, -y, -(offset * y - height * x))]
+
+    def spring(place):
+        length = place(stem)[1].v - least
+        return [(("stem", number(12) / 100, 0), 0, -number(values["preload"]) - number(values["stiffness"]) * length, 0)]
+
+    return {"loads": [spring], "extras": [oracle.Extra("contact", gap, effect)]}
+
+
 _CASES = {
     "connecting_rod": _connecting_rod,
     "engine": _engine,
@@ -120,4 +168,5 @@ _CASES = {
     "excavator": _excavator,
     "beam_pump": _beam_pump,
     "scara": _scara,
+    "roller_cam": _roller_cam,
 }

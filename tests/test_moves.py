@@ -115,6 +115,12 @@ def test_before_and_after_it_rests():
     assert at(law, 0.45)[:2] == pytest.approx((math.radians(60), 1.875 * math.radians(60) / 0.5), rel=1e-14)
 
 
+def test_a_drive_that_rests_most_of_the_time():
+    """What rounding leaves at its seams is no jump beside its moves."""
+    law = moves([move(0.02, time=0.5), move(0.0, time=0.5), dwell()], cyclic=True, period=2 * math.pi)
+    assert evaluate(arm(law, t=(-2 * math.pi, 4 * math.pi, 301))).certified
+
+
 def test_an_indexing_table_advances():
     law = moves([move(by="90 deg", time=0.3, law="modified_trapezoid"), dwell(0.2)], cyclic=True, advance="90 deg", start=0.1)
     for cycle in (-3, 0, 1, 2, 1000):

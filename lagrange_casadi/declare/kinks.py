@@ -82,7 +82,8 @@ def kink(expression: Any, moving: Any, fixed: Any, values: Sequence[float], span
     slopes = ca.Function("slopes", [symbols, fixed], [ca.vertcat(expression, ca.gradient(ca.SX(expression), symbols))])
     for start, way, parts in _lines(len(own), span):
         with np.errstate(all="ignore"):
-            found = _along(function, slopes, start, way, parts, values)
+            # Within a span, what stands still most of the time has its largest values for ordinary ones.
+            found = _along(function, slopes, start, way, parts, values, np.median if span is None else np.max)
         if found is not None:
             what, jump, place = found
             return Kink(what, jump, {symbol.name(): float(x) for symbol, x, b in zip(own, place, way, strict=True) if b != 0.0})
@@ -101,8 +102,10 @@ def _lines(many: int, span: Span | None) -> Iterator[tuple[Any, Any, Any]]:
         yield generator.uniform(-1.0, 1.0, many) * (way == 0.0), way, parts
 
 
-def _along(function: Any, slopes: Any, start: Any, way: Any, parts: Any, values: Sequence[float]) -> tuple[str, float, Any] | None:
-    """What jumps along a line, by what part of it, and where."""
+def _along(
+    function: Any, slopes: Any, start: Any, way: Any, parts: Any, values: Sequence[float], ordinary: Callable[[Any], Any]
+) -> tuple[str, float, Any] | None:
+    """What jumps along a line, by what part of it, and where; ``ordinary`` tells of many sizes what is an ordinary one."""
 
     def states(at: Any) -> Any:
         seen: list[Any] = []
@@ -137,7 +140,7 @@ def _along(function: Any, slopes: Any, start: Any, way: Any, parts: Any, values:
     for what, rows in (("value", slice(0, 1)), ("slope", slice(1, None))):
         gap = np.abs(ends[1][rows] - ends[0][rows]).max(axis=0)
         size = np.maximum(*(np.abs(end[rows]).max(axis=0) for end in ends))
-        least = _FAINT * np.median(usual[rows].max(axis=0))
+        least = _FAINT * ordinary(usual[rows].max(axis=0))
         jumps = np.flatnonzero(gap > _SAME * size + least)
         if jumps.size:
             worst = jumps[np.argmax(gap[jumps] / size[jumps])]

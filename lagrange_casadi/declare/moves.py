@@ -76,7 +76,7 @@ def dwell(time: Expression | None = None, *, name: str = "") -> Dwell:
 
 
 def moves(
-    parts: Sequence[Move | Dwell],
+    parts: Sequence[object],
     *,
     start: Expression | str = 0.0,
     begin: Expression = 0.0,
@@ -206,9 +206,10 @@ class _Demanded:
             raise DeclarationError(demand.refusal(float))
 
 
-def _sequence(parts: Sequence[Move | Dwell]) -> list[Move | Dwell]:
-    each = list(parts) if isinstance(parts, Sequence) else []
-    if not each or not all(isinstance(part, Move | Dwell) for part in each):
+def _sequence(parts: Sequence[object]) -> list[Move | Dwell]:
+    given = list(parts) if isinstance(parts, Sequence) else []
+    each = [part for part in given if isinstance(part, Move | Dwell)]
+    if not each or len(each) < len(given):
         raise DeclarationError(f"moves: expected a list of move(...) and dwell(...), got {parts!r}")
     names = [part.name for part in each if part.name]
     twice = next((name for name in names if names.count(name) > 1), None)

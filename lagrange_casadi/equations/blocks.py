@@ -144,7 +144,8 @@ def _equations(multibody: Multibody, unknown: Sequence[Coordinate]) -> list[Equa
         sizes[row][unknown[k]] = float(np.where(np.isnan(values), np.inf, values).max())
     found = []
     for k, (loop, row) in enumerate((own, row) for own in loops for row in range(own.gap.numel())):
-        least = _ABSENT * max(sizes[k].values(), default=0.0)
+        # What has no value at such points may be anything.
+        least = _ABSENT * max((size for size in sizes[k].values() if np.isfinite(size)), default=0.0)
         there = {c for c, size in sizes[k].items() if size > least}
         # The three of a ball share their variables.
         balls = {c.ball for c in there if c.ball is not None}

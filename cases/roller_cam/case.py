@@ -1,0 +1,34 @@
+"""A disc cam that lifts a valve by a roller, against a spring: from the lift to the profile and the contact's force."""
+
+from math import pi
+
+from lagrange_casadi import Mechanism, Scene
+from lagrange_casadi.elements import disc_cam
+from lagrange_casadi.motion import dwell, move, moves, polynomial
+
+RISE, TOP, FALL = 100 * pi / 180, 20 * pi / 180, 120 * pi / 180
+"""Angles of the cam [rad] for the way up, the rest at the top, and the way back."""
+
+
+def scene() -> Scene:
+    m = Mechanism("roller_cam")
+    lift = m.parameter("lift", 0.02, "m", low=0.0)
+    base = m.parameter("base", 0.045, "m", low=0.0)
+    speed = m.parameter("speed", 60.0, "rad/s", low=0.0)
+    stiffness = m.parameter("stiffness", 12e3, "N/m", low=0.0)
+    preload = m.parameter("preload", 300.0, "N", low=0.0)
+    cam = m.link("cam", length=0.05, mass=1.8, centre=(0, 0), inertia=2.2e-3)
+    stem = m.link("stem", length=0.12, mass=0.5)
+    shaft = m.revolute("shaft", m.ground, cam)
+    guide = m.prismatic("guide", m.ground.at(0.006, 0), stem, axis=(0, 1), angle="90 deg")
+    cycle = [
+        move(lift, time=RISE, law="modified_sine", name="rise"),
+        dwell(TOP, name="top"),
+        move(0, time=FALL, law="cycloidal", name="fall"),
+        dwell(name="rest"),
+    ]
+    law = moves(cycle, cyclic=True, period=2 * pi)
+    disc_cam(m, "contact", shaft, guide, law, base_radius=base, roller=0.012, width=0.014)
+    least = ((base + 0.012) ** 2 - 0.006**2) ** 0.5
+    m.force("spring", stem.tip, y=-preload - stiffness * (m.coordinate(guide) - least))
+    return Scene(m, {"shaft": polynomial(0, speed)}, t=(0, 2 * pi / 60, 241), posture={"guide": 0.06})

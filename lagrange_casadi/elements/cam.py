@@ -1,0 +1,323 @@
+"""Disc cams with the real forces of their contact: translating and swinging followers with a roller, a knife edge or a flat face.
+
+A follower's motion is given as a law of the cam's angle. Where the contact is, and along which normal it acts, follows from that: a
+point A of the follower is at a(theta), and the contact acts along n(theta) through it, with a moment tau(theta) about it where it
+acts beside it. The equation of contact is n . (A - C - a) + tau sin(turn), C the cam's centre and turn how far the follower is from
+where it should be turned. Its multiplier is the force of the contact, on both bodies along its true line of action.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, cast
+
+import casadi as ca
+
+from ..declare.joints import Joint
+from ..declare.kinks import refuse_kinks
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Constraint, Expression, Ground, Link, Point
+from ..errors import DeclarationError
+from .cam_profile import CamProfile, profile_of
+
+_ELASTIC = (210e9, 0.3)
+"""Young's modulus [Pa] and Poisson's ratio of steel."""
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """Where the contact is, by the symbol ``angle`` of the cam [rad], from the cam's centre in ground axes, each (x, y).
+
+    ``place`` is the follower's point, ``normal`` of length one from the cam to the follower, ``moment`` the arm of the contact
+    about that point, ``contact`` where it touches, ``way`` the direction in which the follower moves there. ``turned`` is the
+    direction of the follower's own axis, None where nothing depends on it; ``roller`` is the radius of its roller.
+    """
+
+    angle: Any
+    place: tuple[Any, Any]
+    normal: tuple[Any, Any]
+    moment: Any
+    contact: tuple[Any, Any]
+    way: tuple[Any, Any]
+    turned: tuple[Any, Any] | None
+    roller: Expression
+
+
+@dataclass(frozen=True, eq=False)
+class Cam:
+    """A disc cam: its ``constraint``, whose multiplier is the force of its contact, and its ``design``.
+
+    Outputs are NAME_force [N], positive where the cam pushes, NAME_pressure_angle [rad] between the force and the way of the
+    follower's point, NAME_radius [m] of the cam's profile, positive where that is convex, and with a width NAME_hertz [Pa].
+    """
+
+    name: str
+    mechanism: Mechanism
+    constraint: Constraint
+    design: Design
+
+    def profile(self, parameters: dict[str, float] | None = None, *, count: int = 720) -> CamProfile:
+        """The cam's profile at ``count`` angles of one turn, for parameters' values, in its own axes."""
+        design, x, values = self.design, self.design.angle, self.mechanism.values(parameters)
+        cosine = _dot(design.normal, design.way)
+        angle = ca.atan2(ca.fabs(_cross(design.normal, design.way)), cosine)
+        rows = [*_turned(design.contact, -x), *_turned(design.place, -x), angle, curvature(design), progress(design)]
+        function = ca.Function("profile", [x, self.mechanism.symbols], [ca.densify(ca.vertcat(*map(ca.SX, rows)))], {"cse": True})
+        return profile_of(self.name, function, list(values.values()), count)
+
+
+def disc_cam(
+    mechanism: Mechanism,
+    name: str,
+    cam: Joint,
+    follower: Joint,
+    lift: Callable[[Any], Any],
+    *,
+    base_radius: Expression,
+    point: Point | None = None,
+    roller: Expression | None = None,
+    flat: bool = False,
+    side: int = 1,
+    width: Expression | None = None,
+    elastic: tuple[float, float] = _ELASTIC,
+) -> Cam:
+    """Declare the contact of a disc cam with its follower in a plane, from the follower's motion.
+
+    Parameters
+    ----------
+    cam, follower
+        The revolute joint of the cam on the ground, and the joint of the follower on the ground: prismatic for a translating one,
+        whose line leads away from the cam, or revolute for a swinging one.
+    lift
+        The follower's rise [m], or its swing [rad] away from the cam, as a function of the cam's angle: a motion of ``moves``, a
+        ``curve``, or any function that takes and returns CasADi's expressions. It must be periodic by a turn and zero at its least.
+    base_radius
+        The radius of the cam's base circle [m].
+    point
+        The centre of the follower's roller, or its knife edge; by default the point at which the joint holds it.
+    roller, flat
+        The radius of the roller [m]; a ``flat`` face instead, at right angles to the way of a translating follower, or along the
+        axis of a swinging one, through its pin; a knife edge without both.
+    side
+        1 for a swinging follower that swings counter-clockwise away from the cam, -1 for one that swings clockwise.
+    width, elastic
+        The width of the contact [m], for the pressure of Hertz, and Young's modulus [Pa] and Poisson's ratio of both bodies.
+
+    Raises :class:`.DeclarationError` for joints that are others, a lift that has a kink, and a profile that is undercut with the
+    default parameters.
+    """
+    what, own = f"cam '{name}'", mechanism.own
+    own.free("constraint", name, mechanism.constraints)
+    for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
+        if own.joint(joint).kind not in kinds or mechanism.space or not isinstance(joint.parent.body, Ground):
+            valid = " or ".join(kinds)
+            raise DeclarationError(f"{what}: expected a {valid} joint whose parent is the ground, in a plane, got '{joint.name}'")
+    if flat and (roller is not None or point is not None):
+        raise DeclarationError(f"{what}: a flat face has neither a roller nor a point")
+    if side not in (1, -1):
+        raise DeclarationError(f"{what}: side must be 1 or -1, got {side!r}")
+    held = follower.child if point is None else own.point(what, point)
+    if held.body is not follower.child.body:
+        raise DeclarationError(f"{what}: its point must be on '{follower.child.body.name}', which joint '{follower.name}' leads")
+    base = _positive(f"{what}: base_radius", own.expression(what, base_radius))
+    radius = 0.0 if roller is None else _positive(f"{what}: roller", own.expression(what, roller))
+    x = ca.SX.sym("angle")
+    rise = _rise(what, mechanism, lift, x)
+    make = (
+        (_translating_flat if flat else _translating) if follower.kind == "prismatic" else (_swinging_flat if flat else _swinging)
+    )
+    design = make(what, x, rise, _Layout(cam, follower, held, base, radius, side))
+    touched = follower.child if flat and follower.kind == "revolute" else held
+    constraint = _contact(mechanism, name, cam, touched, design)
+    made = Cam(name, mechanism, constraint, design)
+    _outputs(made, cam, width, elastic)
+    profile = made.profile()
+    if not profile.closes:
+        raise DeclarationError(f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi")
+    if profile.undercut.any():
+        raise DeclarationError(f"{what}: {profile.told_undercut}; expected a larger base radius, a smaller roller or a slower lift")
+    return made
+
+
+@dataclass(frozen=True, eq=False)
+class _Layout:
+    """Where a cam and its follower are."""
+
+    cam: Joint
+    follower: Joint
+    held: Point
+    base: Expression
+    roller: Expression
+    side: int
+
+    @property
+    def away(self) -> tuple[Any, Any]:
+        """From the cam's centre to the place on the ground at which the follower is led."""
+        return self.follower.parent.x - self.cam.parent.x, self.follower.parent.y - self.cam.parent.y
+
+    @property
+    def arm(self) -> tuple[Any, Any]:
+        """From the point at which the follower is led to the one that touches, in the follower's axes."""
+        return self.held.x - self.follower.child.x, self.held.y - self.follower.child.y
+
+
+def _positive(what: str, radius: Any) -> Any:
+    """A radius; none that parameters make zero or less. Raises :class:`.DeclarationError` for a number of no radius."""
+    if isinstance(radius, ca.SX):
+        return ca.if_else(radius > 0.0, radius, ca.SX.nan())
+    if not radius > 0.0:
+        raise DeclarationError(f"{what} must be positive, got {radius:g} m")
+    return radius
+
+
+def _rise(what: str, mechanism: Mechanism, lift: Callable[[Any], Any], x: Any) -> Any:
+    try:
+        rise = ca.SX(lift(x))
+    except Exception as error:
+        raise DeclarationError(f"{what}: lift must be a function of the cam's angle, of CasADi's expressions: {error}") from None
+    defaults = [parameter.default for parameter in mechanism.parameters.values()]
+    refuse_kinks(f"{what}: its lift", rise, x, mechanism.symbols, defaults, (-math.tau, math.tau))
+    return rise
+
+
+def _turned(vector: tuple[Any, Any], angle: Any) -> tuple[Any, Any]:
+    c, s = ca.cos(angle), ca.sin(angle)
+    return c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]
+
+
+def _sum(a: tuple[Any, Any], b: tuple[Any, Any], by: Any = 1.0) -> tuple[Any, Any]:
+    return a[0] + by * b[0], a[1] + by * b[1]
+
+
+def _dot(a: tuple[Any, Any], b: tuple[Any, Any]) -> Any:
+    return a[0] * b[0] + a[1] * b[1]
+
+
+def _cross(a: tuple[Any, Any], b: tuple[Any, Any]) -> Any:
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def _pitch_normal(x: Any, place: tuple[Any, Any]) -> tuple[Any, Any]:
+    """The normal outward of the curve that a point makes on the cam."""
+    # At right angles to how the point moves on the cam.
+    outward = place[0] - ca.jacobian(place[1], x), place[1] + ca.jacobian(place[0], x)
+    size = ca.sqrt(_dot(outward, outward))
+    return outward[0] / size, outward[1] / size
+
+
+def _translating(what: str, x: Any, rise: Any, layout: _Layout) -> Design:
+    up = layout.follower.axis[0], layout.follower.axis[1]
+    aside = up[1], -up[0]
+    seat = _sum(layout.away, _turned(layout.arm, layout.follower.angle))
+    offset = _dot(seat, aside)
+    height = ca.sqrt((layout.base + layout.roller) ** 2 - offset * offset) + rise
+    place = _sum((offset * aside[0], offset * aside[1]), up, height)
+    normal = _pitch_normal(x, place)
+    return Design(x, place, normal, 0.0, _sum(place, normal, -layout.roller), up, None, layout.roller)
+
+
+def _translating_flat(what: str, x: Any, rise: Any, layout: _Layout) -> Design:
+    up = layout.follower.axis[0], layout.follower.axis[1]
+    aside = up[1], -up[0]
+    offset = _dot(_sum(layout.away, _turned(layout.arm, layout.follower.angle)), aside)
+    place = _sum((offset * aside[0], offset * aside[1]), up, layout.base + rise)
+    # It touches beside the line through the cam's centre by the slope of the lift.
+    beside = ca.jacobian(rise, x)
+    contact = _sum((beside * aside[0], beside * aside[1]), up, layout.base + rise)
+    moment = _cross(_sum(contact, place, -1.0), up)
+    return Design(x, place, up, moment, contact, up, _turned((1.0, 0.0), layout.follower.angle), 0.0)
+
+
+def _swinging(what: str, x: Any, rise: Any, layout: _Layout) -> Design:
+    away, arm = layout.away, layout.arm
+    length, distance, prime = ca.sqrt(ca.SX(_dot(arm, arm))), ca.sqrt(ca.SX(_dot(away, away))), layout.base + layout.roller
+    along, across = _swung(layout, rise, (length**2 + distance**2 - prime**2) / (2.0 * length * distance), distance)
+    place = _sum(away, along, length)
+    normal = _pitch_normal(x, place)
+    return Design(x, place, normal, 0.0, _sum(place, normal, -layout.roller), across, None, layout.roller)
+
+
+def _swinging_flat(what: str, x: Any, rise: Any, layout: _Layout) -> Design:
+    away = layout.away
+    distance = ca.sqrt(ca.SX(_dot(away, away)))
+    sine = layout.base / distance
+    along, normal = _swung(layout, rise, ca.sqrt(1.0 - sine * sine), distance)
+    # The normal passes through the point at which both turn alike.
+    reach = -_dot(away, along) / (1.0 - layout.side * ca.jacobian(rise, x))
+    arm = reach * along[0], reach * along[1]
+    return Design(x, away, normal, _cross(arm, normal), _sum(away, arm), normal, along, 0.0)
+
+
+def _swung(layout: _Layout, rise: Any, cosine: Any, distance: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+    """The direction of the arm of a swinging follower, and that in which it swings away from the cam.
+
+    On the base circle the arm is at an angle of this ``cosine`` to the line from its pin to the cam's centre.
+    """
+    line = -layout.away[0] / distance, -layout.away[1] / distance
+    sine = layout.side * ca.sqrt(1.0 - cosine * cosine)
+    least = cosine * line[0] - sine * line[1], sine * line[0] + cosine * line[1]
+    along = _turned(least, layout.side * rise)
+    return along, (-layout.side * along[1], layout.side * along[0])
+
+
+def _contact(mechanism: Mechanism, name: str, cam: Joint, touched: Point, design: Design) -> Constraint:
+    """The equation of the contact, in places, so that its force acts where it is."""
+    centre = mechanism.place(cam.child)
+    place = _sum(mechanism.place(touched), centre, -1.0)
+    turn = mechanism.coordinate(cam)
+    here = _at(design, turn)
+    gap = _dot(here.normal, _sum(place, here.place, -1.0))
+    if here.turned is not None:
+        direction = mechanism.direction(cast(Link, touched.body))
+        gap = gap + here.moment * _cross(here.turned, (ca.cos(direction), ca.sin(direction)))
+    # Off the contact its slope may jump, as the normal turns by the lift's slope; on it, that counts for nothing.
+    phi = mechanism.own.expression(f"cam '{name}'", gap, moving=True)
+    return mechanism.constraints.setdefault(name, Constraint(name, phi))
+
+
+def _at(design: Design, angle: Any) -> Design:
+    """A design at an expression of the cam's angle."""
+
+    def put(value: Any) -> Any:
+        return ca.substitute(value, design.angle, angle) if isinstance(value, ca.SX) else value
+
+    def both(pair: tuple[Any, Any]) -> tuple[Any, Any]:
+        return put(pair[0]), put(pair[1])
+
+    turned = None if design.turned is None else both(design.turned)
+    place, normal, contact, way = map(both, (design.place, design.normal, design.contact, design.way))
+    return Design(angle, place, normal, put(design.moment), contact, way, turned, design.roller)
+
+
+def curvature(design: Design) -> Any:
+    """The radius of curvature of the profile [m]: positive where it is convex; infinite where it is straight."""
+    x = design.angle
+    lean = -ca.atan2(design.normal[0], design.normal[1]) - x
+    return progress(design) / ca.jacobian(lean, x)
+
+
+def progress(design: Design) -> Any:
+    """How far the contact goes on the cam by its angle [m], counter-clockwise round it: what is not negative is undercut."""
+    x, contact = design.angle, design.contact
+    moved = ca.jacobian(contact[0], x) + contact[1], ca.jacobian(contact[1], x) - contact[0]
+    return _cross(design.normal, moved)
+
+
+def _outputs(made: Cam, cam: Joint, width: Expression | None, elastic: tuple[float, float]) -> None:
+    mechanism, name = made.mechanism, made.name
+    force = mechanism.results.multiplier(made.constraint)
+    here, radius = _at(made.design, mechanism.coordinate(cam)), curvature(made.design)
+    radius = ca.substitute(radius, made.design.angle, mechanism.coordinate(cam))
+    cosine = _dot(here.normal, here.way)
+    mechanism.output(f"{name}_force", force, unit="N")
+    mechanism.output(f"{name}_pressure_angle", ca.atan2(ca.fabs(_cross(here.normal, here.way)), cosine), unit="rad")
+    mechanism.output(f"{name}_radius", radius, unit="m")
+    if width is not None:
+        stiffness = elastic[0] / (2.0 * (1.0 - elastic[1] ** 2))
+        roller = made.design.roller
+        rolled = 0.0 if isinstance(roller, float) and roller == 0.0 else 1.0 / roller
+        # K. L. Johnson, Contact Mechanics, 1985, equation 4.45: the largest pressure of two cylinders.
+        pressed = ca.fmax(force, 0.0) * ca.fmax(1.0 / radius + rolled, 0.0) * stiffness / (math.pi * width)
+        mechanism.output(f"{name}_hertz", ca.sqrt(pressed), unit="Pa")

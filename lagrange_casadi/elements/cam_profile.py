@@ -1,0 +1,102 @@
+"""The profile of a disc cam in numbers: points, pressure angle, radius of curvature, undercut; as CSV and as DXF."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..declare.density import Array
+from ..errors import DeclarationError, LagrangeCasadiError
+from ..system.publish import check_writable, writing
+
+_LEAST = 16
+_SAME = 1e-9
+"""Of its size: by how much a profile may be open, by rounding."""
+
+_MILLIMETRES = 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class CamProfile:
+    """A cam's profile at angles of one turn of the cam, each (n,), in its own axes.
+
+    ``x`` and ``y`` [m] are where the follower touches it while the cam is at ``angle`` [rad], and ``pitch_x`` and ``pitch_y`` where
+    the follower's point is. ``pressure_angle`` [rad] is between the force and the way of that point, ``radius`` [m] that of
+    curvature: positive where the profile is convex, infinite where it is straight. ``undercut`` tells where it would cut itself.
+    """
+
+    name: str
+    angle: Array
+    x: Array
+    y: Array
+    pitch_x: Array
+    pitch_y: Array
+    pressure_angle: Array
+    radius: Array
+    undercut: npt.NDArray[np.bool_]
+    closes: bool
+
+    @property
+    def told_undercut(self) -> str:
+        """Where it is undercut, in words; nothing where it is not."""
+        found = np.degrees(self.angle[self.undercut])
+        return f"its profile is undercut at {found[0]:.4g} deg of the cam, and at {found.size} angles in all" if found.size else ""
+
+    def save_csv(self, path: str | Path) -> None:
+        """Write a row for every angle: cam angle [deg], x [m], y [m], pressure angle [deg], radius of curvature [m].
+
+        Raises :class:`.LagrangeCasadiError` for an undercut profile, and :class:`.PathError` where nothing can be written.
+        """
+        self._refuse_undercut()
+        rows = np.column_stack([np.degrees(self.angle), self.x, self.y, np.degrees(self.pressure_angle), self.radius])
+        lines = ["angle [deg],x [m],y [m],pressure angle [deg],radius [m]"]
+        lines += [",".join(f"{number:.17g}" for number in row) for row in rows.tolist()]
+        self._write(path, "\n".join(lines) + "\n")
+
+    def save_dxf(self, path: str | Path) -> None:
+        """Write the profile as a closed polyline of DXF R12, in mm, for a workshop; the package ``ezdxf`` is needed.
+
+        Raises :class:`.LagrangeCasadiError` without it, and as :meth:`save_csv` does.
+        """
+        self._refuse_undercut()
+        try:
+            from ezdxf.addons.r12writer import R12FastStreamWriter
+        except ImportError:
+            raise LagrangeCasadiError("a DXF needs ezdxf; install it with: pip install 'lagrange_casadi[dxf]'") from None
+        text = io.StringIO()
+        drawing = R12FastStreamWriter(text, fixed_tables=False)
+        points = (_MILLIMETRES * np.column_stack([self.x, self.y])).tolist()
+        drawing.add_polyline([tuple(point) for point in points], closed=True, layer="PROFILE")
+        drawing.close()
+        self._write(path, text.getvalue())
+
+    def _refuse_undercut(self) -> None:
+        if self.undercut.any():
+            raise LagrangeCasadiError(f"cam '{self.name}': {self.told_undercut}; no profile has this motion")
+
+    def _write(self, path: str | Path, text: str) -> None:
+        check_writable(Path(path))
+        with writing(Path(path)) as (file,):
+            file.write(text.encode())
+
+
+def profile_of(name: str, function: Any, p: Sequence[float], count: int) -> CamProfile:
+    """A profile from ``function(angle, p)``: contact x, y, the follower's point x, y, pressure angle, radius, progress."""
+    if type(count) is not int or count < _LEAST:
+        raise DeclarationError(f"cam '{name}': count must be a whole number of at least {_LEAST}, got {count!r}")
+    angle: Array = np.asarray(np.arange(count + 1) * (math.tau / count), float)
+    found = function(angle[None], list(p)).full()
+    # A straight profile has no radius.
+    if not np.isfinite(np.delete(found, 5, axis=0)).all():
+        raise DeclarationError(f"cam '{name}': its follower cannot touch the base circle: it does not reach, or is too near")
+    size = float(np.abs(found[:2]).max())
+    closes = bool(np.abs(found[:2, -1] - found[:2, 0]).max() <= _SAME * size)
+    x, y, pitch_x, pitch_y, pressure, radius, progress = found[:, :-1]
+    return CamProfile(name, angle[:-1], x, y, pitch_x, pitch_y, pressure, radius, progress >= 0.0, closes)
