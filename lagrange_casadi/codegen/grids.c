@@ -23,13 +23,16 @@ static void stream(double* out, const double* tile, long long n) {
   memcpy(out + i, tile + i, (size_t) (n - i)*sizeof(double));
 }
 
-/* One row: sum of c[m]*basis[m][j] over one, three, four or more terms, in this order. */
+/* One row: sum of c[m]*basis[m][j] over one or more terms, in this order. */
 static void combine(long long n, int terms, const double* c, const double* const* basis, double* restrict row) {
   const double c0 = c[0], *b0 = basis[0];
   long long j;
   int m;
   if (terms == 1) {
     for (j = 0; j < n; ++j) row[j] = c0*b0[j];
+  } else if (terms == 2) {
+    const double c1 = c[1], *b1 = basis[1];
+    for (j = 0; j < n; ++j) row[j] = c0*b0[j] + c1*b1[j];
   } else if (terms == 3) {
     const double c1 = c[1], c2 = c[2], *b1 = basis[1], *b2 = basis[2];
     for (j = 0; j < n; ++j) row[j] = (c0*b0[j] + c1*b1[j]) + c2*b2[j];
@@ -80,7 +83,7 @@ static void whole(long long n, const double* const* columns, const double* const
   long long j;
   int m, s, plane;
   for (m = 0; m < planes*terms; ++m) c[m] = columns[m][i];
-  if (planes == 2 && !loads && terms > 1) {
+  if (planes == 2 && !loads && (terms == 3 || terms == 4)) {
     combine_sizes(n, terms, c, along, row);
     return;
   }

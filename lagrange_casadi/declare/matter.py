@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from ..errors import DeclarationError
-from .density import Density, uniform
+from .density import Density, Slices, uniform
 from .parts import Expression, RigidMass
 
 
@@ -32,8 +33,12 @@ def matter_of(
     if density is not None:
         if not isinstance(density, Density):
             raise DeclarationError(f"{what}: expected a density of lagrange_casadi.density, got {density!r}")
-        cells = tuple(tuple(checked(f"{what}: density", c) for c in cell) for cell in density.cells)
-        return Density(density.breaks, cells, density.per_length)
+        if density.slices is not None and rigid is None:
+            raise DeclarationError(f"{what}: second moments of slices are for links in space; in a plane a link is slender")
+        own = _checked(density, f"{what}: density", checked)
+        if density.slices is None:
+            return own
+        return replace(own, slices=Slices(*(_checked(moment, f"{what}: second moments", checked) for moment in density.slices.each)))
     if centre is not None:
         if rigid is not None:
             place, moments = rigid(centre, inertia)
@@ -41,6 +46,11 @@ def matter_of(
         x, y = (checked(f"{what}: centre", c) for c in centre)
         return RigidMass(checked(f"{what}: mass", mass), (x, y), checked(f"{what}: inertia", inertia))
     return uniform(checked(f"{what}: mass", mass))
+
+
+def _checked(density: Density, what: str, checked: Callable[[str, Expression], Expression]) -> Density:
+    cells = tuple(tuple(checked(what, c) for c in cell) for cell in density.cells)
+    return Density(density.breaks, cells, density.per_length)
 
 
 def second_moments(inertia: Sequence[Sequence[Expression]]) -> list[list[Any]]:

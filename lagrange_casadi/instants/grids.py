@@ -61,7 +61,7 @@ def fill(
 ) -> None:
     """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what acts at stations.
 
-    ``columns`` and the rows of ``basis`` are one, three, four or more; ``u`` are the ratios. With two ``planes`` they are as many
+    ``columns`` and the rows of ``basis`` are one or more; ``u`` are the ratios. With two ``planes`` they are as many
     for each, one plane's after the other's, as loads are, and ``out`` is the size of both sums. Raises :class:`DeclarationError`
     for an ``out`` of another shape.
     """

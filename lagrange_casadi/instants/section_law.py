@@ -19,7 +19,7 @@ import numpy as np
 from ..declare.density import Array, NumericDensity
 from ..quantities import Output
 from ..system.room import cores, require
-from ..tables import PLANE, SPACE, Table
+from ..tables import PLANE, SPACE, Table, Terms
 from . import grids
 from .sizes import growth_of_size, size_of, slope_of_size
 from .spread_loads import SpreadLoad
@@ -144,6 +144,7 @@ class SectionLaw:
             terms = self.table.sections[force]
             for spread, moving in zip(self.spreads, changes.spreads, strict=True):
                 gaps = gaps + (terms.arm or 1) * spread.moved(terms.spread, moving, u, self.length, arm=bool(terms.arm))
+                gaps = gaps + spread.moved(terms.couple, moving, u, self.length, arm=False)
             gaps, sizes = (np.repeat(values[..., None], len(_SIDES) if self.loads else 1, axis=-1) for values in (gaps, sizes))
             for load, change, there in zip(self.loads, changes.loads, seen, strict=True):
                 station, constant, slope = (values[:, None] for values in self._acting(force, load))
@@ -166,19 +167,25 @@ class SectionLaw:
         if len(parts := self._parts(force)) > 1:
             return slope_of_size([self.at(part, u, side) for part in parts], [self.along(part, u, side) for part in parts])
         terms = self.table.sections[force]
-        if terms.arm:
-            return np.asarray(-terms.arm * self.length * self.at(terms.shear, u, side))
-        if len(terms.coefficients) == 1:
-            return np.zeros(u.shape)
         nudge = 1e-12 if side == "tip" else -1e-12
+        if terms.arm:
+            bent = terms.arm * self.at(terms.shear, u, side) + self._turned(force, u, u + nudge)
+            return np.asarray(-self.length * bent)
         return self._falling(force, u, u + nudge)
 
     def _falling(self, force: str, u: Array, middle: Array) -> Array:
         """The derivative of a force that has no arm, where loads along the link act that act at the ``middle`` of its part."""
         terms = self.table.sections[force]
+        if len(terms.coefficients) == 1:
+            return np.asarray(-self.length * self._turned(force, u, middle))
         first, second = (_column(self.coefficients[name], u) for name in terms.coefficients[1:])
         slope = -self.density.at(u) * (first + self.length * u * second)
         return np.asarray(slope - sum(self.length * spread.here(terms.spread, u, middle) for spread in self.spreads))
+
+    def _turned(self, force: str, u: Array, middle: Array) -> Array:
+        """The couple per length that the rotary inertia of slices puts into a moment."""
+        couple = self.table.sections[force].couple
+        return np.asarray(sum((spread.here(couple, u, middle) for spread in self.spreads if couple in spread.terms), np.zeros(u.shape)))
 
     def rate(self, force: str, rates: SectionLaw, xi: Any, side: Side = "tip") -> Array:
         """The time derivative of a force at ratios of shape (t, ...) that stand still, or, at a station, move with it.
@@ -209,6 +216,7 @@ class SectionLaw:
         size = sum(np.abs(column)[:, None] * np.abs(row) for column, row in zip(columns, rows, strict=True))
         for spread in self.spreads:
             size = size + spread.bound(self.table.sections[force].spread, self.length, arm=bool(self.table.sections[force].arm))
+            size = size + spread.bound(self.table.sections[force].couple, self.length, arm=False)
         for load in self.loads:
             _, constant, slope = self._acting(force, load)
             size = size + (np.abs(constant) + np.abs(slope))[:, None]
@@ -274,7 +282,7 @@ class SectionLaw:
         parts = self._parts(force)
         if len(parts) == 1 and not self.spreads:
             found = self._turning(force, within, low, high)
-        elif force in self.table.sections and len(self.table.sections[force].coefficients) == 1:
+        elif force in self.table.sections and len(self.table.sections[force].coefficients) == 1 and not self._thick:
             found = []
         else:
             turns = self._turns_of_size(parts, within, low, high)
@@ -297,14 +305,37 @@ class SectionLaw:
         acting = [self._acting(part, load) for part in parts for load in self.loads]
         return [column for columns, _ in terms for column in columns], rows, acting, len(parts)
 
+    @property
+    def _thick(self) -> bool:
+        """Whether slices have rotary inertia."""
+        return any(couple in spread.terms for spread in self.spreads for couple in self.table.couples)
+
     def _terms(self, force: str, basis: Basis) -> tuple[list[Array], Array]:
         terms = self.table.sections[force]
         columns = [self.coefficients[name] for name in terms.coefficients]
+        if self._thick:
+            return self._thick_terms(terms, columns, basis)
         if terms.spread:
             columns += [column for spread in self.spreads for column in spread.terms[terms.spread]]
         if not terms.arm:
             return columns, basis.force[: len(columns)]
         return columns, basis.bending if terms.arm > 0 else np.concatenate([basis.bending[:1], -basis.bending[1:]])
+
+    def _thick_terms(self, terms: Terms, columns: list[Array], basis: Basis) -> tuple[list[Array], Array]:
+        """Those of a link whose slices have rotary inertia: of what acts along it each force has its own."""
+        plain = basis.bending if terms.arm else basis.force
+        rows = [*plain[: len(columns)]]
+        if terms.arm < 0:
+            rows[1:] = [-row for row in rows[1:]]
+        first = 0
+        for spread in self.spreads:
+            for direction, there, sign in ((terms.spread, plain, terms.arm or 1), (terms.couple, basis.force, 1)):
+                own = spread.terms.get(direction, ())
+                start = (4 if there is basis.bending else 3) + first
+                columns += own
+                rows += [sign * row for row in there[start : start + len(own)]]
+            first += spread.powers
+        return columns, np.stack(rows)
 
     def _smooth(self, force: str, u: Array) -> Array:
         terms = self.table.sections[force]
@@ -359,8 +390,10 @@ class SectionLaw:
 
         def slope(part: str, u: Array) -> Array:
             terms = self.table.sections[part]
-            if bends:
+            if bends and not self._thick:
                 return -terms.arm * within(terms.shear, u)
+            if bends:
+                return -terms.arm * within(terms.shear, u) - self._turned(part, u, middle)
             if self.spreads:
                 return self._falling(part, u, middle)
             first, second = (_column(self.coefficients[name], u) for name in terms.coefficients[1:])
