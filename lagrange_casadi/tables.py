@@ -113,10 +113,8 @@ def _spread(member: str, direction: str) -> Quantity:
 
 
 _SPREAD_N = _spread("qn", "in the direction of the axis")
-_COUPLES = tuple(
-    Quantity("spread", f"c{x}", ("t",), FORCE, f"couple of the slices' rotary inertia, {x}: coefficient of a power of (end - xi/l)/width")
-    for x in "xyz"
-)
+_COUPLE = "couple of the slices' rotary inertia, {}: coefficient of a power of (end - xi/l)/width"
+_COUPLES = tuple(Quantity("spread", f"c{x}", ("t",), FORCE, _COUPLE.format(x)) for x in "xyz")
 
 
 def _shear_law(prefix: str, force: str) -> tuple[Quantity, ...]:

@@ -111,7 +111,10 @@ def _body(m, body):
     if body.polar:
         # Second moments are linear along a rod, see spatial_draft.rod.
         told = {"yy": body.lateral_z, "zz": body.lateral_y, "yz": lambda xi: -body.product(xi)}
-        ends = {name: [float(of(xi) if callable(of) else sum(c * xi**k for k, c in enumerate(of))) for xi in (0, 1)] for name, of in told.items()}
+        ends = {
+            name: [float(of(xi) if callable(of) else sum(c * xi**k for k, c in enumerate(of))) for xi in (0, 1)]
+            for name, of in told.items()
+        }
         matter = density.thick(matter, **{name: density.polynomial(a, b - a) for name, (a, b) in ends.items()})
     return m.link(body.name, length=length, density=matter)
 

@@ -42,6 +42,22 @@ def test_compiled_and_not_agree_to_the_last_bit(n, k, monkeypatch):
                 assert out.tobytes() == plain.tobytes()
 
 
+@pytest.mark.parametrize("loads", [0, 1])
+@pytest.mark.parametrize("planes", [1, 2])
+@pytest.mark.parametrize("terms", range(1, 8))
+def test_sums_of_any_number_of_terms_are_filled(terms, planes, loads, monkeypatch):
+    monkeypatch.setattr(grids, "WORTH_COMPILING", 0)
+    n, u = 5, np.linspace(0, 1, 9)
+    columns, rows = [*random.normal(size=(planes * terms, n))], random.normal(size=(planes * terms, u.size))
+    acting = [(np.full(n, 0.4), *random.normal(size=(2, n))) for _ in range(planes * loads)]
+    out = np.full((n, u.size), np.nan)
+    grids.fill(columns, rows, acting, u, out, planes=planes)
+    sums = np.array(columns).T.reshape(n, planes, terms).transpose(1, 0, 2) @ rows.reshape(planes, terms, -1)
+    for plane, (station, constant, slope) in enumerate(acting):
+        sums[plane] += np.where(u < 0.4, constant[:, None] + slope[:, None] * (station[:, None] - u), 0.0)
+    np.testing.assert_allclose(out, sums[0] if planes == 1 else np.hypot(*sums), rtol=0, atol=1e-13)
+
+
 def test_a_grid_is_what_the_law_gives_at_each_point():
     law, xi = loaded_law(50), np.linspace(0, 1, 41)
     for force in FORCES:

@@ -51,7 +51,7 @@ def test_efforts_reactions_and_sections(case):
 
 
 def along(found, name, l, u):
-    """What a section feels of a load along the rod, or of its slices' couples: the integrals of what is beyond it, by Gauss' rule."""
+    """What a section feels of a load along the rod, or of its slices' couples: the integrals of what is beyond it."""
     width, end = found[f"{name}:width"], found[f"{name}:end"]
     low = max(u, end - width)
     nodes, weights = np.polynomial.legendre.leggauss(8)

@@ -18,9 +18,9 @@ class Along:
     """A link's part in the columns: its coefficients, what acts at each station, place first; and how its mass lies.
 
     The coefficients are those of a planar link, or those of a link in space. ``spreads`` are loads along it: the width of each,
-    where it ends, and of each direction the coefficients of all powers, -1 for one that it has not. Where slices are ``thick`` there
-    are three more directions, of couples. ``marks`` are places at which these begin or end: a column,
-    or one less another; or at which the density jumps: numbers.
+    where it ends, and of each direction the coefficients of all powers, -1 for one that it has not. ``marks`` are places at which
+    these begin or end: a column, or one less another; or at which the density jumps: numbers. Where slices are ``thick`` there are
+    three more directions, of couples.
     """
 
     law: tuple[int, ...]

@@ -178,12 +178,12 @@ def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
 
 
 def thick(density: Density, *, yy: Any, zz: Any, yz: Any = 0.0) -> Density:
-    """A density of slices that have rotary inertia, of a link in space: ``yy``, ``zz``, ``yz`` are second moments of mass per length.
+    """A density of slices that have rotary inertia, of a link in space, by second moments of mass per length [kg m].
 
-    They are the sums over a slice of y y, z z and y z times mass, per length [kg m], about the link's axis and on the axes y and z of
-    its cross-section: of a homogeneous bar the density of its material times the area's second moments. Each is a number or an
-    expression in parameters, or itself along the link, by a function of this module whose values are then in kg m. A round bar of
-    diameter d has yy = zz = mass per length times d^2/16.
+    ``yy``, ``zz`` and ``yz`` are the sums over a slice of y y, z z and y z times mass, on the axes of the link's cross-section: of
+    a homogeneous bar the density of its material times its area's second moments. Each is a number or an expression in parameters,
+    or is itself told along the link by a function of this module, whose values are then in kg m. A round bar of diameter d has
+    yy = zz = d^2/16 times its mass per length.
 
     Raises :class:`DeclarationError` for what is no density.
     """

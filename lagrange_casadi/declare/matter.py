@@ -38,7 +38,8 @@ def matter_of(
         own = _checked(density, f"{what}: density", checked)
         if density.slices is None:
             return own
-        return replace(own, slices=Slices(*(_checked(moment, f"{what}: second moments", checked) for moment in density.slices.each)))
+        moments = (_checked(moment, f"{what}: second moments", checked) for moment in density.slices.each)
+        return replace(own, slices=Slices(*moments))
     if centre is not None:
         if rigid is not None:
             place, moments = rigid(centre, inertia)

@@ -92,7 +92,8 @@ class KeptOutputs:
         along = tuple(_along(mechanism, link, at, table) for link in links)
         matter, positive, margins = _matter(mechanism, links, along, rung.precision)
         columns = {column for columns in chosen.values() for column in columns}
-        columns |= {k for link in along for k in (*link.law, *(k for part in (*link.stations, *link.spreads) for k in part)) if k >= 0}
+        rows = [row for link in along for row in (link.law, *link.stations, *link.spreads)]
+        columns |= {k for row in rows for k in row if k >= 0}
         sharpness = Sharpness.of(graph, sorted(columns))
         checks = _checks(graph, rung)
         doubted = {k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")}

@@ -52,8 +52,8 @@ ROTARY = "rotary"
 def rotary(multibody: Multibody, link: Link, rate: Vector, angular: Vector) -> dict[Column, Any]:
     """The rotary inertia of a link's slices as couples along it, between each two places at which it may jump (d'Alembert).
 
-    ``rate`` and ``angular`` are the link's angular velocity w and its change a, on its axes. Slices with second moments yy, zz, yz per
-    length bear the couple, per length,
+    ``rate`` and ``angular`` are the link's angular velocity w and its change a, on its axes. Of second moments yy, zz, yz per
+    length it is, per length,
 
         c_x = -yy (a_x + w_y w_z) + zz (w_y w_z - a_x) + yz (w_y^2 - w_z^2),
         c_y = -yz (w_x w_y - a_z) - zz (w_x w_z + a_y),    c_z = yy (w_x w_y - a_z) + yz (w_x w_z + a_y).

@@ -34,7 +34,8 @@ def law_in_words(c: Contract) -> str:
     """What the members of a section law mean; nothing where there is none."""
     if not c.links:
         return ""
-    return (LAW if c.table is PLANE else LAW_IN_SPACE) + (LOADED if any(link.spreads for link in c.links) else "") + (THICK if _thick(c) else "")
+    law = LAW if c.table is PLANE else LAW_IN_SPACE
+    return law + (LOADED if _acts(c, c.table.spread) else "") + (THICK if _acts(c, c.table.couples) else "")
 
 
 def functions(c: Contract, program: Program, number: Callable[[float], str], root: str) -> str:
@@ -105,14 +106,15 @@ def _spreads(c: Contract, words: dict[str, str]) -> dict[str, str]:
     }
 
 
-def _thick(c: Contract) -> bool:
-    """Whether slices of some link have rotary inertia."""
-    return any(Output.of(m.source).member in c.table.couples for m in c.outputs if Output.of(m.source).group == "spread")
+def _acts(c: Contract, members: tuple[str, ...]) -> bool:
+    """Whether something along some link has one of these members."""
+    outputs = (Output.of(m.source) for m in c.outputs)
+    return any(output.group == "spread" and output.member in members for output in outputs)
 
 
 def _directions(c: Contract) -> tuple[str, ...]:
     """The members that what acts along links may have for each power."""
-    return (*c.table.spread, *(c.table.couples if _thick(c) else ()))
+    return (*c.table.spread, *(c.table.couples if _acts(c, c.table.couples) else ()))
 
 
 def _spread_on(c: Contract, link: LinkContract, names: Mapping[Output, str]) -> list[str]:

@@ -19,8 +19,9 @@ import numpy as np
 from ..declare.density import Array, NumericDensity
 from ..quantities import Output
 from ..system.room import cores, require
-from ..tables import PLANE, SPACE, Table, Terms
+from ..tables import PLANE, SPACE, Table
 from . import grids
+from .basis import Basis, by_force
 from .sizes import growth_of_size, size_of, slope_of_size
 from .spread_loads import SpreadLoad
 from .station_loads import AnyStationLoad, StationLoad
@@ -32,15 +33,6 @@ Side = Literal["base", "tip"]
 _SIDES: tuple[Side, ...] = ("tip", "base")
 
 _BLOCK = 1 << 15
-
-
-@dataclass(frozen=True, eq=False)
-class Basis:
-    """Ratios ``u`` along a link, and there the functions that its forces are combined of: a row each, of shape (terms, u...)."""
-
-    u: Array
-    force: Array
-    bending: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,14 +59,7 @@ class SectionLaw:
 
     def basis(self, xi: Array) -> Basis:
         """The functions along the link at ratios ``xi`` of any shape; they serve every force, and the law at any instants."""
-        xi = np.asarray(xi, dtype=float)
-        t0, t1, t2 = self.density.tails(xi)
-        l, force = self.length, self._force_rows(xi, t0, t1)
-        bending = [np.ones_like(t0), l * (1.0 - xi), l * t1, l * l * (xi * t1 + t2)]
-        for spread in self.spreads:
-            for rows, more in zip((force, bending), spread.rows(xi, l), strict=True):
-                rows += more
-        return Basis(xi, np.stack(force), np.stack(bending))
+        return Basis.of(np.asarray(xi, dtype=float), self.length, self.density, self.spreads)
 
     def on_grid(self, force: str, xi: Array | Basis, out: Array | None = None, threads: int | None = None) -> Array:
         """A force at every instant and every ratio ``xi``, of shape (t, xi), in ``out`` where given; at a station, on its tip side.
@@ -184,8 +169,11 @@ class SectionLaw:
 
     def _turned(self, force: str, u: Array, middle: Array) -> Array:
         """The couple per length that the rotary inertia of slices puts into a moment."""
-        couple = self.table.sections[force].couple
-        return np.asarray(sum((spread.here(couple, u, middle) for spread in self.spreads if couple in spread.terms), np.zeros(u.shape)))
+        couple, found = self.table.sections[force].couple, np.zeros(u.shape)
+        for spread in self.spreads:
+            if couple in spread.terms:
+                found = found + spread.here(couple, u, middle)
+        return found
 
     def rate(self, force: str, rates: SectionLaw, xi: Any, side: Side = "tip") -> Array:
         """The time derivative of a force at ratios of shape (t, ...) that stand still, or, at a station, move with it.
@@ -314,28 +302,10 @@ class SectionLaw:
         terms = self.table.sections[force]
         columns = [self.coefficients[name] for name in terms.coefficients]
         if self._thick:
-            return self._thick_terms(terms, columns, basis)
+            return basis.of_thick(terms, columns, self.spreads)
         if terms.spread:
             columns += [column for spread in self.spreads for column in spread.terms[terms.spread]]
-        if not terms.arm:
-            return columns, basis.force[: len(columns)]
-        return columns, basis.bending if terms.arm > 0 else np.concatenate([basis.bending[:1], -basis.bending[1:]])
-
-    def _thick_terms(self, terms: Terms, columns: list[Array], basis: Basis) -> tuple[list[Array], Array]:
-        """Those of a link whose slices have rotary inertia: of what acts along it each force has its own."""
-        plain = basis.bending if terms.arm else basis.force
-        rows = [*plain[: len(columns)]]
-        if terms.arm < 0:
-            rows[1:] = [-row for row in rows[1:]]
-        first = 0
-        for spread in self.spreads:
-            for direction, there, sign in ((terms.spread, plain, terms.arm or 1), (terms.couple, basis.force, 1)):
-                own = spread.terms.get(direction, ())
-                start = (4 if there is basis.bending else 3) + first
-                columns += own
-                rows += [sign * row for row in there[start : start + len(own)]]
-            first += spread.powers
-        return columns, np.stack(rows)
+        return columns, basis.of_force(terms, len(columns))
 
     def _smooth(self, force: str, u: Array) -> Array:
         terms = self.table.sections[force]
@@ -344,12 +314,8 @@ class SectionLaw:
             return np.asarray(sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True)))
         # The whole basis takes one moment more of the matter.
         plain = [self.coefficients[name] for name in terms.coefficients]
-        matter = self._force_rows(u, *self.density.tails(u, 2)) if len(plain) > 1 else [np.ones_like(u)]
+        matter = by_force(u, self.length, *self.density.tails(u, 2)) if len(plain) > 1 else [np.ones_like(u)]
         return np.asarray(sum(_column(column, u) * row for column, row in zip(plain, matter, strict=True)))
-
-    def _force_rows(self, u: Array, t0: Array, t1: Array) -> list[Array]:
-        """The rows of a basis for forces, by the moments of the matter beyond."""
-        return [np.ones_like(t0), t0, self.length * (u * t0 + t1)]
 
     def _acting(self, force: str, load: AnyStationLoad) -> grids.Load:
         terms = self.table.sections[force]
