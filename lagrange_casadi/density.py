@@ -1,5 +1,5 @@
 """Densities of links: the public part of :mod:`.declare.density`."""
 
-from .declare.density import Density, along, polynomial, tabulated, uniform
+from .declare.density import Density, Slices, along, polynomial, tabulated, thick, uniform
 
-__all__ = ["Density", "along", "polynomial", "tabulated", "uniform"]
+__all__ = ["Density", "Slices", "along", "polynomial", "tabulated", "thick", "uniform"]

@@ -42,7 +42,7 @@ def own_members(*, moment: bool = True) -> tuple[str, ...]:
 
 
 _LAWS = {*PLANE.law, *SPACE.law}
-_SPREAD = re.compile(rf"(?:({'|'.join((*PLANE.spread, *SPACE.spread))})(0|[1-9]\d*)|(width|end))")
+_SPREAD = re.compile(rf"(?:({'|'.join((*PLANE.spread, *SPACE.spread, *SPACE.couples))})(0|[1-9]\d*)|(width|end))")
 _ENDINGS = {"rate": "_rate", "acceleration": "_acceleration"}
 _COORDINATE = ".coordinate"
 

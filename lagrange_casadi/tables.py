@@ -119,6 +119,8 @@ def _spread(member: str, direction: str) -> Quantity:
 
 
 _SPREAD_N = _spread("qn", "in the direction of the axis")
+_COUPLE = "couple of the slices' rotary inertia, {}: coefficient of a power of (end - xi/l)/width"
+_COUPLES = tuple(Quantity("spread", f"c{x}", ("t",), FORCE, _COUPLE.format(x)) for x in "xyz")
 
 
 def _shear_law(prefix: str, force: str) -> tuple[Quantity, ...]:
@@ -196,6 +198,7 @@ SPATIAL_QUANTITIES = (
     _SPREAD_N,
     _spread("qfy", "in the direction of the link's y"),
     _spread("qfz", "in the direction of the link's z"),
+    *_COUPLES,
 )  # fmt: skip
 
 RESULTANT = Quantity("reaction", "resultant", ("t",), FORCE, "resultant of the joint's reaction")
@@ -211,7 +214,8 @@ class Terms:
 
     The ``coefficients`` are those of functions along the link: of 1, mu0 and mu1 for a force, of 1 alone for torsion. A bending
     moment has a ``shear``, another section force, whose coefficients are those behind its first one:
-    d(bending)/d(xi) = -``arm`` shear, with ``arm`` 1 or -1. ``spread`` is what a load along the link adds, beside powers along it.
+    d(bending)/d(xi) = -``arm`` shear, with ``arm`` 1 or -1. ``spread`` is what a load along the link adds, beside powers along it,
+    and ``couple`` what the rotary inertia of slices does.
     """
 
     coefficients: tuple[str, ...]
@@ -219,6 +223,7 @@ class Terms:
     spread: str = ""
     shear: str = ""
     arm: int = 0
+    couple: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -259,8 +264,13 @@ class Table:
     @cached_property
     def spread(self) -> tuple[str, ...]:
         """The members of a load along a link that come once for each power of the place: its directions, that of the axis first."""
-        ends = {row.member for row in _SPREAD}
-        return tuple(member for member in self._members("spread") if member not in ends)
+        others = {row.member for row in (*_SPREAD, *_COUPLES)}
+        return tuple(member for member in self._members("spread") if member not in others)
+
+    @cached_property
+    def couples(self) -> tuple[str, ...]:
+        """The members of the rotary inertia of slices that come once for each power of the place, that about the axis first."""
+        return tuple(terms.couple for terms in self.sections.values() if terms.couple)
 
     @cached_property
     def place_first(self) -> tuple[str, ...]:
@@ -314,9 +324,9 @@ SPACE = Table(
         "axial": Terms(_N, "n", "qn"),
         "shear_y": Terms(_FY, "fy", "qfy"),
         "shear_z": Terms(_FZ, "fz", "qfz"),
-        "torsion": Terms(("mx0",), "mx"),
-        "bending_y": Terms(("my0", *_FZ), "my", "qfz", "shear_z", -1),
-        "bending_z": Terms(("mz0", *_FY), "mz", "qfy", "shear_y", 1),
+        "torsion": Terms(("mx0",), "mx", couple="cx"),
+        "bending_y": Terms(("my0", *_FZ), "my", "qfz", "shear_z", -1, "cy"),
+        "bending_z": Terms(("mz0", *_FY), "mz", "qfy", "shear_y", 1, "cz"),
     },
 )
 

@@ -29,16 +29,15 @@ def coordinate(joint, index: int) -> str:
 
 
 def plain(drawn: Drawn) -> Drawn:
-    """The same with slender rods, joined between their ends, and with turns of slots about the axes that the package has there."""
-    bodies = [Rod(b.name, b.length, b.density, breaks=b.breaks) if isinstance(b, Rod) else b for b in drawn.mechanism.bodies]
-    rods = {b.name for b in bodies if isinstance(b, Rod)}
+    """The same with rods joined between their ends, and with turns of slots about the axes that the package has there."""
+    rods = {b.name for b in drawn.mechanism.bodies if isinstance(b, Rod)}
     joints = []
     for joint in drawn.mechanism.joints:
         x, y, z = map(float, joint.at_child)
         at_child = (abs(x) if joint.child in rods else x, y, z)
         frame = _across(joint.axis) if joint.kind == "slot" else joint.frame
         joints.append(dataclasses.replace(joint, at_child=at_child, frame=frame))
-    return dataclasses.replace(drawn, mechanism=dataclasses.replace(drawn.mechanism, bodies=bodies, joints=joints))
+    return dataclasses.replace(drawn, mechanism=dataclasses.replace(drawn.mechanism, joints=joints))
 
 
 def declared(drawn: Drawn, t: float = 0.0, **options) -> Scene:
@@ -108,9 +107,16 @@ def _body(m, body):
         rows = tuple(tuple(map(float, row)) for row in body.inertia)
         return m.link(body.name, length=_SIZE, mass=float(body.mass), centre=tuple(map(float, body.centre)), inertia=rows)
     length, law = float(body.length), body.density
-    if callable(law):
-        return m.link(body.name, length=length, density=density.polynomial(float(law(0.5))))
-    return m.link(body.name, length=length, density=density.polynomial(*map(float, law)))
+    matter = density.polynomial(float(law(0.5))) if callable(law) else density.polynomial(*map(float, law))
+    if body.polar:
+        # Second moments are linear along a rod, see spatial_draft.rod.
+        told = {"yy": body.lateral_z, "zz": body.lateral_y, "yz": lambda xi: -body.product(xi)}
+        ends = {
+            name: [float(of(xi) if callable(of) else sum(c * xi**k for k, c in enumerate(of))) for xi in (0, 1)]
+            for name, of in told.items()
+        }
+        matter = density.thick(matter, **{name: density.polynomial(a, b - a) for name, (a, b) in ends.items()})
+    return m.link(body.name, length=length, density=matter)
 
 
 def _join(m, joint, start, end) -> None:

@@ -101,7 +101,7 @@ def rows(quantities, *axes):
     }
     for q in quantities:
         place = places[q.group] + (f"_{q.member}" if q.group == "motion" and q.member else q.member)
-        place += "J" if q.group == "spread" and q.member.startswith("q") else ""  # the power
+        place += "J" if q.group == "spread" and q.member[0] in "qc" else ""  # the power
         units = dict.fromkeys(q.unit_for(kind) for kind in ("angle", "slide"))
         yield f"| {place} | {', '.join(q.axes)} | {' or '.join(units)} | {q.long_name} | {q.sign} |"
 

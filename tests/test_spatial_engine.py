@@ -51,16 +51,18 @@ def test_efforts_reactions_and_sections(case):
 
 
 def along(found, name, l, u):
-    """What a section feels of a load along the rod: the integrals of what is beyond it, by Gauss' rule."""
+    """What a section feels of a load along the rod, or of its slices' couples: the integrals of what is beyond it."""
     width, end = found[f"{name}:width"], found[f"{name}:end"]
     low = max(u, end - width)
     nodes, weights = np.polynomial.legendre.leggauss(8)
     places = (low + end) / 2 + (end - low) / 2 * nodes
     shares = weights * l * (end - low) / 2 if low < end else np.zeros_like(nodes)
-    powers = range(sum(key.startswith(f"{name}:qn") for key in found))
-    n, fy, fz = (sum(found[f"{name}:{q}{j}"] * ((end - places) / width) ** j for j in powers) for q in ("qn", "qfy", "qfz"))
+    n, fy, fz, cx, cy, cz = (
+        sum(found.get(f"{name}:{q}{j}", 0.0) * ((end - places) / width) ** j for j in range(8)) + 0.0 * places
+        for q in ("qn", "qfy", "qfz", "cx", "cy", "cz")
+    )
     arms = (places - u) * l
-    sums = {"axial": n, "shear_y": fy, "shear_z": fz, "bending_z": arms * fy, "bending_y": -arms * fz}
+    sums = {"axial": n, "shear_y": fy, "shear_z": fz, "torsion": cx, "bending_z": arms * fy + cz, "bending_y": cy - arms * fz}
     return {member: float(np.sum(shares * values)) for member, values in sums.items()}
 
 

@@ -64,13 +64,14 @@ static void act(long long n, double station, double constant, double slope, cons
   }
 }
 
-/* Rows of one plane, of one, three, four or more terms, with what acts there. */
+/* Rows of one plane, with what acts there. */
 static void add_up(long long many, long long n, int terms, const double* const* columns, const double* const* basis,
                    const double* const* acting, int loads, long long i, const double* u, double* restrict row) {
   const long long end = i + many;
   long long j;
   int m, s;
   if (terms == 1) combine(many, n, 1, 1, columns, i, basis, row);
+  else if (terms == 2) combine(many, n, 1, 2, columns, i, basis, row);
   else if (terms == 3) combine(many, n, 1, 3, columns, i, basis, row);
   else combine(many, n, 1, 4, columns, i, basis, row);
   for (; i < end; ++i, row += n) {

@@ -18,8 +18,9 @@ class Along:
     """A link's part in the columns: its coefficients, what acts at each station, place first; and how its mass lies.
 
     The coefficients are those of a planar link, or those of a link in space. ``spreads`` are loads along it: the width of each,
-    where it ends, and of each direction the coefficients of all powers. ``marks`` are places at which these begin or end: a column,
-    or one less another; or at which the density jumps: numbers.
+    where it ends, and of each direction the coefficients of all powers, -1 for one that it has not. ``marks`` are places at which
+    these begin or end: a column, or one less another; or at which the density jumps: numbers. Where slices are ``thick`` there are
+    three more directions, of couples.
     """
 
     law: tuple[int, ...]
@@ -28,6 +29,7 @@ class Along:
     terms: int
     spreads: tuple[tuple[int, ...], ...] = ()
     marks: tuple[tuple[int, ...] | float, ...] = ()
+    thick: bool = False
 
     @property
     def space(self) -> bool:
@@ -47,7 +49,7 @@ class Along:
     @property
     def directions(self) -> int:
         """In how many directions loads along it act."""
-        return 3 if self.space else 2
+        return 6 if self.thick else 3 if self.space else 2
 
     @property
     def powers(self) -> tuple[int, ...]:
@@ -83,7 +85,7 @@ class Along:
     def _turns(self) -> tuple[int, ...]:
         """Of each section force, in the order of its table: how often it may turn between two stations."""
         if self.spreads:
-            return (2, 2, 2, 0, 2, 2, 2, 2) if self.space else (2, 2, 2)
+            return (2, 2, 2, 2 if self.thick else 0, 2, 2, 2, 2) if self.space else (2, 2, 2)
         return (1, 1, 1, 0, 2, 2, 2, 2) if self.space else (1, 1, 2)
 
 
@@ -93,7 +95,7 @@ def along(number: int, link: Along, into: str, offset: int) -> str:
     for mark in link.marks:
         place = f"(DESIGNS_REAL) {mark:.17g}" if isinstance(mark, float) else " - ".join(f"y[{column}]" for column in mark)
         loads += [place, *["0"] * (6 if link.space else 3)]
-    spread = [f"y[{column}]" for load in link.spreads for column in load]
+    spread = [f"y[{column}]" if column >= 0 else "0" for load in link.spreads for column in load]
     taken = "".join(f"    law[{i}] = y[{column}];\n" for i, column in enumerate(link.law))
     taken += "".join(f"    loads[{i}] = {value};\n" for i, value in enumerate(loads))
     taken += "".join(f"    spread[{i}] = {value};\n" for i, value in enumerate(spread))
@@ -103,6 +105,7 @@ def along(number: int, link: Along, into: str, offset: int) -> str:
     sizes, room = f"{len(link.breaks) - 1}, {link.terms}, {link.parted}", ""
     nodes = [f"&designs_nodes{degree}" for degree in link.degrees]
     along_it = f", {len(link.spreads)}, {link.directions}, 1, powers, spread" if link.spreads else ", 0, 0, 0, 0, 0"
+    along_it += f", 0, {int(link.thick)}, 0"
     if link.space:
         room = f", room[{_room(link)}]"
         call = f"designs_along_in_space(&link, nodes, marks, room, {into});"
@@ -122,10 +125,10 @@ def along(number: int, link: Along, into: str, offset: int) -> str:
 
 
 def _room(link: Along) -> int:
-    """What both planes of a link in space need: a law, loads, values and places."""
+    """What both planes of a link in space need, and torsion where slices are thick: a law, loads, values and places."""
     stations, parts = link.parted, link.parted + 1
     turns = 2 * parts if link.spreads else parts
-    return 2 * (7 + 4 * stations + 3 * (2 + 2 * stations) + 4 * turns + 4 * parts + stations)
+    return (3 if link.thick else 2) * (7 + 4 * stations + 3 * (2 + 2 * stations) + 4 * turns + 4 * parts + stations)
 
 
 def matter_of(link: Along, length: Any, cells: Sequence[Sequence[Any]]) -> list[Any]:

@@ -62,7 +62,8 @@ DESIGNS_INLINE void designs_uniform(const casadi_real* matter, const casadi_real
 /* A link with a cell of density between each two breaks, and with what acts at stations. Its matter is its length and, a cell, the
    moments T0, T1, T2 of what is beyond it, and the density as a polynomial of the distance from the end that is nearer to the tip.
    loads holds station, n, f, m of each station. spread holds of each load along the link its width and where it ends, and then, for each of
-   so many directions, so many powers; the one that acts across is told. Where they begin and end are stations at which nothing acts. */
+   so many directions, so many powers; those that act along the axis and across it are told, and, where slices have rotary inertia, that
+   of the couple that bends, and whether it does so the other way round. Where they begin and end are stations at which nothing acts. */
 typedef struct {
   int cells, terms, stations;
   const DESIGNS_REAL* breaks;
@@ -70,6 +71,7 @@ typedef struct {
   int spreads, directions, across;
   const int* powers;
   const casadi_real* spread;
+  int axial, couple, back;
 } designs_link;
 
 DESIGNS_INLINE const casadi_real* designs_cell(const designs_link* link, int cell) {
@@ -107,7 +109,8 @@ static inline void designs_spread(const designs_link* link, casadi_real u, casad
   int s, j;
   for (s = 0; s < link->spreads; ++s) {
     const int many = link->powers[s];
-    const casadi_real *along = load + 2, *across = along + link->across*many;
+    const casadi_real *along = load + 2 + link->axial*many, *across = load + 2 + link->across*many;
+    const casadi_real* couple = load + 2 + link->couple*many;
     x = designs_on_link((load[1] - u)/load[0]);
     reach = l*load[0];
     lever = load[1] - load[0] - u;
@@ -118,6 +121,7 @@ static inline void designs_spread(const designs_link* link, casadi_real u, casad
       force[0] = force[0] + along[j]*share;
       force[1] = force[1] + across[j]*share;
       force[2] = force[2] + across[j]*(share*(reach*x*((DESIGNS_REAL) 1/(j + 2)) + lever));
+      if (link->couple) force[2] = link->back ? force[2] - couple[j]*share : force[2] + couple[j]*share;
       power = power*x;
     }
     load += 2 + link->directions*many;

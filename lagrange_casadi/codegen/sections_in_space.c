@@ -4,7 +4,7 @@
 
    value becomes, of the axial force, the shear forces along y and z, torsion, the bending moments about y and z, and the resultants of
    shear and bending in turn, the force at the base, at the tip, on both sides of each station, and where it turns between two stations:
-   torsion nowhere, a resultant at its two largest summits. place becomes the ratios of where they turn, in that order, and of the
+   torsion nowhere but where slices have rotary inertia, a resultant at its two largest summits. place becomes the ratios of where they turn, in that order, and of the
    stations. */
 
 /* The forces of one plane among those of space: which force it is there, -1 for none, and its sign. */
@@ -21,30 +21,39 @@ static inline void designs_along_in_space(const designs_link* link, const design
                                           casadi_real* room, casadi_real* value, casadi_real* place) {
   const int count = link->stations, parts = count + 1, many = 2 + 2*count, turns = link->spreads ? 2*parts : parts;
   const casadi_real* law = link->law;
-  casadi_real *values[2], *places[2], torsion, station, at_tip, seen, *from;
-  designs_link planes[2];
+  casadi_real *values[3], *places[3], torsion, station, at_tip, seen, *from;
+  designs_link planes[3];
   designs_between between;
   int k, s, j, bends;
-  for (k = 0; k < 2; ++k) {
+  for (k = 0; k < (link->couple ? 3 : 2); ++k) {
     casadi_real *own = room, *acting = room + 7;
     room += 7 + 4*count;
     values[k] = room;
     places[k] = room + 3*many + 2*turns + 2*parts;
     room += 3*many + 4*turns + 4*parts + count;
-    for (j = 0; j < 3; ++j) own[j] = law[j];
-    for (j = 0; j < 4; ++j) own[3 + j] = law[3 + 4*k + j];
-    if (k) own[6] = -own[6];
-    for (s = 0; s < count; ++s) {
-      const casadi_real* load = link->loads + 7*s;
-      acting[4*s] = load[0];
-      acting[4*s + 1] = load[1];
-      acting[4*s + 2] = load[2 + k];
-      acting[4*s + 3] = k ? -load[5] : load[6];
-    }
     planes[k] = *link;
     planes[k].law = own;
     planes[k].loads = acting;
-    planes[k].across = 1 + k;
+    if (k < 2) {
+      for (j = 0; j < 3; ++j) own[j] = law[j];
+      for (j = 0; j < 4; ++j) own[3 + j] = law[3 + 4*k + j];
+      if (k) own[6] = -own[6];
+      planes[k].across = 1 + k;
+      planes[k].couple = link->couple ? 5 - k : 0;
+      planes[k].back = k;
+    } else {
+      /* Torsion is looked at as an axial force, of couples about the axis. */
+      for (j = 0; j < 7; ++j) own[j] = j ? 0 : law[11];
+      planes[k].axial = planes[k].across = 3;
+      planes[k].couple = 0;
+    }
+    for (s = 0; s < count; ++s) {
+      const casadi_real* load = link->loads + 7*s;
+      acting[4*s] = load[0];
+      acting[4*s + 1] = k < 2 ? load[1] : load[4];
+      acting[4*s + 2] = k < 2 ? load[2 + k] : 0;
+      acting[4*s + 3] = k == 0 ? load[6] : k == 1 ? -load[5] : 0;
+    }
     if (link->spreads) {
       designs_along_loaded(planes + k, nodes[2], nodes[3], marks, values[k], places[k]);
     } else {
@@ -53,7 +62,8 @@ static inline void designs_along_in_space(const designs_link* link, const design
   }
   designs_of_plane(values[0], places[0], many, turns, 1, &value, &place);
   for (k = 0; k < 2; ++k) designs_of_plane(values[k] + many + turns, places[k] + turns, many, turns, 1, &value, &place);
-  for (s = -2; s < 2*count; ++s) {
+  if (link->couple) designs_of_plane(values[2], places[2], many, turns, 1, &value, &place);
+  for (s = -2; !link->couple && s < 2*count; ++s) {
     const casadi_real u = s == -2 ? 0 : s == -1 ? 1 : designs_on_link(link->loads[7*(s/2)]);
     torsion = law[11];
     for (j = 0; j < count; ++j) {

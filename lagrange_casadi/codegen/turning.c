@@ -64,14 +64,14 @@ static inline casadi_real designs_monotonic(const casadi_real* c, const casadi_r
   return lanes_less(0, there, x, nearer);
 }
 
-/* Loads along a link, per length, at a ratio in a part; along its axis or across. */
-static inline casadi_real designs_here(const designs_link* link, int across, casadi_real u, casadi_real middle) {
+/* Loads along a link, per length, at a ratio in a part, in one of their directions. */
+static inline casadi_real designs_here(const designs_link* link, int direction, casadi_real u, casadi_real middle) {
   const casadi_real* load = link->spread;
   casadi_real sum = 0, x, value;
   int s, j;
   for (s = 0; s < link->spreads; ++s) {
     const int many = link->powers[s];
-    const casadi_real* terms = load + 2 + across*many;
+    const casadi_real* terms = load + 2 + direction*many;
     x = (load[1] - u)/load[0];
     value = 0;
     for (j = many - 1; j >= 0; --j) value = value*x + terms[j];
@@ -89,7 +89,15 @@ static inline casadi_real designs_falling(const designs_link* link, int force, i
   int j;
   if (!link->spreads) return -(law[1] + law[2]*(l*u));
   for (j = link->terms - 1; j >= 0; --j) p = p*(link->breaks[cell + 1] - u) + density[j];
-  return -(p*(law[1] + law[2]*(l*u)) + l*designs_here(link, force ? link->across : 0, u, middle));
+  return -(p*(law[1] + law[2]*(l*u)) + l*designs_here(link, force ? link->across : link->axial, u, middle));
+}
+
+/* The slope of the bending moment of one plane: less its shear, and what the rotary inertia of slices does. */
+static inline casadi_real designs_bending(const designs_link* link, casadi_real shear, casadi_real u, casadi_real middle) {
+  casadi_real here;
+  if (!link->couple) return -shear;
+  here = designs_here(link, link->couple, u, middle);
+  return link->back ? here - shear : -here - shear;
 }
 
 /* The size of what is looked at. */
@@ -102,7 +110,7 @@ static inline casadi_real designs_looked_at(const designs_between* of, casadi_re
   return DESIGNS_ROOT(sum + force[of->force]*force[of->force]);
 }
 
-/* Its slope, or that of its square, but for a factor that is positive; that of a bending moment is less its shear. */
+/* Its slope, or that of its square, but for a factor that is positive. */
 static inline casadi_real designs_slope(const designs_between* of, int cell, casadi_real u) {
   const int bends = of->force == 2;
   casadi_real force[3], sum = 0;
@@ -110,8 +118,8 @@ static inline casadi_real designs_slope(const designs_between* of, int cell, cas
   if (of->many == 1 && !bends) return designs_falling(of->planes, of->force, cell, u, of->middle);
   for (k = 0; k < of->many; ++k) {
     designs_within(of->planes + k, u, of->middle, force);
-    if (of->many == 1) return -force[1];
-    sum = sum + force[of->force]*(bends ? -force[1] : designs_falling(of->planes + k, 1, cell, u, of->middle));
+    if (of->many == 1) return designs_bending(of->planes, force[1], u, of->middle);
+    sum = sum + force[of->force]*(bends ? designs_bending(of->planes + k, force[1], u, of->middle) : designs_falling(of->planes + k, 1, cell, u, of->middle));
   }
   return sum;
 }

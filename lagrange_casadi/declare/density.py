@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -27,12 +27,13 @@ class Density:
     """Mass along a link: on the i-th interval of ``breaks`` (ratios from 0 to 1) the polynomial sum_j cells[i][j] u^j.
 
     It is the mass per unit of the ratio [kg], or where ``per_length`` the mass per length [kg/m]. Coefficients are numbers or
-    expressions in parameters.
+    expressions in parameters. Where slices have rotary inertia, ``slices`` are the :class:`.Slices`.
     """
 
     breaks: tuple[float, ...]
     cells: tuple[tuple[Any, ...], ...]
     per_length: bool
+    slices: Slices | None = None
 
     @property
     def even(self) -> bool:
@@ -70,10 +71,42 @@ class Density:
                     found[k] = found[k] + shifted * (parts[j + k] / (j + k + 1))
         return found[0] * scale, found[1] * scale, found[2] * scale
 
+    def cell_at(self, u: float) -> tuple[Any, ...]:
+        """The coefficients that hold at a ratio between two breaks."""
+        return self.cells[int(np.searchsorted(self.breaks, u, side="right")) - 1]
+
     def at(self, number: Callable[[Any], float], length: float) -> NumericDensity:
         """The density at given parameters, per unit of the ratio."""
         scale = length if self.per_length else 1.0
         return NumericDensity(self.breaks, tuple(tuple(number(c) * scale for c in cell) for cell in self.cells))
+
+
+@dataclass(frozen=True, eq=False)
+class Slices:
+    """Second moments of mass per length [kg m] of a link's slices, on the axes of its cross-section: like densities along it.
+
+    They are the sums of y y, z z and y z over a slice; its moments of inertia per length are ``yy + zz`` about the link's axis,
+    ``zz`` about y and ``yy`` about z.
+    """
+
+    yy: Density
+    zz: Density
+    yz: Density
+
+    @property
+    def each(self) -> tuple[Density, Density, Density]:
+        """All three."""
+        return self.yy, self.zz, self.yz
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """All places between which each of them is a polynomial."""
+        return tuple(sorted({place for moment in self.each for place in moment.breaks}))
+
+    def whole(self, length: Any) -> tuple[Any, Any, Any]:
+        """Those of the whole link [kg m^2]."""
+        yy, zz, yz = (sum(moment.ends(length)[:2]) for moment in self.each)
+        return yy, zz, yz
 
 
 @dataclass(frozen=True)
@@ -142,6 +175,24 @@ def tabulated(ratios: Sequence[float], values: Sequence[float]) -> Density:
         slope = (v[i + 1] - v[i]) / (u[i + 1] - u[i])
         cells.append((v[i] - slope * u[i], slope))
     return Density(tuple(u), tuple(cells), per_length=True)
+
+
+def thick(density: Density, *, yy: Any, zz: Any, yz: Any = 0.0) -> Density:
+    """A density of slices that have rotary inertia, of a link in space, by second moments of mass per length [kg m].
+
+    ``yy``, ``zz`` and ``yz`` are the sums over a slice of y y, z z and y z times mass, on the axes of the link's cross-section: of
+    a homogeneous bar the density of its material times its area's second moments. Each is a number or an expression in parameters,
+    or is itself told along the link by a function of this module, whose values are then in kg m. A round bar of diameter d has
+    yy = zz = d^2/16 times its mass per length.
+
+    Raises :class:`DeclarationError` for what is no density.
+    """
+    if not isinstance(density, Density):
+        raise DeclarationError(f"density thick: expected a density of lagrange_casadi.density, got {density!r}")
+    moments = [moment if isinstance(moment, Density) else polynomial(moment) for moment in (yy, zz, yz)]
+    if any(not moment.per_length or moment.slices for moment in moments) or density.slices:
+        raise DeclarationError("density thick: second moments are numbers, or along the link by polynomial, tabulated or along")
+    return replace(density, slices=Slices(*moments))
 
 
 def along(curve: Curve) -> Density:

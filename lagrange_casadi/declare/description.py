@@ -20,6 +20,7 @@ Description = dict[str, Any]
 _PLACE = {"body": str, "x": float, "y": float}
 _VECTOR = [float, float, float]
 _MATRIX = [_VECTOR, _VECTOR, _VECTOR]
+_DENSITY = {"breaks": [float], "cells": [[float]]}
 
 
 def _shape(place: Any, centre: Any, gravity: Any, joint: Any, load: Any) -> dict[str, Any]:
@@ -32,7 +33,8 @@ def _shape(place: Any, centre: Any, gravity: Any, joint: Any, load: Any) -> dict
             str: (
                 {"length": None, "mass": float},
                 body | {"centre": centre},
-                body | {"density": {"breaks": [float], "cells": [[float]]}},
+                body | {"density": _DENSITY},
+                body | {"density": _DENSITY | {"slices": {"yy": _DENSITY, "zz": _DENSITY, "yz": _DENSITY}}},
             )
         },
         "joints": {str: {"kind": str, "parent": place, "child": place} | joint},
@@ -75,7 +77,19 @@ def shape_of(value: Any) -> dict[str, Any]:
 
 def density_of(body: Description) -> NumericDensity:
     """The density of a described link that has sections."""
-    return NumericDensity(tuple(body["density"]["breaks"]), tuple(tuple(cell) for cell in body["density"]["cells"]))
+    return _density(body["density"])
+
+
+def slices_of(body: Description) -> tuple[float, float, float]:
+    """The second moments yy, zz, yz of all slices of a described link [kg m^2]."""
+    slices = body["density"].get("slices")
+    if slices is None:
+        return 0.0, 0.0, 0.0
+    return _density(slices["yy"]).mass, _density(slices["zz"]).mass, _density(slices["yz"]).mass
+
+
+def _density(told: Description) -> NumericDensity:
+    return NumericDensity(tuple(told["breaks"]), tuple(tuple(cell) for cell in told["cells"]))
 
 
 def coordinates_of(description: Description) -> dict[str, str]:
@@ -186,12 +200,15 @@ def _described(
         if isinstance(body.mass, RigidMass):
             return {"length": length, "mass": number(body.mass.mass), "centre": centre(body.mass)}
         density = body.mass.at(number, length)
-        found = {
-            "length": length,
-            "mass": density.mass,
-            "density": {"breaks": list(density.breaks), "cells": [list(c) for c in density.cells]},
-        }
+        told = written(density)
+        if body.mass.slices is not None:
+            names = zip(("yy", "zz", "yz"), body.mass.slices.each, strict=True)
+            told["slices"] = {name: written(moment.at(number, length)) for name, moment in names}
+        found = {"length": length, "mass": density.mass, "density": told}
         return found if body.beam is None else found | {"beam": told_beam(body.beam, number)}
+
+    def written(density: NumericDensity) -> Description:
+        return {"breaks": list(density.breaks), "cells": [list(c) for c in density.cells]}
 
     def freedoms(joint: Joint) -> Description:
         if joint.turned is None:

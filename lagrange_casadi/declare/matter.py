@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from ..beams.beam import Beam
 from ..errors import DeclarationError
-from .density import Density, uniform
+from .density import Density, Slices, uniform
 from .parts import Expression, RigidMass
 
 
@@ -38,8 +39,13 @@ def matter_of(
     if density is not None:
         if not isinstance(density, Density):
             raise DeclarationError(f"{what}: expected a density of lagrange_casadi.density, got {density!r}")
-        cells = tuple(tuple(checked(f"{what}: density", c) for c in cell) for cell in density.cells)
-        return Density(density.breaks, cells, density.per_length)
+        if density.slices is not None and rigid is None:
+            raise DeclarationError(f"{what}: second moments of slices are for links in space; in a plane a link is slender")
+        own = _checked(density, f"{what}: density", checked)
+        if density.slices is None:
+            return own
+        moments = (_checked(moment, f"{what}: second moments", checked) for moment in density.slices.each)
+        return replace(own, slices=Slices(*moments))
     if centre is not None:
         if rigid is not None:
             place, moments = rigid(centre, inertia)
@@ -56,6 +62,11 @@ def beam_of(what: str, beam: Beam | None, checked: Callable[[str, Expression], E
     if not isinstance(beam, Beam):
         raise DeclarationError(f"{what}: expected a beam of lagrange_casadi.beams, got {beam!r}")
     return beam.mapped(lambda name, value: checked(f"{what}: {name} of its cross-section", value))
+
+
+def _checked(density: Density, what: str, checked: Callable[[str, Expression], Expression]) -> Density:
+    cells = tuple(tuple(checked(what, c) for c in cell) for cell in density.cells)
+    return Density(density.breaks, cells, density.per_length)
 
 
 def second_moments(inertia: Sequence[Sequence[Expression]]) -> list[list[Any]]:

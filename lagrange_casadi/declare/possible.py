@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -14,9 +15,9 @@ import numpy as np
 
 from ..arithmetic.compensated import Precision
 from ..errors import ParameterError
-from ..geometry.vectors import dot
+from ..geometry.vectors import dot, nil
 from ..system.numerals import readable
-from .density import Density
+from .density import Density, Slices
 from .directions import RIGHT, not_right
 from .ends import BEYOND, beyond_ends
 from .joints import Joint
@@ -111,7 +112,7 @@ def _numbers(mechanism: Mechanism) -> Iterator[tuple[str, list[Expression]]]:
     for body in mechanism.moving:
         matter = body.mass
         made = (
-            [c for cell in matter.cells for c in cell]
+            [c for of in (matter, *(matter.slices.each if matter.slices else ())) for cell in of.cells for c in cell]
             if isinstance(matter, Density)
             else [matter.mass, *matter.centre, *inertias(matter)]
             if isinstance(matter, RigidMass)
@@ -180,7 +181,8 @@ def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, 
         found.append(Demand(length, True, lambda n: f"{what}: length must be positive, got {readable(n(length))} m"))
         if isinstance(body.mass, Density):
             base, tip, _ = body.mass.ends(length)
-            return base + tip, [*found, *_of_density(what, body.mass, length, precision)]
+            slices = _of_slices(what, body.mass.slices, precision) if body.mass.slices else []
+            return base + tip, [*found, *_of_density(what, body.mass, length, precision), *slices]
     matter = body.mass
     mass = matter.mass if isinstance(matter, RigidMass) else matter
     assert not isinstance(mass, Density)
@@ -244,6 +246,31 @@ def _of_density(what: str, density: Density, length: Expression, precision: Prec
 
     sizes = [sum(ca.fabs(ca.SX(c)) for c in cell) for cell in density.cells]
     return [Demand(own + END[precision] * size, False, refusal) for (_, own), size in zip(places, sizes, strict=True)]
+
+
+def _of_slices(what: str, slices: Slices, precision: Precision) -> list[Demand]:
+    """That second moments of slices are those of some mass: neither yy, nor zz, nor yy zz - yz yz is negative anywhere."""
+
+    def refusal(_: Evaluator) -> str:
+        return f"{what}: no slice has these second moments: yy, zz and yy zz - yz yz must not be negative anywhere along the link"
+
+    found = []
+    for start, stop in itertools.pairwise(slices.breaks):
+        yy, zz, yz = (moment.cell_at((start + stop) / 2) for moment in slices.each)
+        product = [a - b for a, b in itertools.zip_longest(_product(yy, zz), _product(yz, yz), fillvalue=ca.SX(0))]
+        for cell in (yy, zz, product) if any(not nil(c) for c in yz) else (yy, zz):
+            size = sum(ca.fabs(ca.SX(c)) for c in cell)
+            found.append(Demand(lowest(cell, start, stop)[1] + END[precision] * size, False, refusal))
+    return found
+
+
+def _product(first: Sequence[Expression], second: Sequence[Expression]) -> list[Any]:
+    """The product of two polynomials."""
+    found = [ca.SX(0) for _ in range(len(first) + len(second) - 1)]
+    for j, a in enumerate(first):
+        for k, b in enumerate(second):
+            found[j + k] += a * b
+    return found
 
 
 def _some_mass(name: str, masses: list[Expression]) -> Demand:

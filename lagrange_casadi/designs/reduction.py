@@ -92,7 +92,8 @@ class KeptOutputs:
         along = tuple(_along(mechanism, link, at, table) for link in links)
         matter, positive, margins = _matter(graph.scene, links, along, rung.precision)
         columns = {column for columns in chosen.values() for column in columns}
-        columns |= {k for link in along for k in (*link.law, *(k for part in (*link.stations, *link.spreads) for k in part))}
+        rows = [row for link in along for row in (link.law, *link.stations, *link.spreads)]
+        columns |= {k for row in rows for k in row if k >= 0}
         sharpness = Sharpness.of(graph, sorted(columns))
         checks = _checks(graph, rung)
         doubted = {k: number for number, (k, kind, _) in enumerate(checks) if kind.startswith("OPEN")}
@@ -121,15 +122,15 @@ def _along(mechanism: Mechanism, link: Link, at: dict[Output, int], table: Table
     stations, spreads = stations_of(at, link.name), list[tuple[int, ...]]()
     marks: list[tuple[int, ...] | float] = []
     for name, powers in spreads_of(at, link.name).items():
-        load = mechanism.loads[name]
-        assert isinstance(load, LineLoad)
+        load = mechanism.loads.get(name)
         width, end = (at[Output("spread", link.name, member, name)] for member in ("width", "end"))
-        if not load.whole:
+        if isinstance(load, LineLoad) and not load.whole:
             marks += [(end, width), (end,)]
-        terms = (at[Output("spread", link.name, member, name, power)] for member in table.spread for power in range(powers))
+        directions = (*table.spread, *table.couples) if link.mass.slices else table.spread
+        terms = (at.get(Output("spread", link.name, member, name, power), -1) for member in directions for power in range(powers))
         spreads.append((width, end, *terms))
     if spreads:
-        marks += link.mass.jumps
+        marks += sorted({*link.mass.jumps, *(link.mass.slices.breaks[1:-1] if link.mass.slices else ())})
     return Along(
         tuple(at[Output("law", link.name, member)] for member in table.law),
         tuple(tuple(at[Output("station", link.name, member, station)] for member in table.place_first) for station in stations),
@@ -137,6 +138,7 @@ def _along(mechanism: Mechanism, link: Link, at: dict[Output, int], table: Table
         max(len(cell) for cell in link.mass.cells),
         tuple(spreads),
         tuple(marks),
+        link.mass.slices is not None,
     )
 
 

@@ -80,7 +80,7 @@ def bars_of(mechanism: Mechanism, driven: Collection[str]) -> tuple[Bar, ...]:
     told = {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
     for link in mechanism.links.values():
         joints = ends.get(link, [])
-        if len(joints) != 2 or not isinstance(link.mass, Density):
+        if len(joints) != 2 or not isinstance(link.mass, Density) or link.mass.slices is not None:
             continue
         points = [joint.on(link) for joint in joints]
         others = [body for joint in joints for body in joint.bodies if body is not link]

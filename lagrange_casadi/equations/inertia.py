@@ -2,7 +2,7 @@
 
 In space a rigid body's energy is that of its centre and of its axes e: E = m v^2 / 2 + sum J_ij e_i' . e_j' / 2 with the second
 moments J = tr(I) / 2 - I of its mass about the centre. The rates of the axes are rates of places, as a Lagrange system needs them;
-the angular velocity is not. A slender link has but one such axis.
+the angular velocity is not. A slender link has but one such axis; one whose slices have rotary inertia has the others too.
 """
 
 from __future__ import annotations
@@ -30,7 +30,10 @@ def kinetic_energy(body: Link | PointMass, frame: Frame, velocities: Velocities,
         return _rigid(body.mass, frame, velocities, space=space, spun=spun)
     base, tip, inertia = body.mass.ends(body.length)
     points: list[tuple[Any, Vector]] = [(base, ZERO), (tip, (body.length, 0.0, 0.0))]
-    return _slender(points, inertia, frame, velocities) if space else _flat(points, inertia, frame, velocities, spun=spun)
+    if not space:
+        return _flat(points, inertia, frame, velocities, spun=spun)
+    energy = _slender(points, inertia, frame, velocities)
+    return energy if body.mass.slices is None else energy + _turning(body.mass.slices.whole(body.length), frame, velocities)
 
 
 def _rigid(matter: Any, frame: Frame, velocities: Velocities, *, space: bool, spun: bool) -> Any:
@@ -67,6 +70,13 @@ def _slender(points: list[tuple[Any, Vector]], inertia: Any, frame: Frame, veloc
         first, second = first + mass * arm, second + mass * (arm * arm)
     total = sum((mass for mass, _ in points), ca.SX(0))
     return total * ca.sumsqr(base) / 2 + first * ca.dot(base, axis) + second * ca.sumsqr(axis) / 2
+
+
+def _turning(moments: tuple[Any, Any, Any], frame: Frame, velocities: Velocities) -> Any:
+    """The energy of slices that turn, by their second moments yy, zz, yz and the rates of the axes in their plane."""
+    y, z = (velocities.vector(_direction(frame.shortest, axis)) for axis in AXES[1:])
+    yy, zz, yz = moments
+    return yy * ca.sumsqr(y) / 2 + zz * ca.sumsqr(z) / 2 + (0 if nil(yz) else yz * ca.dot(y, z))
 
 
 def _direction(frame: Frame, axis: Vector) -> tuple[Vector, Vector]:

@@ -39,7 +39,7 @@ from .joints import borne, reaction, slide
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
 from .multibody import Multibody, column
-from .spreads import spreads
+from .spreads import rotary, spreads
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +184,8 @@ def _section_law(multibody: Multibody, name: str, found: Mapping[str, Action], d
     for plane in above:
         law += [*plane, about[1], about[0]]
     own = {Output("law", name, member): ca.SX(value) for member, value in zip(law_members(space), law, strict=True)}
-    return own | stations | spreads(multibody, link)
+    frame = multibody.felt[name].along_axis()
+    return own | stations | spreads(multibody, link) | rotary(multibody, link, frame.rate, frame.angular)
 
 
 def _by_plane(acting: Action, space: bool) -> tuple[Any, ...]:

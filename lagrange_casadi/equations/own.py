@@ -68,7 +68,9 @@ def _section(link: Link, force: str, ratio: Any, found: Mapping[Column, Any], ta
             load = load + across * (terms.arm * (l * (place - ratio)))
         seen = ca.logic_or(ca.SX(ratio) < place, ca.logic_and(ca.SX(ratio) >= 1, place >= 1))
         total += ca.SX(load) if seen.is_one() else ca.SX(0) if seen.is_zero() else ca.if_else(seen, load, 0)
-    if terms.spread:
-        for name, powers in spreads_of((key for key in found if isinstance(key, Output)), link.name).items():
+    for name, powers in spreads_of((key for key in found if isinstance(key, Output)), link.name).items():
+        if Output("spread", link.name, terms.spread, name, 0) in found:
             total += felt(found, link, name, powers, terms.spread, ratio, arm=bool(terms.arm)) * (terms.arm or 1)
+        if Output("spread", link.name, terms.couple, name, 0) in found:
+            total += felt(found, link, name, powers, terms.couple, ratio, arm=False)
     return total

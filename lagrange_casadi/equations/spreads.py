@@ -12,12 +12,16 @@ Each is a product, so nothing cancels: not where the load ends, and not of a sho
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+import itertools
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import casadi as ca
 
-from ..declare.parts import LineLoad, Link
+from ..declare.density import Density
+from ..declare.mechanism import Mechanism
+from ..declare.parts import LineLoad, Link, Vector
 from ..quantities import Output
 from ..tables import table_of
 from .checks import Column
@@ -39,6 +43,57 @@ def spreads(multibody: Multibody, link: Link) -> dict[Column, Any]:
             for member, value in zip(directions, components, strict=False):
                 found[Output("spread", link.name, member, load.name, power)] = ca.SX(value)
     return found
+
+
+ROTARY = "rotary"
+"""By what the rotary inertia of slices is known among the loads along a link, unless something is called so."""
+
+
+def rotary(multibody: Multibody, link: Link, rate: Vector, angular: Vector) -> dict[Column, Any]:
+    """The rotary inertia of a link's slices as couples along it, between each two places at which it may jump (d'Alembert).
+
+    ``rate`` and ``angular`` are the link's angular velocity w and its change a, on its axes. Of second moments yy, zz, yz per
+    length it is, per length,
+
+        c_x = -yy (a_x + w_y w_z) + zz (w_y w_z - a_x) + yz (w_y^2 - w_z^2),
+        c_y = -yz (w_x w_y - a_z) - zz (w_x w_z + a_y),    c_z = yy (w_x w_y - a_z) + yz (w_x w_z + a_y).
+    """
+    assert isinstance(link.mass, Density)
+    slices = link.mass.slices
+    if slices is None:
+        return {}
+    (x, y, z), (ax, ay, az) = rate, angular
+    yz, xy, xz = y * z, x * y - az, x * z + ay
+    found: dict[Column, Any] = {}
+    names = _unnamed(multibody.mechanism, ROTARY)
+    for name, (start, stop) in zip(names, itertools.pairwise(slices.breaks), strict=False):
+        width = stop - start
+        found[Output("spread", link.name, "width", name)] = ca.SX(width)
+        found[Output("spread", link.name, "end", name)] = ca.SX(stop)
+        cells = (_from(moment.cell_at((start + stop) / 2), stop, width) for moment in slices.each)
+        for power, (own_yy, own_zz, own_yz) in enumerate(itertools.zip_longest(*cells, fillvalue=0.0)):
+            couples = (
+                own_zz * (yz - ax) - own_yy * (yz + ax) + own_yz * (y * y - z * z),
+                -own_yz * xy - own_zz * xz,
+                own_yy * xy + own_yz * xz,
+            )
+            for member, couple in zip(table_of(True).couples, couples, strict=True):
+                found[Output("spread", link.name, member, name, power)] = ca.SX(couple)
+    return found
+
+
+def _from(cell: Sequence[Any], end: float, width: float) -> list[Any]:
+    """A polynomial of u = end - width s as one of s."""
+    return [
+        (-width) ** j * sum(c * math.comb(n, j) * end ** (n - j) for n, c in enumerate(cell) if n >= j) for j in range(len(cell))
+    ]
+
+
+def _unnamed(mechanism: Mechanism, word: str) -> Iterator[str]:
+    """Names that nothing that acts has: a word, and the word with numbers."""
+    taken = {*mechanism.joints, *mechanism.loads, *mechanism.constraints, *mechanism.rows}
+    names = itertools.chain([word], (f"{word}_{k}" for k in itertools.count(2)))
+    return (name for name in names if name not in taken)
 
 
 def spreads_of(outputs: Iterable[Output], link: str) -> dict[str, int]:

@@ -25,13 +25,17 @@ LAW_IN_SPACE = """ Those of a section law are for _section, which is all you nee
 LOADED = """
    And then loads along the link, of which a section feels what acts beyond it: per length the sums of qn0, qn1, qn2, ... and of
    qf0, qf1, qf2, ... (in space qfy0, ... and qfz0, ...) times 1, s, s^2, ..., where s = (end - xi/l)/width is between 0 and 1."""
+THICK = """
+   And then the rotary inertia of slices, couples along the link: per length the sums of cx0, cx1, ..., of cy0, ... and of cz0, ...
+   times 1, s, ..., of which torsion, bending_y and bending_z feel what acts beyond the section."""
 
 
 def law_in_words(c: Contract) -> str:
     """What the members of a section law mean; nothing where there is none."""
     if not c.links:
         return ""
-    return (LAW if c.table is PLANE else LAW_IN_SPACE) + (LOADED if any(link.spreads for link in c.links) else "")
+    law = LAW if c.table is PLANE else LAW_IN_SPACE
+    return law + (LOADED if _acts(c, c.table.spread) else "") + (THICK if _acts(c, c.table.couples) else "")
 
 
 def functions(c: Contract, program: Program, number: Callable[[float], str], root: str) -> str:
@@ -83,7 +87,8 @@ def _spreads(c: Contract, words: dict[str, str]) -> dict[str, str]:
     many = max(len(link.spreads) for link in c.links)
     if not many:
         return {"declared": "", "spread": ""}
-    room = max(sum(2 + len(c.table.spread) * powers for powers in link.spreads.values()) for link in c.links)
+    directions = _directions(c)
+    room = max(sum(2 + len(directions) * powers for powers in link.spreads.values()) for link in c.links)
     declared = f"""
   casadi_real spread[{room}], reach, x, lever, power, share, turning;
   const casadi_real* along;
@@ -92,11 +97,24 @@ def _spreads(c: Contract, words: dict[str, str]) -> dict[str, str]:
     for force, terms in c.table.sections.items():
         if terms.spread:
             sign, what = "-" if terms.arm < 0 else "+", "turning" if terms.arm else "share"
-            added.append(f"      {force} = {force} {sign} along[{c.table.spread.index(terms.spread)}]*{what};")
+            added.append(f"      {force} = {force} {sign} along[{directions.index(terms.spread)}]*{what};")
+        if terms.couple in directions:
+            added.append(f"      {force} = {force} + along[{directions.index(terms.couple)}]*share;")
     return {
         "declared": declared,
-        "spread": template("spreads.c", **words, added="\n".join(added), directions=len(c.table.spread)),
+        "spread": template("spreads.c", **words, added="\n".join(added), directions=len(directions)),
     }
+
+
+def _acts(c: Contract, members: tuple[str, ...]) -> bool:
+    """Whether something along some link has one of these members."""
+    outputs = (Output.of(m.source) for m in c.outputs)
+    return any(output.group == "spread" and output.member in members for output in outputs)
+
+
+def _directions(c: Contract) -> tuple[str, ...]:
+    """The members that what acts along links may have for each power."""
+    return (*c.table.spread, *(c.table.couples if _acts(c, c.table.couples) else ()))
 
 
 def _spread_on(c: Contract, link: LinkContract, names: Mapping[Output, str]) -> list[str]:
@@ -106,8 +124,9 @@ def _spread_on(c: Contract, link: LinkContract, names: Mapping[Output, str]) -> 
     for k, (load, powers) in enumerate(link.spreads.items()):
         rows.append(f"    powers[{k}] = {powers};")
         outputs += [Output("spread", link.name, member, load) for member in ("width", "end")]
-        outputs += [Output("spread", link.name, member, load, power) for power in range(powers) for member in c.table.spread]
-    return rows + [f"    spread[{i}] = outputs->{names[output]};" for i, output in enumerate(outputs)]
+        outputs += [Output("spread", link.name, member, load, power) for power in range(powers) for member in _directions(c)]
+    values = (f"outputs->{names[output]}" if output in names else "0" for output in outputs)
+    return rows + [f"    spread[{i}] = {value};" for i, value in enumerate(values)]
 
 
 def in_words(table: Table) -> str:

@@ -64,8 +64,8 @@ def fill(
 ) -> None:
     """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what acts at stations.
 
-    The rows of ``basis`` are one, three, four or more, and ``columns`` as many; ``u`` are the ratios. With two ``planes`` there are
-    as many columns for each, one plane's after the other's, as loads are, and ``out`` is the size of both sums. Raises
+    The rows of ``basis`` are one or more, and ``columns`` as many; ``u`` are the ratios. With two ``planes`` there are as many
+    columns for each, one plane's after the other's, as loads are, and ``out`` is the size of both sums. Raises
     :class:`DeclarationError` for an ``out`` of another shape.
     """
     if out.shape != (columns[0].size, u.size):

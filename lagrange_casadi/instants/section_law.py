@@ -21,6 +21,7 @@ from ..quantities import Output
 from ..system.room import cores, require
 from ..tables import PLANE, SPACE, Table
 from . import grids
+from .basis import Basis, by_force
 from .sizes import growth_of_size, size_of, slope_of_size
 from .spread_loads import SpreadLoad
 from .station_loads import AnyStationLoad, StationLoad
@@ -32,15 +33,6 @@ Side = Literal["base", "tip"]
 _SIDES: tuple[Side, ...] = ("tip", "base")
 
 _BLOCK = 1 << 15
-
-
-@dataclass(frozen=True, eq=False)
-class Basis:
-    """Ratios ``u`` along a link, and there the functions that its forces are combined of: a row each, of shape (terms, u...)."""
-
-    u: Array
-    force: Array
-    bending: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,14 +59,7 @@ class SectionLaw:
 
     def basis(self, xi: Array) -> Basis:
         """The functions along the link at ratios ``xi`` of any shape; they serve every force, and the law at any instants."""
-        xi = np.asarray(xi, dtype=float)
-        t0, t1, t2 = self.density.tails(xi)
-        l, force = self.length, self._force_rows(xi, t0, t1)
-        bending = [np.ones_like(t0), l * (1.0 - xi), l * t1, l * l * (xi * t1 + t2)]
-        for spread in self.spreads:
-            for rows, more in zip((force, bending), spread.rows(xi, l), strict=True):
-                rows += more
-        return Basis(xi, np.stack(force), np.stack(bending))
+        return Basis.of(np.asarray(xi, dtype=float), self.length, self.density, self.spreads)
 
     def on_grid(self, force: str, xi: Array | Basis, out: Array | None = None, threads: int | None = None) -> Array:
         """A force at every instant and every ratio ``xi``, of shape (t, xi), in ``out`` where given; at a station, on its tip side.
@@ -144,6 +129,7 @@ class SectionLaw:
             terms = self.table.sections[force]
             for spread, moving in zip(self.spreads, changes.spreads, strict=True):
                 gaps = gaps + (terms.arm or 1) * spread.moved(terms.spread, moving, u, self.length, arm=bool(terms.arm))
+                gaps = gaps + spread.moved(terms.couple, moving, u, self.length, arm=False)
             gaps, sizes = (np.repeat(values[..., None], len(_SIDES) if self.loads else 1, axis=-1) for values in (gaps, sizes))
             for load, change, there in zip(self.loads, changes.loads, seen, strict=True):
                 station, constant, slope = (values[:, None] for values in self._acting(force, load))
@@ -166,19 +152,28 @@ class SectionLaw:
         if len(parts := self._parts(force)) > 1:
             return slope_of_size([self.at(part, u, side) for part in parts], [self.along(part, u, side) for part in parts])
         terms = self.table.sections[force]
-        if terms.arm:
-            return np.asarray(-terms.arm * self.length * self.at(terms.shear, u, side))
-        if len(terms.coefficients) == 1:
-            return np.zeros(u.shape)
         nudge = 1e-12 if side == "tip" else -1e-12
+        if terms.arm:
+            bent = terms.arm * self.at(terms.shear, u, side) + self._turned(force, u, u + nudge)
+            return np.asarray(-self.length * bent)
         return self._falling(force, u, u + nudge)
 
     def _falling(self, force: str, u: Array, middle: Array) -> Array:
         """The derivative of a force that has no arm, where loads along the link act that act at the ``middle`` of its part."""
         terms = self.table.sections[force]
+        if len(terms.coefficients) == 1:
+            return np.asarray(-self.length * self._turned(force, u, middle))
         first, second = (_column(self.coefficients[name], u) for name in terms.coefficients[1:])
         slope = -self.density.at(u) * (first + self.length * u * second)
         return np.asarray(slope - sum(self.length * spread.here(terms.spread, u, middle) for spread in self.spreads))
+
+    def _turned(self, force: str, u: Array, middle: Array) -> Array:
+        """The couple per length that the rotary inertia of slices puts into a moment."""
+        couple, found = self.table.sections[force].couple, np.zeros(u.shape)
+        for spread in self.spreads:
+            if couple in spread.terms:
+                found = found + spread.here(couple, u, middle)
+        return found
 
     def rate(self, force: str, rates: SectionLaw, xi: Any, side: Side = "tip") -> Array:
         """The time derivative of a force at ratios of shape (t, ...) that stand still, or, at a station, move with it.
@@ -209,6 +204,7 @@ class SectionLaw:
         size = sum(np.abs(column)[:, None] * np.abs(row) for column, row in zip(columns, rows, strict=True))
         for spread in self.spreads:
             size = size + spread.bound(self.table.sections[force].spread, self.length, arm=bool(self.table.sections[force].arm))
+            size = size + spread.bound(self.table.sections[force].couple, self.length, arm=False)
         for load in self.loads:
             _, constant, slope = self._acting(force, load)
             size = size + (np.abs(constant) + np.abs(slope))[:, None]
@@ -275,7 +271,7 @@ class SectionLaw:
         parts = self._parts(force)
         if len(parts) == 1 and not self.spreads:
             found = self._turning(force, within, low, high)
-        elif force in self.table.sections and len(self.table.sections[force].coefficients) == 1:
+        elif force in self.table.sections and len(self.table.sections[force].coefficients) == 1 and not self._thick:
             found = []
         else:
             turns = self._turns_of_size(parts, within, low, high)
@@ -297,15 +293,19 @@ class SectionLaw:
         acting = [self._acting(part, load) for part in parts for load in self.loads]
         return [column for columns, _ in terms for column in columns], terms[0][1], acting, len(parts)
 
+    @property
+    def _thick(self) -> bool:
+        """Whether slices have rotary inertia."""
+        return any(couple in spread.terms for spread in self.spreads for couple in self.table.couples)
+
     def _terms(self, force: str, basis: Basis) -> tuple[list[Array], Array]:
         terms = self.table.sections[force]
         columns = [self.coefficients[name] for name in terms.coefficients]
+        if self._thick:
+            return basis.of_thick(terms, columns, self.spreads)
         if terms.spread:
             columns += [column for spread in self.spreads for column in spread.terms[terms.spread]]
-        if not terms.arm:
-            return columns, basis.force[: len(columns)]
-        # The two planes of bending are of the same functions along the link.
-        return columns if terms.arm > 0 else [*columns[:1], *(-column for column in columns[1:])], basis.bending
+        return basis.of_force(terms, columns)
 
     def _smooth(self, force: str, u: Array) -> Array:
         terms = self.table.sections[force]
@@ -314,12 +314,8 @@ class SectionLaw:
             return np.asarray(sum(_column(column, u) * row for column, row in zip(columns, rows, strict=True)))
         # The whole basis takes one moment more of the matter.
         plain = [self.coefficients[name] for name in terms.coefficients]
-        matter = self._force_rows(u, *self.density.tails(u, 2)) if len(plain) > 1 else [np.ones_like(u)]
+        matter = by_force(u, self.length, *self.density.tails(u, 2)) if len(plain) > 1 else [np.ones_like(u)]
         return np.asarray(sum(_column(column, u) * row for column, row in zip(plain, matter, strict=True)))
-
-    def _force_rows(self, u: Array, t0: Array, t1: Array) -> list[Array]:
-        """The rows of a basis for forces, by the moments of the matter beyond."""
-        return [np.ones_like(t0), t0, self.length * (u * t0 + t1)]
 
     def _acting(self, force: str, load: AnyStationLoad) -> grids.Load:
         terms = self.table.sections[force]
@@ -360,8 +356,10 @@ class SectionLaw:
 
         def slope(part: str, u: Array) -> Array:
             terms = self.table.sections[part]
-            if bends:
+            if bends and not self._thick:
                 return -terms.arm * within(terms.shear, u)
+            if bends:
+                return -terms.arm * within(terms.shear, u) - self._turned(part, u, middle)
             if self.spreads:
                 return self._falling(part, u, middle)
             first, second = (_column(self.coefficients[name], u) for name in terms.coefficients[1:])

@@ -16,7 +16,7 @@ class SpreadLoad:
     """A load along a link up to ``end``, a ratio xi/l, on ``width`` of the link, both (t,) and the same at all instants.
 
     ``terms`` are by direction, ``qn`` and ``qf``, in space ``qn``, ``qfy``, ``qfz``: the coefficients [N/m] of rising powers of
-    (end - xi/l)/width, each (t,).
+    (end - xi/l)/width, each (t,). What the rotary inertia of slices does is one too, of couples ``cx``, ``cy``, ``cz`` [N].
     """
 
     name: str
@@ -100,7 +100,7 @@ class SpreadLoad:
         width, end = (values.reshape(-1, *ahead) for values in (self.width, self.end))
         x = (end - u) / width
         value = np.zeros_like(u)
-        for coefficient in reversed(self.terms[direction]):
+        for coefficient in reversed(self.terms.get(direction, ())):
             value = value * x + coefficient.reshape(-1, *ahead)
         middle = middle.reshape(middle.shape + (1,) * (u.ndim - middle.ndim))
         return np.where((end - width < middle) & (middle < end), value, 0.0)

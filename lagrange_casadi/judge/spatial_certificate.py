@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.description import Description, density_of, drives_of, measured_of
+from ..declare.description import Description, density_of, drives_of, measured_of, slices_of
 from ..instants.solution import Solution
 from ..quantities import Output, force_members
 from . import digits
@@ -104,7 +104,9 @@ def _matter(body: Description) -> _Matter:
     _, first, second = (float(tail[0]) for tail in density_of(body).tails(np.zeros(1)))
     middle = first / mass
     across = (second - first * middle) * length**2
-    return mass, np.array([middle * length, 0.0, 0.0]), np.diag([0.0, across, across])
+    yy, zz, yz = slices_of(body)
+    inertia = np.array([[yy + zz, 0.0, 0.0], [0.0, across + zz, -yz], [0.0, -yz, across + yy]])
+    return mass, np.array([middle * length, 0.0, 0.0]), inertia
 
 
 def _closure(reported: Reported, bodies: Mapping[str, Moving], equations: Sequence[Written]) -> Array:

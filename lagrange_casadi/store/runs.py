@@ -35,11 +35,11 @@ from .scales import LARGE, Scales
 from .untrusted import check_chunks, check_dataset, check_links, parsed, shown, told_as
 
 SCHEMA = "lagrange-casadi"
-SCHEMA_VERSION = 5
+SCHEMA_VERSION = 6
 """Files of version 1 have no seal. Those of version 2 are not over a drive's coordinate, those of 3 of planar mechanisms alone, and
-those of 4 have no loads along links; all three are still written."""
+those of 4 have no loads along links, and those of 5 no rotary inertia of slices; all four are still written."""
 
-_WITHOUT_OVER, _PLANAR, _AT_POINTS = 2, 3, 4
+_WITHOUT_OVER, _PLANAR, _AT_POINTS, _LOADED = 2, 3, 4, 5
 
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
@@ -262,8 +262,9 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
 
 def _version(solution: Solution) -> int:
     """The first version of the schema that has all of a solution."""
-    if any(output.group == "spread" for output in solution.outputs):
-        return SCHEMA_VERSION
+    along = {output.member for output in solution.outputs if output.group == "spread"}
+    if along:
+        return SCHEMA_VERSION if along & {*solution.table.couples} else _LOADED
     return _AT_POINTS if solution.table is SPACE else _PLANAR if solution.over else _WITHOUT_OVER
 
 
