@@ -2,16 +2,18 @@
 
 The unknowns are six a joint: what the parent does to the child, ground axes, its moment about the child's point. A coordinate
 without an effort passes no power: one more equation each. The effort of another is its power for a unit rate, and what that
-effort does is taken out of the reaction. A coupling is one more unknown: its multiplier acts on its coordinates as efforts do.
+effort does is taken out of the reaction. A coupling is one more unknown: its multiplier acts on its coordinates as efforts do. So
+does that of a non-holonomic constraint, and on points as forces; the motion is given, and looked at whether it fulfils it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from spatial_algebra import Factored, cross, identity, skew, vector
+from spatial_algebra import Factored, InconsistentError, cross, identity, skew, vector
 from spatial_bodies import GROUND, Joint, Mechanism, Spread
 from spatial_motion import Motion
 from spread import weights
@@ -41,8 +43,17 @@ def shares(arithmetic, spread, pose, low, high) -> list[Acting]:
 
 
 @dataclass(frozen=True)
+class Tie:
+    """What a unit of a multiplier does: efforts by (joint, index), and forces at places, each (body, place, force)."""
+
+    name: str
+    terms: dict
+    forces: list
+
+
+@dataclass(frozen=True)
 class Wrenches:
-    """What all joints pass, ``found`` six numbers each, and multipliers by coupling; ``null`` (in doubles) varies them at will."""
+    """What all joints pass, ``found`` six numbers each, and multipliers by tie; ``null`` (in doubles) varies them at will."""
 
     found: dict[str, Any]
     null: list[dict[str, Any]]
@@ -62,6 +73,21 @@ class Balance:
     def active(self) -> set:
         """The coordinates that pass power."""
         return self.pushed | self.motion.coupled
+
+    @cached_property
+    def ties(self) -> list[Tie]:
+        """Couplings and rows. Raises :class:`spatial_algebra.InconsistentError` where the motion does not fulfil a row."""
+        a = self.motion.arithmetic
+        found = [Tie(c.name, {key: a.number(x) for key, x in c.terms.items()}, []) for c in self.mechanism.couplings]
+        for row in self.mechanism.rows:
+            terms, directions = row.of(a, {key: self.values[key][0] for key in row.keys})
+            points = [(body, vector(a, point), way) for (body, point), way in directions.items()]
+            parts = [x * self.values[key][1] for key, x in terms.items()]
+            parts += [x * v for body, point, way in points for x, v in zip(way, self.poses[body].velocity(point), strict=True)]
+            if abs(sum(parts)) > 1000 * a.tolerance * max(map(abs, parts)):
+                raise InconsistentError(f"the motion does not fulfil '{row.name}'")
+            found.append(Tie(row.name, terms, [(body, self.poses[body].at(point), a.array(way)) for body, point, way in points]))
+        return found
 
     @property
     def mechanism(self) -> Mechanism:
@@ -115,6 +141,8 @@ class Balance:
             force, moment = wrenches[joint.name][:3], wrenches[joint.name][3:]
             at = self.point(joint)
             found += [Acting(joint.child, at, force, moment), Acting(joint.parent, at, -force, -moment)]
+        for tie in self.ties:
+            found += [Acting(body, place, force * wrenches[tie.name], force * 0) for body, place, force in tie.forces]
         return [one for one in found if one.body != GROUND]
 
     def inertia(self, body):
@@ -128,11 +156,10 @@ class Balance:
     def solve(self) -> Wrenches:
         """The wrenches of all joints. Raises :class:`spatial_algebra.InconsistentError` where no forces balance the bodies."""
         arithmetic, joints, bodies = self.motion.arithmetic, self.mechanism.joints, self.mechanism.bodies
-        couplings = self.mechanism.couplings
         nought, size = arithmetic.number(0), self.mechanism.size
         needs = {b.name: self.inertia(b) for b in bodies}
         row = {b.name: 6 * i for i, b in enumerate(bodies)}
-        width = 6 * len(joints) + len(couplings)
+        width = 6 * len(joints) + len(self.ties)
         matrix = arithmetic.zeros(6 * len(bodies), width) + nought
         right = np.concatenate([x for b in bodies for x in needs[b.name][:2]])
         for i, joint in enumerate(joints):
@@ -142,6 +169,10 @@ class Balance:
                     block[:3, :3] += identity(arithmetic) * sign
                     block[3:, 3:] += identity(arithmetic) * sign
                     block[3:, :3] += skew(self.point(joint) - needs[name][2]) * sign
+        for c, tie in enumerate(self.ties, 6 * len(joints)):
+            for name, place, force in tie.forces:
+                matrix[row[name] : row[name] + 3, c] += force
+                matrix[row[name] + 3 : row[name] + 6, c] += cross(place - needs[name][2], force)
         for one in self.given():
             r = row[one.body]
             right[r : r + 3] -= one.force
@@ -152,19 +183,19 @@ class Balance:
                 if (joint.name, k) not in self.pushed:
                     line = arithmetic.zeros(width) + nought
                     line[6 * i : 6 * i + 3], line[6 * i + 3 : 6 * i + 6] = v, w
-                    for c, coupling in enumerate(couplings):
-                        line[6 * len(joints) + c] = -arithmetic.number(coupling.terms.get((joint.name, k), 0))
+                    for c, tie in enumerate(self.ties, 6 * len(joints)):
+                        line[c] = -tie.terms.get((joint.name, k), nought)
                     powers.append(line)
                     units.append(size if any(w) else 1.0)
         matrix = np.concatenate([matrix, *(line[None] for line in powers)])
         right = np.concatenate([right, arithmetic.zeros(len(powers)) + nought])
-        columns = np.array(([1.0] * 3 + [size] * 3) * len(joints) + [size] * len(couplings))
+        columns = np.array(([1.0] * 3 + [size] * 3) * len(joints) + [size] * len(self.ties))
         rows = np.array(([1.0] * 3 + [size] * 3) * len(bodies) + units)
         factored = Factored.of(matrix, rows, columns)
         found = factored.solve(arithmetic, right, "the spatial oracle's forces do not balance its bodies")
 
         def named(column):
-            multipliers = {coupling.name: column[6 * len(joints) + c] for c, coupling in enumerate(couplings)}
+            multipliers = {tie.name: column[c] for c, tie in enumerate(self.ties, 6 * len(joints))}
             return {j.name: column[6 * i : 6 * i + 6] for i, j in enumerate(joints)} | multipliers
 
         return Wrenches(named(found), [named(columns * column) for column in factored.null.T], factored.vague)
@@ -179,9 +210,8 @@ class Balance:
                 continue
             power = wrench[:3] @ v + wrench[3:] @ w
             if (joint.name, k) in self.pushed:
-                arithmetic, key = self.motion.arithmetic, (joint.name, k)
-                coupled = [arithmetic.number(c.terms.get(key, 0)) * wrenches[c.name] for c in self.mechanism.couplings]
-                efforts[k] = power - sum(coupled, arithmetic.number(0))
+                coupled = [tie.terms.get((joint.name, k), power * 0) * wrenches[tie.name] for tie in self.ties]
+                efforts[k] = power - sum(coupled, power * 0)
             if k not in joint.turning:
                 force = force - v * power
             elif len(joint.turning) < 3:

@@ -237,8 +237,22 @@ class Coupling:
 
 
 @dataclass(frozen=True)
+class Row:
+    """A non-holonomic constraint: coefficients times rates of coordinates, and directions times velocities of points, are nothing.
+
+    ``of(arithmetic, q)`` tells coefficients by (joint, index), and directions in ground axes by (body, point); ``q`` are the
+    coordinates of ``keys``, all that it is written in. No effort is at the coordinate that it ``replaces``.
+    """
+
+    name: str
+    keys: Sequence
+    of: Callable[[Any, dict], tuple[dict, dict]]
+    replaces: tuple
+
+
+@dataclass(frozen=True)
 class Mechanism:
-    """Bodies, joints, gravity (m/s^2, ground axes), what acts, and what couples coordinates."""
+    """Bodies, joints, gravity (m/s^2, ground axes), what acts, and what couples coordinates and rates."""
 
     bodies: Sequence[Rigid | Rod]
     joints: Sequence[Joint]
@@ -247,6 +261,7 @@ class Mechanism:
     springs: Sequence[Spring] = field(default_factory=tuple)
     couplings: Sequence[Coupling] = field(default_factory=tuple)
     spreads: Sequence[Spread] = field(default_factory=tuple)
+    rows: Sequence[Row] = field(default_factory=tuple)
 
     def __post_init__(self) -> None:
         names = [b.name for b in self.bodies] + [GROUND]

@@ -64,8 +64,10 @@ def declared(drawn: Drawn, t: float = 0.0, **options) -> Scene:
     for k, spring in enumerate(one.springs):
         ends = (at(body, point) for body, point in spring.ends)
         m.spring(f"spring{k}", *ends, stiffness=spring.stiffness, length=spring.free, damping=spring.damping)
+    for row in one.rows:
+        m.nonholonomic(row.name, _rates(m, one, row, parts), replaces=m.joints[row.replaces[0]])
     laws = {coordinate(one.joint(name), k): _law(law) for (name, k), law in drawn.laws.items()}
-    drives = None if drawn.pushed is None else [coordinate(one.joint(name), k) for name, k in drawn.pushed]
+    drives = None if drawn.pushed is None or one.rows else [coordinate(one.joint(name), k) for name, k in drawn.pushed]
     posture = postures(drawn, t)
     rough = {name: posture[name] for name in m.coordinates if name in posture and name not in laws}
     return Scene(m, laws, **{"t": (t, t + drawn.span, 9), "posture": rough, "drives": drives, **options})
@@ -187,5 +189,24 @@ def _coordinates(joint, turned, apart):
     return (*slides, *turns)
 
 
+def _rates(m, mechanism, row, parts):
+    """What a row says is nothing, in the package's symbols."""
+
+    def of(key, measure):
+        joint = mechanism.joint(key[0])
+        return measure(m.joints[joint.name], *NAMES[joint.kind][key[1] : key[1] + 1] if joint.kind in NAMES else ())
+
+    terms, directions = row.of(ca, {key: of(key, m.coordinate) for key in row.keys})
+    found = sum(x * of(key, m.rate) for key, x in terms.items())
+    for (body, point), way in directions.items():
+        found += sum(x * v for x, v in zip(way, m.velocity(parts[body].at(*map(float, point))), strict=True))
+    return found
+
+
 def _law(law):
-    return motion.expression(lambda t: law.offset + law.speed * t + law.amplitude * ca.sin(law.frequency * t + law.phase))
+    parts = getattr(law, "parts", (law,))
+
+    def at(t):
+        return sum(one.offset + one.speed * t + one.amplitude * ca.sin(one.frequency * t + one.phase) for one in parts)
+
+    return motion.expression(at)

@@ -33,6 +33,17 @@ class Law:
 
 
 @dataclass(frozen=True)
+class Sum:
+    """A law that several add up to."""
+
+    parts: tuple[Law, ...]
+
+    def at(self, t, digits=None):
+        """The coordinate, its rate and its acceleration."""
+        return tuple(sum(values[1:], values[0]) for values in zip(*(law.at(t, digits) for law in self.parts), strict=True))
+
+
+@dataclass(frozen=True)
 class Drawn:
     """A mechanism, its laws by (joint, index), a guess at t = 0, and what bears efforts.
 

@@ -70,6 +70,7 @@ class Motion:
         self.mechanism, self.arithmetic, self.known = mechanism, arithmetic, set(known)
         self.pushed = {*pushed}
         self.coupled = {key for coupling in mechanism.couplings for key in coupling.terms}
+        self.coupled |= {key for row in mechanism.rows for key in row.keys}
         counted = self.known | self.pushed | self.coupled
         self.axes = {j.name: j.axes(arithmetic) for j in mechanism.joints}
         self.at_parent = {j.name: vector(arithmetic, j.at_parent) for j in mechanism.joints}

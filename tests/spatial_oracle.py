@@ -34,7 +34,8 @@ class Result:
 
     ``coordinates`` are (q, q', q'') by (joint, index), of all that are followed; ``efforts`` by (joint, index); ``reactions`` six
     numbers by joint: force and moment of the parent on the child, ground axes, about the child's point, without efforts and
-    couplings; ``multipliers`` by coupling, which act on its coordinates as efforts, times its coefficients; ``sections`` by rod.
+    couplings; ``multipliers`` by coupling or row, which act on its coordinates as efforts, times its coefficients, and on its
+    points as forces; ``sections`` by rod.
 
     Known in doubles only: ``loose_reactions`` (six, n) are the n ways in which ideal joints leave a reaction open,
     ``loose_efforts`` (n) an effort, and ``loose_section(rod, xi)`` (six, n) a section's forces; ``idle`` are the motions that the
@@ -107,7 +108,7 @@ def solve(mechanism: Mechanism, drives, guess=None, digits=None, pushed=None) ->
         coordinates=values,
         efforts=efforts,
         reactions=reactions,
-        multipliers={coupling.name: wrenches.found[coupling.name] for coupling in mechanism.couplings},
+        multipliers={tie.name: wrenches.found[tie.name] for tie in balance.ties},
         sections=sections,
         loose_reactions=loose_reactions,
         loose_efforts=loose_efforts,

@@ -13,6 +13,7 @@ from spatial_mechanisms import rssr, rsur
 from spatial_motion import OpenLoopError
 from spatial_oracle import solve
 from spatial_reference import Entry
+from spatial_wheels import wheel
 
 pytestmark = pytest.mark.quick
 
@@ -238,3 +239,10 @@ def test_a_frame_is_right_handed():
             Mechanism([Rigid("body", 1.0)], [Joint("J", "weld", "ground", "body", orientation=-frame(direction(rng), rng))]),
             {},
         )
+
+
+def test_a_motion_that_skids_is_told_by_name():
+    rolls = wheel(1)
+    faster = dataclasses.replace(rolls, laws=rolls.laws | {("shaft", 0): dataclasses.replace(rolls.laws["shaft", 0], speed=9.0)})
+    with pytest.raises(InconsistentError, match="the motion does not fulfil 'rolling'"):
+        faster.solve(0.3)

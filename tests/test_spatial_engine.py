@@ -6,9 +6,11 @@ from spatial_bodies import GROUND, Rod
 from spatial_bridge import coordinate, declared, instants, plain
 from spatial_mechanisms import FAMILIES
 from spatial_oracle import REACTION, SECTION
+from spatial_wheels import wheel
 
 CASES = [("tree", seed) for seed in range(40)] + [("loop", seed) for seed in range(12)] + [("arm", seed) for seed in range(2)]
 CASES += [(name, seed) for name in FAMILIES if name not in ("tree", "loop", "arm") for seed in range(3)]
+CASES += [("wheel", seed) for seed in range(30)]
 RATIOS = (0.0, 0.1234, 0.5012, 0.9034, 1.0)
 ROUNDING = 1e-12
 
@@ -17,7 +19,7 @@ ROUNDING = 1e-12
 @pytest.mark.sampled(9)
 def test_efforts_reactions_and_sections(case):
     name, seed = case
-    drawn = plain(FAMILIES[name](seed))
+    drawn = plain((FAMILIES | {"wheel": wheel})[name](seed))
     t = 0.4 * drawn.span
     scene = declared(drawn, t)
     found = {key: row[0] for key, row in instants(scene, [t]).items()}
@@ -31,6 +33,8 @@ def test_efforts_reactions_and_sections(case):
     for (joint, k), effort in true.efforts.items():
         own = found[f"effort:{coordinate(drawn.mechanism.joint(joint), k)}"]
         assert abs(own - float(effort)) < ROUNDING * moment, (joint, k)
+    for name, multiplier in true.multipliers.items():
+        assert abs(found[f"multiplier:{name}"] - float(multiplier)) < ROUNDING * moment, name
     for joint, reaction in true.reactions.items():
         for k, member in enumerate(REACTION):
             if (joint, member) not in true.open:
