@@ -20,6 +20,7 @@ from .instants.solution import Peak, Solution
 from .optimise import Optimum, optimise
 from .store.runs import check, load, save
 from .study.peaks import refine
+from .study.tolerances import tolerances
 from .sweep import Sweep, best, read_designs, sweep
 from .version import __version__
 
@@ -56,4 +57,5 @@ __all__ = [
     "shaking",
     "sweep",
     "table",
+    "tolerances",
 ]
