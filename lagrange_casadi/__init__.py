@@ -20,6 +20,7 @@ from .instants.solution import Peak, Solution
 from .optimise import Optimum, optimise
 from .store.runs import check, load, save
 from .study.peaks import refine
+from .study.tolerances import tolerances
 from .sweep import Sweep, best, read_designs, sweep
 from .version import __version__
 
@@ -58,4 +59,5 @@ __all__ = [
     "strength",
     "sweep",
     "table",
+    "tolerances",
 ]

@@ -33,6 +33,7 @@ from .report_page import report
 from .run import run
 from .sweep import sweep
 from .table import table
+from .tolerances import tolerances
 from .trade import trade
 
 _OPTIONS = {
@@ -75,7 +76,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (run, sweep, best, table, optimise, trade, export, plot, report, animate, info, check, cases, new, cache)
+_COMMANDS = (run, sweep, best, table, optimise, tolerances, trade, export, plot, report, animate, info, check, cases, new, cache)
 
 
 @click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})

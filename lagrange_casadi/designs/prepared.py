@@ -109,6 +109,11 @@ class Prepared:
         return self._engine.quantities
 
     @property
+    def units(self) -> tuple[str, ...]:
+        """Their units."""
+        return self._engine.units
+
+    @property
     def efforts(self) -> tuple[str, ...]:
         """The names of the efforts that have means, in their order."""
         return self._engine.efforts

@@ -1,0 +1,99 @@
+"""``lagrange-casadi tolerances``: how far peaks spread for tolerances of the parameters, and which of them is to blame."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import fields
+from pathlib import Path
+
+import click
+
+from ..case import load_case
+from ..declare.even_points import EvenPoints
+from ..declare.times import Over
+from ..errors import DeclarationError
+from ..instants.rung import BACKENDS, Backend
+from ..study.tolerances import SAMPLES, Spreads
+from ..study.tolerances import tolerances as spreads_of
+from ..system.publish import check_writable, writing
+from .options import EVEN_POINTS, even_points, parameters, setting
+from .options import over as by_drive
+
+_FEW = 3
+"""Parameters that are named for each peak."""
+
+
+def _tolerance(text: str) -> tuple[str, str]:
+    """NAME=VALUE; the parameter's unit tells what the value may be."""
+    name, equals, value = (word.strip() for word in text.partition("="))
+    if not (name and equals and value):
+        raise click.BadParameter(f"expected NAME=VALUE, as in l=0.1mm or m1=1%, got '{text}'")
+    return name, value
+
+
+@click.command()
+@click.argument("case", type=click.Path(path_type=Path))
+@click.option(
+    "--tolerance", "within", type=_tolerance, multiple=True, required=True, metavar="NAME=VALUE", help="Plus or minus; repeatable."
+)
+@click.option(
+    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
+)
+@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@by_drive
+@click.option("--want", multiple=True, metavar="OUTPUT", help="As in run; default: the case's; repeatable.")
+@click.option("--samples", type=int, default=SAMPLES, show_default=True, metavar="NUMBER", help="Designs drawn at random.")
+@click.option("--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="What evaluates designs.")
+@click.option("--csv", "out", type=click.Path(path_type=Path), metavar="FILE.csv", help="All peaks, a row each.")
+def tolerances(
+    case: Path,
+    within: Sequence[tuple[str, str]],
+    settings: Sequence[tuple[str, float | str]],
+    t: EvenPoints | None,
+    over: Over | None,
+    want: Sequence[str],
+    samples: int,
+    backend: Backend,
+    out: Path | None,
+) -> None:
+    """Tell how far the peaks of CASE spread where parameters are within tolerances, and what each of these adds."""
+    told = dict(within)
+    if len(told) < len(within):
+        raise DeclarationError("tolerance: a parameter has one twice")
+    if out is not None:
+        check_writable(out)
+    loaded = load_case(case)
+    found = spreads_of(
+        loaded.scene, told, parameters=parameters(settings), wanted=want or None, t=t, over=over, samples=samples, backend=backend
+    )
+    _print(found)
+    if out is not None:
+        with writing(out) as (file,):
+            file.write(_rows(found).encode())
+        click.echo(f"wrote {out}")
+
+
+def _print(found: Spreads) -> None:
+    width = max(len(name) for name in found.peaks)
+    failed = f", {found.failed} of them without a result" if found.failed else ""
+    click.echo(f"{found.case}: {found.drawn} designs drawn{failed}; sigma and worst to first order, the rest of what was drawn")
+    heads = {"nominal": 11, "+- worst": 10, "sigma": 10, "drawn": 10, "least": 11, "largest": 11}
+    click.echo(f"  {'peak of':<{width}} {' '.join(f'{head:>{size}}' for head, size in heads.items())}  due to")
+    for spread in found.peaks.values():
+        due = ", ".join(f"{name} {100 * share:.0f}%" for name, share in list(spread.shares.items())[:_FEW] if share >= 0.005)
+        click.echo(
+            f"  {spread.quantity:<{width}} {spread.nominal:>11.5g} {spread.worst:>10.3g} {spread.sigma:>10.3g} "
+            f"{spread.deviation:>10.3g} {spread.low:>11.5g} {spread.high:>11.5g}  {due}"
+        )
+
+
+def _rows(found: Spreads) -> str:
+    names = [entry.name for entry in fields(next(iter(found.peaks.values()))) if entry.name != "shares"]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([*names, *(f"share of {name}" for name in found.tolerances)])
+    for spread in found.peaks.values():
+        writer.writerow([*(getattr(spread, name) for name in names), *(spread.shares[name] for name in found.tolerances)])
+    return text.getvalue()
