@@ -30,6 +30,7 @@ from .new import new
 from .plot import plot
 from .report_page import report
 from .run import run
+from .size import size_command as size
 from .sweep import sweep
 from .table import table
 from .trade import trade
@@ -74,7 +75,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (run, sweep, best, table, trade, export, plot, report, animate, info, check, cases, new, cache)
+_COMMANDS = (run, sweep, best, table, trade, export, plot, report, animate, info, check, size, cases, new, cache)
 
 
 @click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
