@@ -34,10 +34,10 @@ def _engine(arithmetic, values):
 
 
 def _connecting_rod(arithmetic, values):
-    """The same diagram, of another largest pressure and bore."""
+    """The same diagram, of another largest pressure."""
     number = arithmetic.number
-    share = number(values["pressure"]) / 45 / 100_000 * number(0.1) ** 2
-    (gas,) = _engine(arithmetic, {**values, "bore": 1.0})["loads"]
+    share = number(values["pressure"]) / 45 / 100_000
+    (gas,) = _engine(arithmetic, values)["loads"]
     return {"loads": [lambda place: [(point, x, share * y, z) for point, x, y, z in gas(place)]]}
 
 

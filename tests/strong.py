@@ -1,6 +1,7 @@
 """Mechanisms whose links are made of something."""
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams
+from lagrange_casadi.beams.profiles import Profile
 from lagrange_casadi.motion import harmonic, polynomial
 
 STEEL = beams.material("C45+QT")
@@ -34,3 +35,20 @@ def robot(shape, material=STEEL):
     m.revolute("elbow", upper.tip, fore, axis=(0.2, 1.0, 0.4))
     m.force("load", fore.tip, x=120.0, y=-80.0, z=60.0)
     return Scene(m, {"turn": harmonic(0.0, 1.0, 1.0), "elbow": harmonic(0.7, 0.5, 2.0)}, t=(0, 1, 61))
+
+
+BARS = [Profile(f"bar {d}", {"diameter": d / 1000}) for d in (14, 8, 12, 10, 18, 16, 22, 20)]
+
+
+def arms(push=-60.0, shared=False):
+    """Two arms, one on the other, fast enough that what they weigh is what loads them."""
+    m = Mechanism("arms")
+    d1, d2 = m.parameter("d1", 0.03, "m", low=0.001, high=0.1), m.parameter("d2", 0.03, "m", low=0.001, high=0.1)
+    upper = m.link("upper", length=0.5, beam=beams.Beam(beams.round_bar(d1), STEEL))
+    fore = m.link("fore", length=0.4, beam=beams.Beam(beams.round_bar(d1 if shared else d2), STEEL))
+    plate = m.link("plate", length=0.1, beam=beams.Beam(beams.rectangle(0.05, 0.01), STEEL))
+    m.revolute("shoulder", m.ground, upper)
+    m.revolute("elbow", upper.tip, fore)
+    m.weld("hand", fore.tip, plate)
+    m.force("push", plate.tip, y=push)
+    return Scene(m, {"shoulder": harmonic(0.3, 0.5, 1.5), "elbow": harmonic(0.5, 0.7, 1.5)}, t=(0, 1 / 1.5, 25))

@@ -53,7 +53,7 @@ def test_the_gas_force(even):
 
 def test_buckling_in_the_plane_and_out_of_it(even):
     """Pinned in the plane, held out of it; Rankine's formula with a = 1/7500 gives the book 153 kN, which is near Johnson's."""
-    of = as_column(even, Member.of(even, "rod"))
+    of = as_column(even.description, Member.of(even, "rod"))
     assert of.effective == (1.0, 0.5)
     assert of.slenderness[0] == pytest.approx(380 / (1.78 * 7), rel=2e-3)
     rankine = 320e6 * 11 * T**2 / (1 + (380 / (1.78 * 7)) ** 2 / 7500)

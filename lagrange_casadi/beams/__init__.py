@@ -2,6 +2,7 @@
 
 from .beam import Beam, Notch
 from .material import Material, material
+from .profiles import Profile, read_profiles
 from .properties import Fibre, Properties
 from .shape import (
     Course,
@@ -27,6 +28,7 @@ __all__ = [
     "Fibre",
     "Material",
     "Notch",
+    "Profile",
     "Properties",
     "Shape",
     "along",
@@ -37,6 +39,7 @@ __all__ = [
     "i_section",
     "material",
     "polygon",
+    "read_profiles",
     "rectangle",
     "round_bar",
     "stepped",

@@ -31,6 +31,7 @@ from .optimise import optimise
 from .plot import plot
 from .report_page import report
 from .run import run
+from .size import size_command as size
 from .sweep import sweep
 from .table import table
 from .tolerances import tolerances
@@ -76,7 +77,9 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (run, sweep, best, table, optimise, tolerances, trade, export, plot, report, animate, info, check, cases, new, cache)
+_COMMANDS = (
+    run, sweep, best, table, optimise, tolerances, size, trade, export, plot, report, animate, info, check, cases, new, cache
+)  # fmt: skip
 
 
 @click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})

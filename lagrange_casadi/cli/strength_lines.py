@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from ..declare.mechanism import Mechanism
 from ..declare.scene import strength_of
@@ -22,15 +22,15 @@ def strength_lines(solution: Solution, mechanism: Mechanism, wanted: Sequence[st
     if links := strength_of(mechanism, "stress", wanted):
         yield "stresses along the links, largest in size:"
         for link in links:
-            yield from _told(link, lambda name: list(_stresses(solution, name)))
+            yield from told(link, lambda name: list(_stresses(solution, name)))
     if links := strength_of(mechanism, "safety", wanted):
         yield "factors of safety, and utilisation, which is one over the least of them:"
         for link in links:
-            yield from _told(link, lambda name: list(safety_lines(solution.safety(name))))
+            yield from told(link, lambda name: list(safety_lines(solution.safety(name))))
     if links := strength_of(mechanism, "life", wanted):
         yield f"lives, {solution.t[-1] - solution.t[0]:.5g} s repeated:"
         for link in links:
-            yield from _told(link, lambda name: [_life(solution.life(name))])
+            yield from told(link, lambda name: [_life(solution.life(name))])
 
 
 def safety_lines(found: Safety) -> Iterator[str]:
@@ -45,8 +45,8 @@ def safety_lines(found: Safety) -> Iterator[str]:
         yield f"    open: {word}"
 
 
-def _told(link: str, lines: object) -> Iterator[str]:
-    assert callable(lines)
+def told(link: str, lines: Callable[[str], Sequence[str]]) -> Iterator[str]:
+    """The lines of a link, or why they cannot be told."""
     try:
         yield from lines(link)
     except DeclarationError as error:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..declare.description import Description
 from ..instants.solution import Solution
 from .buckling import Column, column, effective_lengths, load_factor
 from .fatigue import Loaded, cycles, factor, reversed_amplitude, strengths, worst
@@ -80,13 +81,22 @@ def safety(solution: Solution, link: str, *, criterion: str = "goodman", yieldin
     :class:`.UnknownNameError` for a ``criterion`` or a kind of stress that is none.
     """
     member = Member.of(solution, link)
-    found = Stress(member)
+    return judged(member, as_column(solution.description, member), criterion=criterion, yielding=yielding)
+
+
+def judged(member: Member, of: Column, *, criterion: str = "goodman", yielding: str = "von_mises", enough: float = 0.0) -> Safety:
+    """The same of a link in numbers; what comes after a factor that is not ``enough`` is left out."""
+    found, link = Stress(member), member.link
     material = member.beam.material
     (strength,) = material.needs("safety against yielding", "yield_strength")
     peak = found.peak(yielding)
     where = f"{yielding} {peak.value / 1e6:.4g} MPa at t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}, {peak.fibre}"
     verdicts = [Verdict("yield", _over(strength, peak.value), where)]
-    verdicts.append(buckling(member, as_column(solution, member)))
+    if verdicts[0].factor < enough:
+        return Safety(link, tuple(verdicts))
+    verdicts.append(buckling(member, of))
+    if verdicts[1].factor < enough:
+        return Safety(link, tuple(verdicts))
     if material.endurance is None:
         return Safety(link, tuple(verdicts), (f"fatigue: material '{material.name}' has no endurance",))
     strengths(material, criterion)
@@ -101,9 +111,9 @@ def safety(solution: Solution, link: str, *, criterion: str = "goodman", yieldin
     return Safety(link, tuple(verdicts))
 
 
-def as_column(solution: Solution, member: Member) -> Column:
+def as_column(description: Description, member: Member) -> Column:
     """A link as a column, by the effective lengths of its beam or its joints."""
-    return column(member, member.beam.columns or effective_lengths(solution.description, member.link))
+    return column(member, member.beam.columns or effective_lengths(description, member.link))
 
 
 def buckling(member: Member, of: Column) -> Verdict:

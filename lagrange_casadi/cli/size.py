@@ -1,0 +1,88 @@
+"""``lagrange-casadi size``: the lightest profile for each link that is safe."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from ..beams.profiles import read_profiles
+from ..case import load_case
+from ..declare.even_points import EvenPoints
+from ..declare.times import Over
+from ..strength.fatigue import CRITERIA
+from ..strength.stress import KINDS
+from ..study.sizing import Sized, size
+from .options import EVEN_POINTS, even_points, parameters, setting
+from .options import over as by_drive
+from .strength_lines import safety_lines, told
+
+
+@click.command(name="size")
+@click.argument("case", type=click.Path(path_type=Path))
+@click.option(
+    "--profiles", type=click.Path(path_type=Path), metavar="FILE.csv", help="A column name, and one for each dimension [m]."
+)
+@click.option("--safety", type=float, default=2.0, show_default=True, metavar="FACTOR", help="The least factor of safety.")
+@click.option("--link", "links", multiple=True, metavar="LINK", help="Size this link; repeatable. Default: all that profiles fit.")
+@click.option("--criterion", type=click.Choice(tuple(CRITERIA)), default="goodman", show_default=True, help="How a mean counts.")
+@click.option(
+    "--yielding",
+    type=click.Choice(tuple(kind for kind in KINDS if kind not in ("normal", "shear"))),
+    default="von_mises",
+    show_default=True,
+    help="The stress that yields.",
+)
+@click.option(
+    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
+)
+@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@by_drive
+def size_command(
+    case: Path,
+    profiles: Path | None,
+    safety: float,
+    links: Sequence[str],
+    criterion: str,
+    yielding: str,
+    settings: Sequence[tuple[str, float | str]],
+    t: EvenPoints | None,
+    over: Over | None,
+) -> None:
+    """Choose for each link of CASE, of the profiles of a table, the lightest that is safe under the loads that its mass brings."""
+    loaded = load_case(case)
+    table = read_profiles(profiles or loaded.path.parent / "profiles.csv")
+    found = size(
+        loaded.scene,
+        table,
+        safety=safety,
+        links=links or None,
+        parameters=parameters(settings),
+        t=t,
+        over=over,
+        criterion=criterion,
+        yielding=yielding,
+    )
+    click.echo(f"{loaded.name}: of {len(table)} profiles the lightest with a factor of safety of {safety:g}, or more:")
+    for sized in found.links:
+        for line in _lines(sized):
+            click.echo(line)
+    for name, why in found.left.items():
+        click.echo(f"{name}: left as it is, for {why}")
+        for line in told(
+            name, lambda link: list(safety_lines(found.solution.safety(link, criterion=criterion, yielding=yielding)))
+        ):
+            click.echo(line)
+    loads = f"loads were evaluated {found.evaluations} times"
+    click.echo(f"together {found.mass:.6g} kg; {loads}; certificate: {'holds' if found.solution.certified else 'fails'}")
+    click.echo(" ".join(f"--set {name}={value!r}" for name, value in found.parameters.items()))
+
+
+def _lines(sized: Sized) -> list[str]:
+    """A link with what was chosen for it, what governs, and why nothing lighter will do."""
+    lines = [f"{sized.link}: '{sized.profile.name}', {sized.mass:.6g} kg", *safety_lines(sized.safety)]
+    if sized.lighter is not None:
+        profile, found = sized.lighter
+        lines.append(f"    lighter: '{profile.name}' has {found.factor:.4g} against {found.governs.against}")
+    return lines

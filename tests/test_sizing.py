@@ -1,0 +1,160 @@
+"""Sizing: against trying every profile, and what cannot be sized."""
+
+import math
+from pathlib import Path
+
+import pytest
+from strong import BARS, arms
+
+from lagrange_casadi import evaluate
+from lagrange_casadi.beams.profiles import Profile, read_profiles
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import DeclarationError, NoDesignError, PathError, UnknownNameError
+from lagrange_casadi.study.sizing import size
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return arms()
+
+
+@pytest.fixture(scope="module")
+def sized(scene):
+    return size(scene, BARS, safety=2.0)
+
+
+def safe(scene, d1, d2):
+    solution = evaluate(scene, parameters={"d1": d1, "d2": d2}, certificate=False)
+    return min(solution.safety(link).factor for link in ("upper", "fore")) >= 2.0
+
+
+def test_every_link_is_safe_and_none_alone_can_be_lighter(scene, sized):
+    chosen = {one.link: one.profile.dimensions["diameter"] for one in sized.links}
+    assert sized.parameters == {"d1": chosen["upper"], "d2": chosen["fore"]}
+    assert sized.solution.certified
+    assert safe(scene, *chosen.values())
+    diameters = [profile.dimensions["diameter"] for profile in BARS]
+    assert not any(safe(scene, d, chosen["fore"]) for d in diameters if d < chosen["upper"])
+    assert not any(safe(scene, chosen["upper"], d) for d in diameters if d < chosen["fore"])
+    for one in sized.links:
+        assert one.safety == sized.solution.safety(one.link)
+        assert one.mass == pytest.approx(
+            7850 * math.pi / 4 * one.profile.dimensions["diameter"] ** 2 * (0.5 if one.link == "upper" else 0.4)
+        )
+        profile, found = one.lighter
+        assert profile.dimensions["diameter"] < one.profile.dimensions["diameter"]
+        assert found.factor < 2.0 <= one.safety.factor
+    assert sized.mass == pytest.approx(sum(one.mass for one in sized.links))
+    assert sized.left == {"plate": "diameter is no dimension of its rectangle"}
+
+
+@pytest.mark.long
+def test_all_pairs_tried(scene, sized):
+    """No pair of profiles that is safe has less mass in each link."""
+    chosen = {one.link: one.profile.dimensions["diameter"] for one in sized.links}
+    diameters = sorted(profile.dimensions["diameter"] for profile in BARS)
+    for d1 in diameters:
+        for d2 in diameters:
+            if d1 <= chosen["upper"] and d2 <= chosen["fore"] and (d1, d2) != tuple(chosen.values()):
+                assert not safe(scene, d1, d2), (d1, d2)
+
+
+def test_a_link_may_be_left_as_it_is(scene):
+    found = size(scene, BARS, links=["fore"], parameters={"d1": 0.025})
+    assert [one.link for one in found.links] == ["fore"]
+    assert set(found.parameters) == {"d2"}
+    assert found.solution.description["parameters"]["d1"]["value"] == 0.025
+
+
+def test_where_no_profile_is_safe(scene):
+    with pytest.raises(
+        NoDesignError, match=r"link 'upper': no profile has a factor of 50; the most, 'bar 22', has .* against fatigue"
+    ):
+        size(scene, BARS, safety=50.0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "says"),
+    [
+        ({"profiles": []}, DeclarationError, "expected at least one profile"),
+        ({"safety": 0.0}, DeclarationError, r"expected a positive factor of safety, got 0\.0"),
+        ({"links": ["leg"]}, UnknownNameError, "unknown link with a beam 'leg'"),
+        ({"links": ["plate"]}, DeclarationError, "link 'plate': diameter is no dimension of its rectangle"),
+        ({"profiles": [Profile("x", {"wall": 1.0})]}, DeclarationError, "no link; upper: wall is no dimension of its round_bar"),
+        ({"profiles": [Profile("x", {"diameter": 0.5})]}, DeclarationError, r"'x': parameter 'd1' = 0\.5 m is out of its range"),
+        ({"profiles": [Profile("x", {"height": 0.5})], "links": ["plate"]}, DeclarationError, "its height is no parameter"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_sized(scene, arguments, error, says):
+    with pytest.raises(error, match=says):
+        size(scene, **{"profiles": BARS, **arguments})
+
+
+def test_two_links_that_share_a_parameter():
+    with pytest.raises(DeclarationError, match="links 'upper' and 'fore' share parameter 'd1'; give each its own"):
+        size(arms(shared=True), BARS)
+
+
+def table(here, text):
+    (here / "bars.csv").write_text(text)
+    return read_profiles(here / "bars.csv")
+
+
+def test_tables_have_units_and_blank_lines(here):
+    found = table(here, "name, height [mm],width[cm],web,flange [m]\n\nA 1,35, 2.8,0.007,0.007\n")
+    assert found == (Profile("A 1", {"height": 0.035, "width": 0.028, "web": 0.007, "flange": 0.007}),)
+    assert found[0].shape("i_section").area == pytest.approx(11 * 0.007**2)
+    with pytest.raises(DeclarationError, match="a round_bar has the dimensions diameter, got height, width"):
+        found[0].shape("round_bar")
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", r"bars\.csv: expected a head and a line for every profile"),
+        ("name,d\n", "a head and a line for every profile"),
+        ("d,e\n1,2\n", "expected a column 'name' and one for each dimension, got d, e"),
+        ("name,d,d\nx,1,2\n", "expected a column 'name'"),
+        ("name,d [ft]\nx,1\n", r"column 'd \[ft\]': expected a name, and m, cm or mm as its unit"),
+        ("name,d\nx,1,2\n", "line 2: 3 cells, expected 2"),
+        ("name,d\nx,1\nx,2\n", "line 3: profile 'x' comes twice"),
+        ("name,d\n ,1\n", "line 2: it has no name"),
+        ("name,d\nx,-1\n", "line 2: d: expected a positive number, got '-1'"),
+        ("name,d\nx,thick\n", "line 2: d: expected a positive number, got 'thick'"),
+    ],
+)
+def test_a_bad_line_is_named(here, text, says):
+    with pytest.raises(DeclarationError, match=says):
+        table(here, text)
+
+
+def test_a_table_that_is_not_there(here):
+    with pytest.raises(PathError, match=r"cannot read bars\.csv: "):
+        read_profiles("bars.csv")
+    (here / "bars.csv").write_bytes(b"\xff\xfe\x00name")
+    with pytest.raises(DeclarationError, match="no CSV"):
+        read_profiles("bars.csv")
+
+
+def test_one_command_sizes(here, capsys, sized):
+    lines = ("import sys", f"sys.path.insert(0, {str(Path(__file__).parent)!r})", "from strong import arms as scene")
+    (here / "case.py").write_text("\n".join(lines))
+    (here / "profiles.csv").write_text(
+        "name,diameter [mm]\n" + "".join(f"{p.name},{p.dimensions['diameter'] * 1000:g}\n" for p in BARS)
+    )
+    assert main(["size", "case.py", "--safety", "2"]) == 0
+    out = capsys.readouterr().out
+    for one in sized.links:
+        assert f"\n{one.link}: '{one.profile.name}', {one.mass:.6g} kg\n" in out
+        assert f"    lighter: '{one.lighter[0].name}' has {one.lighter[1].factor:.4g} against " in out
+    assert "plate: left as it is, for diameter is no dimension of its rectangle\n  plate  " in out
+    settings = [f"{name}={value!r}" for name, value in sized.parameters.items()]
+    assert " ".join(f"--set {word}" for word in settings) in out
+    assert main(["run", "case.py", "--no-figures", "--want", "safety", *(x for word in settings for x in ("--set", word))]) == 0
+    run = capsys.readouterr().out
+    for one in sized.links:
+        assert f"  {one.link:<20} {one.safety.utilisation:>8.4g} |" in run
+    assert main(["size", "case.py", "--profiles", "none.csv"]) == 2
+    assert main(["size", "case.py", "--safety", "50"]) == 1
