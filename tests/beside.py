@@ -32,6 +32,23 @@ def _engine(arithmetic, values):
     return {"loads": [gas]}
 
 
+def _v_twin(arithmetic, values):
+    """The gas's force on either piston, along the cylinder."""
+    number, cos, sin = arithmetic.number, arithmetic.cos, arithmetic.sin
+    bore = number(values["bore"])
+
+    def gas(side, way, x, y):
+        def pushes(place):
+            turned = place(("crank", 0, 0))[2].v - number(way)
+            diagram = number(3.0) + number(2.5) * cos(turned) - number(1.75) * sin(turned) + number(0.5) * cos(2 * turned)
+            push = -100_000 * diagram * number(math.pi) / 4 * bore**2
+            return [((f"{side}_piston", 0, 0), push * x, push * y, 0)]
+
+        return pushes
+
+    return {"loads": [gas("left", math.pi / 2, 0, 1), gas("right", 0.0, 1, 0)]}
+
+
 def _quick_return(arithmetic, values):
     cutting = arithmetic.number(values["cutting"])
 
@@ -94,6 +111,7 @@ def _beam_pump(arithmetic, values):
 
 
 _CASES = {
+    "v_twin": _v_twin,
     "engine": _engine,
     "quick_return": _quick_return,
     "andrews_squeezer": _andrews_squeezer,

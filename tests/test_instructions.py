@@ -23,6 +23,7 @@ INSTANT = {
     "jansen_leg": 740,
     "excavator": 1494,
     "beam_pump": 480,
+    "v_twin": 1778,
     "rssr": 781,
     "spatial_slider_crank": 414,
     "stewart_gough": 5410,
