@@ -8,6 +8,7 @@ import math
 import casadi as ca
 import numpy as np
 import oracle
+import rubbing
 from arithmetic import DOUBLE
 from jets import Jet
 from mechanisms import INSTANT
@@ -30,11 +31,12 @@ def compare(scene, t=INSTANT, parameters=None, nudge=0.02, rough=(), **beside):
     drives, guides = apart(m, drives, values)
     beside = {"pushed": scene.drives and list(scene.drives)} | beside
     beside["extras"] = [*beside.get("extras", ()), *guides]
-    solved = oracle_of(m, values, **beside).solve(drives, postures(m, found, drives, nudge, rough))
+    solved = rubbing.solve(oracle_of(m, values, **beside), m, values, drives, postures(m, found, drives, nudge, rough))
     size = max((abs(x) for forces in solved.reactions.values() for x in forces), default=0.0) or 1.0
     gaps = {f"effort:{joint}": (found[f"effort:{joint}"] - effort) / size for joint, effort in solved.efforts.items()}
     for name, multiplier in solved.multipliers.items():
         gaps[f"multiplier:{name}"] = (found[f"multiplier:{name}"] - multiplier) / size
+    gaps |= {name: (found[name] - value) / size for name, value in solved.frictions.items() if name.endswith("along")}
     for joint, forces in solved.reactions.items():
         for member, force in zip(("fx", "fy", "mz"), forces, strict=True):
             gaps[f"reaction:{joint}:{member}"] = (found.get(f"reaction:{joint}:{member}", 0.0) - force) / size

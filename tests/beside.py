@@ -41,6 +41,23 @@ def _connecting_rod(arithmetic, values):
     return {"loads": [lambda place: [(point, x, share * y, z) for point, x, y, z in gas(place)]]}
 
 
+def _v_twin(arithmetic, values):
+    """The gas's force on either piston, along the cylinder."""
+    number, cos, sin = arithmetic.number, arithmetic.cos, arithmetic.sin
+    bore = number(values["bore"])
+
+    def gas(side, way, x, y):
+        def pushes(place):
+            turned = place(("crank", 0, 0))[2].v - number(way)
+            diagram = number(3.0) + number(2.5) * cos(turned) - number(1.75) * sin(turned) + number(0.5) * cos(2 * turned)
+            push = -100_000 * diagram * number(math.pi) / 4 * bore**2
+            return [((f"{side}_piston", 0, 0), push * x, push * y, 0)]
+
+        return pushes
+
+    return {"loads": [gas("left", math.pi / 2, 0, 1), gas("right", 0.0, 1, 0)]}
+
+
 def _quick_return(arithmetic, values):
     cutting = arithmetic.number(values["cutting"])
 
@@ -160,6 +177,7 @@ def _roller_cam(arithmetic, values):
 
 _CASES = {
     "connecting_rod": _connecting_rod,
+    "v_twin": _v_twin,
     "engine": _engine,
     "quick_return": _quick_return,
     "andrews_squeezer": _andrews_squeezer,

@@ -117,6 +117,7 @@ class Result:
     efforts: dict[str, float] = field(default_factory=dict)
     reactions: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     multipliers: dict[str, float] = field(default_factory=dict)
+    frictions: dict[str, float] = field(default_factory=dict)
     sections: dict[str, Callable[[float], tuple[float, float, float]]] = field(default_factory=dict)
 
 

@@ -38,10 +38,14 @@ def declared(path):
     def joint(mechanism, name, kind, parent, child, axis=None, angle=0.0, *, declare=Mechanism._joint):
         return declare(mechanism, name, kind, parent, child, axis, free(angle))
 
+    def friction(mechanism, name, joint, *, declare=Mechanism.friction, **numbers):
+        return declare(mechanism, name, joint, **{word: free(x) for word, x in numbers.items()})
+
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Mechanism, "__post_init__", gravity)
         patch.setattr(Mechanism, "link", link)
         patch.setattr(Mechanism, "_joint", joint)
+        patch.setattr(Mechanism, "friction", friction)
         patch.setattr(Mechanism, "point_mass", lambda m, name, mass, declare=Mechanism.point_mass: declare(m, name, free(mass)))
         patch.setattr(Ground, "at", lambda body, x, y, at=Ground.at: at(body, free(x), free(y)))
         patch.setattr(Link, "at", lambda body, x, y=0.0, at=Link.at: at(body, free(x), free(y)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 
+import rubbing
 from arithmetic import Digits
 from balance import apart, columns_at, oracle_of, postures
 from beside import of_case
@@ -30,7 +31,7 @@ def precise(scene, t, drives=None, parameters=None, digits=50, beside=None, leas
     drives, guides = apart(m, drives or motion, values, arithmetic)
     acting = {"pushed": scene.drives and list(scene.drives)} | acting
     acting["extras"] = [*acting.get("extras", ()), *guides]
-    solved = oracle_of(m, values, arithmetic, **acting).solve(drives, postures(m, found, motion, 0.0))
+    solved = rubbing.solve(oracle_of(m, values, arithmetic, **acting), m, values, drives, postures(m, found, motion, 0.0))
     named = _named(m, solved)
     if not graph.doubtful:
         return named
@@ -49,6 +50,7 @@ def _named(m, solved):
             {f"pose:{body.name}:angle": angle} if body.oriented else {}
         )
     named |= {f"multiplier:{name}": multiplier for name, multiplier in solved.multipliers.items()}
+    named |= solved.frictions
     for link, forces in solved.sections.items():
         forces = functools.lru_cache(maxsize=None)(forces)
         named |= {f"section:{link}:{force}": _member(forces, k) for k, force in enumerate(("axial", "shear", "bending"))}

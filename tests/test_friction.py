@@ -336,7 +336,7 @@ def declared(**told):
         ({"joint": "guide", "mu": 0.1, "radius": 0.1, "length": 0.1}, "slides and has no radius; valid: length"),
         ({"joint": "slot", "mu": 0.1, "length": 0.1}, "bears no moment, and needs no length"),
         ({"joint": "ball_pin", "mu": 0.1, "radius": 0.01}, "'ball' is a point mass and has no direction"),
-        ({"joint": "weld", "mu": 0.1}, "is a weld joint, which does not rub; valid: revolute, prismatic, slot"),
+        ({"joint": "weld", "mu": 0.1}, "joint 'weld' is weld; in a plane these may rub: revolute, prismatic, slot"),
     ],
 )
 def test_mistakes_are_told(told, words):

@@ -26,6 +26,7 @@ INSTANT = {
     "beam_pump": 480,
     "scara": 158,
     "roller_cam": 352,
+    "v_twin": 1778,
     "rssr": 781,
     "spatial_slider_crank": 414,
     "stewart_gough": 5410,

@@ -11,7 +11,7 @@ from .joints import Axis, Joint
 from .ownership import Ownership
 from .parts import POSITIVE, Expression, Friction
 
-TURNING, SLIDING = ("revolute",), ("prismatic", "slot")
+_IN_PLANE, _IN_SPACE = ("revolute", "prismatic", "slot"), ("revolute", "screw")
 
 
 def friction(own: Ownership, name: str, joint: Joint, told: Mapping[str, Expression | None]) -> Friction:
@@ -45,14 +45,10 @@ def friction(own: Ownership, name: str, joint: Joint, told: Mapping[str, Express
 
 def _axis(own: Ownership, what: str, joint: Joint) -> Axis:
     own.joint(joint)
-    if own.mechanism.space:
-        raise DeclarationError(
-            f"{what}: friction that follows reactions is there for planar mechanisms; in space take torque() or force()"
-        )
-    if joint.kind not in (*TURNING, *SLIDING):
-        raise DeclarationError(
-            f"{what}: joint '{joint.name}' is a {joint.kind} joint, which does not rub; valid: revolute, prismatic, slot"
-        )
+    valid = _IN_SPACE if own.mechanism.space else _IN_PLANE
+    if joint.kind not in valid:
+        where = "space" if own.mechanism.space else "a plane"
+        raise DeclarationError(f"{what}: joint '{joint.name}' is {joint.kind}; in {where} these may rub: {', '.join(valid)}")
     if not joint.axes:
         points = [body.name for body in joint.bodies if not body.oriented]
         raise DeclarationError(
@@ -71,10 +67,19 @@ def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expressi
         if needless:
             raise DeclarationError(f"{what}: {needless[0]} goes with mu, a friction coefficient")
         return
+    if joint.kind == "screw" and "static" in numbers:
+        raise DeclarationError(
+            f"{what}: joint '{joint.name}' is a screw, and a thread has one mu; valid: mu, radius, viscous, smooth"
+        )
     if axis.kind == "angle":
         if "radius" not in numbers:
             raise DeclarationError(f"{what}: joint '{joint.name}' turns; expected radius, that of its pin [m]")
-        if "length" in numbers:
+        borne = joint.turned is not None and joint.kind == "revolute" and joint.bears_moment
+        if borne and "length" not in numbers:
+            raise DeclarationError(
+                f"{what}: joint '{joint.name}' bears a moment; expected length, from one bearing to the other [m]"
+            )
+        if "length" in numbers and not borne:
             raise DeclarationError(f"{what}: joint '{joint.name}' turns and has no length of guidance; valid: radius")
         return
     if "radius" in numbers:

@@ -169,6 +169,11 @@ def _of_friction(friction: Friction) -> Iterator[Demand]:
 
         if isinstance(number, ca.SX):
             yield Demand(number, positive, refusal)
+    if friction.joint.kind == "screw" and friction.dry and friction.radius is not None:
+        steep = (
+            f"friction '{friction.name}': mu times the lead of a radian must be less than radius, else no couple drives the screw"
+        )
+        yield Demand(friction.radius - friction.mu * ca.fabs(friction.joint.pitch), True, lambda _: steep)
 
 
 def _of_body(body: Link | PointMass, precision: Precision) -> tuple[Expression, list[Demand]]:

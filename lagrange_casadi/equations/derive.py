@@ -150,10 +150,12 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
             frictions=want.frictions,
             weights=scene.weights,
         )
-        if forces.rubbed.symbols.numel():
-            placed = ca.substitute(column(columns.values()), forces.rubbed.symbols, forces.rubbed.values)
-            columns = dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True))
+        rubbed = forces.rubbed
+        told = {key: columns.pop(key) for key, value in list(columns.items()) if ca.depends_on(ca.SX(value), rubbed.symbols)}
+        placed = ca.substitute(column(told.values()), rubbed.symbols, rubbed.values)
+        pressed = dict(zip(told, ca.vertsplit(placed) if told else (), strict=True))
         acting, free = gathered(forces.columns, forces.free, mechanism.links.values(), body.coordinates), forces.free
+        acting |= pressed
         # Beside the start of the motion, for a drive through a gear moves little of what it drives, and holds it all the same.
         for check in [check for check in acting if isinstance(check, Check) and check.kind == "hold"]:
             there = ca.Function("start", inputs, [acting[check]])

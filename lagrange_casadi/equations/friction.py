@@ -40,10 +40,14 @@ _NOTHING = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class Contact:
-    """What presses on a rubbing place [N], of one component or two, and the ``arm`` that its friction has: 1 or a radius [m]."""
+    """What presses on a rubbing place [N], of one component or two, and the ``arm`` that its friction has: 1 or a radius [m].
+
+    Of a thread, ``lean`` tells how much more one direction of sliding presses than the other [m].
+    """
 
     arm: Any
     pressing: tuple[Any, ...]
+    lean: Any = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +71,7 @@ class Rubbing:
     def of_rows(self, rows: Sequence[Any]) -> Rubbing:
         """The same with other expressions."""
         left = iter(rows)
-        contacts = tuple(Contact(c.arm, tuple(next(left) for _ in c.pressing)) for c in self.contacts)
+        contacts = tuple(Contact(c.arm, tuple(next(left) for _ in c.pressing), c.lean) for c in self.contacts)
         rate, acceleration, *slowest = left
         return Rubbing(self.friction, contacts, rate, acceleration, (slowest[0], slowest[1]))
 
@@ -100,7 +104,9 @@ def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vec
     quickest += fastest * fastest
     least = _REST * (1 if friction.axis.kind == "angle" else unit)
     contacts: tuple[Contact, ...] = ()
-    if friction.dry and friction.axis.kind == "angle":
+    if friction.dry and multibody.mechanism.space:
+        contacts = _in_space(multibody, friction, force, couple)
+    elif friction.dry and friction.axis.kind == "angle":
         contacts = (Contact(friction.radius, (force[0], force[1])),)
     elif friction.dry:
         across = multibody.frames[joint.parent.body.name].rotation.apply(joint.triad[1])
@@ -113,13 +119,36 @@ def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vec
     return Rubbing(friction, contacts, rate, acceleration, (least * fastest, least * quickest))
 
 
-def solve(found: Sequence[Rubbing]) -> Solved:
-    """The forces of frictions, along their coordinates, from what presses on them, which is linear in the symbols of all."""
+def _in_space(multibody: Multibody, friction: Friction, force: Vector, couple: Vector) -> tuple[Contact, ...]:
+    """Two bearings, ``length`` apart, and a collar that bears the thrust; or the flanks of a thread.
+
+    With N on a thread's flank at the angle tan(angle) = pitch/radius, the force along the axis is N (cos -+ mu sin), and friction
+    takes mu N radius/cos from the couple: less or more where the load drives the thread, by the sign of what it does.
+    """
+    joint, rotation = friction.joint, multibody.frames[friction.joint.parent.body.name].rotation
+    u, v, w = (rotation.apply(direction) for direction in joint.triad)
+    along, (one, other) = dot(force, u), (dot(force, v), dot(force, w))
+    if joint.kind == "screw":
+        radius, pitch = ca.SX(friction.radius), joint.pitch
+        leaning = friction.mu * pitch
+        steep = (radius * radius + pitch * pitch) / (radius * radius - leaning * leaning)
+        return (Contact(steep * radius, (along,), steep * leaning),)
+    about = (dot(couple, v) / friction.length, dot(couple, w) / friction.length)
+    sides = ((one / 2 + sign * about[1], other / 2 - sign * about[0]) for sign in (1, -1))
+    return (*(Contact(friction.radius, side) for side in sides), Contact(friction.radius, (along,)))
+
+
+def solve(found: Sequence[Rubbing], open_: Any) -> Solved:
+    """The forces of frictions, along their coordinates, from what presses on them, which is linear in the symbols of all.
+
+    It is linear too in the symbols ``open_`` of what equilibrium leaves open: frictions are solved where these are zero, and
+    change with them by what they can change most.
+    """
     symbols = column(one.friction.symbol for one in found)
     n = len(found)
     pressing = column(x for one in found for contact in one.contacts for x in contact.pressing)
-    slopes = ca.jacobian(pressing, symbols)
-    free = ca.substitute(pressing, symbols, ca.SX.zeros(n))
+    slopes, doubts = ca.jacobian(pressing, symbols), ca.jacobian(pressing, open_)
+    free = ca.substitute(pressing, ca.vertcat(symbols, open_), ca.SX.zeros(n + open_.numel()))
     laws: list[_Law] = []
     first = 0
     for one in found:
@@ -128,13 +157,20 @@ def solve(found: Sequence[Rubbing]) -> Solved:
             rows = range(first, first + len(contact.pressing))
             first += len(contact.pressing)
             parts.append(
-                _Pressed(contact.arm, [free[row] for row in rows], [[_entry(slopes, row, k) for k in range(n)] for row in rows])
+                _Pressed(
+                    contact.arm,
+                    contact.lean,
+                    [free[row] for row in rows],
+                    [[_entry(slopes, row, k) for k in range(n)] for row in rows],
+                )
             )
         laws.append(_Law.of(one, parts))
     values: list[Any] = [None] * n
     checks: dict[Column, Any] = {Check("rest", law.name): law.rest for law in laws if law.rest is not None}
     for block in _blocks(laws):
         checks |= _solve_block([laws[j] for j in block], block, values)
+    if doubts.nnz():
+        values = _doubted(laws, values, ca.fabs(doubts) @ open_)
     lost = {one.friction.name: -value * one.rate for one, value in zip(found, values, strict=True)}
     forces = {one.friction.name: value for one, value in zip(found, values, strict=True)}
     return Solved(symbols, column(values), checks, forces, lost)
@@ -145,6 +181,7 @@ class _Pressed:
     """A contact as R0 + A s: ``free`` is R0, ``slopes`` the rows of A, None where nothing."""
 
     arm: Any
+    lean: Any
     free: list[Any]
     slopes: list[list[Any]]
 
@@ -155,7 +192,24 @@ class _Pressed:
     def seen(self, k: int) -> Any:
         """How much it changes at most with a friction; None where not at all."""
         column_ = [row[k] for row in self.slopes if row[k] is not None]
-        return None if not column_ else self.arm * _size(column_)
+        most = self.arm if self.lean is None else self.arm + ca.fabs(self.lean)
+        return None if not column_ else most * _size(column_)
+
+    def push(self, pressing: Sequence[Any], sigma: Any) -> Any:
+        """The couple or force of a unit of mu where so much presses."""
+        size = self.arm * _size(pressing)
+        return size if self.lean is None else size + sigma * (self.lean * pressing[0])
+
+    def slope(self, pressing: Sequence[Any], sigma: Any, k: int) -> Any:
+        """How it changes with a friction; None where not at all."""
+        terms = [(x, row[k]) for x, row in zip(pressing, self.slopes, strict=True) if row[k] is not None]
+        if not terms:
+            return None
+        if len(pressing) == 1:
+            way = self.arm * ca.sign(pressing[0])
+            return (way if self.lean is None else way + sigma * self.lean) * terms[0][1]
+        along = sum((x * slope for x, slope in terms[1:]), terms[0][0] * terms[0][1])
+        return self.arm * (along / ca.fmax(_size(pressing), _NOTHING))
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,9 +241,9 @@ class _Law:
         # At rest it is 0 times infinity, which is no number.
         return cls(friction.name, pressed, mu, ca.sign(way) / (1 - rest), steady, rest)
 
-    def pushed(self, sizes: Sequence[Any]) -> Any:
-        """The force where contacts press so much."""
-        dry = -self.sigma * (self.mu * sum((part.arm * size for part, size in zip(self.pressed, sizes, strict=True)), ca.SX(0)))
+    def pushed(self, values: Sequence[Any]) -> Any:
+        """The force for values of all frictions."""
+        dry = -self.sigma * (self.mu * sum((part.push(part.at(values), self.sigma) for part in self.pressed), ca.SX(0)))
         return dry if self.steady is None else dry - self.steady
 
     def depends(self, k: int) -> bool:
@@ -201,22 +255,18 @@ def _solve_block(laws: Sequence[_Law], block: Sequence[int], values: list[Any]) 
     """Put the values of frictions that depend on each other into ``values``; and the checks of them."""
     known = list(values)
     for j, law in zip(block, laws, strict=True):
-        values[j] = law.pushed([_size(part.at(known)) for part in law.pressed])
+        values[j] = law.pushed(known)
     if not any(law.depends(k) for law in laws for k in block):
         return {}
     for _ in range(STEPS):
         left, matrix = [], []
         for j, law in zip(block, laws, strict=True):
             at = [part.at(values) for part in law.pressed]
-            sizes = [_size(pressing) for pressing in at]
-            left.append(values[j] - law.pushed(sizes))
+            left.append(values[j] - law.pushed(values))
             row: list[Any] = []
             for k in block:
-                slopes = [
-                    part.arm * towards
-                    for part, pressing, size in zip(law.pressed, at, sizes, strict=True)
-                    if (towards := _towards(pressing, size, [line[k] for line in part.slopes])) is not None
-                ]
+                each = (part.slope(pressing, law.sigma, k) for part, pressing in zip(law.pressed, at, strict=True))
+                slopes = [slope for slope in each if slope is not None]
                 entry = None if not slopes else law.sigma * (law.mu * sum(slopes[1:], slopes[0]))
                 row.append(entry if j != k else 1 if entry is None else 1 + entry)
             matrix.append(row)
@@ -224,10 +274,32 @@ def _solve_block(laws: Sequence[_Law], block: Sequence[int], values: list[Any]) 
             values[j] = values[j] - correction
     missed, size = ca.SX(0), ca.SX(_NOTHING)
     for j, law in zip(block, laws, strict=True):
-        push = law.pushed([_size(part.at(values)) for part in law.pressed])
+        push = law.pushed(values)
         missed, size = missed + ca.fabs(values[j] - push), size + ca.fabs(push)
     name = ", ".join(law.name for law in laws)
     return {Check("jam", name): _least_pivot(laws, block), Check("slip", name): missed / size}
+
+
+def _doubted(laws: Sequence[_Law], values: Sequence[Any], doubts: Any) -> list[Any]:
+    """Values with what they change at most where what presses on them changes by ``doubts``, row by row."""
+    rows = iter(ca.vertsplit(doubts))
+    own = [law.mu * sum((part.arm * next(rows) for part in law.pressed for _ in part.free), ca.SX(0)) for law in laws]
+    changes = own
+    for _ in laws:
+        changes = [
+            start
+            + sum(
+                (
+                    law.mu * seen * changes[k]
+                    for part in law.pressed
+                    for k in range(len(laws))
+                    if (seen := part.seen(k)) is not None
+                ),
+                ca.SX(0),
+            )
+            for law, start in zip(laws, own, strict=True)
+        ]
+    return [value + change for value, change in zip(values, changes, strict=True)]
 
 
 def _least_pivot(laws: Sequence[_Law], block: Sequence[int]) -> Any:
@@ -305,17 +377,6 @@ def _size(components: Sequence[Any]) -> Any:
         if len(components) == 1
         else ca.sqrt(sum((x * x for x in components[1:]), components[0] * components[0]))
     )
-
-
-def _towards(pressing: Sequence[Any], size: Any, slopes: Sequence[Any]) -> Any:
-    """How a size changes with a friction by which its components change so; None where not."""
-    terms = [(x, slope) for x, slope in zip(pressing, slopes, strict=True) if slope is not None]
-    if not terms:
-        return None
-    if len(pressing) == 1:
-        return ca.sign(pressing[0]) * terms[0][1]
-    along = sum((x * slope for x, slope in terms[1:]), terms[0][0] * terms[0][1])
-    return along / ca.fmax(size, _NOTHING)
 
 
 def _entry(matrix: Any, row: int, k: int) -> Any:

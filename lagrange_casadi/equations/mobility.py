@@ -129,7 +129,7 @@ def internal_forces(
     every = iter(ca.vertsplit(ca.substitute(kinematics.evaluate(resting), unknowns, values)) if rows else ())
     columns = {name: next(every) for name in columns}
     rubbed = {name: one.of_rows([next(every) for _ in one.rows]) for name, one in rubbed.items()}
-    acting = solve([rubbed[name] for name in needed(column(columns.values()), rubbed, frictions)])
+    acting = solve([rubbed[name] for name in needed(column(columns.values()), rubbed, frictions)], free)
     known = ca.substitute(column(columns.values()), acting.symbols, acting.values)
     columns = dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True))
     for name in frictions:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
 import numpy as np
 
 from ..declare.density import Array
@@ -13,59 +15,81 @@ from .placing import Moving, axis_of
 _SLOW = 1e-9
 """Of a joint's fastest rate: below, either sign may be that of its rate."""
 
+Pressing = Callable[[Array], Array]
+"""What mu is multiplied by, for signs of the rate."""
 
-def law_gaps(solution: Solution, bodies: dict[str, Moving]) -> tuple[Array, float] | None:
+
+def law_gaps(solution: Solution, bodies: Mapping[str, Moving] | None = None) -> tuple[Array, float] | None:
     """How far frictions are from what their laws say (t,), over what they would be under the largest reaction of the cycle.
 
-    None where there is no friction, or what it takes is not among the outputs.
+    ``bodies`` are those of a planar mechanism. None where there is no friction, or what it takes is not among the outputs.
     """
     worst, found = np.zeros_like(solution.t), False
     for name, load in solution.description["loads"].items():
         if "friction" not in load:
             continue
-        told, joint = load["friction"], solution.description["joints"][load["friction"]["coordinate"]]
-        value, rate = (
-            solution.outputs.get(output)
-            for output in (Output("friction", name, "along"), Output("motion", told["coordinate"], "rate"))
-        )
-        if value is None or rate is None or Output("reaction", told["coordinate"], "fx") not in solution.outputs:
+        joint, numbers = load["friction"]["coordinate"], load["friction"]["numbers"]
+        outputs = (Output("friction", name, "along"), Output("motion", joint, "rate"))
+        value, rate = (solution.outputs.get(output) for output in outputs)
+        if value is None or rate is None or Output("reaction", joint, "fx") not in solution.outputs:
             continue
         found = True
-        numbers = told["numbers"]
-        press, most = _pressing(solution, told["coordinate"], joint, numbers, bodies)
+        pressing = _in_space(solution, joint, numbers) if bodies is None else _in_plane(solution, joint, numbers, bodies)
         speed = np.abs(rate) * numbers.get("radius", 1.0)
         mu = np.full_like(rate, numbers.get("mu", 0.0))
         if "static" in numbers:
             mu += (numbers["static"] - mu) * np.exp(-((speed / numbers["stribeck"]) ** 2))
         steady = -numbers.get("viscous", 0.0) * rate
-        dry, size = value - steady, mu * press
-        if "smooth" in numbers:
-            gap = np.abs(dry + np.tanh(rate / numbers["smooth"]) * size)
-        else:
-            gap = np.where(
-                np.abs(rate) > _SLOW * np.max(np.abs(rate)), np.abs(dry + np.sign(rate) * size), np.abs(np.abs(dry) - size)
-            )
-        scale = float(np.max(mu)) * most + float(np.max(np.abs(steady)))
+        sign = np.tanh(rate / numbers["smooth"]) if "smooth" in numbers else np.sign(rate)
+        gap = np.abs(value - steady + mu * sign * pressing(sign))
+        if "smooth" not in numbers:
+            ends = [np.abs(value - steady + one * mu * pressing(one * np.ones_like(rate))) for one in (1.0, -1.0)]
+            gap = np.where(np.abs(rate) > _SLOW * np.max(np.abs(rate)), gap, np.minimum(*ends))
+        scale = float(np.max(mu)) * numbers.get("radius", 1.0) * _most(solution, numbers) + float(np.max(np.abs(steady)))
         worst = np.maximum(worst, np.divide(gap, scale, out=gap.copy(), where=scale > 0.0))
     return (worst, 1.0) if found else None
 
 
-def _pressing(
-    solution: Solution, name: str, joint: Description, numbers: dict[str, float], bodies: dict[str, Moving]
-) -> tuple[Array, float]:
-    """What mu is multiplied by, and what it would be under the largest reaction of all joints."""
-    reaction = solution.reaction(name)
-    joints = {o.part for o in solution.outputs if o.group == "reaction"}
-    most = max(float(np.max(np.hypot(solution.reaction(one).fx, solution.reaction(one).fy))) for one in joints)
+def _most(solution: Solution, numbers: Mapping[str, float]) -> float:
+    """The largest reaction of all joints [N], its moment by its arm."""
+    arm = numbers.get("length", np.inf)
+    sizes = {"f": 0.0, "m": 0.0}
+    for output, values in solution.outputs.items():
+        if output.group == "reaction":
+            sizes[output.member[0]] = max(sizes[output.member[0]], float(np.fmax.reduce(np.abs(values))))
+    return sizes["f"] + 2.0 * sizes["m"] / arm
+
+
+def _in_plane(solution: Solution, name: str, numbers: Mapping[str, float], bodies: Mapping[str, Moving]) -> Pressing:
+    reaction, joint = solution.reaction(name), solution.description["joints"][name]
+    force = reaction.fx + 1j * reaction.fy
     if joint["coordinate"] == "angle":
-        radius = numbers.get("radius", 0.0)
-        return radius * np.hypot(reaction.fx, reaction.fy), radius * most
-    across = 1j * axis_of(joint, bodies[joint["parent"]["body"]])
-    normal = (np.conj(across) * (reaction.fx + 1j * reaction.fy)).real
+        return lambda _: numbers.get("radius", 0.0) * np.abs(force)
+    normal = (np.conj(1j * axis_of(joint, bodies[joint["parent"]["body"]])) * force).real
     if "length" not in numbers or reaction.mz is None:
-        return np.abs(normal), most
+        return lambda _: np.abs(normal)
     tilt = reaction.mz / numbers["length"]
-    turned = max(
-        (float(np.max(np.abs(moment))) for one in joints if (moment := solution.reaction(one).mz) is not None), default=0.0
-    )
-    return np.abs(normal / 2 + tilt) + np.abs(normal / 2 - tilt), most + 2.0 * turned / numbers["length"]
+    return lambda _: np.abs(normal / 2 + tilt) + np.abs(normal / 2 - tilt)
+
+
+def _in_space(solution: Solution, name: str, numbers: Mapping[str, float]) -> Pressing:
+    joint: Description = solution.description["joints"][name]
+    nothing = np.zeros_like(solution.t)
+    u, v, w, mv, mw = (solution.outputs.get(Output("reaction", name, member), nothing) for member in ("fu", "fv", "fw", "mv", "mw"))
+    radius = numbers.get("radius", 0.0)
+    if joint["kind"] == "screw" and "mu" in numbers:
+        # By the angles of the thread and of friction: the couple of a force is radius tan(angle + phi) of it, and that without
+        # friction radius tan(angle).
+        angle, phi = np.arctan(joint["pitch"] / radius), np.arctan(numbers["mu"])
+
+        def pressing(sign: Array) -> Array:
+            way = np.sign(sign) * np.sign(u)
+            whole = radius * np.abs(u) * (np.tan(way * angle + phi) - np.tan(way * angle))
+            half = radius * np.abs(u) * (np.tan(phi - way * angle) + np.tan(way * angle))
+            return np.asarray(((1 + np.abs(sign)) * whole + (1 - np.abs(sign)) * half) / (2.0 * numbers["mu"] or 1.0))
+
+        return pressing
+    arm = numbers.get("length", np.inf)
+    sides = (np.hypot(v / 2 + k * mw / arm, w / 2 - k * mv / arm) for k in (1, -1))
+    size = radius * (sum(sides, nothing) + np.abs(u))
+    return lambda _: size

@@ -16,6 +16,7 @@ from ..declare.description import Description, density_of, drives_of, measured_o
 from ..instants.solution import Solution
 from ..quantities import Output, force_members
 from . import digits
+from .friction import law_gaps
 from .locked import without_locked
 from .spatial_placing import Moving, Reported, measured, oriented, relative, resolve, spot, told, turn
 from .spatial_rest import axes_of, gaps_of, place_all
@@ -84,6 +85,8 @@ def residuals(solution: Solution, turned: Solution, equations: Sequence[Written]
         acting = [*_acting(reported, bodies)]
         acting += [push for equation in equations or () for push in _held(reported, bodies, equation)]
         tally = _tally(solution, bodies, acting, matter)
+        if (rubbed := law_gaps(solution)) is not None:
+            found["friction"] = rubbed
         found["balance"], found["power"] = _balance(solution, bodies, tally, matter)
         if solution.links_with_sections:
             found["ends"] = _ends(solution, bodies, acting, matter)
