@@ -111,6 +111,16 @@ class Browser:
             raise RuntimeError(details.get("exception", {}).get("description") or details["text"])
         return answer["result"].get("value")
 
+    def run_within(self, expression: str) -> object:
+        """What an expression is in the page's one frame, which is a page of its own."""
+        (frame,) = (one for one in self.call("Target.getTargets")["targetInfos"] if one["type"] == "iframe")
+        own = self._session
+        self._session = self.call("Target.attachToTarget", targetId=frame["targetId"], flatten=True)["sessionId"]
+        try:
+            return self.run(expression)
+        finally:
+            self._session = own
+
     def size(self, width: int, height: int, scale: float = 1.0, mobile: bool = False) -> None:
         """Give the page a size."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale, mobile=mobile)

@@ -253,7 +253,7 @@ def test_the_command_shows_a_file_and_a_case(here, capsys):
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["all.h5", "--out", "a.png"], "animation a.png: expected a name that ends in .gif, .mp4 or .svg"),
+        (["all.h5", "--out", "a.png"], "animation a.png: expected a name that ends in .gif, .mp4, .svg or .glb"),
         (["all.h5", "--out", "nowhere/a.gif"], "cannot write nowhere/a.gif: folder nowhere does not exist"),
         (["all.h5", "--out", "a.mp4"], "an MP4 is made by ffmpeg, which is not found; install it, or write a .gif or an .svg"),
         (

@@ -51,7 +51,7 @@ ORDER = (
     "cli",
 )
 
-LATE = {("solution.py", "report"), ("scene.py", "report"), ("solution.py", "strength")}
+LATE = {("solution.py", "report"), ("solution.py", "animation"), ("scene.py", "report"), ("solution.py", "strength")}
 """What a user asks of a thing by a method, and what that looks for only when it is called."""
 
 

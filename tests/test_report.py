@@ -12,12 +12,12 @@ import pytest
 from drawn_scenes import every_kind
 from reports import HOSTILE, held, hostile, press, snowed, solved
 
-from lagrange_casadi import evaluate, load, save, sweep
+from lagrange_casadi import evaluate, load, save
 from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, PathError
 from lagrange_casadi.report import instants, page, write_report
-from lagrange_casadi.report.page import LIVE_SCRIPTS, SCRIPTS
+from lagrange_casadi.report.page import LIVE_SCRIPTS, SCRIPTS, SWEEP_SCRIPTS
 from lagrange_casadi.report.shapes import joint_shapes, shapes
 
 ASSETS = {path.name: path.read_text() for path in resources.files("lagrange_casadi.report").joinpath("assets").iterdir()}
@@ -130,7 +130,7 @@ def test_no_name_is_markup():
 
 
 def test_the_viewer_makes_no_markup_of_texts_and_asks_for_nothing():
-    assert {f"{name}.js" for name in (*LIVE_SCRIPTS, *SCRIPTS)} == {name for name in ASSETS if name.endswith(".js")}
+    assert {f"{name}.js" for name in (*LIVE_SCRIPTS, *SCRIPTS, *SWEEP_SCRIPTS)} == {name for name in ASSETS if name.endswith(".js")}
     for name, text in ASSETS.items():
         assert not re.search(r"(inner|outer)HTML|insertAdjacentHTML|document\.write|\beval\(|new Function", text), name
         assert not re.search(r"\bfetch\(|\bimport\b|XMLHttp|WebSocket|sendBeacon", text), name
@@ -209,10 +209,7 @@ def test_the_command_takes_a_file_or_a_case(tmp_path, monkeypatch, capsys):
         assert told in capsys.readouterr().err
 
 
-def test_a_sweeps_file_and_a_damaged_one_are_refused(tmp_path, capsys):
-    sweep(load_case("four_bar").scene, {"a": [0.1]}, t=(0, 1, 17), out=tmp_path / "sweep.h5")
-    assert main(["report", str(tmp_path / "sweep.h5"), "--out", str(tmp_path / "a.html")]) == 1
-    assert "not the file of a run, but that of a sweep" in capsys.readouterr().err
+def test_a_damaged_file_is_refused(tmp_path, capsys):
     save(press(), tmp_path / "press.h5")
     with h5py.File(tmp_path / "press.h5", "r+") as file:
         file.attrs["schema_version"] = 99

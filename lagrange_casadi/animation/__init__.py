@@ -1,4 +1,4 @@
-"""Animations: the mechanism in motion as a GIF, an MP4 or an animated SVG."""
+"""Animations: the mechanism in motion as a GIF, an MP4, an animated SVG or glTF."""
 
 from .film import ENDINGS, Film, check_ending, write_animation
 

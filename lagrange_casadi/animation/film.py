@@ -18,12 +18,13 @@ from ..system.publish import replacing, writing
 from .body_lines import mechanism, rim
 from .drawn import Picture
 from .forces import Forces, arrow_things, forces_of, ribbon_things
+from .gltf import glb
 from .motion import motion_of
 from .raster import find_ffmpeg, gif, mp4
 from .stage import stage_for
 from .vector import svg
 
-ENDINGS = (".gif", ".mp4", ".svg")
+ENDINGS = (".gif", ".mp4", ".svg", ".glb")
 """Kinds of animations, by the name's ending."""
 
 _WIDTHS, _MOST, _SHORTEST = (80, 3840), 3000, 0.1
@@ -68,7 +69,7 @@ def check_ending(path: Path) -> None:
 
 
 def write_animation(solution: Solution, path: str | os.PathLike[str], film: Film | None = None) -> None:
-    """Write one cycle of a solution as a GIF, an MP4 or an animated SVG, replacing the file at ``path`` whole or not at all.
+    """Write one cycle of a solution as a GIF, an MP4, an animated SVG or glTF, replacing the file at ``path`` whole or not at all.
 
     Raises :class:`.DeclarationError` where the solution lacks the motion of its bodies, or forces that are asked for, and where
     ``path`` has another ending; :class:`.PathError` and :class:`.StoreError` where the file cannot be written;
@@ -78,8 +79,16 @@ def write_animation(solution: Solution, path: str | os.PathLike[str], film: Film
         raise DeclarationError(f"animation: expected a solution and a path, got {solution!r} and {path!r}")
     target, film = Path(path), film or Film()
     check_ending(target)
-    picture = picture_of(solution, film)
     ending = target.suffix.lower()
+    if ending == ".glb":
+        if film.forces or film.section:
+            raise DeclarationError(f"animation {target}: a .glb shows the mechanism alone; forces are in {', '.join(ENDINGS[:-1])}")
+        require_poses(solution, "an animation")
+        solid = glb(solution, max(2, round(film.rate * film.seconds)), film.seconds)
+        with writing(target) as (file,):
+            file.write(solid)
+        return
+    picture = picture_of(solution, film)
     if ending == ".mp4":
         with replacing(target) as draft:
             mp4(picture, picture.frames / film.seconds, draft)

@@ -1,4 +1,4 @@
-"""``lagrange-casadi animate``: the mechanism in motion, as a GIF, an MP4 or an animated SVG."""
+"""``lagrange-casadi animate``: the mechanism in motion, as a GIF, an MP4, an animated SVG or glTF."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ _PLAIN = Film()
 @click.command()
 @click.argument("target", metavar="FILE.h5|CASE", type=click.Path(path_type=Path))
 @click.option(
-    "--out", type=click.Path(path_type=Path), metavar="FILE.gif|FILE.mp4|FILE.svg", help="The animation; default: <name>.gif here."
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar="FILE.gif|FILE.mp4|FILE.svg|FILE.glb",
+    help="The animation; default: <name>.gif here.",
 )
 @click.option("--forces", is_flag=True, help="Show reactions, efforts and loads as arrows.")
 @click.option("--section", default="", metavar="FORCE", help="Show a section force, as bending, as ribbons along links.")
@@ -56,7 +59,8 @@ def animate(
 ) -> None:
     """Show FILE.h5, or CASE evaluated, in motion: one cycle, which repeats, from one file that needs nothing else.
 
-    A GIF goes everywhere, an SVG is sharp at every size, an MP4 is small and needs ffmpeg.
+    A GIF goes everywhere, an SVG is sharp at every size, an MP4 is small and needs ffmpeg. A GLB (glTF) has the solid bodies, for
+    presentations and Blender.
     """
     file = target.suffix in _FILES
     if file and (settings or t or over):

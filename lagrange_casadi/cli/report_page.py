@@ -11,14 +11,17 @@ import click
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
-from ..errors import CertificateError
+from ..errors import CertificateError, DeclarationError, LagrangeCasadiError, one_line
 from ..evaluate import evaluate
+from ..export.wasm import check_zig
 from ..instants.solution import Solution
 from ..judge.certificate import failure
 from ..report import ENDINGS, Live, with_motion, write_report
 from ..report.instants import shown_instants
 from ..store.runs import load
 from ..store.untrusted import told_as
+from ..sweep import Sweep, is_sweep
+from ..sweep.page import is_of, write_sweep_report
 from ..system.publish import check_writable
 from .options import EVEN_POINTS, even_points, parameters, separated, setting
 from .options import over as by_drive
@@ -45,6 +48,7 @@ _UNSHOWN = "cannot be shown"
 @click.option(
     "--live", is_flag=True, help="Of a case: put the engine into the page, with sliders for the parameters; needs ziglang."
 )
+@click.option("--case", type=click.Path(path_type=Path), help="Of a sweep: its case, for the mechanism in motion.")
 def report(
     target: Path,
     out: Path | None,
@@ -53,33 +57,62 @@ def report(
     over: Over | None,
     want: Sequence[str],
     live: bool,
+    case: Path | None,
 ) -> None:
     """Write a page that shows FILE.h5, or CASE evaluated, in any browser: one file, which needs no network and no Python.
 
-    The mechanism moves, with its forces on it; charts and tables are beside it.
+    The mechanism moves, with its forces on it; charts and tables are beside it. Of a sweep there are maps, fronts, a table of
+    designs, and the mechanism of the one that is pressed.
     """
     file = target.suffix in _FILES
     if file and (settings or t or over or want or live):
         raise click.UsageError("--set, --t, --over, --want and --live go with a case, not with a file")
     if out and out.suffix.lower() not in ENDINGS:
         raise click.UsageError(f"--out {out}: expected a name that ends in {' or '.join(ENDINGS)}")
+    if case and not (file and is_sweep(target)):
+        raise click.UsageError("--case goes with a sweep's file")
     if file:
         out = out or Path(f"{target.stem}.html")
         check_writable(out)
+        if is_sweep(target):
+            _of_sweep(target, out, case)
+            return
         solution = load(target)
         with told_as(_UNSHOWN, target):
             write_report(solution, out)
     else:
-        case = load_case(target)
-        out = out or Path(f"{case.name}.html")
+        loaded = load_case(target)
+        out = out or Path(f"{loaded.name}.html")
         check_writable(out)
-        wanted = with_motion(want or case.scene.wanted)
-        engine = (
-            Live(case.scene, case.scene.timing(t, over), wanted, f"lagrange-casadi run {shlex.quote(case.name)}") if live else None
-        )
-        solution = evaluate(case.scene, parameters=parameters(settings), t=t, over=over, wanted=wanted)
+        wanted = with_motion(want or loaded.scene.wanted)
+        engine = Live(loaded.scene, loaded.scene.timing(t, over), wanted, _command(loaded.name)) if live else None
+        solution = evaluate(loaded.scene, parameters=parameters(settings), t=t, over=over, wanted=wanted)
         write_report(solution, out, engine)
     _tell(solution, out)
+
+
+def _command(name: str) -> str:
+    """How a command line begins that evaluates a case."""
+    return f"lagrange-casadi run {shlex.quote(name)}"
+
+
+def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
+    """Write the page of a sweep: with its mechanism in motion where its case is known, and what evaluates it is there."""
+    sweep = Sweep.open(target)
+    found = None
+    try:
+        found = load_case(case or Path(sweep.case))
+        check_zig("the mechanism of a design in motion")
+        if case is None and not is_of(sweep, found.scene):
+            raise DeclarationError(f"the case '{sweep.case}' is not as it was swept")
+    except LagrangeCasadiError as error:
+        if case is not None:
+            raise
+        click.echo(f"note: the page has no mechanism in motion: {one_line(error)}; --case CASE names another case", err=True)
+        found = None
+    with told_as(_UNSHOWN, target):
+        write_sweep_report(sweep, out, None if found is None else found.scene, _command(found.name if found else sweep.case))
+    click.echo(f"wrote {out}: open it in a browser")
 
 
 def _tell(solution: Solution, out: Path) -> None:

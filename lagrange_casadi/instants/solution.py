@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
+    from ..animation import Film
     from ..report import View
     from ..strength import Life, Safety, Stress
 
@@ -318,6 +319,12 @@ class Solution:
         from ..report import write_report
 
         write_report(self, path)
+
+    def animate(self, path: str | os.PathLike[str], film: Film | None = None) -> None:
+        """Write one cycle in motion, as a GIF, an MP4, an animated SVG or glTF, as the path ends: see :func:`.write_animation`."""
+        from ..animation import write_animation
+
+        write_animation(self, path, film)
 
     def view(self, height: int = 760) -> View:
         """The same page for a notebook, which shows it in a frame of a height [points] where it is the last value of a cell.

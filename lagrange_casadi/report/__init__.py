@@ -3,6 +3,20 @@
 from .live import Live
 from .notebook import View, scene_summary, summary, view
 from .of_scene import scene_report, with_motion
-from .page import ENDINGS, page, write_report
+from .page import ENDINGS, assembled, live_digest, page, write_page, write_report
 
-__all__ = ["ENDINGS", "Live", "View", "page", "scene_report", "scene_summary", "summary", "view", "with_motion", "write_report"]
+__all__ = [
+    "ENDINGS",
+    "Live",
+    "View",
+    "assembled",
+    "live_digest",
+    "page",
+    "scene_report",
+    "scene_summary",
+    "summary",
+    "view",
+    "with_motion",
+    "write_page",
+    "write_report",
+]

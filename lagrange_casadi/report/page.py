@@ -12,9 +12,11 @@ import hashlib
 import html
 import json
 import os
+from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from string import Template
+from typing import Any
 
 from ..errors import DeclarationError
 from ..export.wasm import engine
@@ -24,13 +26,16 @@ from .contents import contents
 from .live import Live
 
 SCRIPTS = (
-    *("data", "dom", "units", "law", "places", "paper", "solids", "symbols", "arrows", "ribbons", "stage", "gestures"),
-    *("player", "axes", "chart", "polar", "heat", "cards", "tables", "sliders", "page"),
+    *("data", "dom", "units", "instants", "law", "places", "paper", "solids", "symbols", "arrows", "ribbons", "stage", "gestures"),
+    *("player", "axes", "chart", "polar", "heat", "cards", "sorted", "tables", "sliders", "page"),
 )
 """The viewer's sources, in the order in which they stand in a page."""
 
 LIVE_SCRIPTS = ("chebyshev", "along", "shapes", "alive")
-"""Those that a live page has beside, after the engine's own wrapper."""
+"""Those that a live page has before them, after the engine's own wrapper."""
+
+SWEEP_SCRIPTS = ("data", "dom", "units", "axes", "chart", "sorted", "designs", "designs_plots", "designs_page")
+"""Those of the page of a sweep."""
 
 ENDINGS = (".html", ".htm")
 
@@ -38,36 +43,65 @@ ENDINGS = (".html", ".htm")
 def write_report(solution: Solution, path: str | os.PathLike[str], live: Live | None = None) -> None:
     """Write a page that shows a solution in a browser, replacing the file at ``path`` whole or not at all.
 
-    With ``live`` the page evaluates its scene for other parameters.
-
-    Raises :class:`.DeclarationError` where the solution lacks the motion of its bodies, and where ``path`` does not end in .html;
-    :class:`.PathError` and :class:`.StoreError` where the file cannot be written.
+    With ``live`` the page evaluates its scene for other parameters. Raises :class:`.DeclarationError` where the solution lacks the
+    motion of its bodies, and where ``path`` does not end in .html; :class:`.PathError` and :class:`.StoreError` where the file
+    cannot be written.
     """
     if not isinstance(solution, Solution) or not isinstance(path, (str, os.PathLike)):
         raise DeclarationError(f"report: expected a solution and a path, got {solution!r} and {path!r}")
-    target = Path(path)
+    write_page(Path(path), lambda: page(solution, live))
+
+
+def write_page(target: Path, made: Callable[[], str]) -> None:
+    """Write the page that is ``made``, replacing the file whole or not at all. Raises what :func:`write_report` does."""
     if target.suffix.lower() not in ENDINGS:
         raise DeclarationError(f"report {target}: expected a name that ends in {' or '.join(ENDINGS)}")
-    text = page(solution, live).encode()
+    text = made().encode()
     with writing(target) as (file,):
         file.write(text)
 
 
 def page(solution: Solution, live: Live | None = None) -> str:
     """The text of the page."""
-    alive = [engine(), *(_asset(f"{name}.js") for name in LIVE_SCRIPTS)] if live else []
-    script = "".join(["(() => {\n'use strict';\n", *alive, *(_asset(f"{name}.js") for name in SCRIPTS), "})();\n"])
-    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii")
-    data = json.dumps(contents(solution, live), allow_nan=False, separators=(",", ":"), ensure_ascii=True)
+    alive = [engine(), *map(script, LIVE_SCRIPTS)] if live else []
+    return assembled(solution.case, contents(solution, live), [*alive, *map(script, SCRIPTS)], wasm=bool(live))
+
+
+def assembled(title: str, told: Mapping[str, Any], scripts: Sequence[str], *, wasm: bool, others: Sequence[str] = ()) -> str:
+    """A page with what is ``told``, which runs ``scripts``; with ``wasm`` it may compile that.
+
+    ``others`` are digests of scripts that pages within it run.
+    """
+    text = _whole(scripts)
+    data = json.dumps(told, allow_nan=False, separators=(",", ":"), ensure_ascii=True)
+    run = [f"'sha256-{one}'" for one in (_digest(text), *others)]
     return Template(_asset("page.html")).substitute(
-        title=html.escape(solution.case),
+        title=html.escape(title),
         # A browser compiles WebAssembly only where a page says so.
-        run=f"'sha256-{digest}'" + (" 'wasm-unsafe-eval'" if live else ""),
+        run=" ".join([*run, *(["'wasm-unsafe-eval'"] if wasm else [])]),
         style=_asset("page.css"),
-        script=script,
+        script=text,
         # No text in JSON can end the element that holds it, or begin a comment.
         data=data.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"),
     )
+
+
+def live_digest() -> str:
+    """The digest of the script of a live page."""
+    return _digest(_whole([engine(), *map(script, (*LIVE_SCRIPTS, *SCRIPTS))]))
+
+
+def script(name: str) -> str:
+    """A source of the viewer."""
+    return _asset(f"{name}.js")
+
+
+def _whole(scripts: Sequence[str]) -> str:
+    return "".join(["(() => {\n'use strict';\n", *scripts, "})();\n"])
+
+
+def _digest(text: str) -> str:
+    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
 
 
 def _asset(name: str) -> str:

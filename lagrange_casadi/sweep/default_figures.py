@@ -41,12 +41,12 @@ def default_plots(
             pages = [(some, few) for some in _pages(columns, _ROWS) for few in _pages(names, _ACROSS)]
             specs += [Scatter(f"peak_{group}{page}", some, few, at) for page, (some, few) in _numbered(pages)]
         else:
-            free = [name for name in _varied(sweep) if name not in names and name not in at]
+            free = [name for name in varied(sweep) if name not in names and name not in at]
             family = free[0] if free and len(names) == 1 else ""
             specs += [Peaks(f"peak_{group}{page}", some, names, family, at) for page, some in _numbered(_pages(columns, _PANELS))]
     links = dict.fromkeys(output.part for output in _of_kind(sweep, "peak_at").values())
     specs += [Along(f"along_{link}", link, (names or tuple(sweep.dimensions))[0], at) for link in links if not listed]
-    for first, second in dict.fromkeys(against) or _usual_pair(sweep, at):
+    for first, second in dict.fromkeys(against) or usual_pair(sweep, at):
         for name in (first, second):
             if name not in sweep.parameters and sweep.column(name).axes:
                 raise DeclarationError(f"column '{name}' has no single value of a design to draw against another")
@@ -60,7 +60,8 @@ def default_plots(
     return tuple(specs)
 
 
-def _varied(sweep: Sweep) -> list[str]:
+def varied(sweep: Sweep) -> list[str]:
+    """The parameters that are not the same in all designs."""
     return [name for name in sweep.parameters if np.ptp(sweep[name]) > 0.0]
 
 
@@ -70,18 +71,18 @@ def _over(sweep: Sweep, over: tuple[str, ...], at: Mapping[str, float]) -> tuple
         if name not in sweep.parameters:
             raise UnknownNameError("swept parameter", name, sweep.parameters)
     sweep.select(**at)
-    varied, listed = _varied(sweep), DESIGN in sweep.dimensions
+    changed, listed = varied(sweep), DESIGN in sweep.dimensions
     for name in over:
         if name in at:
             raise DeclarationError(f"parameter '{name}' cannot be drawn over and stay at {at[name]:g} as well")
         if over.count(name) > 1:
             raise DeclarationError(f"parameter '{name}' is to be drawn over twice")
-        if name not in varied:
-            others = f"; those that vary: {', '.join(varied)}" if varied else ""
+        if name not in changed:
+            others = f"; those that vary: {', '.join(changed)}" if changed else ""
             raise DeclarationError(f"parameter '{name}' cannot be drawn over: it is {sweep[name][0]:g} in all designs{others}")
     if len(over) > 2 and not listed:
         raise DeclarationError(f"a grid is drawn over one parameter or two, got {len(over)}: {', '.join(over)}")
-    free = tuple(name for name in varied if name not in at)
+    free = tuple(name for name in changed if name not in at)
     return over or (free if listed else free[:2])
 
 
@@ -110,7 +111,7 @@ def _group(output: Output, space: bool) -> str:
     return _TOGETHER.get(output.group, "")
 
 
-def _usual_pair(sweep: Sweep, at: Mapping[str, float]) -> list[tuple[str, str]]:
+def usual_pair(sweep: Sweep, at: Mapping[str, float]) -> list[tuple[str, str]]:
     """An effort, or else an axial force, and the bending moment of the last link, in the order of the mechanism."""
     peaks = {output: name for name, output in _of_kind(sweep, "peak").items()}
     first = next((name for output, name in peaks.items() if output.group == "effort" or output.member == "axial"), "")

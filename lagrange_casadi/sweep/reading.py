@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
@@ -31,6 +32,8 @@ from .selection import matches
 
 if TYPE_CHECKING:
     import xarray
+
+    from ..declare.scene import Scene
 
 _BLOCK = 1 << 15
 
@@ -71,6 +74,22 @@ class Sweep:
 
     def __repr__(self) -> str:
         return f"<Sweep of {self.case}: {counted(self.size)} over {', '.join(self.parameters)}; {', '.join(self.columns)}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: what was swept, how many designs have a result, and the smallest and largest of columns."""
+        from .display import summary
+
+        return summary(self)
+
+    def report(self, path: str | os.PathLike[str], scene: Scene | None = None) -> None:
+        """Write a page for browsers: maps, fronts, a table, and with the ``scene`` that was swept the mechanism in motion.
+
+        Raises :class:`DeclarationError` for another scene, for a path that does not end in .html, and where no column has one value
+        for each design; :class:`LagrangeCasadiError` where ``scene`` lacks ziglang.
+        """
+        from .page import write_sweep_report
+
+        write_sweep_report(self, path, scene)
 
     @property
     def case(self) -> str:

@@ -1,7 +1,5 @@
 // What charts have in common: curves, scales, axes, and the words beside the pointer.
 
-const over = contents.instants.over;
-
 /** A sheet of two layers: what stands still, and above it what goes with the motion, so that curves are painted once. */
 class Sheet {
   constructor(kind, words, { hover, press }) {
@@ -52,9 +50,6 @@ function curveOfSection(section, force, ratio) {
   const values = Float64Array.from({ length: instants.count }, (_, i) => sectionForce(section, force.name, i, ratio));
   return { name: "", title: force.what, unit: force.unit, values };
 }
-
-/** The axis along which instants are shown where nothing else is asked for. */
-const alongInstants = over ? "over" : "t";
 
 /** The entries of a list of quantities, by kind. */
 function seriesEntries(wanted = () => true) {

@@ -3,6 +3,7 @@
 function buildPage() {
   const canvas = element("canvas", { class: "picture", tabindex: 0, role: "img", "aria-label": `The mechanism ${contents.case} in motion` });
   const root = document.getElementById("report");
+  root.classList.toggle("within", window.parent !== window && Boolean(contents.live));
   deck.list = element("div", { class: "cards" });
   const frame = element("div", { class: "frame" }, canvas);
   const left = element("div", { class: "left" }, frame);

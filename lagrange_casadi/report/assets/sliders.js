@@ -9,13 +9,14 @@ async function comeAlive(panel) {
     const { instance } = await WebAssembly.instantiate(Uint8Array.from(text, (letter) => letter.charCodeAt(0)), {});
     live.engine = new Alive(instance);
     panel.append(...slidersOf(live.engine));
+    if (window.parent !== window) listenToPage();
   } catch (error) {
     panel.append(element("p", { class: "alarm" }, `This browser does not run the engine of this page (${error.message}). What is shown is the design of the file.`));
     if (!(error instanceof WebAssembly.CompileError)) throw error;
   }
 }
 
-const live = { engine: null, alarm: null, asked: null, moving: false, late: 0 };
+const live = { engine: null, alarm: null, asked: null, moving: false, late: 0, fields: [] };
 
 const LATE = 150; // After so many milliseconds without a change, what is slow follows: tables, fine maps, what is out of sight.
 
@@ -50,6 +51,7 @@ function slidersOf(engine) {
     const reads = element("output", {});
     const tell = () => (reads.textContent = ["m", "rad", "1"].includes(one.unit) && !scaleFor(one.unit, Math.abs(engine.values[k])).unit ? "" : shown(engine.values[k], one.unit, 5));
     fields.push({ slider, field, tell });
+    live.fields.push([slider, field]);
     tell();
     return element("label", {}, element("span", { class: "name" }, one.name), slider, field, reads);
   });
@@ -73,6 +75,20 @@ function slidersOf(engine) {
 function shortest(value, wide) {
   const digits = Math.max(0, Math.min(15, 3 - Math.floor(Math.log10(wide || 1))));
   return Number(value.toFixed(digits));
+}
+
+/** Show the designs that the page around this one sends, by values of parameters, and tell it that this one is ready. */
+function listenToPage() {
+  window.addEventListener("message", (event) => {
+    if (event.source !== window.parent || typeof event.data?.design !== "object") return;
+    contents.parameters.forEach((one, k) => {
+      const value = Number(event.data.design[one.name] ?? live.engine.file.values[k]);
+      for (const field of live.fields[k]) field.value = value;
+    });
+    ask(contents.parameters.map((one, k) => Number(event.data.design[one.name] ?? live.engine.file.values[k])));
+    settle();
+  });
+  window.parent.postMessage("alive", "*");
 }
 
 /** The command line that evaluates the design. */

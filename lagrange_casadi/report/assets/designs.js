@@ -1,0 +1,78 @@
+// The designs of a sweep: their parameters and columns, which of them meet the reader's conditions, and which one is looked at.
+
+const designs = { count: contents.designs.shown, numbers: array(contents.designs.numbers) };
+const columns = [...contents.parameters, ...contents.columns].map((one) => ({ ...one, values: array(one.values) }));
+const columnOf = new Map(columns.map((one) => [one.name, one]));
+const status = array(contents.designs.status);
+
+const picked = { row: -1, where: "", met: null, watchers: new Set() };
+
+/** What a column is compared by: peaks by their size. */
+function costOf(column, row) {
+  return column.sized ? Math.abs(column.values[row]) : column.values[row];
+}
+
+/** Look at a design, by its row. */
+function pick(row) {
+  if (row === null || row === undefined || row < 0) return;
+  picked.row = row;
+  for (const watcher of picked.watchers) watcher();
+}
+
+/** Read conditions such as `l<0.3, peak:effort:O<=12`; throws an error that names what is none. */
+function conditionsOf(text) {
+  return text.split(/[,;]|\s+and\s+/).filter((word) => word.trim()).map((word) => {
+    const found = /^\s*([^<>=!]+?)\s*(<=|>=|==|!=|=|<|>)\s*(\S+?)\s*(deg)?\s*$/.exec(word);
+    const column = found && columnOf.get(found[1]);
+    const value = found ? Number(found[3]) * (found[4] ? Math.PI / 180 : 1) : NaN;
+    if (!column) throw new Error(found ? `unknown column ${found[1]}` : `expected a condition like l<0.3, got ${word.trim()}`);
+    if (found[4] && column.unit !== "rad") throw new Error(`${found[1]} is in ${column.unit}, got an angle`);
+    if (Number.isNaN(value)) throw new Error(`expected a number after ${found[1]} ${found[2]}, got ${found[3]}`);
+    return { column, relation: found[2], value };
+  });
+}
+
+function holds({ column, relation, value }, row) {
+  const own = costOf(column, row);
+  const same = Math.abs(own - value) <= 1e-9 * Math.abs(value);
+  if (Number.isNaN(own)) return false;
+  return { "<": own < value && !same, ">": own > value && !same, "<=": own < value || same, ">=": own > value || same, "=": same, "==": same, "!=": !same }[relation];
+}
+
+/** Have only the designs that meet conditions shown; returns what is wrong with them, or nothing. */
+function filter(text) {
+  try {
+    const conditions = conditionsOf(text);
+    picked.met = Array.from({ length: designs.count }, (_, row) => row).filter((row) => conditions.every((one) => holds(one, row)));
+    picked.where = text;
+  } catch (error) {
+    return error.message;
+  }
+  for (const watcher of picked.watchers) watcher();
+  return "";
+}
+
+/** The rows, of those that meet the conditions, of which no other is as good in both columns and better in one: less is better. */
+function frontOf(first, second) {
+  const known = picked.met.filter((row) => status[row] === 0 && Number.isFinite(costOf(first, row)) && Number.isFinite(costOf(second, row)));
+  known.sort((a, b) => costOf(first, a) - costOf(first, b) || costOf(second, a) - costOf(second, b));
+  let least = Infinity;
+  return known.filter((row) => {
+    const better = costOf(second, row) < least;
+    if (better) least = costOf(second, row);
+    return better;
+  });
+}
+
+/** A design in words: its number and parameters. */
+function designWords(row) {
+  const told = contents.parameters.map((one) => `${one.name} = ${shown(columnOf.get(one.name).values[row], one.unit)}`);
+  return `design ${designs.numbers[row]}: ${told.join(", ")}`;
+}
+
+/** What a column of a design is, in words. */
+function columnWords(column, row) {
+  return Number.isNaN(column.values[row]) ? "–" : shown(column.values[row], column.unit, 5);
+}
+
+filter("");

@@ -1,0 +1,149 @@
+// The page of a sweep: conditions, maps, fronts, the table of designs, and the design that is looked at, in motion.
+
+const MOST_ROWS = 300; // Of the table at once.
+
+function buildSweep() {
+  const root = document.getElementById("report");
+  const looked = element("section", { class: "left looked-at" });
+  const cards = element("div", { class: "cards" });
+  root.append(sweepHead(), conditionBar(), element("div", { class: "desk" }, looked, element("div", { class: "right" }, cards)), element("div", { class: "tables" }, designTable()), tip, said);
+  const plots = [...mapCards(), frontCard()].filter(Boolean);
+  cards.append(...plots.map((card) => card.body));
+  lookedAt(looked);
+  const renew = () => plots.forEach((card) => card.draw());
+  picked.watchers.add(renew);
+  reading.watchers.add(renew);
+  let width = 0;
+  new ResizeObserver(() => {
+    if (cards.clientWidth === width) return;
+    width = cards.clientWidth;
+    renew();
+  }).observe(cards);
+  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", renew);
+  const [first, second] = contents.pair.map((name) => columnOf.get(name));
+  pick(first ? frontOf(first, second ?? first)[0] ?? 0 : 0);
+}
+
+function sweepHead() {
+  const { shown: many, total } = contents.designs;
+  const counts = contents.counts.map(([words, count]) => `${count} ${words}`).join("; ");
+  const some = many < total ? `, ${many} of them in this page: those of the front, and others evenly spread` : "";
+  const si = element("button", { type: "button", class: "switch", "aria-pressed": "false", click: () => {
+    setSi(!reading.si);
+    si.setAttribute("aria-pressed", String(reading.si));
+  } }, "SI units");
+  return element("header", { class: "head" },
+    element("div", {}, element("h1", {}, contents.case), element("p", { class: "told" }, `${total} designs over ${contents.parameters.map((one) => one.name).join(", ")}: ${counts}${some}`)),
+    element("div", { class: "switches" }, si, element("button", { type: "button", class: "switch", click: () => window.print() }, "Print")));
+}
+
+/** Where the reader says which designs are shown. */
+function conditionBar() {
+  const wrong = element("output", { class: "alarm" });
+  const count = element("output", {});
+  const tell = () => (count.textContent = `${picked.met.length} of ${designs.count} designs`);
+  const field = element("input", { type: "search", placeholder: `conditions, as ${contents.parameters[0].name}<0.3, ${contents.pair[0] ?? contents.parameters[0].name}<=12`, "aria-label": "Conditions", input: () => {
+    wrong.textContent = filter(field.value);
+  } });
+  picked.watchers.add(tell);
+  tell();
+  return element("div", { class: "conditions" }, field, count, wrong);
+}
+
+/** A card with a plot that is made anew when what is chosen changes. */
+function plotCard(title, choices, make) {
+  const field = element("div", { class: "field" });
+  const body = element("section", { class: "card" }, element("header", {}, element("h3", {}, title), element("div", { class: "choices" }, choices((() => renew()))) ), field);
+  let plot = null;
+  const renew = () => {
+    plot = make();
+    field.replaceChildren(plot.sheet.body);
+    draw();
+  };
+  const draw = () => {
+    if (!plot) renew();
+    else if (field.clientWidth) plot.draw(field.clientWidth);
+  };
+  return { body, draw };
+}
+
+const columnEntries = () => columns.map((one) => [one.name, one.title]);
+
+function mapCards() {
+  const names = contents.varied;
+  const column = columnOf.get(contents.pair[1] ?? contents.pair[0] ?? contents.columns[0]?.name);
+  if (!column || !names.length) return [];
+  if (names.length === 1) {
+    const state = { column };
+    return [plotCard(`Over ${names[0]}`, (renew) => chooser("Column", columnEntries(), column.name, (name) => {
+      state.column = columnOf.get(name);
+      renew();
+    }), () => new DesignFront(columnOf.get(names[0]), state.column))];
+  }
+  const state = { column, x: columnOf.get(names[0]), y: columnOf.get(names[1]) };
+  const choose = (what, words, entries, renew) => chooser(words, entries, state[what].name, (name) => {
+    state[what] = columnOf.get(name);
+    renew();
+  });
+  const parameters = names.map((name) => [name, name]);
+  return [plotCard("Map", (renew) => [choose("column", "Column", columnEntries(), renew), element("label", {}, "over ", choose("x", "Across", parameters, renew)), element("label", {}, "and ", choose("y", "Up", parameters, renew))],
+    () => new DesignMap(state.column, state.x, state.y))];
+}
+
+function frontCard() {
+  if (!contents.pair.length) return null;
+  const state = { x: columnOf.get(contents.pair[0]), y: columnOf.get(contents.pair[1] ?? contents.parameters[0].name) };
+  const choose = (what, words, renew) => chooser(words, columnEntries(), state[what].name, (name) => {
+    state[what] = columnOf.get(name);
+    renew();
+  });
+  return plotCard("Front: less is better", (renew) => [choose("y", "Up", renew), element("label", {}, "against ", choose("x", "Across", renew))], () => new DesignFront(state.x, state.y));
+}
+
+/** The table of designs that meet the conditions. */
+function designTable() {
+  const first = [...contents.parameters.map((one) => one.name), ...contents.pair.filter((name) => !contents.parameters.some((one) => one.name === name))];
+  const chosen = [...new Set([...first, ...contents.columns.map((one) => one.name)])].slice(0, 9).map((name) => columnOf.get(name));
+  const heads = [["design", (row) => String(designs.numbers[row.at]), (row) => designs.numbers[row.at]],
+    ...chosen.map((one) => [one.title, (row) => (status[row.at] ? "–" : columnWords(one, row.at)), (row) => costOf(one, row.at)]),
+    ["result", (row) => (status[row.at] ? contents.statuses[status[row.at]] : "ok")]];
+  const plain = [["design", (row) => designs.numbers[row.at]], ...columns.map((one) => [`${one.name} [${one.unit}]`, (row) => one.values[row.at]]), ["status", (row) => status[row.at]]];
+  const table = sortedTable("Designs", heads, () => picked.met.map((at) => ({ at, name: `design ${designs.numbers[at]}` })), { chosen: (row) => pick(row.at), told: "Look at this design", plain, most: MOST_ROWS });
+  let met = picked.met;
+  picked.watchers.add(() => {
+    if (met !== picked.met) table.fill();
+    met = picked.met;
+  });
+  return table.body;
+}
+
+/** The design that is looked at: its numbers, the command line that evaluates it, and its mechanism in motion. */
+function lookedAt(body) {
+  const words = element("h3", {});
+  const list = element("dl", { class: "values" });
+  const copy = element("button", { type: "button", class: "copy", click: async () => {
+    const set = contents.parameters.map((one) => `--set ${one.name}=${columnOf.get(one.name).values[picked.row]}`);
+    await copyText([contents.command, ...set].join(" "));
+    copy.textContent = "copied";
+    setTimeout(() => (copy.textContent = "copy as --set"), 1500);
+  } }, "copy as --set");
+  body.append(element("header", {}, words, copy), list);
+  const frame = contents.frame && element("iframe", { sandbox: "allow-scripts allow-modals", title: "The mechanism of the design, in motion", srcdoc: contents.frame });
+  const send = () => frame?.contentWindow?.postMessage({ design: Object.fromEntries(contents.parameters.map((one) => [one.name, columnOf.get(one.name).values[picked.row]])) }, "*");
+  // The page within says when its engine is ready.
+  window.addEventListener("message", (event) => event.source === frame?.contentWindow && event.data === "alive" && send());
+  body.append(frame || element("p", { class: "none" }, contents.note));
+  const tell = () => {
+    if (picked.row < 0) return;
+    words.textContent = designWords(picked.row);
+    const told = status[picked.row] ? [["no result", contents.statuses[status[picked.row]]]] : contents.columns.filter((one) => one.name.startsWith("peak:")).map((one) => [one.title, columnWords(columnOf.get(one.name), picked.row)]);
+    list.replaceChildren(...told.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
+    announce(words.textContent);
+  };
+  picked.watchers.add(tell);
+  picked.watchers.add(send);
+  reading.watchers.add(tell);
+  tell();
+}
+
+buildSweep();

@@ -1,0 +1,76 @@
+// Tables that can be sorted, and copied as CSV.
+
+/** A table: heads as [words, how a cell is told, what it is sorted by]; `chosen` hears of a row that is pressed, and `told` says what that does; of more rows than `most` the first are shown.
+ *
+ * `plain` are heads for the copy, whose numbers are those of the file: SI, with all their digits. */
+function sortedTable(caption, heads, rows, { chosen = null, told = "Show this instant", aside = null, plain = heads, most = Infinity } = {}) {
+  let order = { column: -1, down: false };
+  const body = element("tbody");
+  const more = element("p", { class: "fine" });
+  const buttons = heads.map(([words], k) =>
+    element("button", { type: "button", click: () => sort(k) }, words),
+  );
+  const cells = heads.map(([, , by], k) => element("th", { scope: "col", class: by ? "number" : "" }, buttons[k]));
+  const fill = () => {
+    body.replaceChildren(
+      ...rows().slice(0, most).map((row) => {
+        const line = element("tr", {}, heads.map(([, tell, by], k) => element(k ? "td" : "th", { class: by ? "number" : "", scope: k ? null : "row" }, tell(row))));
+        if (chosen) {
+          line.classList.add("pressable");
+          line.addEventListener("click", () => chosen(row));
+          const first = line.firstChild;
+          const go = element("button", { type: "button", class: "go", title: told, "aria-label": `${told}: ${row.name}` }, "▸");
+          first.prepend(go);
+        }
+        return line;
+      }),
+    );
+    const left = rows.all().length - most;
+    more.textContent = left > 0 ? `and ${left} more, which the copy has` : "";
+  };
+  const ordered = () => {
+    const found = [...rows.all()];
+    if (order.column < 0) return found;
+    const [, tell, by] = heads[order.column];
+    const key = by ?? tell;
+    found.sort((a, b) => {
+      const [x, y] = [key(a), key(b)];
+      return typeof x === "string" ? x.localeCompare(y) : (x ?? -Infinity) - (y ?? -Infinity);
+    });
+    return order.down ? found.reverse() : found;
+  };
+  const source = rows;
+  rows = () => ordered();
+  rows.all = source;
+  const sort = (column) => {
+    const numeric = Boolean(heads[column][2]);
+    order = { column, down: order.column === column ? !order.down : numeric };
+    cells.forEach((cell, k) => {
+      if (k === column) cell.setAttribute("aria-sort", order.down ? "descending" : "ascending");
+      else cell.removeAttribute("aria-sort");
+    });
+    fill();
+  };
+  const copy = element("button", { type: "button", class: "copy", click: async () => {
+    await copyText(csvOf(plain, rows()));
+    copy.textContent = "copied";
+    announce(`${caption} copied`);
+    setTimeout(() => (copy.textContent = "copy as CSV"), 1500);
+  } }, "copy as CSV");
+  const table = element("table", {}, element("thead", {}, element("tr", {}, cells)), body);
+  table.setAttribute("aria-label", caption);
+  reading.tables.add(fill);
+  fill();
+  return { fill, body: element("section", { class: "table" }, element("header", {}, element("h2", {}, caption), aside, copy), element("div", { class: "scroll" }, table), more) };
+}
+
+/** Rows as text for a spreadsheet, with a plain minus sign. */
+function csvOf(heads, rows) {
+  const quoted = (text) => {
+    const cell = String(text ?? "").replaceAll("\u2212", "-").replaceAll("\u00a0", " ");
+    return /[",\n;]/.test(cell) ? `"${cell.replaceAll('"', '""')}"` : cell;
+  };
+  const lines = [heads.map(([words]) => quoted(words)), ...rows.map((row) => heads.map(([, tell]) => quoted(tell(row))))];
+  return `${lines.map((line) => line.join(",")).join("\n")}\n`;
+}
+

@@ -1,0 +1,156 @@
+"""The page of a sweep in a browser: its table is the file's, its front and conditions are those of the command line."""
+
+import csv
+import io
+import shutil
+import time
+
+import alive
+import browser
+import numpy as np
+import pytest
+from reports import CASES, held
+
+from lagrange_casadi.cli import main
+from lagrange_casadi.sweep import Sweep, best, chosen
+
+pytestmark = pytest.mark.skipif(browser.found() is None, reason="there is no Chromium here")
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    """Designs of the slider-crank, some of which cannot be assembled."""
+    path = tmp_path_factory.mktemp("swept") / "swept.h5"
+    grid = ["--grid", "l=0.06:0.4:9", "--grid", "r=0.05:0.1:4", "--grid", "m3=0.1,0.3"]
+    assert main(["sweep", str(CASES / "slider_crank"), *grid, "--t", "0:0.08:41", "--out", str(path)]) == 0
+    return path
+
+
+@pytest.fixture(scope="module")
+def page(file):
+    """Its page, with the mechanism in motion where ziglang is there."""
+    path = file.with_suffix(".html")
+    case = ["--case", str(CASES / "slider_crank")] if alive.THERE else []
+    assert main(["report", str(file), *case, "--out", str(path)]) == 0
+    with browser.Browser(1500, 1000) as one:
+        one.prefer(prefers_reduced_motion="reduce", prefers_color_scheme="light")
+
+        def opened():
+            one.open(path)
+            one.run("navigator.clipboard.writeText = (text) => { window.copied = text; return Promise.resolve(); }")
+            return one
+
+        yield opened
+
+
+def rows(one):
+    """The table of designs as it is copied."""
+    one.run("document.querySelector('.table .copy').click()")
+    return list(csv.DictReader(io.StringIO(one.run("window.copied"))))
+
+
+def only(one, conditions):
+    """Type conditions; returns what is said of them."""
+    one.run(
+        f"{{ const field = document.querySelector('.conditions input'); field.value = {conditions!r};"
+        " field.dispatchEvent(new Event('input')); }"
+    )
+    return one.run("[...document.querySelectorAll('.conditions output')].map((one) => one.textContent)")
+
+
+def test_the_table_is_the_files_to_the_last_digit(page, file):
+    one, sweep = page(), Sweep.open(file)
+    found = rows(one)
+    names = [*sweep.parameters, "peak:effort:O", "peak:section:rod:bending", "mean:effort:O", "status"]
+    for numbers, values in sweep.blocks(names):
+        for k, number in enumerate(numbers):
+            row = found[int(number)]
+            assert int(row["design"]) == number
+            for name in names:
+                head = name if name == "status" else f"{name} [{sweep.unit(name)}]"
+                np.testing.assert_equal(float(row[head]), float(values[name][k]))
+    assert len(found) == sweep.size == 72
+    assert one.complaints == []
+    assert all(address.startswith(("file://", "data:", "about:")) for address in one.asked)
+
+
+@pytest.mark.parametrize("where", ["l>0.15", "l>=0.2, r<=0.07", "peak:effort:O<3, m3=0.1", "m3!=0.1", "status=0"])
+def test_conditions_are_those_of_the_command_line(page, file, where):
+    one, sweep = page(), Sweep.open(file)
+    if where == "status=0":
+        assert only(one, where)[1] == "unknown column status"
+        return
+    count, wrong = only(one, where)
+    expected = [int(n) for numbers, _ in chosen(sweep, [], where.split(", ")) for n in numbers]
+    assert wrong == ""
+    assert count == f"{len(expected)} of 72 designs"
+    assert [int(row["design"]) for row in rows(one)] == expected
+    front = best(sweep, minimise=("peak:effort:O", "peak:section:rod:bending"), where=where.split(", "))
+    assert one.run("document.querySelectorAll('.best').length") == len(front)
+
+
+@pytest.mark.skipif(not alive.THERE, reason="ziglang is not installed")
+def test_a_design_that_is_pressed_moves(page, file):
+    one, sweep = page(), Sweep.open(file)
+    front = best(sweep, minimise=("peak:effort:O", "peak:section:rod:bending"))
+    assert one.run("document.querySelector('h3').textContent").startswith(f"design {front[0].number}: ")
+    only(one, "l>0.3")
+    one.run("document.querySelectorAll('.table tbody tr')[5].click()")
+    number = int(rows(one)[5]["design"])
+    told = one.run("document.querySelector('h3').textContent")
+    assert told.startswith(f"design {number}: ")
+    one.run("document.querySelector('.looked-at .copy').click()")
+    asked = sweep.design(number)
+    assert one.run("window.copied").startswith("lagrange-casadi run slider_crank --set l=")
+    assert [float(word.partition("=")[2]) for word in one.run("window.copied").split(" --set ")[1:]] == list(asked.values())
+    labels = "[...document.querySelectorAll('.sliders label')]"
+    fields = f"{labels}.map((one) => [one.querySelector('.name').textContent, one.children[2].value])"
+    for _ in range(100):
+        values = {name: float(value) for name, value in one.run_within(fields)}
+        if values.get("l") == asked["l"]:
+            break
+        time.sleep(0.05)
+    assert values["l"] == asked["l"]
+    assert values["r"] == asked["r"]
+    assert one.complaints == []
+
+
+def test_without_a_case_the_page_says_what_it_lacks(file, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    other = tmp_path / "slider_crank"
+    shutil.copytree(CASES / "four_bar", other)
+    assert main(["report", str(file), "--case", str(other)]) == 2
+    assert "the sweep is not of this scene; take the case that was swept" in capsys.readouterr().err
+    assert not (tmp_path / "swept.html").exists()
+    monkeypatch.setattr("importlib.util.find_spec", lambda name, *_: None)
+    assert main(["report", str(file)]) == 0
+    out, err = capsys.readouterr()
+    assert err.startswith("note: the page has no mechanism in motion: ")
+    assert out == "wrote swept.html: open it in a browser\n"
+    found, array = held((tmp_path / "swept.html").read_text())
+    assert found["frame"] is None
+    assert array(found["columns"][0]["values"]).size == 72
+    assert main(["report", "slider_crank", "--case", "four_bar"]) == 2
+    assert "--case goes with a sweep's file" in capsys.readouterr().err
+    assert main(["report", str(file), "--live"]) == 2
+
+
+def test_a_notebook_shows_what_was_swept(file):
+    sweep = Sweep.open(file)
+    text = sweep._repr_html_()
+    counts = sweep.counts()
+    assert f"72 designs over l, r, m3: {counts[0]} with a result; " in text
+    for name in ("l", "peak:effort:O", "peak:reaction:A:fx"):
+        values = sweep[name]
+        cells = (name, f"{np.nanmin(values):.5g}", f"{np.nanmax(values):.5g}", sweep.unit(name))
+        assert "<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>" in text
+
+
+def test_from_python_it_is_the_same_page(file, tmp_path):
+    Sweep.open(file).report(tmp_path / "swept.html")
+    assert main(["report", str(file), "--out", str(tmp_path / "other.html")]) == 0
+    found, _ = held((tmp_path / "swept.html").read_text())
+    other, _ = held((tmp_path / "other.html").read_text())
+    assert found["columns"] == other["columns"]
+    assert found["numbers"] == other["numbers"]
+    assert found["note"].startswith("For the mechanism in motion")
