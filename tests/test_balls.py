@@ -66,9 +66,8 @@ def compare(drawn, solution, true, rounding=1e-12):
                 assert (np.abs(own - told) < rounding * np.array(sizes)).all(), rod
 
 
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("name", MADE)
-def test_in_gimbal_lock_all_is_as_the_oracle_has_it(name):
+@pytest.mark.parametrize("name", ["on a leg", *(pytest.param(name, marks=pytest.mark.long) for name in ("free", "under a leg"))])
+def test_in_gimbal_lock_and_beside_it_all_is_as_the_oracle_has_it(name):
     drawn, scene, true = made(name)
     solution = evaluate(scene, backend="vm")
     assert solution.certified
@@ -77,12 +76,8 @@ def test_in_gimbal_lock_all_is_as_the_oracle_has_it(name):
     assert len(turns) == 3
     members = [f"motion:{turn}{end}" for turn in turns for end in ("", "_rate", "_acceleration")]
     assert set(solution.undetermined) == set(members) - {f"motion:{turns[1]}"}
-
-
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("name", MADE)
-def test_beside_gimbal_lock_three_turns_are_told(name):
-    drawn, scene, _ = made(name)
+    (note,) = solution.notes
+    assert note.startswith(f"joint '{turns[0].partition(':')[0]}' is in gimbal lock at t = 0.2 s: two of its turns")
     beside = evaluate(scene, t=(0.1, 0.3, 8), backend="vm")
     assert beside.certified
     assert not beside.undetermined

@@ -9,6 +9,7 @@ import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, curve, density, evaluate, load, motion, refine, save
+from lagrange_casadi.cli import main
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import DeclarationError, MobilityError, ParameterError
 from lagrange_casadi.instants.refusal import Status
@@ -219,3 +220,14 @@ def test_parameters_set_second_moments():
     for value in (1e-3, 0.5):
         found = evaluate(one, parameters={"j": value}, backend="vm").effort("O")
         np.testing.assert_allclose(found, 3 * value * 0.5 * 4.0, rtol=1e-14)
+
+
+def test_info_names_thick_links(tmp_path, capsys):
+    (tmp_path / "case.py").write_text(
+        "from lagrange_casadi import Scene, SpatialMechanism, density\nfrom lagrange_casadi.motion import polynomial\n\n\n"
+        "def scene():\n    m = SpatialMechanism('m')\n"
+        "    bar = m.link('bar', length=0.5, density=density.thick(density.polynomial(2.0), yy=1e-3, zz=1e-3))\n"
+        "    m.revolute('O', m.ground, bar)\n    return Scene(m, {'O': polynomial(0.0, 1.0)}, t=(0, 1, 3))\n"
+    )
+    assert main(["info", str(tmp_path)]) == 0
+    assert "  link of 0.5 m, bar: 1 kg, slices with rotary inertia\n" in capsys.readouterr().out

@@ -123,7 +123,8 @@ def _describe_mechanism(description: Description) -> None:
         click.echo(f"  parameter {name} = {p['value']:g} {p['unit']}{limits}")
     for name, body in description["bodies"].items():
         size = "point mass" if body["length"] is None else f"link of {body['length']:g} m,"
-        click.echo(f"  {size} {name}: {body['mass']:g} kg".replace("  point mass", "  point mass"))
+        thick = ", slices with rotary inertia" if "slices" in body.get("density", {}) else ""
+        click.echo(f"  {size} {name}: {body['mass']:g} kg{thick}")
     for name, joint in description["joints"].items():
         points = [[p[k] for k in "xyz" if k in p] for p in (joint["parent"], joint["child"])]
         ends = " - ".join(f"{p['body']} {_vector(at)}" for p, at in zip((joint["parent"], joint["child"]), points, strict=True))

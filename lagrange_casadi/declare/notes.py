@@ -16,8 +16,8 @@ _EDGE = 1e-9
 
 
 def notes(t: Array, outputs: Mapping[Output, Array], description: Description, resting: npt.NDArray[np.bool_]) -> Iterator[str]:
-    """More drives than motions; where a joint that rubs is ``resting``; and each joint whose point slides beyond the end of a link
-    that has sections, and how far it goes.
+    """More drives than motions; where a joint that rubs is ``resting``; joints in gimbal lock, whose turns are not told; and each
+    joint whose point slides beyond the end of a link that has sections, and how far it goes.
 
     As far as efforts, the motion of the joint, or the sections of the link, are among the outputs.
     """
@@ -32,6 +32,12 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description, r
         when = f"at {int(np.count_nonzero(resting))} of {t.size} instants, first at t = {t[np.flatnonzero(resting)[0]]:.6g} s"
         yield f"a joint that rubs is at rest {when}: what depends on its friction{frictions} is open there, and NaN"
     for name, joint in description["joints"].items():
+        if (second := _locked(joint, outputs)) is not None:
+            near = t[int(np.argmin(np.abs(np.cos(second))))]
+            yield (
+                f"joint '{name}' is in gimbal lock at t = {near:.6g} s: two of its turns, and all their rates, are not told; other "
+                "instants, or another axis and second, tell them"
+            )
         body, ways = description["bodies"].get(joint["parent"]["body"], {}), _along(name, joint)
         if not ways or "density" not in body:
             continue
@@ -56,3 +62,10 @@ def _along(name: str, joint: Description) -> dict[Output, float]:
     each = zip(joint["coordinates"].items(), joint["axes"], strict=True)
     found = {Output("motion", own): axis[0] * (1.0 if kind == "slide" else joint["pitch"]) for (own, kind), axis in each}
     return {motion: way for motion, way in found.items() if way}
+
+
+def _locked(joint: Description, outputs: Mapping[Output, Array]) -> Array | None:
+    """The second of a joint's three turns, where the first is not told because of gimbal lock."""
+    turns = [name for name, kind in joint.get("coordinates", {}).items() if kind == "angle"]
+    first, second = (outputs.get(Output("motion", name)) for name in turns[:2]) if len(turns) == 3 else (None, None)
+    return second if first is not None and np.isnan(first).all() else None
