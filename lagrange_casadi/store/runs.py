@@ -12,7 +12,6 @@ import math
 import os
 import shutil
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -29,12 +28,12 @@ from ..instants.solution import Provenance, Solution, in_order
 from ..judge.certificate import LOOSE, blur, certify
 from ..quantities import Output
 from ..system.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
-from ..system.seal import Seen, kind_of, seal, verify
+from ..system.seal import kind_of, seal
 from ..tables import ANGLE, CF, LENGTH, SPACE
+from .opening import SCHEMA, opened_file
 from .scales import LARGE, Scales
-from .untrusted import check_chunks, check_dataset, check_links, parsed, shown, told_as
+from .untrusted import check_chunks, check_dataset, check_links, parsed, shown
 
-SCHEMA = "lagrange-casadi"
 SCHEMA_VERSION = 6
 """Files of version 1 have no seal. Those of version 2 are not over a drive's coordinate, those of 3 of planar mechanisms alone, and
 those of 4 have no loads along links, and those of 5 no rotary inertia of slices; all four are still written."""
@@ -51,7 +50,6 @@ _OVER_TOLERANCE = {"double": 1e-12, "single": 1e-6}
 """Of the largest coordinate: how far a motion's may be from that by which its instants were asked for."""
 
 _KIND = "the file of a run"
-_KNOWN = {SCHEMA: "that of a run, which `load` reads", f"{SCHEMA}-sweep": "that of a sweep, which `Sweep.open` reads"}
 
 
 def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") -> None:
@@ -143,19 +141,6 @@ def check(path: str | os.PathLike[str]) -> list[str]:
             found += [finding for output in outputs for finding in _check_dataset(file, solution, output)]
             found += _check_certificate(solution)
     return found
-
-
-def schema_of(path: str | os.PathLike[str]) -> str | None:
-    """The schema that a file says it is of, by its seal, or where it has none by HDF5; None where there is no telling."""
-    try:
-        found: Any = kind_of(path)
-        if found is None:
-            verify(path)
-            with told_as("damaged", path), h5py.File(path, "r") as file:
-                found = file.attrs.get("schema")
-    except (PathError, StoreError):
-        return None
-    return found if isinstance(found, str) else None
 
 
 def _check_certificate(solution: Solution) -> Iterator[str]:
@@ -359,43 +344,3 @@ def _numbers(dataset: Any, shape: tuple[int, ...] | None = None) -> Array:
 def _check_numbers(dataset: Any, shape: Sequence[int] | None) -> None:
     check_dataset(dataset, shape)
     check_chunks(dataset)
-
-
-@contextmanager
-def opened_file(
-    path: str | os.PathLike[str], schema: str, version: int, kind: str, of: str = "", seen: Seen | None = None
-) -> Iterator[h5py.File]:
-    """A whole file of a schema, which messages call ``kind``, its versions those ``of`` it.
-
-    All of it is held to its seal, unless it is still the one that was ``seen``. Raises :class:`PathError` for none,
-    :class:`StoreError` for another file, another version, and one that was not finished or is not as it was written; whatever
-    reading it raises becomes a :class:`StoreError`.
-    """
-    if not seen or not seen.is_at(path):
-        _refuse_other(path, kind_of(path) or schema, schema, kind)
-        seen = verify(path)
-    with told_as("damaged", path):
-        try:
-            file = h5py.File(path, "r")
-        except BlockingIOError:
-            raise StoreError(f"{path}: another program has it open to write") from None
-        with file:
-            if not seen.is_at(path):
-                raise StoreError(f"{path}: was changed while it was read")
-            _refuse_other(path, file.attrs.get("schema"), schema, kind)
-            written = file.attrs.get("schema_version")
-            if not isinstance(written, np.integer) or not 1 <= written <= version:
-                told = written if isinstance(written, np.integer) else repr(written)
-                raise StoreError(f"{path}: schema version {told}{of}, this program reads versions 1 to {version}")
-            if written > 1 and not seen.sealed:
-                raise StoreError(f"{path}: damaged: it has lost its seal, as where another program has changed it")
-            if not file.attrs.get("complete", False):
-                raise StoreError(f"{path}: was not written to its end")
-            yield file
-
-
-def _refuse_other(path: str | os.PathLike[str], found: Any, schema: str, kind: str) -> None:
-    """Raise :class:`StoreError` for a file of another schema."""
-    if not isinstance(found, str) or found != schema:
-        what = f"but {_KNOWN[found]}" if isinstance(found, str) and found in _KNOWN else f"its attribute 'schema' is {found!r}"
-        raise StoreError(f"{path}: not {kind}, {what}")

@@ -19,7 +19,7 @@ from ..declare.density import Array
 from ..declare.description import coordinates_of
 from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, one_line
 from ..quantities import ANGLE, LENGTH
-from ..store.runs import opened_file, schema_of
+from ..store.opening import opened_file, schema_of
 from ..system.seal import Seen, verify
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs

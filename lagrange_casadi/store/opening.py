@@ -1,0 +1,71 @@
+"""A file of this program is opened to read: held to its seal, its schema and its version looked at, before anything is believed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import h5py
+import numpy as np
+
+from ..errors import PathError, StoreError
+from ..system.seal import Seen, kind_of, verify
+from .untrusted import told_as
+
+SCHEMA = "lagrange-casadi"
+_KNOWN = {SCHEMA: "that of a run, which `load` reads", f"{SCHEMA}-sweep": "that of a sweep, which `Sweep.open` reads"}
+
+
+def schema_of(path: str | os.PathLike[str]) -> str | None:
+    """The schema that a file says it is of, by its seal, or where it has none by HDF5; None where there is no telling."""
+    try:
+        found: Any = kind_of(path)
+        if found is None:
+            verify(path)
+            with told_as("damaged", path), h5py.File(path, "r") as file:
+                found = file.attrs.get("schema")
+    except (PathError, StoreError):
+        return None
+    return found if isinstance(found, str) else None
+
+
+@contextmanager
+def opened_file(
+    path: str | os.PathLike[str], schema: str, version: int, kind: str, of: str = "", seen: Seen | None = None
+) -> Iterator[h5py.File]:
+    """A whole file of a schema, which messages call ``kind``, its versions those ``of`` it.
+
+    All of it is held to its seal, unless it is still the one that was ``seen``. Raises :class:`PathError` for none,
+    :class:`StoreError` for another file, another version, and one that was not finished or is not as it was written; whatever
+    reading it raises becomes a :class:`StoreError`.
+    """
+    if not seen or not seen.is_at(path):
+        _refuse_other(path, kind_of(path) or schema, schema, kind)
+        seen = verify(path)
+    with told_as("damaged", path):
+        try:
+            file = h5py.File(path, "r")
+        except BlockingIOError:
+            raise StoreError(f"{path}: another program has it open to write") from None
+        with file:
+            if not seen.is_at(path):
+                raise StoreError(f"{path}: was changed while it was read")
+            _refuse_other(path, file.attrs.get("schema"), schema, kind)
+            written = file.attrs.get("schema_version")
+            if not isinstance(written, np.integer) or not 1 <= written <= version:
+                told = written if isinstance(written, np.integer) else repr(written)
+                raise StoreError(f"{path}: schema version {told}{of}, this program reads versions 1 to {version}")
+            if written > 1 and not seen.sealed:
+                raise StoreError(f"{path}: damaged: it has lost its seal, as where another program has changed it")
+            if not file.attrs.get("complete", False):
+                raise StoreError(f"{path}: was not written to its end")
+            yield file
+
+
+def _refuse_other(path: str | os.PathLike[str], found: Any, schema: str, kind: str) -> None:
+    """Raise :class:`StoreError` for a file of another schema."""
+    if not isinstance(found, str) or found != schema:
+        what = f"but {_KNOWN[found]}" if isinstance(found, str) and found in _KNOWN else f"its attribute 'schema' is {found!r}"
+        raise StoreError(f"{path}: not {kind}, {what}")
