@@ -176,6 +176,7 @@ def test_limits_that_hold_nowhere_are_told():
         ({"subject_to": ["peak:effort:O <= -3"]}, DeclarationError, "a peak is a size"),
         ({"starts": 0}, DeclarationError, "starts: expected a whole number above 0"),
         ({"starts": [{"r": 0.1}]}, UnknownNameError, "parameter that is chosen"),
+        ({"starts": [{"l": 0.7}]}, DeclarationError, "l = 0.7 is not within its bounds"),
         ({"transmission": 2.0}, DeclarationError, "transmission: expected a sine"),
     ],
 )

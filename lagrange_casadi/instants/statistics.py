@@ -38,7 +38,7 @@ class Statistics:
     @classmethod
     def over(cls, name: str, unit: str, t: Array, values: Array) -> Statistics:
         """Those of values (t,) at increasing times."""
-        weights = _weights(t)
+        weights = shares(t)
         chosen = (np.argmin(values), np.argmax(values), np.argmax(np.abs(values)))
         ends = (Extreme(float(values[i]), float(t[i])) for i in map(int, chosen))
         return cls(name, unit, float(values @ weights), float(np.sqrt(values**2 @ weights)), *ends)
@@ -54,8 +54,8 @@ class Statistics:
         return cls(name, unit, None, None, *ends)
 
 
-def _weights(t: Array) -> Array:
-    """The part of the time that each instant stands for, by trapezia."""
+def shares(t: Array) -> Array:
+    """The part of the time that each instant stands for, by trapezia, (t,)."""
     weights = np.zeros(t.size)
     steps = np.diff(t)
     weights[:-1] += steps
