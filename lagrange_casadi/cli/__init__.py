@@ -76,7 +76,7 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-_COMMANDS = (run, sweep, best, table, optimise, tolerances, trade, export, plot, report, animate, info, check, cases, new, cache)
+_COMMANDS = (run, sweep, best, table, trade, export, plot, report, animate, info, check, optimise, tolerances, cases, new, cache)
 
 
 @click.group(cls=_Commands, commands=_COMMANDS, context_settings={"help_option_names": ["-h", "--help"]})
