@@ -20,6 +20,7 @@ from .instants.solution import Peak, Solution
 from .optimise import Optimum, optimise
 from .store.runs import check, load, save
 from .study.peaks import refine
+from .study.sensitivities import Sensitivities, sensitivities
 from .study.tolerances import tolerances
 from .sweep import Sweep, best, read_designs, sweep
 from .version import __version__
@@ -34,6 +35,7 @@ __all__ = [
     "Peak",
     "Prepared",
     "Scene",
+    "Sensitivities",
     "Solution",
     "SpatialMechanism",
     "Sweep",
@@ -55,6 +57,7 @@ __all__ = [
     "read_designs",
     "refine",
     "save",
+    "sensitivities",
     "shaking",
     "strength",
     "sweep",

@@ -9,7 +9,7 @@ from conftest import CASES
 
 from lagrange_casadi import Mechanism, Scene, load_case, optimise, prepare
 from lagrange_casadi.errors import DeclarationError, NoDesignError, ParameterError, UnknownNameError
-from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi.motion import harmonic, polynomial, samples
 
 
 def case(name):
@@ -176,6 +176,7 @@ def test_limits_that_hold_nowhere_are_told():
         ({"subject_to": ["peak:effort:O <= -3"]}, DeclarationError, "a peak is a size"),
         ({"starts": 0}, DeclarationError, "starts: expected a whole number above 0"),
         ({"starts": [{"r": 0.1}]}, UnknownNameError, "parameter that is chosen"),
+        ({"starts": [{"l": 0.7}]}, DeclarationError, "l = 0.7 is not within its bounds"),
         ({"transmission": 2.0}, DeclarationError, "transmission: expected a sine"),
     ],
 )
@@ -204,3 +205,21 @@ def test_what_has_instants_of_its_own_is_refused():
     scene = Scene(m, {"O": polynomial(0.0, 2 * math.pi / 60 * rpm)}, t=(0, 60 / rpm, 21))
     with pytest.raises(DeclarationError, match="the instants must be the same for all designs"):
         optimise(scene, minimise="peak:effort:O", over={"rpm": (30.0, 90.0)})
+
+
+def test_motions_by_samples():
+    """At a bound the multiplier is the slope of the peak, which is found in another way."""
+    times = np.linspace(0.0, 1.0, 9)
+    m = Mechanism("arm")
+    l = m.parameter("l", 0.4, "m")
+    upper, fore = m.link("upper", length=l, mass=2.0), m.link("fore", length=0.3, mass=1.0)
+    m.revolute("O", m.ground, upper)
+    m.revolute("A", upper.tip, fore)
+    swing = np.sin(math.pi * times) ** 2
+    laws = {"O": samples(times, (0.7 * swing).tolist()), "A": samples(times, (0.5 * swing).tolist())}
+    scene = Scene(m, laws, t=(0.0, 1.0, 51))
+    found = optimise(scene, minimise="peak:effort:O", over={"l": (0.3, 0.5)}, starts=1)
+    assert found.converged
+    assert found.values["l"] == pytest.approx(0.3, rel=1e-6)
+    slope = prepare(scene, wanted=["effort"]).gradient(found.values)["effort:O"]["l"]
+    assert -found.bounds["l"] == pytest.approx(abs(slope), rel=1e-5)

@@ -1,5 +1,9 @@
 """``lagrange-casadi optimise``: what it says and writes, its statuses, and the one line of every mistake."""
 
+import os
+import signal
+import time
+
 import h5py
 import numpy as np
 import pytest
@@ -8,6 +12,7 @@ from conftest import CASES
 from lagrange_casadi import prepare
 from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
+from lagrange_casadi.optimise.descent import Descent
 from lagrange_casadi.system.seal import kind_of, verify
 
 CASE = str(CASES / "slider_crank")
@@ -55,6 +60,25 @@ def test_limits_that_hold_nowhere_end_with_a_status(here, capfd):
     assert "VIOLATED by 0.9317" in out
     assert "no design that was found is within all limits" in out
     assert "gains" not in out
+
+
+def test_an_interrupt_leaves_the_best_so_far(here, capfd, monkeypatch):
+    count = iter(range(100))
+
+    def note(self, start, judged, own=Descent.note):
+        own(self, start, judged)
+        if next(count) == 1:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.1)
+
+    monkeypatch.setattr(Descent, "note", note)
+    assert main([*ASKED, "--out", "a.h5"]) == 1
+    out, err = capfd.readouterr()
+    assert err == ""
+    assert "stopped: the best design so far" in out
+    with h5py.File("a.h5") as file:
+        assert file.attrs["stopped"]
+        assert len(file["history"]) == 2
 
 
 @pytest.mark.parametrize(

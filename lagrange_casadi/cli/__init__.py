@@ -78,7 +78,7 @@ class _Commands(click.Group):
 
 
 _COMMANDS = (
-    run, sweep, best, table, optimise, tolerances, size, trade, export, plot, report, animate, info, check, cases, new, cache
+    run, sweep, best, table, trade, export, plot, report, animate, info, check, optimise, tolerances, size, cases, new, cache
 )  # fmt: skip
 
 

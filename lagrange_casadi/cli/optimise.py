@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -95,6 +96,8 @@ def optimise(
             backend=backend,
             progress=progress,
         )
+    if found.stopped and hasattr(signal, "setitimer"):
+        signal.setitimer(signal.ITIMER_REAL, 0.0)  # the interrupt has arrived, and is repeated no more
     save_optimum(found, out)
     with writing(figure) as (picture,):
         draw_optimum(loaded.scene, found, picture, figure.suffix)

@@ -136,7 +136,7 @@ class DesignEngine:
         """The names of the parameters."""
         return tuple(self.scene.mechanism.parameters)
 
-    @property
+    @cached_property
     def quantities(self) -> tuple[str, ...]:
         """The names of the quantities that have peaks."""
         return tuple(str(self.kept.quantities[k]) for k in self.shown)

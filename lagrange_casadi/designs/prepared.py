@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -184,12 +184,15 @@ class Prepared:
 
     def _nothing(self, value: Array) -> npt.NDArray[np.bool_]:
         """Which peaks are zero but for rounding, beside the largest of their unit."""
-        sizes, units = np.abs(value), self._engine.units
-        found = np.zeros(value.size, bool)
-        for unit in dict.fromkeys(units):
-            own = np.array([other == unit for other in units])
-            found[own] = sizes[own] <= NOTHING * np.max(sizes[own], initial=0.0, where=np.isfinite(sizes[own]))
-        return found
+        sizes, largest = np.abs(value), np.zeros(self._unit_numbers.size)
+        np.maximum.at(largest, self._unit_numbers, np.where(np.isfinite(sizes), sizes, 0.0))
+        return np.asarray(sizes <= NOTHING * largest[self._unit_numbers])
+
+    @cached_property
+    def _unit_numbers(self) -> npt.NDArray[np.intp]:
+        """The number of each quantity's unit."""
+        numbers = {unit: k for k, unit in enumerate(dict.fromkeys(self.units))}
+        return np.array([numbers[unit] for unit in self.units], np.intp)
 
     def designs(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`; ``threads`` share them.

@@ -40,7 +40,7 @@ class Statistics:
     @classmethod
     def over(cls, name: str, unit: str, t: Array, values: Array) -> Statistics:
         """Those of values (t,) at increasing times."""
-        weights = _weights(t)
+        weights = shares(t)
         chosen = (*_ends(values, values), largest(values))
         ends = (Extreme(float(values[i]), float(t[i])) for i in map(int, chosen))
         return cls(name, unit, float(values @ weights), float(np.sqrt(values**2 @ weights)), *ends)
@@ -61,8 +61,8 @@ def _ends(low: Array, high: Array) -> tuple[Any, Any]:
     return np.argmin(np.where(np.isnan(low), np.inf, low)), np.argmax(np.where(np.isnan(high), -np.inf, high))
 
 
-def _weights(t: Array) -> Array:
-    """The part of the time that each instant stands for, by trapezia."""
+def shares(t: Array) -> Array:
+    """The part of the time that each instant stands for, by trapezia, (t,)."""
     weights = np.zeros(t.size)
     steps = np.diff(t)
     weights[:-1] += steps

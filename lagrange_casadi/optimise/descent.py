@@ -23,6 +23,9 @@ _KEEP = 0.7
 _NEAR = 1e-3
 """Of its scale: how near to its limit a local peak is that later programs know too."""
 
+_LITTLE = 0.02
+"""Of the largest: how much lower local peaks at instants are that are looked for between them."""
+
 _CLOSED = 12
 """Instants at which a program watches how its loops close, from the beginning."""
 
@@ -107,7 +110,9 @@ class Descent:
                 # Only what may exceed what the program found.
                 level = largest if k == 0 else term.bound
                 least = max(least, level - _NEAR * term.scale)
-            exact = self.judge.exact(term.term, points, judged)
+            # Between instants a peak is a little larger.
+            high = [(point, sign) for point, sign in points if sign * point.value >= least - _LITTLE * abs(largest)]
+            exact = self.judge.exact(term.term, high or points[:1], judged)
             for point, sign in exact:
                 if sign * point.value >= least:
                     added |= term.add(point, sign, near)

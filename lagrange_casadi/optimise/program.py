@@ -42,6 +42,11 @@ class Box:
         p[list(self.places)] = np.clip(self.low + x * (self.high - self.low), self.low, self.high)
         return p
 
+    def holds(self, name: str, value: float) -> bool:
+        """Whether a value of a parameter that is chosen is within its bounds."""
+        k = self.names.index(name)
+        return bool(self.low[k] <= value <= self.high[k])
+
     def share(self, p: Array) -> Array:
         """The shares for values of all parameters."""
         return np.asarray((p[list(self.places)] - self.low) / (self.high - self.low))

@@ -14,7 +14,7 @@ from ..declare.times import Times
 from ..designs.engine import DesignEngine
 from ..errors import AssemblyError, DeclarationError, NoDesignError, UnknownNameError
 from ..instants.rung import Backend, Rung
-from ..quantities import Output
+from ..study.peaks import wanted_for
 from .descent import Descent
 from .judge import HOLDS, Judge, Judged, scale_of
 from .optimum import Limit, Optimum, Start
@@ -87,7 +87,7 @@ def optimise(
     if not (0.0 < transmission < 1.0):
         raise DeclarationError(f"transmission: expected a sine between 0 and 1, got {transmission!r}")
     outputs = [term.output for term in (objective, *(c.term for c in constraints)) if term.output is not None]
-    wanted = list(dict.fromkeys(map(_wanted, outputs))) or ["motion"]
+    wanted = list(dict.fromkeys(map(wanted_for, outputs))) or ["motion"]
     engine = DesignEngine.of(scene, wanted, rung=Rung(backend), timing=scene.timing(t))
     if not engine.times.common:
         raise DeclarationError("optimise: the instants must be the same for all designs; give t in numbers")
@@ -123,11 +123,6 @@ def _box(scene: Scene, over: Mapping[str, tuple[Any, Any]], parameters: Mapping[
     return Box(names, places, np.array(low), np.array(high), np.array(list(values.values())))
 
 
-def _wanted(output: Output) -> str:
-    kinds = {"effort": "effort", "motion": "motion", "pose": "motion"}
-    return kinds.get(output.group, f"{output.group}:{output.part}")
-
-
 def _spread(count: int, dimensions: int) -> Array:
     """Points of the unit cube, evenly spread: multiples of powers of the generalized golden ratio (Roberts 2018), less their whole
     parts."""
@@ -147,6 +142,8 @@ def _begin(search: Descent, starts: int | Sequence[Mapping[str, float]]) -> list
             for name, value in values.items():
                 if name not in box.names:
                     raise UnknownNameError("parameter that is chosen", name, box.names)
+                if not search.box.holds(name, value):
+                    raise DeclarationError(f"starts: {name} = {value!r} is not within its bounds")
                 p[declared.index(name)] = value
             rows.append(box.all(np.clip(box.share(p), 0.0, 1.0)))
         judged = [search.judge.look(p) for p in rows]

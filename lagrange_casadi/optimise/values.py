@@ -12,9 +12,12 @@ from typing import Any
 
 import casadi as ca
 
+from ..declare.curves import curve
+from ..declare.motion import expression, motion_function
 from ..equations.checks import Column
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
+from ..errors import DeclarationError
 from ..quantities import Output
 from ..sensitivity.along import Along, Place
 from ..tables import table_of
@@ -108,17 +111,35 @@ class PointValues:
         """The function with its drives and loops inside."""
         graph = self.graph
         at_drives = ca.Function("at_drives", inputs, [ca.densify(value)], {"cse": True})
-        smooth = graph.motion.is_a("SXFunction") and graph.newton is None
+        smooth = graph.newton is None
         kind = ca.SX if smooth else ca.MX
         sizes = [1, graph.instant.size1_in("z"), graph.instant.size1_in("p"), 1, inputs[-1].numel()]
         given: list[Any] = [kind.sym(name, n) for name, n in zip(("t", "guess", "p", "xi", "place"), sizes, strict=True)]
         t, guess, p, xi, place = given
-        d, rate, acceleration = graph.motion.call([t, p])
+        d, rate, acceleration = self._motion.call([t, p])
         z = guess
         if graph.newton is not None:
             z = self._loops(guess, ca.vertcat(t, d, p))
         found = at_drives.call([t, d, rate, acceleration, z, p, xi, place])
         return ca.Function("at_time", given, found, {"cse": True} if smooth else {})
+
+    @cached_property
+    def _motion(self) -> Any:
+        """The motion in scalars, that by samples too: CasADi's own splines cannot be differentiated so often.
+
+        The spline through what one is at its knots is the same one. Raises :class:`.DeclarationError` where it does not tell them.
+        """
+        graph, symbols = self.graph, self.graph.scene.mechanism.symbols
+        if graph.motion.is_a("SXFunction"):
+            return graph.motion
+        laws = {name: graph.scene.laws[name] for name in graph.driven}
+        for name, law in laws.items():
+            if law.spline:
+                if not law.knots:
+                    raise DeclarationError(f"optimise: the motion of joint '{name}' does not tell its knots")
+                values = motion_function({name: law}, symbols)(ca.DM(law.knots).T, ca.DM.zeros(symbols.numel()))[0]
+                laws[name] = expression(curve(law.knots, values.full().ravel().tolist()))
+        return motion_function(laws, symbols)
 
     @cached_property
     def _loops(self) -> Any:

@@ -173,7 +173,7 @@ class _ContinuousSolution:
     def of(cls, scene: Scene, solution: Solution) -> _ContinuousSolution:
         mechanism = scene.mechanism
         told = mechanism.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
-        wanted = list(dict.fromkeys(map(_wanted, solution.outputs)))
+        wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
         graph = derive(assembled(scene, told, wanted), wanted)
         p = np.array(list(told.values()))
         stages = compensated(graph, "double") if turns_many(graph, solution.t, p) else plain(graph)
@@ -206,7 +206,7 @@ class _ContinuousSolution:
         """The same from as many instants in equal steps of time, between which peaks are sought."""
         scene, solution, t = self.graph.scene, self.solution, self.solution.t
         told = dict(zip(scene.mechanism.parameters, self.p.tolist(), strict=True))
-        wanted = list(dict.fromkeys(map(_wanted, solution.outputs)))
+        wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
         even = (float(t[0]), float(t[-1]), t.size)
         words: dict[str, Any] = {"parameters": told, "t": even, "wanted": wanted, "backend": "vm", "certificate": False}
         return _ContinuousSolution.of(scene, evaluate(scene, **words))
@@ -339,7 +339,7 @@ def _columns(quantity: Quantity) -> set[int]:
     return set(quantity)
 
 
-def _wanted(output: Output) -> str:
+def wanted_for(output: Output) -> str:
     """What is to be wanted for an output."""
     kinds = {"effort": "effort", "motion": "motion", "pose": "motion"}
     return kinds.get(output.group, f"{'section' if output.along else output.group}:{output.part}")

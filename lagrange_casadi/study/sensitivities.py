@@ -1,0 +1,190 @@
+"""How the outputs of a solution change with the parameters: series over time, section forces over time and xi/l, means, peaks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..declare.density import Array
+from ..declare.scene import Scene
+from ..equations.derive import assembled, derive
+from ..errors import DeclarationError, UnknownNameError
+from ..instants.rung import Backend, Rung
+from ..instants.solution import Solution
+from ..instants.statistics import shares
+from ..quantities import Output
+from ..sensitivity.peaks import PeakKind, peak_slopes
+from ..sensitivity.slopes import Slopes
+from ..summits.search import NOTHING
+from ..summits.sharpness import Sharpness
+from .peaks import refine, resultants, wanted_for
+
+_SAME = 1e-6
+"""How closely a graph must give what a solution has, over the largest value of the same unit."""
+
+_BLOCK = 1 << 16
+
+
+@dataclass(frozen=True, eq=False)
+class Changes:
+    """How one number changes with each parameter: ``value`` in its unit, ``slopes`` by the parameter's name.
+
+    ``kind`` says what a peak is at, None of a mean.
+    """
+
+    value: float
+    slopes: dict[str, float]
+    kind: PeakKind | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivities:
+    """The derivatives of a ``solution`` by the parameters of its ``scene``, each made when it is asked for.
+
+    They are total and exact: of loops, motions and densities too. Instants and ratios xi/l stand still. Methods raise
+    :class:`.UnknownNameError` for a quantity or a parameter that there is not, :class:`.DeclarationError` for a quantity that
+    equilibrium leaves open.
+    """
+
+    scene: Scene
+    solution: Solution
+    slopes: Slopes
+    p: Array
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of the parameters."""
+        return tuple(self.scene.mechanism.parameters)
+
+    def array(self, name: str, parameter: str) -> Array:
+        """The derivative of a quantity by a parameter over the instants, (t,), of a section force (t, xi).
+
+        Its unit is the quantity's over the parameter's. At a station, a section force is that on its tip's side.
+        """
+        if parameter not in self.parameters:
+            raise UnknownNameError("parameter", parameter, self.parameters)
+        return self._all(name)[1][..., self.parameters.index(parameter)]
+
+    def mean(self, name: str) -> Changes:
+        """How the mean of a quantity over the instants changes; it is no section force."""
+        values, slopes = self._over_time(name)
+        weights = shares(self.solution.t)
+        return Changes(float(values @ weights), self._named(weights @ slopes))
+
+    def rms(self, name: str) -> Changes:
+        """How the root of its mean square changes; NaN where that is zero."""
+        values, slopes = self._over_time(name)
+        weights = shares(self.solution.t)
+        rms = float(np.sqrt(values**2 @ weights))
+        with np.errstate(all="ignore"):
+            return Changes(rms, self._named((weights * values) @ slopes / rms))
+
+    def peak(self, name: str) -> Changes:
+        """How the peak of a quantity over all times of the solution's span changes, between the instants too: see :func:`.refine`.
+
+        Its slopes are NaN where it has no derivative.
+        """
+        output = self._known(name)
+        (found,) = refine(self.scene, self.solution, [name])
+        xi = np.nan if found.xi is None else found.xi
+        place = np.array([found.value]), np.array([found.t]), np.array([xi])
+        chosen = np.array([self.slopes.numbers[output]], np.intc)
+        solution, unit = self.solution, self.solution.unit(name)
+        same = (o for o in solution.quantities() if o.group != "section" and solution.determined(o) and solution.unit(o) == unit)
+        largest = max((float(np.abs(solution.array(o)).max()) for o in same), default=0.0)
+        nothing = np.array([abs(found.value) <= NOTHING * largest])
+        changes = peak_slopes(self.slopes, self.solution.t, self.p, chosen, place, np.zeros((2, self.p.size)), nothing)
+        return Changes(found.value, self._named(changes.slopes[0]), PeakKind(int(changes.kinds[0])))
+
+    @cached_property
+    def _iterated(self) -> Array:
+        return self.slopes.iterated(self.solution.t, self.p, self.solution.t)
+
+    def _named(self, slopes: Array) -> dict[str, float]:
+        return dict(zip(self.parameters, slopes.tolist(), strict=True))
+
+    def _known(self, name: str) -> Output:
+        unit = self.solution.unit(name)  # it refuses what is none
+        output = Output.of(name)
+        if not self.solution.determined(output):
+            raise DeclarationError(f"'{name}' [{unit}]: equilibrium leaves it open")
+        return output
+
+    def _over_time(self, name: str) -> tuple[Array, Array]:
+        if self._known(name).group == "section":
+            raise DeclarationError(f"'{name}': a section force has a mean at every ratio; take that of array(...)")
+        return self._all(name)
+
+    def _all(self, name: str) -> tuple[Array, Array]:
+        """A quantity and its derivatives by all parameters, (t, parameters) or (t, xi, parameters)."""
+        output, solution = self._known(name), self.solution
+        along = solution.xi if output.group == "section" else np.full(1, np.nan)
+        shape = (solution.t.size, along.size)
+        rows = np.repeat(np.arange(shape[0]), shape[1])
+        xi = np.tile(along, shape[0])
+        value, slopes = np.empty(rows.size), np.empty((rows.size, self.p.size))
+        for start in range(0, rows.size, _BLOCK):
+            some = slice(start, start + _BLOCK)
+            chosen = np.full(rows[some].size, self.slopes.numbers[output], np.intc)
+            found = self.slopes.at(solution.t[rows[some]], self._iterated[rows[some]], self.p, chosen, xi[some])
+            value[some], slopes[some] = found.value, found.slopes
+        if output.group != "section":
+            return value, slopes
+        return value.reshape(shape), slopes.reshape(*shape, -1)
+
+
+def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto") -> Sensitivities:
+    """How a solution of a scene changes with its parameters.
+
+        changes = sensitivities(scene, solution)
+        changes.array("effort:O", "l")  # (t,) [N m/m]
+        changes.peak("section:rod:bending").slopes["r"]
+
+    Raises :class:`.DeclarationError` where the solution is not one of this scene.
+    """
+    if not isinstance(scene, Scene) or not isinstance(solution, Solution):
+        raise DeclarationError(f"sensitivities: expected a Scene and a Solution of it, got {scene!r} and {solution!r}")
+    mechanism = scene.mechanism
+    if mechanism.name != solution.case or mechanism.parameters.keys() != solution.description["parameters"].keys():
+        raise _other(scene, solution)
+    told = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
+    wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
+    values = mechanism.values(told)
+    graph = derive(assembled(scene, values, wanted), wanted)
+    quantities = [o for o in solution.quantities() if solution.determined(o)]
+    quantities += [o for o in map(Output.of, resultants(solution)) if o not in quantities]
+    made = {part for o in quantities if o.group != "section" for part in solution.made_of(o)}
+    if not made <= graph.outputs.keys():
+        raise _other(scene, solution)
+    columns = sorted({graph.outputs[part] for part in made} | {k for o, k in graph.outputs.items() if o.along})
+    slopes = Slopes.of(graph, quantities, Sharpness.of(graph, columns), Rung(backend))
+    found = Sensitivities(scene, solution, slopes, np.array(list(values.values())))
+    _refuse_other(found, quantities)
+    return found
+
+
+def _refuse_other(found: Sensitivities, quantities: Sequence[Output]) -> None:
+    """Raise :class:`.DeclarationError` where a solution has other values than its scene, at one of three instants."""
+    solution = found.solution
+    plain = [o for o in quantities if o.group != "section" and o not in found.slopes.graph.loop_angles]
+    sizes: dict[str, float] = {}
+    for output in plain:
+        unit = solution.unit(output)
+        sizes[unit] = max(sizes.get(unit, 0.0), float(np.abs(solution.array(output)).max()))
+    some = np.array([0, solution.t.size // 2, solution.t.size - 1])
+    z = found.slopes.iterated(solution.t, found.p, solution.t[some])
+    agrees = np.ones(some.size, bool)
+    for output in plain:
+        chosen = np.full(some.size, found.slopes.numbers[output], np.intc)
+        there = found.slopes.at(solution.t[some], z, found.p, chosen, np.full(some.size, np.nan)).value
+        limit = _SAME * sizes[solution.unit(output)] + NOTHING * max(sizes.values())
+        agrees &= np.abs(there - solution.array(output)[some]) <= limit
+    if plain and not agrees.any():
+        raise _other(found.scene, solution)
+
+
+def _other(scene: Scene, solution: Solution) -> DeclarationError:
+    return DeclarationError(f"the solution of '{solution.case}' is not one of this scene of '{scene.mechanism.name}'")
