@@ -142,7 +142,9 @@ def _roller_cam(arithmetic, values):
 
     def spring(place):
         length = place(stem)[1].v - least
-        return [(("stem", number(11) / 100, number(3) / 1000), 0, -number(values["preload"]) - number(values["stiffness"]) * length, 0)]
+        return [
+            (("stem", number(11) / 100, number(3) / 1000), 0, -number(values["preload"]) - number(values["stiffness"]) * length, 0)
+        ]
 
     return {"loads": [spring], "extras": [oracle.Extra("contact", gap, effect)]}
 

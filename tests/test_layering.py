@@ -36,6 +36,7 @@ ORDER = (
     "draw",
     "report",
     "animation",
+    "actuators",
     "density",
     "motion",
     "figures",
