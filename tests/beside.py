@@ -132,8 +132,8 @@ def _roller_cam(arithmetic, values):
     """The contact along the normal of the pitch curve, from the lift's formulas; and the spring."""
     number, sqrt = arithmetic.number, arithmetic.sqrt
     sin, cos = (functions(arithmetic)[name] for name in ("sin", "cos"))
-    pi, h, offset = number(math.pi), number(values["lift"]), number(6) / 1000
-    up, top, back = (angle * pi / 180 for angle in (100, 20, 120))
+    pi, h, offset = number(math.pi), number(values["lift"]), number(values["offset"])
+    up, top, back = (angle * pi / 180 for angle in (100, 20, 150))
     prime = number(values["base"]) + number(12) / 1000
     least = sqrt(prime * prime - offset * offset)
     stem, cam = ("stem", 0, 0), ("cam", 0, 0)
@@ -143,34 +143,33 @@ def _roller_cam(arithmetic, values):
         at = turn.v % (2 * pi)
         inside = turn - (turn.v - at)
         if at < up:
-            u, c = inside / up, h / (4 + pi)
-            where = at / up
-            if where < number(1) / 8 or where >= number(7) / 8:
-                whole = 0 if where < number(1) / 2 else 4
-                return c * (u * pi - sin(u * (4 * pi)) / 4 + whole), c / up * (pi - pi * cos(u * (4 * pi)))
-            wave = u * (4 * pi / 3) + pi / 3
-            return c * (2 + u * pi - sin(wave) * 9 / 4), c / up * (pi - 3 * pi * cos(wave))
-        if at < up + top:
-            return inside * 0 + h, inside * 0
-        if at < up + top + back:
-            u = (inside - up - top) / back
-            return h - h * (u - sin(u * (2 * pi)) / (2 * pi)), (cos(u * (2 * pi)) - 1) * (h / back)
-        return inside * 0, inside * 0
+            u, sign, start, width = inside / up, 1, 0, up
+        elif at < up + top or at >= up + top + back:
+            return inside * 0 + (h if at < up + top else 0), inside * 0
+        else:
+            u, sign, start, width = (inside - up - top) / back, -1, h, back
+        return (u - sin(u * (2 * pi)) / (2 * pi)) * (sign * h) + start, (1 - cos(u * (2 * pi))) * (sign * h / width)
+
+    def lean(place):
+        """Where the roller is, and how far it goes aside as it rises on the cam, of jets."""
+        s, slope = rise(Jet(place(cam)[2].v, place(cam)[2].d, place(cam)[2].a))
+        return s + least, (slope - offset) / (s + least)
 
     def gap(place):
-        return place(stem)[1] - rise(place(cam)[2])[0] - least
+        height, tangent = lean(place)
+        return place(stem)[1] - height - tangent * (place(stem)[0] - offset)
 
     def effect(place):
-        s, slope = (x.v for x in rise(Jet(place(cam)[2].v)))
-        height = s + least
-        tangent = (slope - offset) / height
+        height, tangent = (x.v for x in lean(place))
         size = sqrt(1 + tangent * tangent)
         x, y = -tangent / size, 1 / size
         return [(stem, x, y, 0), (cam, -x, -y, -(offset * y - height * x))]
 
     def spring(place):
         length = place(stem)[1].v - least
-        return [(("stem", number(12) / 100, 0), 0, -number(values["preload"]) - number(values["stiffness"]) * length, 0)]
+        return [
+            (("stem", number(11) / 100, number(3) / 1000), 0, -number(values["preload"]) - number(values["stiffness"]) * length, 0)
+        ]
 
     return {"loads": [spring], "extras": [oracle.Extra("contact", gap, effect)]}
 

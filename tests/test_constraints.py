@@ -252,3 +252,15 @@ def test_a_non_holonomic_row_leaves_the_motion_to_drives_elsewhere(drives):
     usual = evaluate(towed(None))
     power = [sum(s.effort(j) * s.motion(j).rate for j in joints) for s, joints in ((usual, ("X", "turn")), (solution, drives))]
     assert np.abs(power[1] - power[0]).max() < 1e-12 * np.abs(power[0]).max()
+
+
+def test_a_constraint_whose_slope_has_no_value_at_some_parameters():
+    """The arc sine of a ratio has one only up to one: what stands beside it is in the equation all the same."""
+    m = Mechanism("tied")
+    ratio = m.parameter("ratio", 0.4, low=0.0, high=0.9)
+    a, b = m.link("a", length=0.3, mass=1.0), m.link("b", length=0.2, mass=0.5)
+    first, second = m.revolute("A", m.ground, a), m.revolute("B", m.ground.at(1.0, 0.0), b)
+    m.constraint("tie", ca.asin(ratio) * m.coordinate(second) - m.coordinate(first))
+    solution = evaluate(Scene(m, {"A": polynomial(0.2, 0.5)}, t=(0, 1, 5), posture={"b": 0.5}))
+    assert solution.certified
+    assert solution.motion("B").value == pytest.approx(solution.motion("A").value / math.asin(0.4), rel=1e-13)

@@ -25,7 +25,7 @@ INSTANT = {
     "excavator": 1494,
     "beam_pump": 480,
     "scara": 158,
-    "roller_cam": 352,
+    "roller_cam": 304,
     "v_twin": 1778,
     "rssr": 781,
     "spatial_slider_crank": 414,

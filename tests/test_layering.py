@@ -39,6 +39,7 @@ ORDER = (
     "draw",
     "report",
     "animation",
+    "actuators",
     "optimise",
     "density",
     "motion",

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from exported import by_c99, compare, expected, exported, instants, solve
 
 from lagrange_casadi import Mechanism, Scene, evaluate, prepare, refine
 from lagrange_casadi.cli import main
@@ -142,7 +143,8 @@ def scene_of_parameters(t=(0.0, 1.5, 151)):
 VALUES = {"h": 0.3, "T": 0.5, "v": 3.0, "ratio": 1.5}
 
 
-@pytest.mark.parametrize("values", [{}, VALUES])
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("values", [VALUES, {}])
 def test_parameters_change_all_of_it(values):
     """As if numbers stood in their place, here and in a sweep's engine."""
     h, T, v, ratio = ({"h": 0.5, "T": 0.4, "v": 1.5, "ratio": 2.0} | values).values()
@@ -173,6 +175,17 @@ def test_moves_that_cannot_be_are_refused_everywhere():
     engine = DesignEngine.of(scene)
     rows = [[0.5, 0.4, 1.5, 2.0], [0.5, 2.0, 1.5, 2.0], [0.5, -0.1, 1.5, 2.0], [0.0, 0.4, 1.5, 2.0], [0.5, 0.4, 0.0, 2.0]]
     assert engine.evaluate(np.array(rows)).status.tolist() == [Status.OK, *[Status.IMPOSSIBLE] * 4]
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_exported_c_has_the_same_numbers(tmp_path, precision):
+    """With parameters in all of the moves; instants at their seams too."""
+    scene = scene_of_parameters()
+    made, told = exported(scene, tmp_path, precision=precision)
+    solution = solve(scene, precision)
+    found = by_c99(tmp_path, told, instants(solution.t, precision))
+    compare(found, expected(scene, told, solution), told, made, solution)
 
 
 def test_peaks_are_found_beside_jumps():

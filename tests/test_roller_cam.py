@@ -18,11 +18,11 @@ def test_the_contact_is_that_of_closed_forms(values):
     assert solution.certified
     given = {"base": 0.045, "stiffness": 12e3, "speed": 60.0, "lift": 0.02} | values
     motion = solution.motion("guide")
-    least = np.sqrt((given["base"] + ROLLER) ** 2 - OFFSET**2)
+    least, place = np.sqrt((given["base"] + ROLLER) ** 2 - OFFSET**2), motion.value - 0.05
     assert np.ptp(motion.value) == pytest.approx(given["lift"], rel=1e-3)
-    assert motion.value.min() == pytest.approx(least, rel=1e-12)
-    pushed = MASS * (motion.acceleration + 9.81) + 300.0 + given["stiffness"] * (motion.value - least)
-    tangent = (motion.rate / given["speed"] - OFFSET) / motion.value
+    assert place.min() == pytest.approx(least, rel=1e-12)
+    pushed = MASS * (motion.acceleration + 9.81) + 300.0 + given["stiffness"] * (place - least)
+    tangent = (motion.rate / given["speed"] - OFFSET) / place
     force = solution.output("contact_force")
     assert force == pytest.approx(pushed * np.hypot(1.0, tangent), rel=1e-10)
     assert solution.output("contact_pressure_angle") == pytest.approx(np.arctan(np.abs(tangent)), abs=1e-11)
@@ -32,13 +32,14 @@ def test_the_contact_is_that_of_closed_forms(values):
 
 
 def test_accelerations_are_those_of_the_laws():
-    """5.528 h/beta^2 of a modified sine up, 2 pi h/beta^2 of a cycloid back, times the speed squared."""
+    """2 pi h/beta^2 of cycloids, up and back, times the speed squared."""
     scene = load_case(CASES / "roller_cam").scene
     solution = evaluate(scene)
-    up, back = (np.radians(angle) for angle in (100.0, 120.0))
+    up, back = (np.radians(angle) for angle in (100.0, 150.0))
     acceleration = solution.motion("guide").acceleration
-    assert acceleration.max() == pytest.approx(5.52796 * 0.02 / up**2 * 60.0**2, rel=2e-3)
-    falling = solution.motion("shaft").value > np.radians(120.0)
+    assert acceleration.max() == pytest.approx(2 * np.pi * 0.02 / up**2 * 60.0**2, rel=2e-3)
+    turn = solution.motion("shaft").value % (2 * np.pi)
+    falling = (turn > np.radians(120.0)) & (turn < np.radians(270.0))
     assert -acceleration[falling].min() == pytest.approx(2 * np.pi * 0.02 / back**2 * 60.0**2, rel=2e-3)
     (peak,) = refine(scene, solution, ["output:contact_hertz"])
     assert 3e8 < peak.value < 1.5e9  # what hardened steel bears

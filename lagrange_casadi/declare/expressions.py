@@ -55,6 +55,11 @@ def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str) -> Expre
     return number
 
 
+def sound(condition: Any) -> Any:
+    """One where a condition on parameters holds; elsewhere not a number, which every backend and compiler has as a root."""
+    return ca.sqrt(2.0 * condition - 1.0)
+
+
 def told(error: BaseException) -> str:
     """What an error says, in a line; of a choice that Python cannot make for a symbol, what makes it instead."""
     text = one_line(error)

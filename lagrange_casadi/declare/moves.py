@@ -12,7 +12,7 @@ import casadi as ca
 
 from ..errors import DeclarationError
 from ..system.numerals import readable
-from .expressions import check_name, scalar, typed
+from .expressions import check_name, scalar, sound, typed
 from .motion import Motion
 from .parts import Expression
 from .possible import Demand, Evaluator
@@ -134,10 +134,10 @@ def moves(
 def _graph(stretches: tuple[Stretch, ...], last: Expression, period: Any, advance: Any, demands: tuple[Demand, ...]) -> Any:
     """The law as a function of its argument: which stretch it is in is told once, and each law is written once."""
     # What cannot be has no value, wherever the law is used.
-    sound: Any = 1.0
+    held: Any = 1.0
     for demand in demands:
         value = ca.SX(demand.value)
-        sound = sound * ca.if_else(value > 0.0 if demand.positive else value >= 0.0, 1.0, ca.SX.nan())
+        held = held * sound(value > 0.0 if demand.positive else value >= 0.0)
 
     def graph(t: Any) -> Any:
         x, gone = t, 0.0
@@ -147,25 +147,23 @@ def _graph(stretches: tuple[Stretch, ...], last: Expression, period: Any, advanc
             middle = begin + period / 2.0
             x = ca.remainder(t - middle, period) + middle
             gone = advance * ca.floor((t - x) / period + 0.5)
-        rows = list(stretches)
-        later = [x >= stretch.start for stretch in rows]
+        starts = [stretch.start for stretch in stretches] + ([] if period is not None else [stretches[-1].stop])
+        later = [x >= start for start in starts]
+        # A difference of two comparisons, the later of which holds only where the earlier does.
+        inside = [here if k + 1 == len(later) else here - later[k + 1] for k, here in enumerate(later)]
+        places = [stretch.at for stretch in stretches]
         if period is None:
-            later.append(x >= stretches[-1].stop)
-        inside = [here if k + 1 == len(later) else ca.logic_and(here, ca.logic_not(later[k + 1])) for k, here in enumerate(later)]
-        if period is None:
-            inside[-1] = later[-1]
-            before, after = ca.logic_not(later[0]), later[-1]
-            at = [(before, stretches[0].at), *((here, s.at) for here, s in zip(inside, rows, strict=False)), (after, last)]
+            at = [(x < starts[0], places[0]), *zip(inside, [*places, last], strict=True)]
         else:
-            # By rounding an instant may be beside the first or the last seam.
-            inside[0] = ca.logic_not(later[1]) if len(later) > 1 else ca.SX(1)
-            at = [(here, s.at) for here, s in zip(inside, rows, strict=True)]
-        going = [(here, s) for here, s in zip(inside, rows, strict=False) if s.law is not None]
+            # By rounding an instant may be before the first seam.
+            inside[0] = x < starts[1] if len(starts) > 1 else ca.SX(1)
+            at = list(zip(inside, places, strict=True))
+        going = [(here, s) for here, s in zip(inside, stretches, strict=False) if s.law is not None]
         share = (x - _chosen((here, s.start) for here, s in going)) * _chosen((here, 1.0 / s.time) for here, s in going)
         value = _chosen(at) + gone
         for law in dict.fromkeys(s.law for _, s in going if s.law is not None):
             value = value + _chosen((here, s.by) for here, s in going if s.law is law) * law.shape(share)
-        return value * sound
+        return value * held
 
     return graph
 

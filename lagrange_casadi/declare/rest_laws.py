@@ -75,7 +75,7 @@ def trapezoid(share: Expression = _CUBE) -> RestLaw:
     top, steep = 1.0 / (1.0 - share), 1.0 / (share * (1.0 - share))
 
     def shape(u: Any) -> Any:
-        return _both_halves(u, lambda w: ca.if_else(w < share, steep * w * w / 2.0, top * (w - share / 2.0)))
+        return _both_halves(u, lambda w: _before(w, share, steep * w * w / 2.0, top * (w - share / 2.0)))
 
     inner = ((share, (-steep, 0.0)), (1.0 - share, (-steep, 0.0)))
     return RestLaw("trapezoid", top, steep, math.inf, shape, (steep, 0.0), inner)
@@ -136,7 +136,7 @@ def _seven(first: Expression, second: Expression, third: Expression) -> RestLaw:
             steady = sharp * third**3 / 6.0 + x * (sharp * third * third / 2.0 + x * steep / 2.0)
             left = ramp - w
             fading = end - top * left + ca.if_else(left > 0.0, sharp * left**3 / 6.0, 0.0)
-            return ca.if_else(w < third, rising, ca.if_else(w < second, steady, fading))
+            return _before(w, third, rising, _before(w, second, steady, fading))
 
         return _both_halves(u, half)
 
@@ -153,9 +153,13 @@ def _refuse_share(what: str, share: object, most: float) -> None:
 
 def _both_halves(u: Any, half: Callable[[Any], Any]) -> Any:
     """A law of which the first half is known."""
-    before = u < 0.5
-    way = half(ca.if_else(before, u, 1.0 - u))
-    return ca.if_else(before, way, 1.0 - way)
+    way = half(_before(u, 0.5, u, 1.0 - u))
+    return _before(u, 0.5, way, 1.0 - way)
+
+
+def _before(x: Any, place: Any, first: Any, then: Any) -> Any:
+    """One value before a place and another from there on; by two comparisons, for C tells a number from its negation."""
+    return ca.if_else(x < place, first, 0.0) + ca.if_else(x >= place, then, 0.0)
 
 
 def _modified_trapezoid(w: Any) -> Any:
@@ -165,7 +169,7 @@ def _modified_trapezoid(w: Any) -> Any:
     steady = c * (0.25 - 1.0 / (2.0 * math.pi) + x * (2.0 + 4.0 * math.pi * x))
     y = w - 0.5
     fading = 0.5 + c * (2.0 * (1.0 + math.pi) * y + ca.sin(4.0 * math.pi * y) / (2.0 * math.pi))
-    return ca.if_else(w < 0.125, rising, ca.if_else(w < 0.375, steady, fading))
+    return _before(w, 0.125, rising, _before(w, 0.375, steady, fading))
 
 
 def _modified_sine(w: Any) -> Any:
@@ -173,7 +177,7 @@ def _modified_sine(w: Any) -> Any:
     rising = c * (math.pi * w - ca.sin(4.0 * math.pi * w) / 4.0)
     y = w - 0.5
     steady = 0.5 + c * (math.pi * y + 2.25 * ca.sin(4.0 * math.pi / 3.0 * y))
-    return ca.if_else(w < 0.125, rising, steady)
+    return _before(w, 0.125, rising, steady)
 
 
 _LAWS: dict[str, RestLaw] = {

@@ -3,6 +3,7 @@
 from .bent import Bent, bent_bar
 from .cam import Cam, disc_cam
 from .cam_profile import CamProfile
+from .cylinder import Cylinder, cylinder
 from .plate import Plate, plate
 
-__all__ = ["Bent", "Cam", "CamProfile", "Plate", "bent_bar", "disc_cam", "plate"]
+__all__ = ["Bent", "Cam", "CamProfile", "Cylinder", "Plate", "bent_bar", "cylinder", "disc_cam", "plate"]

@@ -15,11 +15,13 @@ from typing import Any, cast
 
 import casadi as ca
 
+from ..declare.expressions import sound
 from ..declare.joints import Joint
 from ..declare.kinks import refuse_kinks
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Constraint, Expression, Ground, Link, Point
 from ..errors import DeclarationError
+from ..geometry.rotation import direction
 from .cam_profile import CamProfile, profile_of
 
 _ELASTIC = (210e9, 0.3)
@@ -166,7 +168,7 @@ class _Layout:
 def _positive(what: str, radius: Any) -> Any:
     """A radius; none that parameters make zero or less. Raises :class:`.DeclarationError` for a number of no radius."""
     if isinstance(radius, ca.SX):
-        return ca.if_else(radius > 0.0, radius, ca.SX.nan())
+        return radius * sound(radius > 0.0)
     if not radius > 0.0:
         raise DeclarationError(f"{what} must be positive, got {radius:g} m")
     return radius
@@ -183,7 +185,7 @@ def _rise(what: str, mechanism: Mechanism, lift: Callable[[Any], Any], x: Any) -
 
 
 def _turned(vector: tuple[Any, Any], angle: Any) -> tuple[Any, Any]:
-    c, s = ca.cos(angle), ca.sin(angle)
+    c, s = direction(angle)
     return c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]
 
 
@@ -270,8 +272,8 @@ def _contact(mechanism: Mechanism, name: str, cam: Joint, touched: Point, design
     here = _at(design, turn)
     gap = _dot(here.normal, _sum(place, here.place, -1.0))
     if here.turned is not None:
-        direction = mechanism.direction(cast(Link, touched.body))
-        gap = gap + here.moment * _cross(here.turned, (ca.cos(direction), ca.sin(direction)))
+        lean = mechanism.direction(cast(Link, touched.body))
+        gap = gap + here.moment * _cross(here.turned, (ca.cos(lean), ca.sin(lean)))
     # Off the contact its slope may jump, as the normal turns by the lift's slope; on it, that counts for nothing.
     phi = mechanism.own.expression(f"cam '{name}'", gap, moving=True)
     return mechanism.constraints.setdefault(name, Constraint(name, phi))
