@@ -23,14 +23,14 @@ INSTANT = {
     "jansen_leg": 740,
     "excavator": 1494,
     "beam_pump": 480,
-    "rssr": 781,
+    "rssr": 779,
     "spatial_slider_crank": 414,
-    "stewart_gough": 5410,
-    "arm6": 1716,
+    "stewart_gough": 5322,
+    "arm6": 1434,
     "cardan_shaft": 771,
     "five_link_suspension": 2495,
     "delta": 4442,
-    "bricard": 2065,
+    "bricard": 2044,
 }
 LOOPS = {"rrr3": 239, "beam_pump": 50, "spatial_slider_crank": 53, "cardan_shaft": 62}
 LOOPS |= {"five_link_suspension": 772, "delta": 1142, "bricard": 338}
