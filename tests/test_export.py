@@ -87,6 +87,10 @@ def test_a_product_of_two_roundings_is_allowed_for(tmp_path):
     assert "0 wrong" in self_tested(load_case("cardan_shaft").scene, "single", tmp_path, wanted=["section:tube"])
 
 
+def test_what_is_left_open_is_no_part_of_the_self_test(tmp_path):
+    assert "0 wrong" in self_tested(load_case("bricard").scene, "single", tmp_path, wanted=["section:link1"])
+
+
 def self_tested(scene, precision, folder, **options):
     """What the self-test of an exported folder says."""
     made = export(scene, folder, precision=precision, **options)

@@ -27,14 +27,14 @@ INSTANT = {
     "scara": 158,
     "roller_cam": 304,
     "v_twin": 1778,
-    "rssr": 781,
+    "rssr": 779,
     "spatial_slider_crank": 414,
-    "stewart_gough": 5410,
-    "arm6": 1716,
+    "stewart_gough": 5322,
+    "arm6": 1434,
     "cardan_shaft": 771,
-    "five_link_suspension": 2603,
-    "delta": 4562,
-    "bricard": 2065,
+    "five_link_suspension": 2601,
+    "delta": 4560,
+    "bricard": 2044,
 }
 LOOPS = {"rrr3": 239, "beam_pump": 50, "spatial_slider_crank": 53, "cardan_shaft": 62}
 LOOPS |= {"five_link_suspension": 783, "delta": 1002, "bricard": 338}

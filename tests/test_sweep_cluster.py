@@ -98,7 +98,8 @@ SPACE = {
 """Loops of closed forms, iterated loops, and the peaks of resultants along a link."""
 
 
-@pytest.mark.parametrize("name", [*SPACE][:1] + [pytest.param(name, marks=pytest.mark.long) for name in [*SPACE][1:]])
+@pytest.mark.long
+@pytest.mark.parametrize("name", SPACE)
 def test_mechanisms_in_space_give_the_same_bytes_too(name, two_workers, tmp_path):
     case, asked = load_case(name), SPACE[name] | {"t": (0, 0.1, 17)}
     local = sweep(case, **asked, out=tmp_path / "here.h5").path.read_bytes()

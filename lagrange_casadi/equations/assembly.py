@@ -44,7 +44,8 @@ def assemble(
     resting, felt = Grown(mechanism, carried, Frame()), Grown(mechanism, carried, weighed)
     for branch in tree.branches:
         resting.hang(branch, displace=False)
-        felt.hang(branch, displace=branch.joint.name in reactions)
+        # What acts where loops close is in ground axes.
+        felt.hang(branch, displace=branch.joint.name in reactions, along=not (tree.closing or tree.bars))
     loops = [_loop_equations(joint.name, joint, *closing_gaps(joint, *resting.ends(joint))) for joint in tree.closing]
     loops += [_loop_equations(bar.link.name, None, *map(ca.SX, resting.span(bar, displace=()))) for bar in tree.bars]
     loops[len(tree.closing) :] = [replace(loop, bar=bar) for loop, bar in zip(loops[len(tree.closing) :], tree.bars, strict=True)]
@@ -83,6 +84,7 @@ def assemble(
         loop_equations=tuple(loops),
         rows=rows,
         mobilities=felt.mobilities,
+        own_axes=frozenset(felt.own_axes),
         frames=resting.frames,
         felt=felt.frames,
         applied=applied,

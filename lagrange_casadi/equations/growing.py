@@ -30,6 +30,7 @@ class Grown:
         self.coordinates = tuple(coordinate for found in carried.values() for coordinate in found)
         self.frames: dict[str, Frame] = {mechanism.ground.name: ground}
         self.mobilities: dict[str, Any] = {}
+        self.own_axes: set[str] = set()
         self.turned: dict[str, Turned] = {}
         self.turning: dict[str, Vector] = {}
 
@@ -38,8 +39,8 @@ class Grown:
         parent, child = joint.bodies
         return self.frames[parent.name], self.frames[child.name]
 
-    def hang(self, branch: Branch, *, displace: bool) -> None:
-        """Place a body on its branch, with the branch's mobility where wanted."""
+    def hang(self, branch: Branch, *, displace: bool, along: bool = False) -> None:
+        """Place a body on its branch, with the branch's mobility where wanted: in ground axes, or ``along`` its own if shorter."""
         joint = branch.joint
         frame = self._undisplaced(branch, self.carried[joint.name])
         if displace:
@@ -52,7 +53,11 @@ class Grown:
                 translation = plus(translation, times(rates[k], axis))
             for k, axis in enumerate(turns, len(moves)):
                 turning = plus(turning, times(rates[k], axis))
-            frame = frame.displaced(translation, turning)
+            if along and branch.far.body.oriented and isinstance(frame, Carried) and frame.shortest is frame.own:
+                frame = frame.displaced_along(translation, turning)
+                self.own_axes.add(joint.name)
+            else:
+                frame = frame.displaced(translation, turning)
         self.frames[branch.far.body.name] = frame
 
     def span(self, bar: Bar, *, displace: Collection[str]) -> tuple[Any, Any, Any]:

@@ -29,17 +29,19 @@ from ..declare.limits import at_end
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Link, Point, Vector
 from ..geometry.frames import Frame, Velocities
+from ..geometry.rotation import Rotation
 from ..geometry.vectors import ZERO, cross, dot, plus, times
 from ..quantities import Output, force_members, law_members, own_members, station_members
 from .checks import Check, Column
 from .drives import solve_efforts
 from .friction import Solved, frictions_of, needed, rubbing, solve
 from .gaps import reach
-from .joints import borne, reaction, slide
+from .joints import borne, orientation, reaction, slide
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
-from .multibody import Multibody, column
+from .multibody import Multibody, column, own_coordinate
 from .spreads import rotary, spreads
+from .tree import Branch
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,9 +110,9 @@ def internal_forces(
     columns: dict[Column, Any] = {Output("effort", joint): force for joint, force in drives.items()} if effort else {}
     for name in reactions:
         members = force_members(multibody.mechanism.space, moment=joints[name].bears_moment)
-        columns |= {Output("reaction", name, member): found[name].member(member) for member in members}
+        columns |= {Output("reaction", name, member): found[name].ground.member(member) for member in members}
         if multibody.mechanism.space:
-            columns |= _on_own_axes(multibody, joints[name], found[name])
+            columns |= _on_own_axes(joints[name], found[name].own)
     tying = {c.name: c.multipliers for c in multibody.loop_equations if c.declared}
     tying |= {graph.row.name: graph.multiplier for graph in multibody.rows}
     columns |= {Output("multiplier", name): tying[name] for name in multipliers}
@@ -151,20 +153,31 @@ class Action:
     def __add__(self, other: Action) -> Action:
         return Action(plus(self.force, other.force), plus(self.couple, other.couple))
 
+    def seen(self, rotation: Rotation) -> Action:
+        """The same in turned axes."""
+        return Action(rotation.resolve(self.force), rotation.resolve(self.couple))
+
     def __neg__(self) -> Action:
         return Action(times(-1, self.force), times(-1, self.couple))
 
 
-def _section_law(multibody: Multibody, name: str, found: Mapping[str, Action], drives: Any) -> dict[Column, Any]:
+@dataclass(frozen=True, eq=False)
+class Reaction:
+    """What a joint's parent does to its child: in ground axes, and in the parent's."""
+
+    ground: Action
+    own: Action
+
+
+def _section_law(multibody: Multibody, name: str, found: Mapping[str, Reaction], drives: Any) -> dict[Column, Any]:
     """The coefficients of a link's law: of its material from the section mobility, of the tip and stations from what acts there."""
-    link, direction, space = multibody.mechanism.links[name], multibody.frames[name].rotation, multibody.mechanism.space
+    link, space = multibody.mechanism.links[name], multibody.mechanism.space
     slopes = _material(multibody, name)
     tip = Action()
     stations: dict[Column, Any] = {}
     for source, place, action in _loads_on(multibody, link, found, drives):
-        force, couple = direction.resolve(action.force), direction.resolve(action.couple)
         # About the link's axis, beside which it may act.
-        acting = Action(force, plus(couple, cross((0.0, *place[1:]), force)))
+        acting = Action(action.force, plus(action.couple, cross((0.0, *place[1:]), action.force)))
         if place[0] is None:
             tip += acting
             continue
@@ -245,17 +258,23 @@ def _of_any_link(space: bool) -> tuple[Any, Any]:
 
 
 def _loads_on(
-    multibody: Multibody, link: Link, found: Mapping[str, Action], drives: Any
+    multibody: Multibody, link: Link, found: Mapping[str, Reaction], drives: Any
 ) -> Iterator[tuple[str, tuple[Any, Any, Any], Action]]:
-    """What acts on a link beyond its base: by whom, where in the link's axes, and in ground axes what. At the tip x is None."""
+    """What acts on a link beyond its base: by whom, and in the link's axes where and what. At the tip x is None."""
+    rotation = multibody.frames[link.name].rotation
     for joint in multibody.mechanism.joints.values():
         for point, sign in ((joint.parent, -1), (joint.child, 1)):
             if point.body is not link or joint.name not in found:
                 continue
-            action = found[joint.name]
+            # The parent's axes are as near as the joint; another way leads by the ground's.
+            own = multibody.mechanism.space and point is joint.parent
+            action = found[joint.name].own if own else found[joint.name].ground
             for axis in joint.axes:
                 if axis.coordinate in drives:
-                    push = times(drives[axis.coordinate], multibody.along[axis.coordinate])
+                    along = multibody.along[axis.coordinate]
+                    if own:
+                        along = axis.direction if len(joint.axes) == 1 else rotation.resolve(along)
+                    push = times(drives[axis.coordinate], along)
                     action += Action(couple=push) if axis.kind == "angle" else Action(push)
             x, y, z = point.place
             if joint.slides and point is joint.parent:
@@ -270,7 +289,8 @@ def _loads_on(
                 x = None
             else:
                 x = at_end(point)
-            yield joint.name, (x, y, z), action if sign > 0 else -action
+            action = action if sign > 0 else -action
+            yield joint.name, (x, y, z), action if own else action.seen(rotation)
     seen: dict[str, int] = {}
     m = multibody.mechanism
     acting = {*m.joints, *m.loads, *m.constraints, *m.rows}
@@ -282,7 +302,7 @@ def _loads_on(
                 seen[part.source] += 1
                 name = f"{part.source}_{seen[part.source]}"
             seen[part.source] = max(seen[part.source], 1)
-            yield name, (x, *part.point.place[1:]), Action(part.force, part.couple)
+            yield name, (x, *part.point.place[1:]), Action(part.force, part.couple).seen(rotation)
 
 
 def _at_base(point: Point) -> bool:
@@ -318,8 +338,17 @@ def _multipliers(multibody: Multibody, kinematics: Kinematics, along: Any) -> tu
     return symbols, values, free
 
 
-def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> Action:
-    """What a joint's parent does to its child, in ground axes, without efforts; the moment is about the child's point."""
+def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> Reaction:
+    """What a joint's parent does to its child, without efforts; the moment is about the child's point."""
+    rotation = multibody.frames[joint.parent.body.name].rotation
+    if joint.name in multibody.own_axes:
+        own = _on_parent(multibody, joint, actions)
+        return Reaction(own.seen(rotation.inverse), own)
+    ground = _in_ground_axes(multibody, joint, actions)
+    return Reaction(ground, ground.seen(rotation))
+
+
+def _in_ground_axes(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> Action:
     parent, child = (multibody.frames[body.name] for body in joint.bodies)
     for loop in multibody.loop_equations:
         if loop.joint is joint:
@@ -329,20 +358,37 @@ def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) ->
         x, y, z = ca.vertsplit(actions[joint.name])
         force = Action((x, y, z))
         return force if joint.child.body is bar.link else -force
-    branch = next(branch for branch in multibody.tree.branches if branch.joint is joint)
-    action = branch.sign * actions[joint.name]
+    return Action(*borne(joint, parent, child, *_on_child(multibody, joint, actions)))
+
+
+def _on_parent(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> Action:
+    """A reaction in the parent's axes, of what is in those of the body that hangs on the joint, by the joint's own turns."""
+    force, moment = _on_child(multibody, joint, actions)
+    turns = [own_coordinate(axis, multibody.coordinates) for axis in joint.axes if axis.kind == "angle"]
+    turned = [Rotation.about(c.axis.direction, *ca.vertsplit(c.variables)) for c in turns if c is not None] + [orientation(joint)]
+    if joint.child.body is _branch(multibody, joint).far.body:
+        for rotation in reversed(turned):
+            force, moment = rotation.apply(force), rotation.apply(moment)
+    child = functools.reduce(Rotation.then, turned)
+    return Action(*borne(joint, Frame(), Frame(rotation=child), force, moment))
+
+
+def _branch(multibody: Multibody, joint: Joint) -> Branch:
+    return next(branch for branch in multibody.tree.branches if branch.joint is joint)
+
+
+def _on_child(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> tuple[Vector, Vector]:
+    """What a mobility of the tree tells of a joint, on its child: force and moment, in the axes of the mobility."""
+    action = _branch(multibody, joint).sign * actions[joint.name]
     if multibody.mechanism.space:
         x, y, z, *about = ca.vertsplit(action)
-        moment: Vector = (about[0], about[1], about[2]) if about else ZERO
-    else:
-        x, y, z, moment = action[0], action[1], 0.0, (0.0, 0.0, action[2]) if joint.bears_moment else ZERO
-    return Action(*borne(joint, parent, child, (x, y, z), moment))
+        return (x, y, z), ((about[0], about[1], about[2]) if about else ZERO)
+    return (action[0], action[1], 0.0), (0.0, 0.0, action[2]) if joint.bears_moment else ZERO
 
 
-def _on_own_axes(multibody: Multibody, joint: Joint, action: Action) -> dict[Column, Any]:
+def _on_own_axes(joint: Joint, own: Action) -> dict[Column, Any]:
     """A reaction on the axes of a joint's triad, which its parent carries: what ideal joints leave open lies along one of these."""
-    rotation = multibody.frames[joint.parent.body.name].rotation
-    values = [dot(one, rotation.resolve(vector)) for vector in (action.force, action.couple) for one in joint.triad]
+    values = [dot(one, vector) for vector in (own.force, own.couple) for one in joint.triad]
     names = own_members(moment=joint.bears_moment)
     return {Output("reaction", joint.name, name): ca.SX(value) for name, value in zip(names, values, strict=False)}
 

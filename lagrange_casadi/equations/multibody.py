@@ -168,6 +168,7 @@ class RowGraph:
 class Multibody:
     """The graphs of a mechanism, over the symbols of its coordinates, mobilities, multipliers and time.
 
+    The mobilities are in ground axes, those of the joints in ``own_axes`` in the axes of the body that hangs on the joint.
     ``frames`` are without mobilities; ``felt`` are with them, and their accelerations are less that of gravity, as matter feels
     them. ``efforts`` are the symbols of efforts along other coordinates than those whose motion is given, and ``along``
     what a unit of effort does to a joint's child, in ground axes, both by coordinate; ``axes`` are the directions in ground axes
@@ -180,6 +181,7 @@ class Multibody:
     loop_equations: tuple[LoopEquations, ...]
     rows: tuple[RowGraph, ...]
     mobilities: dict[str, Any]
+    own_axes: frozenset[str]
     frames: dict[str, Frame]
     felt: dict[str, Frame]
     applied: tuple[Applied, ...]

@@ -49,7 +49,7 @@ class Golden:
 
 
 def golden(graph: SceneGraph, contract: Contract, solution: Solution, exact: Solution, p: Array) -> Golden:
-    """The golden vectors of a contract, over the scene's grid and in doubles: by ``exact``, which saves nothing.
+    """The golden vectors of a contract, over the scene's grid and in doubles: by ``exact``, which saves nothing of the graph.
 
     ``solution`` is what the program's rung makes of it: what that misses is allowed, twice.
     """

@@ -48,7 +48,7 @@ def sourced(
     enough = None if newton is None else max(newton, _ENOUGH)
     checked_span(scene, scene.timing(), values)
     instants = scene.instants(scene.timing(), values).t
-    graph, left_open = determinate(graph, instants, p, telling=table is None)
+    whole, (graph, left_open) = graph, determinate(graph, instants, p, telling=table is None)
     exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm", newton=enough)
     if exact.failed:
         raise CertificateError(f"cannot export {name}: {failure(exact)}")
@@ -62,7 +62,7 @@ def sourced(
     emitted = program(graph, precision, newton, p, read)
     check_size(emitted, largest)
     guess = graph.newton.guess if graph.newton is not None and read is None else ()
-    vectors = golden(graph, agreed, solution, exact, p)
+    vectors = golden(whole, agreed, solution, exact, p)
     return Source(agreed, emitted, _hash(graph, values), guess, rung.options, values, vectors)
 
 

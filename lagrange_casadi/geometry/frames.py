@@ -116,6 +116,11 @@ class Carried(Frame):
         own = self.own.displaced(self.rotation.resolve(translation), self.rotation.resolve(turning))
         return replace(self, speed=plus(self.speed, translation), rate=plus(self.rate, turning), own=own)
 
+    def displaced_along(self, translation: Vector, turning: Vector) -> Carried:
+        """The same by rates in the body's own axes."""
+        there = self.displaced(self.rotation.apply(translation), self.rotation.apply(turning))
+        return replace(there, own=self.own.displaced(translation, turning))
+
     def along_axis(self) -> Frame:
         """The body at its origin, seen in axes at rest that lie along its own at the instant."""
         if self.shortest is not self.own:
