@@ -122,10 +122,10 @@ def internal_forces(
         columns |= _section_law(multibody, name, found, drives)
     # All at once, for a substitution visits the whole graph; and mobilities rest.
     rates = multibody.mobility_rates
-    rubbed = {
-        name: rubbing(multibody, friction, found[friction.joint.name].force, found[friction.joint.name].couple)
-        for name, friction in frictions_of(multibody.mechanism).items()
-    }
+    rubbed = {}
+    for name, friction in frictions_of(multibody.mechanism).items():
+        borne_there = found[friction.joint.name].ground
+        rubbed[name] = rubbing(multibody, friction, borne_there.force, borne_there.couple)
     rows = [*columns.values(), *(row for one in rubbed.values() for row in one.rows)]
     resting = ca.substitute(column(rows), rates, ca.SX.zeros(rates.numel()))
     every = iter(ca.vertsplit(ca.substitute(kinematics.evaluate(resting), unknowns, values)) if rows else ())
