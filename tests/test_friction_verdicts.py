@@ -8,6 +8,7 @@ import pytest
 from compiled import told
 
 from lagrange_casadi import Mechanism, Scene, evaluate, export, refine
+from lagrange_casadi.animation import Film, write_animation
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError
 from lagrange_casadi.instants.refusal import Status
@@ -136,6 +137,10 @@ def test_at_rest_friction_is_open_and_all_else_is_not(options, tmp_path):
     save(solution, tmp_path / "rest.h5")
     assert check(tmp_path / "rest.h5") == []
     assert load(tmp_path / "rest.h5").resting.tolist() == resting.tolist()
+    solution.report(tmp_path / "rest.html")
+    assert "friction:ring:loss" in (tmp_path / "rest.html").read_text()
+    write_animation(solution, tmp_path / "rest.svg", Film(forces=True, section="bending"))
+    assert "nan" not in (tmp_path / "rest.svg").read_text().lower()
 
 
 @every

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -78,6 +78,7 @@ def forces_of(motion: Motion, size: float, *, arrows: bool, section: str) -> For
 
     Raises :class:`.DeclarationError` where the solution does not have them.
     """
+    motion = _moving(motion)
     found: list[Arrow] = []
     arcs: list[Arc] = []
     words: list[str] = []
@@ -106,6 +107,15 @@ def forces_of(motion: Motion, size: float, *, arrows: bool, section: str) -> For
         ribbons = [_ribbon(motion, link, section, scale) for link in laws]
         words.append(f"{section.replace('_', ' ')}: up to {_said(largest, peaks[0].unit)}")
     return Forces(tuple(found), tuple(arcs), tuple(ribbons), " · ".join(words))
+
+
+def _moving(motion: Motion) -> Motion:
+    """The motion with nothing for forces where a joint that rubs is at rest, and they are open."""
+    solution = motion.solution
+    if not solution.resting.any():
+        return motion
+    shown = {o: values if o in solution.left_open else np.nan_to_num(values) for o, values in solution.outputs.items()}
+    return replace(motion, solution=replace(solution, outputs=shown))
 
 
 def ribbon_things(forces: Forces, stage: Stage) -> Iterator[Thing]:

@@ -129,8 +129,8 @@ def _in_space(multibody: Multibody, friction: Friction, force: Vector, couple: V
     u, v, w = (rotation.apply(direction) for direction in joint.triad)
     along, (one, other) = dot(force, u), (dot(force, v), dot(force, w))
     if joint.kind == "screw":
-        assert friction.radius is not None
-        radius, pitch = ca.SX(friction.radius), joint.pitch
+        radius: Any = friction.radius
+        pitch = joint.pitch
         leaning = friction.mu * pitch
         steep = (radius * radius + pitch * pitch) / (radius * radius - leaning * leaning)
         return (Contact(steep * radius, (along,), steep * leaning),)

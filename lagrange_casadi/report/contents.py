@@ -185,7 +185,8 @@ def _rows(solution: Solution) -> Iterator[Row]:
             continue
         own = solution.statistics(output)
         peak, smallest, largest = (mark(extreme) for extreme in (own.peak, own.smallest, own.largest))
-        yield Row(*words, False, peak, error_of(solution, output), smallest, largest, own.mean, own.rms)
+        means = (None if mean is None else finite(mean) for mean in (own.mean, own.rms))
+        yield Row(*words, False, peak, error_of(solution, output), smallest, largest, *means)
 
 
 def _parameters(description: Description) -> Iterator[dict[str, Any]]:

@@ -20,6 +20,7 @@ GROUPS = {
     "output": "Own outputs",
     "motion": "Motion of joints",
     "load": "Loads",
+    "friction": "Friction",
     "multiplier": "Multipliers",
     "pose": "Places of bodies",
     "certificate": "Certificate",
