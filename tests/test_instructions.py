@@ -13,7 +13,7 @@ pytestmark = pytest.mark.quick
 INSTANT = {
     "slider_crank": 183,
     "engine": 393,
-    "connecting_rod": 461,
+    "connecting_rod": 474,
     "four_bar": 296,
     "quick_return": 303,
     "six_bar": 522,
