@@ -1,5 +1,25 @@
 """What figures a case may want: the public part of :mod:`.draw.figures`."""
 
-from .draw.figures import MechanismDrawing, SectionMaps, SpanPlot, Spec, TimePlot, default_figures, draw
+from .draw.figures import (
+    MechanismDrawing,
+    SectionMaps,
+    SpanPlot,
+    Spec,
+    StrengthPlot,
+    TimePlot,
+    UtilisationPlot,
+    default_figures,
+    draw,
+)
 
-__all__ = ["MechanismDrawing", "SectionMaps", "SpanPlot", "Spec", "TimePlot", "default_figures", "draw"]
+__all__ = [
+    "MechanismDrawing",
+    "SectionMaps",
+    "SpanPlot",
+    "Spec",
+    "StrengthPlot",
+    "TimePlot",
+    "UtilisationPlot",
+    "default_figures",
+    "draw",
+]

@@ -9,7 +9,7 @@ import strong
 from lagrange_casadi import beams, evaluate, load, save
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.strength.member import Member
-from lagrange_casadi.strength.stress import KINDS
+from lagrange_casadi.strength.stress import KINDS, summits
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -169,6 +169,24 @@ def test_a_file_gives_the_same(tmp_path, solutions):
     again = load(tmp_path / "press.h5")
     assert again.stress("rod").peak("von_mises") == solutions["even"].stress("rod").peak("von_mises")
     assert again.safety("rod") == solutions["even"].safety("rod")
+
+
+@pytest.mark.parametrize("degree", [1, 3, 5, 17])
+def test_summits_are_found_where_the_highest_powers_are_nothing_too(degree):
+    """Random polynomials of any lower degree, with rounding in the place of what is not there, against a fine grid."""
+    draw, grid = np.random.default_rng(degree), np.cos(np.linspace(0.0, math.pi, 6001))
+    for true in range(degree + 1):
+        c = np.zeros((3, 40, degree + 1))
+        c[..., : true + 1] = draw.normal(size=(3, 40, true + 1))
+        c[:, ::2] += 1e-17 * draw.normal(size=(3, 20, degree + 1))
+        for weights in KINDS.values():
+            values = np.polynomial.chebyshev.chebval(grid, np.moveaxis(c, 2, 0))
+            fine = weights[0] * values[0] ** 2 + weights[1] * (values[1] ** 2 + values[2] ** 2)
+            found, x, _ = summits(c, weights)
+            assert np.all(found >= fine.max(axis=1) * (1 - 1e-13))
+            # What a grid misses is the square of half its step, times that of the degree.
+            assert np.all(found <= fine.max(axis=1) * (1 + (math.pi / 12000 * 2 * degree) ** 2))
+            assert np.all(np.abs(x) <= 1.0)
 
 
 def test_what_has_no_stress(solutions, robots):

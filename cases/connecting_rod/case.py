@@ -36,4 +36,4 @@ def scene() -> Scene:
     turned = ca.fmod(m.coordinate(main) - pi / 2, 4 * pi) * 180 / pi
     m.force("gas", piston, y=-pressure / max(PRESSURES) * table(turned, ANGLES, PRESSURES) * pi / 4 * bore**2)
     motion = {"main": polynomial(pi / 2, 2 * pi / 60 * rpm)}
-    return Scene(m, motion, over=("main", "90 deg", "810 deg", 721), posture={"rod": pi / 2})
+    return Scene(m, motion, t=(0, 0.07, 141), over=("main", "90 deg", "810 deg", 721), posture={"rod": pi / 2})

@@ -52,7 +52,10 @@ def size_command(
 ) -> None:
     """Choose for each link of CASE, of the profiles of a table, the lightest that is safe under the loads that its mass brings."""
     loaded = load_case(case)
-    table = read_profiles(profiles or loaded.path.parent / "profiles.csv")
+    beside = loaded.path.parent / "profiles.csv"
+    if profiles is None and not beside.is_file():
+        raise click.UsageError(f"--profiles: expected a table of profiles; there is none beside the case, {beside}")
+    table = read_profiles(profiles or beside)
     found = size(
         loaded.scene,
         table,

@@ -186,9 +186,49 @@ class MechanismDrawing:
         return draw_mechanism(solution, self.count)
 
 
-Spec = TimePlot | SpanPlot | SectionMaps | MechanismDrawing
+@dataclass(frozen=True)
+class StrengthPlot:
+    """Von Mises' stress of a link that has a beam, over time and along it, and its swings in Goodman's diagram."""
+
+    kind: ClassVar[str] = "strength"
+    name: str
+    link: str
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return SectionMaps(self.name, self.link).needs()
+
+    def draw(self, solution: Solution) -> Figure:
+        """The figure."""
+        from .strength_plot import draw_strength
+
+        return draw_strength(solution, self.link, *_along(solution))
+
+
+@dataclass(frozen=True)
+class UtilisationPlot:
+    """How far links that have a beam are used, against each way to fail."""
+
+    kind: ClassVar[str] = "utilisation"
+    name: str
+    links: tuple[str, ...]
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return tuple(name for link in self.links for name in SectionMaps(self.name, link).needs())
+
+    def draw(self, solution: Solution) -> Figure:
+        """The figure."""
+        from .strength_plot import draw_utilisation
+
+        return draw_utilisation(solution, self.links)
+
+
+Spec = TimePlot | SpanPlot | SectionMaps | MechanismDrawing | StrengthPlot | UtilisationPlot
 _FILE = re.compile(r"[A-Za-z0-9_-]+")
-_KINDS: dict[str, type[Spec]] = {spec.kind: spec for spec in (TimePlot, SpanPlot, SectionMaps, MechanismDrawing)}
+_KINDS: dict[str, type[Spec]] = {
+    spec.kind: spec for spec in (TimePlot, SpanPlot, SectionMaps, MechanismDrawing, StrengthPlot, UtilisationPlot)
+}
 
 
 def default_figures(solution: Solution) -> tuple[Spec, ...]:
@@ -211,7 +251,18 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     for link in solution.links_with_sections:
         if solution.determined(Output("section", link, "bending")):
             specs.append(SectionMaps(f"section_{link}", link))
+    specs += [StrengthPlot(f"strength_{link}", link) for link in strong_of(solution)]
+    if links := strong_of(solution, "yield_strength", "elasticity"):
+        specs.append(UtilisationPlot("utilisation", links))
     return (*specs, MechanismDrawing())
+
+
+def strong_of(solution: Solution, *numbers: str) -> tuple[str, ...]:
+    """The links with a beam whose forces are told, and whose material has some numbers."""
+    bodies, forces = solution.description["bodies"], solution.table.sections
+    told = (link for link in solution.links_with_sections if "beam" in bodies[link])
+    known = (link for link in told if all(solution.determined(Output("section", link, force)) for force in forces))
+    return tuple(link for link in known if all(bodies[link]["beam"]["material"][name] is not None for name in numbers))
 
 
 def _in_ground_axes(output: Output) -> Iterator[Output]:

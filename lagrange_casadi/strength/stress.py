@@ -4,7 +4,7 @@ s = N/A + a y + b z with a Iz + b Iyz = -Mz and a Iyz + b Iy = My, for any axes;
 planar mechanism bending is about z. All are linear in section forces, so between two marks they are polynomials of xi, or products
 of these with smooth functions of the cross-section, which are replaced by polynomials that agree to 1e-13.
 
-The largest of sqrt(s^2 + k t^2) along a link is sought among the zeros of the slope of its square. How far a square may rise
+The largest of sqrt(s^2 + k t^2) along a link is sought among all summits of its square. How far a square may rise
 between the places at which it is looked at is bounded by Ehlich and Zeller, *Schwankung von Polynomen zwischen Gitterpunkten*,
 Math. Zeitschrift 86 (1964): where nothing can be above what was found, nothing is sought.
 """
@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -32,6 +32,9 @@ KINDS = {"normal": (1.0, 0.0), "shear": (0.0, 1.0), "von_mises": (1.0, 3.0), "tr
 """Of each kind of stress the weights of s^2 and t^2 in its square."""
 
 _LOOKS, _GLANCES, _BLOCK = 8, 4, 1 << 21
+_BESIDE, _STEPS = 0.9, 40
+"""Of what is largest: what may be beside the summit. And steps of the golden section: where a summit is to 1e-9, it is to 1e-18.
+"""
 _SIDES: tuple[Side, Side] = ("base", "tip")
 
 
@@ -212,48 +215,64 @@ class _Part:
 
     def looked(self, weights: tuple[float, float], looks: int) -> tuple[Array, float]:
         """The squares (t, fibres, looks), both ends among them, and how many times higher they may be in between."""
-        degree = 2 * self.degree
-        count = max(looks * degree // 2, 8)
-        places = np.concatenate([[-1.0], chebyshev.chebpts1(count), [1.0]])
+        places = _places(self.degree, looks)
         values = self.coefficients @ chebyshev.chebvander(places, self.degree).T
         # A square is not negative: it is bounded about half of what is largest.
-        factor = (1.0 + 1.0 / math.cos(math.pi * degree / (2 * count))) / 2
+        factor = (1.0 + 1.0 / math.cos(math.pi * self.degree / (places.size - 2))) / 2
         return np.moveaxis(_square(values, weights), 0, 1), factor
 
     def summits(self, t: Any, f: Any, weights: tuple[float, float]) -> tuple[Array, Array, Array]:
         """The largest squares at some instants and fibres, their ratios, and the sign of the normal stress there."""
-        c = self.coefficients[:, f, t]
-        nodes, fit = interpolation(2 * self.degree)
-        at_nodes = c @ chebyshev.chebvander(nodes, self.degree).T
-        slopes = np.asarray(chebyshev.chebder((_square(at_nodes, weights) @ fit).T, axis=0)).T
-        places = np.concatenate([np.full((t.size, 1), -1.0), _roots(slopes), np.full((t.size, 1), 1.0)], axis=1)
-        basis = np.moveaxis(chebyshev.chebvander(places, self.degree), 2, 0)
-        values = np.einsum("cpd,dpn->cpn", c, basis)
-        squares = _square(values, weights)
-        best = np.argmax(squares, axis=1)[:, None]
-        x, square, normal = (np.take_along_axis(a, best, 1)[:, 0] for a in (places, squares, values[0]))
-        return square, self.low[t] + (self.high - self.low)[t] * (x + 1.0) / 2, np.sign(normal)
+        square, x, sign = summits(self.coefficients[:, f, t], weights)
+        return square, self.low[t] + (self.high - self.low)[t] * (x + 1.0) / 2, sign
 
 
-def _roots(c: Array) -> Array:
-    """Real parts, kept from -1 to 1, of all zeros of series of Chebyshev's polynomials (n, degree + 1): (n, degree).
+def _places(degree: int, looks: int) -> Array:
+    """Where squares, of twice the degree, are looked at: so many nodes of Chebyshev's for each degree, and both ends."""
+    return np.concatenate([[-1.0], chebyshev.chebpts1(max(looks * degree, 8)), [1.0]])
 
-    They are eigenvalues of the colleague matrix (Good, *The colleague matrix*, Quart. J. Math. 12, 1961). Of a leading coefficient
-    that is nothing beside the others, a little is made: it moves no zero within by more than rounding.
+
+def summits(c: Array, weights: tuple[float, float]) -> tuple[Array, Array, Array]:
+    """The largest square of stresses from -1 to 1, where it is, and the sign of the normal stress there, each (n,).
+
+    ``c`` (3, n, degree + 1) are coefficients of Chebyshev's polynomials of normal stress, and of shear stress along y and along z.
+    In the angle whose cosine the place is, a square of degree n bends by no more than n^2 times its largest value (Bernstein's
+    inequality), so beside its summit it was looked at where it is lower by a twelfth at most. From every such place that is higher
+    than its neighbours it is followed upward, between these.
     """
-    degree = c.shape[1] - 1
-    if degree < 1:
-        return np.zeros((len(c), 0))
-    size = np.abs(c).max(axis=1)
-    lead = np.where(np.abs(c[:, -1]) > 1e-16 * size, c[:, -1], np.where(size > 0.0, 1e-16 * size, 1.0))
-    if degree == 1:
-        return np.clip(-c[:, :1] / lead[:, None], -1.0, 1.0)
-    matrix = np.zeros((len(c), degree, degree))
-    matrix[:, np.arange(degree - 1), np.arange(1, degree)] = 0.5
-    matrix[:, np.arange(1, degree), np.arange(degree - 1)] = 0.5
-    matrix[:, 0, 1] = 1.0
-    matrix[:, -1] -= c[:, :-1] / (2.0 * lead[:, None])
-    return np.clip(np.linalg.eigvals(matrix).real, -1.0, 1.0)
+    degree = c.shape[-1] - 1
+    places = _places(degree, _LOOKS)
+    squares = _square(c @ chebyshev.chebvander(places, degree).T, weights)
+    edge = np.full((len(squares), 1), -1.0)
+    higher = (squares >= np.hstack([edge, squares[:, :-1]])) & (squares >= np.hstack([squares[:, 1:], edge]))
+    rows, k = np.nonzero(higher & (squares >= _BESIDE * squares.max(axis=1, keepdims=True)))
+    own = np.moveaxis(c[:, rows], 2, 0)
+
+    def square(x: Array) -> Array:
+        return _square(np.stack([chebyshev.chebval(x, own[:, n], tensor=False) for n in range(3)]), weights)
+
+    x = _uphill(square, places[np.maximum(k - 1, 0)], places[np.minimum(k + 1, places.size - 1)])
+    found, looked = square(x), squares[rows, k]
+    x, found = np.where(found >= looked, x, places[k]), np.maximum(found, looked)
+    order = np.lexsort((found, rows))
+    last = order[np.append(np.diff(rows[order]) != 0, True)]
+    return found[last], x[last], np.sign(chebyshev.chebval(x[last], own[:, 0, last], tensor=False))
+
+
+def _uphill(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
+    """Where a function is largest between two places, between which it has one summit: by the golden section."""
+    golden = (math.sqrt(5.0) - 1.0) / 2
+    inner, outer = high - golden * (high - low), low + golden * (high - low)
+    at_inner, at_outer = function(inner), function(outer)
+    for _ in range(_STEPS):
+        left = at_inner >= at_outer
+        low, high = np.where(left, low, inner), np.where(left, outer, high)
+        kept, at_kept = np.where(left, inner, outer), np.where(left, at_inner, at_outer)
+        fresh = np.where(left, high - golden * (high - low), low + golden * (high - low))
+        at_fresh = function(fresh)
+        inner, outer = np.where(left, fresh, kept), np.where(left, kept, fresh)
+        at_inner, at_outer = np.where(left, at_fresh, at_kept), np.where(left, at_kept, at_fresh)
+    return (low + high) / 2
 
 
 def _factor(notch: Notch, force: str) -> float:

@@ -1,0 +1,91 @@
+"""Pictures of strength: stress over time and along a link, its swings beside what it bears, and how far all parts are used."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..declare.density import Array
+from ..instants.solution import Solution
+from ..strength.fatigue import factor, loaded
+from ..strength.stress import Stress
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_MEGA, _PIXELS, _PLACES = 1e6, 1600, 33
+
+
+def draw_strength(solution: Solution, link: str, along: Array, label: str) -> Figure:
+    """Von Mises' stress of a link as a map, and where its material has an endurance limit its swings in Goodman's diagram."""
+    from matplotlib.figure import Figure
+
+    stress = solution.stress(link)
+    fatigue = stress.member.beam.material.endurance is not None and stress.member.beam.material.ultimate is not None
+    figure = Figure(figsize=(8.0, 7.6 if fatigue else 3.8), layout="constrained")
+    panels = list(figure.subplots(2 if fatigue else 1, 1, squeeze=False).flat)
+    _map(figure, panels[0], stress, along, label)
+    if fatigue:
+        _goodman(panels[1], stress)
+    figure.suptitle(f"{solution.case}: strength of {link}, {stress.member.beam.material.name}", fontsize=11)
+    return figure
+
+
+def draw_utilisation(solution: Solution, links: Sequence[str]) -> Figure:
+    """How far every link is used against each way to fail: one over the factor of safety."""
+    from matplotlib.figure import Figure
+
+    found = {link: solution.safety(link) for link in links}
+    rows = [
+        (f"{link}, {v.against}", 1.0 / v.factor, v is safety.governs) for link, safety in found.items() for v in safety.verdicts
+    ]
+    figure = Figure(figsize=(7.0, 0.32 * len(rows) + 1.4), layout="constrained")
+    axes = figure.subplots()
+    places = np.arange(len(rows))[::-1]
+    axes.barh(places, [share for _, share, _ in rows], color=["#b2182b" if most else "#92a5b5" for _, _, most in rows])
+    axes.set_yticks(places, [name for name, _, _ in rows])
+    axes.axvline(1.0, color="k", linewidth=0.9)
+    axes.set_xlim(0.0, 1.05 * max(1.0, *(min(share, 10.0) for _, share, _ in rows)))
+    axes.set_xlabel("utilisation, 1 / factor of safety")
+    axes.set_title(f"{solution.case}: what governs each part is red", fontsize=11)
+    return figure
+
+
+def _map(figure: Figure, axes: Any, stress: Stress, along: Array, label: str) -> None:
+    instants, ratios = (slice(None, None, 1 + size // _PIXELS) for size in (stress.member.t.size, stress.member.xi.size))
+    xi, peak = stress.member.xi[ratios], stress.peak("von_mises")
+    values = Stress(stress.member.during(instants)).grid("von_mises", xi) / _MEGA
+    picture = axes.pcolormesh(along[instants], xi, values.T, cmap="viridis", vmin=0.0, shading="nearest", rasterized=True)
+    place = float(along[int(np.argmin(np.abs(stress.member.t - peak.t)))])
+    axes.plot(place, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
+    axes.set_title(f"von Mises: peak {peak.value / _MEGA:.4g} MPa at {peak.fibre}, " + rf"$\xi/l$ = {peak.xi:.3f}", fontsize=10)
+    axes.set_xlabel(label)
+    axes.set_ylabel(r"$\xi/l$")
+    figure.colorbar(picture, ax=axes, label="von Mises [MPa]")
+
+
+def _goodman(axes: Any, stress: Stress) -> None:
+    material = stress.member.beam.material
+    endurance, ultimate = (strength / _MEGA for strength in material.needs("Goodman's diagram", "endurance", "ultimate"))
+    means, amplitudes = [], []
+    for xi in np.linspace(0.0, 1.0, _PLACES).tolist():
+        values = stress.at(xi)
+        for k in range(values.shape[1]):
+            swings = loaded(values[:, k])
+            means += (swings.mean / _MEGA).tolist()
+            amplitudes += (swings.amplitude / _MEGA).tolist()
+    axes.plot([0.0, ultimate], [endurance, 0.0], color="#b2182b", label="Goodman")
+    if material.yield_strength is not None:
+        strength = material.yield_strength / _MEGA
+        axes.plot([0.0, strength], [strength, 0.0], color="0.6", linestyle="--", label="yield")
+    axes.plot(means, amplitudes, ".", markersize=3, color="#2166ac", label="swings, every fibre")
+    k = int(np.argmin(factor(np.array(amplitudes) * _MEGA, np.array(means) * _MEGA, material)))
+    axes.plot(means[k], amplitudes[k], "k+", markersize=13, markeredgewidth=1.8)
+    axes.set_xlim(left=0.0)
+    axes.set_ylim(0.0, 1.05 * max(endurance, *amplitudes))
+    axes.set_xlabel("mean [MPa]")
+    axes.set_ylabel("amplitude [MPa]")
+    axes.set_title("without the factors of notches", fontsize=10)
+    axes.legend(frameon=False, fontsize=9)
