@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from reports import solved
 
-from lagrange_casadi import evaluate
+from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.draw import figures
+from lagrange_casadi.draw.drawing import draw_mechanism
 from lagrange_casadi.draw.figures import MechanismDrawing, SectionMaps, SpanPlot, TimePlot
 from lagrange_casadi.errors import DeclarationError, StoreError, UnknownNameError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.quick
 
@@ -89,6 +92,34 @@ def test_drawing_puts_the_links_where_they_are(solution):
     np.testing.assert_allclose(lines["crank"], [(0, 0), (0, 0.1)], atol=1e-5)
     np.testing.assert_allclose(lines["rod"], [(0, 0.1), (np.sqrt(0.03), 0)], atol=1e-5)
     np.testing.assert_allclose(lines["slider"], [(np.sqrt(0.03), 0)], atol=1e-5)
+
+
+def test_names_of_a_drawing_hide_neither_each_other_nor_leave_it():
+    """Many joints, of which some are near each other; ten bodies, each of a colour of its own."""
+    described = solved("excavator").description
+    figure = draw_mechanism(solved("excavator"), 4)
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        frame, boxes = axes.get_window_extent(), [text.get_window_extent() for text in axes.texts]
+        told = {name for text in axes.texts for name in text.get_text().split(", ")}
+        assert told == {*described["joints"], *described["paths"]}
+        for k, box in enumerate(boxes):
+            assert frame.x0 <= box.x0 <= box.x1 <= frame.x1
+            assert frame.y0 <= box.y0 <= box.y1 <= frame.y1
+            assert not [other for other in boxes[:k] if box.overlaps(other)]
+    assert len({handle.get_color() for handle in figure.axes[0].get_legend_handles_labels()[0]}) == 10
+
+
+def test_springs_are_whole_on_a_drawing():
+    """One whose end on the ground is far from everything else."""
+    m = Mechanism("far")
+    bar = m.link("bar", length=1.0, mass=1.0)
+    m.revolute("O", m.ground, bar)
+    m.spring("coil", m.ground.at(-4.0, 3.0), bar.tip, stiffness=1.0, length=1.0)
+    figure = draw_mechanism(evaluate(Scene(m, {"O": polynomial(0, 1)}, t=(0, 1, 5)), backend="vm"), 2)
+    for axes in figure.axes:
+        assert axes.get_xlim()[0] < -4.0
+        assert axes.get_ylim()[1] > 3.0
 
 
 def test_specs_survive_the_file(slider_crank):

@@ -8,13 +8,14 @@ import numpy as np
 
 from ..declare.density import Array
 from ..instants.solution import Solution
+from .labels import apart, placed
+from .solid import COLOURS, PATH
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_COLOURS = ("#1f4e79", "#b3541e", "#2e7d4f", "#7a3b8f", "#8a6d1a", "#3c6e71", "#9c2f4a", "#555555")
-
-_PATH = "#c0392b"
+_POINTS = 8.0
+"""The size of names."""
 
 
 def draw_mechanism(solution: Solution, count: int) -> Figure:
@@ -42,6 +43,10 @@ def draw_mechanism(solution: Solution, count: int) -> Figure:
         place.set_ylabel("y [m]")
     names = axes[0, 0].get_legend_handles_labels()
     figure.legend(*names, loc="outside lower center", ncols=min(6, max(1, len(names[1]))), frameon=False, fontsize=9)
+    # Where everything is on the page is known when it is laid out.
+    figure.draw_without_rendering()
+    for place, i in zip(axes.flat, chosen, strict=False):
+        _name(place, solution, int(i), paths, size)
     return figure
 
 
@@ -52,6 +57,8 @@ def draw_into(axes: Any, solution: Solution) -> None:
     axes.set(xlim=box[:2], ylim=box[2:], aspect="equal", xlabel="x [m]", ylabel="y [m]")
     axes.grid(True, color="0.93")
     axes.legend(frameon=False, fontsize=8)
+    axes.figure.draw_without_rendering()
+    _name(axes, solution, 0, paths, size)
 
 
 def _extent(solution: Solution) -> tuple[dict[str, tuple[Array, Array]], tuple[float, float, float, float], float]:
@@ -59,11 +66,12 @@ def _extent(solution: Solution) -> tuple[dict[str, tuple[Array, Array]], tuple[f
     paths = {name: _place(solution, joint["child"]) for name, joint in solution.description["joints"].items()}
     paths |= {name: _place(solution, point) for name, point in solution.description.get("paths", {}).items()}
     ends = {name: _ends(solution, name) for name, body in solution.description["bodies"].items() if body["length"]}
-    corners: list[tuple[Array, Array]] = []
+    springs = [load["points"] for load in solution.description["loads"].values() if load["kind"] == "spring"]
+    places = [*paths.values(), *(_place(solution, point) for points in springs for point in points)]
     for name, outline in solution.description.get("outlines", {}).items():
-        corners += [_place(solution, {"body": name, "x": x, "y": y}) for x, y in outline]
-    x = np.concatenate([p[0] for p in (*paths.values(), *corners)] + [e[k] for e in ends.values() for k in (0, 2)])
-    y = np.concatenate([p[1] for p in (*paths.values(), *corners)] + [e[k] for e in ends.values() for k in (1, 3)])
+        places += [_place(solution, {"body": name, "x": x, "y": y}) for x, y in outline]
+    x = np.concatenate([p[0] for p in places] + [e[k] for e in ends.values() for k in (0, 2)])
+    y = np.concatenate([p[1] for p in places] + [e[k] for e in ends.values() for k in (1, 3)])
     size = max(float(np.ptp(x)), float(np.ptp(y))) or 1.0
     box = (x.min() - 0.12 * size, x.max() + 0.12 * size, y.min() - 0.12 * size, y.max() + 0.12 * size)
     return paths, box, size
@@ -72,7 +80,7 @@ def _extent(solution: Solution) -> tuple[dict[str, tuple[Array, Array]], tuple[f
 def _draw_instant(axes: Any, solution: Solution, i: int, paths: Any, size: float) -> None:
     description = solution.description
     for number, (name, body) in enumerate(description["bodies"].items()):
-        colour = _COLOURS[number % len(_COLOURS)]
+        colour = COLOURS[number % len(COLOURS)]
         if body["length"]:
             _draw_body(axes, solution, name, i, colour)
         elif body["length"] is None:
@@ -94,10 +102,31 @@ def _draw_instant(axes: Any, solution: Solution, i: int, paths: Any, size: float
                 axes.plot(x[i], y[i] - 0.035 * size, "^", markersize=12, color="0.55", zorder=2)
     for name in description.get("paths", {}):
         x, y = paths[name]
-        axes.plot(x, y, color=_PATH, linewidth=1.4, zorder=2)
-        axes.plot(x[i], y[i], "D", markersize=5, color=_PATH, zorder=5)
-    for (x, y), names in _labels(paths, i, size).items():
-        axes.annotate(", ".join(names), (x, y), xytext=(6, 6), textcoords="offset points", fontsize=8, color="0.25", zorder=5)
+        axes.plot(x, y, color=PATH, linewidth=1.4, zorder=2)
+        axes.plot(x[i], y[i], "D", markersize=5, color=PATH, zorder=5)
+
+
+def _name(axes: Any, solution: Solution, i: int, paths: Any, size: float) -> None:
+    """Write the names beside their points, where they hide neither each other nor more of the bodies than they must."""
+    from matplotlib.textpath import TextPath
+
+    points = 72.0 / axes.figure.dpi
+    named = _labels(paths, i, size)
+    words = [", ".join(names) for names in named.values()]
+    sizes = np.array([(TextPath((0, 0), word, size=_POINTS).get_extents().width + 1.0, 1.2 * _POINTS) for word in words])
+    anchors = axes.transData.transform(np.array(list(named))) * points
+    ends = [_ends(solution, name) for name, body in solution.description["bodies"].items() if body["length"]]
+    share = np.linspace(0.0, 1.0, 40)[:, None]
+    bodies = [np.array([x[i], y[i]]) + share * np.array([u[i] - x[i], v[i] - y[i]]) for x, y, u, v in ends]
+    things = axes.transData.transform(np.concatenate([*bodies, np.array(list(named))])) * points
+    (left, bottom), (right, top) = axes.transAxes.transform([(0.0, 0.0), (1.0, 1.0)]) * points
+    corners = placed(anchors, sizes, things, (left, bottom, right, top))
+    for word, spot, anchor, low, wide in zip(words, named, anchors, corners, sizes, strict=True):
+        own = apart(low, wide, anchor)
+        far = own > 10.0 or sum(apart(low, wide, other) < 2.0 * own for other in anchors) > 1
+        line = {"arrowprops": {"arrowstyle": "-", "color": "0.5", "linewidth": 0.5, "shrinkA": 0.0, "shrinkB": 0.0}} if far else {}
+        words_at = {"xytext": low - anchor, "textcoords": "offset points", "fontsize": _POINTS, "color": "0.2", "zorder": 6}
+        axes.annotate(word, spot, **words_at, **line).set_in_layout(False)
 
 
 def _draw_body(axes: Any, solution: Solution, name: str, i: int, colour: str) -> None:

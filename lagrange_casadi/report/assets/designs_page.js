@@ -120,7 +120,7 @@ function designTable() {
 /** The design that is looked at: its numbers, the command line that evaluates it, and its mechanism in motion. */
 function lookedAt(body) {
   const words = element("h3", {});
-  const list = element("dl", { class: "values" });
+  const list = element("dl", { class: "readings" });
   const copy = element("button", { type: "button", class: "copy", click: async () => {
     const set = contents.parameters.map((one) => `--set ${one.name}=${columnOf.get(one.name).values[picked.row]}`);
     await copyText([contents.command, ...set].join(" "));
