@@ -19,7 +19,7 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description, r
     """More drives than motions; where a joint that rubs is ``resting``; joints in gimbal lock, whose turns are not told; and each
     joint whose point slides beyond the end of a link that has sections, and how far it goes.
 
-    As far as efforts, the motion of the joint, or the sections of the link, are among the outputs.
+    As far as efforts, the motion of the joint, or the sections of the link, are among the outputs: those that are determined.
     """
     drives = drives_of(description)
     moved = len(motions_of(description)) - len(description["rows"])
@@ -68,4 +68,4 @@ def _locked(joint: Description, outputs: Mapping[Output, Array]) -> Array | None
     """The second of a joint's three turns, where the first is not told because of gimbal lock."""
     turns = [name for name, kind in joint.get("coordinates", {}).items() if kind == "angle"]
     first, second = (outputs.get(Output("motion", name)) for name in turns[:2]) if len(turns) == 3 else (None, None)
-    return second if first is not None and np.isnan(first).all() else None
+    return second if first is None else None
