@@ -49,6 +49,9 @@ def plain(functions: Mapping[str, ca.Function], precision: Precision) -> str:
     )
     text = re.sub(r"^  return 0;\n", "", text, flags=re.MULTILINE)
     text = re.sub(r"\((a\d+)\?(a\d+):0\)", r"(\1!=0?\2:0)", text)
+    # Numbers taken for truths are conversions, of which compilers warn.
+    text = re.sub(r"\(!(a\d+)\)", r"(\1==0)", text)
+    text = re.sub(r"\((a\d+)(&&|\|\|)(a\d+)\)", r"((\1!=0)\2(\3!=0))", text)
     text = _DEFINITION.sub(_used, text)
     for inner, outer in entries.items():
         text = re.sub(rf"\b{inner}(?=\b|_\d)", outer, text)
