@@ -139,6 +139,11 @@ def pytest_addoption(parser):
     parser.addoption("--long", action="store_true", help="also tests marked long, and all parameters of those marked sampled")
 
 
+def pytest_xdist_auto_num_workers():
+    """One process more than there are processors: many tests wait, for what they have stopped or for what does not answer."""
+    return (os.cpu_count() or 1) + 1
+
+
 def pytest_configure(config):
     """Draw more examples where all that takes long is asked for."""
     if config.getoption("--long"):

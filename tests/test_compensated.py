@@ -214,6 +214,7 @@ def test_products_with_constants(precision, number, one):
     assert abs(found - truth) <= (0 if scales or not number else 8 * ROUNDING[precision] ** 2 * abs(truth))
 
 
+@pytest.mark.sampled(7)
 @both
 @pytest.mark.parametrize("name", [*OPERATIONS, "reduced"])
 @given(parts, parts)

@@ -41,7 +41,7 @@ def peaks(solution):
     return found | {("pose", "angle"): 1.0}
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", PLANAR)
 def test_double_graphs_agree_with_50_digits(name):
     solution, instants = solved(name)

@@ -15,7 +15,7 @@ _SLOT = 8
 _FRAME = 192
 """What a call and saved registers take besides, with a margin."""
 
-_LARGE, _PART = 256, 8
+_LARGE, _PART = 128, 3
 """From so many variables on a compiler that runs out of registers keeps other values too: up to one in so many more."""
 
 
