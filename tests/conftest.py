@@ -155,12 +155,14 @@ def pytest_collection_modifyitems(config, items):
     """Leave out long tests, and parameters of those that are sampled, unless they are asked for, all or by name."""
     if config.getoption("--long") or any("::" in argument for argument in config.args):
         return
+    counts = Counter(item.nodeid.partition("[")[0] for item in items)
     seen, left = Counter(), []
     for item in items:
         sampled = item.get_closest_marker("sampled")
         of = item.nodeid.partition("[")[0]
-        # Which one it begins with is another for every test, so that all cases are among them.
-        if item.get_closest_marker("long") or (sampled and (seen[of] + zlib.crc32(of.encode())) % sampled.args[0]):
+        # Which one it begins with is another for every test, so that all cases are among them; of each test there is one at least.
+        step = min(sampled.args[0], counts[of]) if sampled else 1
+        if item.get_closest_marker("long") or (seen[of] + zlib.crc32(of.encode())) % step:
             left.append(item)
         seen[of] += 1
     if left:

@@ -34,7 +34,7 @@ def case(name):
     return scene, exactly(scene)
 
 
-@pytest.mark.sampled(25)
+@pytest.mark.sampled(51)
 @pytest.mark.parametrize("rung", RUNGS)
 @pytest.mark.parametrize("name", PLANAR)
 def test_cases(name, rung):
@@ -88,7 +88,7 @@ def drawn(build, rng):
     return masses | {"la": a, "lb": b, "lc": c, "x": frame * math.cos(angle), "y": frame * math.sin(angle)}
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("law", range(len(LAWS)))
 @pytest.mark.parametrize("build", [four_bar, offset_crank])
 @pytest.mark.parametrize("seed", range(2))
@@ -106,7 +106,7 @@ def test_random_loops(build, law, seed):
             assert_near(ratios(solution, exact))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize(
     "scene",
     [
@@ -126,7 +126,7 @@ def test_other_mechanisms(scene):
         assert_near(ratios(evaluate(scene, **RUNGS[rung]), exact))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize(
     ("later", "words", "certified"),
     [
@@ -147,7 +147,7 @@ def test_after_many_turns(later, words, certified):
     assert_near(ratios(solution, exactly(scene)))
 
 
-@pytest.mark.sampled(20)
+@pytest.mark.sampled(41)
 @pytest.mark.parametrize("kind", kinds.KINDS, ids=[kind.__name__ for kind in kinds.KINDS])
 def test_random_mechanisms(kind):
     """Some of every kind: none claims less than a tenth of its error, all together are near, and residuals are of rounding."""
@@ -165,7 +165,7 @@ def test_random_mechanisms(kind):
     assert 0.7 < np.median(every) < 3.0
 
 
-@pytest.mark.sampled(8)
+@pytest.mark.sampled(17)
 @pytest.mark.parametrize("kind", kinds.LINKAGES, ids=[kind.__name__ for kind in kinds.LINKAGES])
 def test_too_few_steps_claim_what_they_leave(kind):
     """Where loops begin near a dead centre the second instant is the worst, for the first is closed."""

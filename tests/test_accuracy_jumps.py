@@ -31,7 +31,7 @@ STATIONS = {
 }
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("station", STATIONS)
 @pytest.mark.parametrize("rung", ["lanes", "single"])
 def test_a_station_on_a_ratio_that_is_looked_at(station, rung):
@@ -73,7 +73,7 @@ JUMPS = {
 }
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("jump", JUMPS)
 @pytest.mark.parametrize("rung", ["lanes", "c", "single"])
 def test_a_load_that_jumps(jump, rung):
@@ -102,7 +102,7 @@ def test_a_load_that_jumps_where_rounding_decides():
         assert_near(ratios(evaluate(scene, **RUNGS[rung]), exact))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("gap", [0.0, 1e-12, 1e-9, 1e-5])
 @pytest.mark.parametrize("length", [0.0, 1e-3])
 def test_a_stiff_spring_between_points_that_nearly_coincide(gap, length):

@@ -34,7 +34,7 @@ def assert_same(one, other):
         np.testing.assert_array_equal(values, other.series[name], err_msg=name)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("rocker", [1.5, -1.5])
 @pytest.mark.parametrize("options", [{}, {"newton": 3}, {"backend": "vm"}, {"precision": "single"}, {"table": 64}], ids=str)
 def test_what_can_be_assembled_is_evaluated(options, rocker):

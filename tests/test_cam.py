@@ -44,7 +44,7 @@ def machine(kind, law="cycloidal", h=0.02, base=0.05, offset=0.008, lift=None):
     return cam, Scene(m, {"main": polynomial(0.3, OMEGA)}, t=(0, 2 * math.pi / OMEGA, 181), posture=posture)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("values", [{}, {"h": 0.015, "base": 0.06}])
 def test_followers_touch_their_profile_and_never_cut_it(kind, values):

@@ -134,7 +134,7 @@ def scene():
 """
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
 @pytest.mark.parametrize(
     "command", [["-m", "lagrange_casadi"], ["-c", "import sys; from lagrange_casadi.cli import main; sys.exit(main())"]]

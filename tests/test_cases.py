@@ -21,6 +21,7 @@ def test_those_in_space_are_told_from_planar_ones(name):
     assert load_case(CASES / name).scene.mechanism.space == (name not in PLANAR)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", PLANAR)
 def test_against_newton_euler(name):
     scene = load_case(CASES / name).scene
@@ -31,7 +32,7 @@ def test_against_newton_euler(name):
         assert gap < 1e-12, f"{worst} at {part}"
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(15)
 @pytest.mark.parametrize("name", NAMES)
 def test_certificate_is_at_rounding_level(name):
     certificate = evaluate(load_case(CASES / name).scene).certificate
@@ -41,7 +42,7 @@ def test_certificate_is_at_rounding_level(name):
         assert np.max(certificate[residual]) < 1e-13, residual
 
 
-@pytest.mark.sampled(13)
+@pytest.mark.sampled(27)
 @pytest.mark.parametrize("name", PLANAR)
 def test_every_figure_can_be_drawn(name, tmp_path):
     case = load_case(CASES / name)

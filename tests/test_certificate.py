@@ -76,7 +76,7 @@ def on_a_parabola():
     return Scene(m, {"A": polynomial(1.0, -0.4)}, t=(0, 0.8, 21), posture={"b": -1.0})
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.quick
 @pytest.mark.parametrize("made", [ladder, trammel, directed, geared, on_a_parabola, slider_crank, parallelogram])
 def test_it_is_whole_for_every_scene(made):
@@ -184,7 +184,7 @@ def mistaken(monkeypatch):
     return Scene(m, {"S": polynomial(0.0, 0.1)}, t=(0, 1, 41), posture={"a": 0.9, "b": -0.1})
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("rung", [Rung("vm"), Rung("c"), Rung("lanes"), Rung("lanes", precision="single"), Rung("c", newton=2)])
 def test_what_does_not_close_a_loop_is_refused(rung, monkeypatch, fresh_cache):
     """By every backend, also where only the effort is wanted, and in sweeps; iterated, the same scene is right."""

@@ -73,7 +73,7 @@ RIGHT = {
 }
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("name", RIGHT)
 def test_what_is_right_passes(name, precision):
@@ -127,7 +127,7 @@ def test_a_millionth_fails(name):
     assert 1e-9 < wrong(scene, solution, output)[residual] < 1e-5
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("kind", kinds.KINDS, ids=[kind.__name__ for kind in kinds.KINDS])
 def test_a_millionth_of_any_large_force_fails(kind):
     """Of every one that is no less than a hundredth of the largest reaction."""

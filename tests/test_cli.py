@@ -331,7 +331,7 @@ def scene():
 """
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("delay", [0.0, 0.01, 0.02, 0.5])
 def test_ctrl_c_is_one_line_and_leaves_nothing(here, tmp_path_factory, delay):
     """A real interrupt of a real process, which would compute for a long while."""
@@ -352,6 +352,7 @@ def test_ctrl_c_is_one_line_and_leaves_nothing(here, tmp_path_factory, delay):
     assert os.listdir(here) == []
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("size", [20_000, 400_000, 2_000_000])
 def test_a_file_that_cannot_grow_is_one_line(released, here, size):
     """A real write that fails, at several places of the file; the system's limit stands for a full disk."""

@@ -62,6 +62,7 @@ def lines_of(text):
     return text.replace("\n    ,", ",").strip("\n").split("\n")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("case", TOLD)
 def test_info_tells_what_is_in_space(capsys, case):
     found = told(capsys, case)

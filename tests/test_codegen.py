@@ -50,7 +50,7 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
 
 
 @pytest.mark.quick
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", SCENES)
 def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
     scene = SCENES[name]()
@@ -62,7 +62,7 @@ def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
     assert np.max(np.abs(out - machine.out) / scale) <= (0.0 if name in ("slider_crank", "four_bar") else 1e-13)
 
 
-@pytest.mark.sampled(10)
+@pytest.mark.sampled(21)
 @pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize("language", ["c", "c++"])
 @pytest.mark.parametrize("name", SCENES)

@@ -93,7 +93,7 @@ def pair(precision, drawn):
     return (float(high), float(low)), MP.mpf(float(high)) + MP.mpf(float(low))
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @both
 @pytest.mark.parametrize("name", OPERATIONS)
 @given(parts, parts)
@@ -200,7 +200,7 @@ def test_a_constant_is_as_near_as_a_pair_comes(precision, value):
     assert (found.low is None) == (float(DTYPES[precision].type(value)) == value)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @both
 @pytest.mark.parametrize("number", [0.1, math.pi, 1e5 / 7, -1.0 / 3.0, 0.5, 4.0, -8.0, 0.0])
 @given(one=parts)
@@ -214,7 +214,7 @@ def test_products_with_constants(precision, number, one):
     assert abs(found - truth) <= (0 if scales or not number else 8 * ROUNDING[precision] ** 2 * abs(truth))
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(15)
 @both
 @pytest.mark.parametrize("name", [*OPERATIONS, "reduced"])
 @given(parts, parts)

@@ -232,6 +232,7 @@ def towed(drives):
     return Scene(m, laws, t=(0.2, 1.4, 15), posture={"upper": 0.2, "lower": 2.2}, drives=drives)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("drives", [("shoulder", "elbow"), ("X", "shoulder"), ("turn", "elbow"), ("Y", "turn"), ("nose", "Y")])
 def test_a_non_holonomic_row_leaves_the_motion_to_drives_elsewhere(drives):
     """The blade holds sideways; two drives anywhere do the rest, that which the blade replaces too where it is named."""

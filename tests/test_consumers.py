@@ -26,7 +26,7 @@ SCENES = cases(PLANAR) | {
 SCENES |= cases(SPATIAL)
 
 
-@pytest.mark.sampled(10)
+@pytest.mark.sampled(21)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("name", SCENES)
 def test_a_c99_program_has_the_numbers_of_the_api(name, precision, tmp_path):
@@ -39,7 +39,7 @@ def test_a_c99_program_has_the_numbers_of_the_api(name, precision, tmp_path):
     compare(found, expected(scene, told, solution), told, made, solution, **apart)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize(
     ("name", "rung"),
@@ -75,7 +75,7 @@ def test_the_folder_tests_itself(tmp_path):
     assert result.stdout.count("Passed") == 2
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @needs_cmake
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "rrr3"])
 def test_a_cpp17_program_finds_the_package(name, tmp_path):
@@ -94,7 +94,7 @@ def test_a_cpp17_program_finds_the_package(name, tmp_path):
     compare(found, expected(scene, told, solution), told, made, solution)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @needs_cmake
 @pytest.mark.parametrize(
     ("name", "precision"), [("slider_crank", "double"), ("slider_crank", "single"), ("truss_platform", "double")]

@@ -14,7 +14,7 @@ PAIRS = [(name, "single") for name in CASES] + [(name, TABLE) for name in TABLED
 pytestmark = pytest.mark.skipif(missing() != "", reason=missing())
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(15)
 @pytest.mark.parametrize(("name", "rung"), PAIRS)
 def test_the_selftest_passes_on_the_machine(name, rung, tmp_path):
     assert re.search(r": \d+ numbers at 9 instants, .*; 0 wrong$", exported(name, rung, tmp_path / name).selftest())
@@ -31,7 +31,7 @@ def test_what_fails_on_the_machine_fails_here(tmp_path):
         target.selftest()
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.sampled(19)
 @pytest.mark.parametrize(("name", "rung"), [pair for pair in PAIRS if pair[1] != "double"])
 def test_single_precision_asks_for_no_arithmetic_of_doubles(name, rung, tmp_path):
     target = exported(name, rung, tmp_path / name)
@@ -51,7 +51,7 @@ def test_a_table_needs_no_sine(name, tmp_path):
     assert exported(name, TABLE, tmp_path / name).needed <= {"floorf", "memset", "memcpy"}
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("optimized", ["-O2", "-Os"])
 @pytest.mark.parametrize("rung", RUNGS)
 def test_the_marks_of_a_small_machine(rung, optimized, tmp_path):

@@ -24,7 +24,7 @@ INSTANTS = 128
 FIELDS = ("status", "value", "t", "xi", "mean", "rms")
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.sampled(19)
 @pytest.mark.parametrize("name", PLANAR)
 def test_designs_are_their_own_evaluations(name):
     """Every number of a case a parameter."""
@@ -45,7 +45,7 @@ def test_designs_are_their_own_evaluations(name):
             assert outcome.rms[row, k] == pytest.approx(math.sqrt(np.average(series**2, weights=weights)), rel=1e-13)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "sleigh", "rrr3"])
 def test_all_rungs_agree(name):
     """Packs, scalar C and NumPy to rounding; single precision as far as it goes; steps of Newton's method where they are enough."""
@@ -71,7 +71,7 @@ def test_all_rungs_agree(name):
             np.testing.assert_allclose(outcome.rms[row], expected.rms[row], rtol=50 * tolerance)
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("rung", [Rung("lanes"), Rung("c"), Rung("lanes", "single")], ids=lambda rung: rung.options)
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "rrr3"])
 def test_a_row_has_the_same_bytes_whatever_stands_beside_it(name, rung, monkeypatch):
@@ -171,7 +171,7 @@ def test_what_is_not_determined_is_left_out():
         assert found[peak.name][0] == pytest.approx(peak.value, rel=1e-11)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", [*SCENES, "stations", "sleigh"])
 def test_emitted_c_is_pedantically_clean(name, tmp_path):
     made = {

@@ -19,7 +19,7 @@ from lagrange_casadi.study.peaks import forces, refine
 both = pytest.mark.parametrize("backend", ["lanes", "vm"])
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("matter", DENSITIES)
 def test_any_density_and_any_station(matter):
     """Along the link exact: nothing on a fine grid is larger, and the peaks are those of the section law; packs find the same."""
@@ -68,7 +68,7 @@ def test_of_peaks_as_large_the_first_is_told(backend):
 
 
 @both
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 6, 7, 8, 9, 15, 16, 17])
 def test_any_number_of_instants(count, backend):
     """The peak of one instant is its own; of two and more the refined one where a rise between them can be told."""
@@ -129,7 +129,7 @@ def test_two_summits_between_the_same_instants(backend):
     assert t == pytest.approx(fine.t, abs=1e-4)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("backend", ["lanes", "c"])
 @pytest.mark.parametrize("seed", [1, 2])
 def test_random_curves_have_the_peaks_of_the_reference(seed, backend):

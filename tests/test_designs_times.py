@@ -22,7 +22,7 @@ P = np.array([[600.0, 0.5], [45.0, 0.4], [0.0, 0.5], [-60.0, 0.5], [3000.0, 0.3]
 FAILS = {2: Status.NO_INSTANTS, 3: Status.NO_INSTANTS, 5: Status.INVALID}
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
 @pytest.mark.parametrize("law", [motion.polynomial, uneven])
 @pytest.mark.parametrize("asked", ASKED)

@@ -103,7 +103,7 @@ def turned(out, row, where, load):
     out[row, where] = load
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("stages", STAGES)
 @pytest.mark.parametrize("jump", JUMPS)
 def test_trials_stay_on_the_side_of_a_jump(jump, stages):

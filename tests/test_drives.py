@@ -27,7 +27,7 @@ pytestmark = pytest.mark.usefixtures("interpreted")
 PAIRS = list(itertools.combinations("OCADP", 2))
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("pair", PAIRS, ids=map("".join, PAIRS))
 def test_any_two_joints_of_a_five_bar_can_drive_it(pair):
     """Pins of the tree and pins that close its loop, at bodies that bear sections: all forces are those of free bodies."""
@@ -39,7 +39,7 @@ def test_any_two_joints_of_a_five_bar_can_drive_it(pair):
     assert {q.part for q in solution.outputs if q.group == "effort"} == set(pair)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("pair", PAIRS, ids=map("".join, PAIRS))
 def test_drives_do_the_power_of_the_motion(pair):
     """The power is the motion's and the loads', whoever does it."""
@@ -231,7 +231,7 @@ def test_a_file_keeps_who_drives(tmp_path):
     assert not [*check(tmp_path / "x.h5")]
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("ratio", [1e-5, 1e-2, 1e4])
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_a_gear_of_any_ratio_holds(ratio, precision):

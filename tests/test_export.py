@@ -34,7 +34,7 @@ def keywords():
 
 
 # Only one drive that turns has a cycle to be read from a table.
-@pytest.mark.sampled(9)
+@pytest.mark.sampled(19)
 @pytest.mark.parametrize(
     ("name", "options"), [(n, o) for n in SCENES for o in ARITHMETIC if n == "slider_crank" or "table" not in o], ids=str
 )
@@ -42,7 +42,7 @@ def test_the_source_is_clean(name, options, tmp_path):
     clean(SCENES[name](), tmp_path, options, compilers())
 
 
-@pytest.mark.sampled(17)
+@pytest.mark.sampled(35)
 @pytest.mark.parametrize("options", ARITHMETIC[:2], ids=str)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_the_source_of_every_case_is_clean(case, options, tmp_path):
@@ -60,7 +60,7 @@ def clean(scene, folder, options, commands):
             assert result.returncode == 0, f"{label} {source}: {result.stderr}"
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("options", ARITHMETIC[:3], ids=str)
 def test_the_self_test_passes_under_sanitizers(name, options, tmp_path):
@@ -75,7 +75,7 @@ def test_the_self_test_passes_under_sanitizers(name, options, tmp_path):
     assert "0 wrong" in ran.stdout
 
 
-@pytest.mark.sampled(16)
+@pytest.mark.sampled(33)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("name", SPATIAL)
 def test_mechanisms_in_space_pass_their_self_test(name, precision, tmp_path):
@@ -125,7 +125,7 @@ def symbols(folder, prefix):
     return [line.split()[-2:] for line in lines]
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("options", ARITHMETIC, ids=str)
 def test_only_prefixed_symbols_are_seen_and_only_libm_is_needed(options, tmp_path):
     made = export(slider_crank(), tmp_path, **options)
@@ -154,7 +154,7 @@ def test_nothing_recurs_allocates_or_is_of_another_precision(tmp_path):
 PREPARED = "status = @_prepare(&model, &parameters); @_motion(&model, 0.01, &inputs); "
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize(
     ("statements", "sentence"),
     [

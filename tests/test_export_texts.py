@@ -58,7 +58,7 @@ def build_and_run(folder, prefix):
     return said
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("wicked", WICKED)
 def test_a_name_is_only_ever_shown(tmp_path, wicked):
     made = export(slider_crank(), tmp_path, name=wicked, wanted=["effort"])
@@ -71,7 +71,7 @@ def test_a_name_is_only_ever_shown(tmp_path, wicked):
     assert header.count("*/") == header.count("/*")
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("wicked", WICKED)
 def test_a_unit_is_only_ever_shown(tmp_path, wicked):
     made = export(arm(wicked), tmp_path, wanted=["effort"])
@@ -84,7 +84,7 @@ def test_a_unit_is_only_ever_shown(tmp_path, wicked):
     assert content["parameters"][0]["unit"] == wicked
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(13)
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="needs cmake")
 @pytest.mark.parametrize(
     "name",

@@ -32,7 +32,7 @@ def assert_exact(extreme, **options):
     assert not understated(solution, extreme.graph, extreme.meant)
 
 
-@pytest.mark.sampled(13)
+@pytest.mark.sampled(27)
 @pytest.mark.parametrize("extreme", EXTREMES, ids=[extreme.name for extreme in EXTREMES])
 def test_extremes(extreme):
     """In both precisions, by steps of Newton's method where no dead centre is near, and without a compiler where one is.
@@ -57,7 +57,7 @@ def test_the_documentation_lists_every_extreme():
     assert [line.split(" | ")[0][2:] for line in page.splitlines() if line.startswith("| ")][2:] == [e.name for e in EXTREMES]
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(11)
 @precisions
 @pytest.mark.parametrize("newton", [None, 4])
 @pytest.mark.parametrize("count", [8, 9, 82, 4001])

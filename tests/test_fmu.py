@@ -65,13 +65,13 @@ def assert_alike(found, solution, names, rows=slice(None), within=WITHIN):
         assert gap <= within * np.abs(expected).max(), f"{name}: {gap:.3g} of {np.abs(expected).max():.3g}"
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", SCENES)
 def test_nothing_is_wrong_with_it(unit, name):
     assert validate_fmu(str(unit(name)[1])) == []
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", SCENES)
 def test_model_exchange_gives_the_numbers_of_the_api(unit, name):
     scene, path = unit(name)
@@ -79,6 +79,7 @@ def test_model_exchange_gives_the_numbers_of_the_api(unit, name):
     assert_alike(simulated(path, solution), solution, outputs(path))
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", SCENES)
 def test_co_simulation_gives_the_numbers_of_the_api(unit, name):
     """What FMPy reads after a step is of the inputs that it set before: they are given one step early."""
@@ -101,7 +102,7 @@ def test_the_motion_of_what_is_guided_is_an_input(unit):
     assert_alike(simulated(path, solution, **poses), solution, outputs(path))
 
 
-@pytest.mark.sampled(8)
+@pytest.mark.sampled(17)
 @pytest.mark.parametrize("name", SPATIAL)
 def test_mechanisms_in_space(unit, name):
     """Drives of all kinds, poses that are given, loops of closed forms and iterated ones; what is zero may be rounding."""
@@ -148,7 +149,7 @@ def drive(scene):
     return next(iter(scene.motion))
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(("name", "how", "within"), [("robot", {"newton": 4}, 1e-12), ("slider_crank", {"table": 1e-9}, 1e-7)])
 def test_the_other_rungs(unit, name, how, within):
     scene, path = unit(name, **how)

@@ -70,7 +70,7 @@ def test_another_scene_is_another_unit(archives, tmp_path):
     assert other.get("guid") != described(archives["slider_crank"]).get("guid")
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 @pytest.mark.parametrize("name", ["slider_crank", "robot", "windy", "single", "table"])
 def test_the_sources_compile_elsewhere(archives, name, compiler, tmp_path):

@@ -36,7 +36,7 @@ PARTS = {"engine": (340 / 720, 371.5 / 720, 397 / 720)}
 EXACTLY = [name for name in PLANAR if name not in ("connecting_rod", "roller_cam")]
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", EXACTLY)
 def test_formulas_to_forty_digits(name, monkeypatch):
     monkeypatch.setattr("lagrange_casadi.judge.reference.arithmetic", lambda: EXACT)

@@ -28,7 +28,7 @@ def jack(lead, mu, **more):
     return m
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("lead", [0.004, 0.02, -0.004, -0.02])
 @pytest.mark.parametrize("mu", [0.0, 0.08, 0.3])
 def test_the_torque_of_a_lifting_screw(lead, mu):

@@ -19,7 +19,7 @@ def gaps(exact, read):
         yield name, np.max(np.abs(exact.array(name) - read.array(name))), np.max(np.abs(exact.array(name)))
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize(
     "rung", [{"table": 1e-9}, {"table": 64}, {"table": 1e-6, "backend": "vm"}, {"table": 64, "precision": "single"}]
 )

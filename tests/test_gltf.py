@@ -75,7 +75,7 @@ CASES = {name: lambda name=name: solved(name) for name in ("quick_return", "exca
 }
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("what", CASES)
 def test_bodies_are_where_the_solution_has_them(tmp_path, what):
     solution = CASES[what]()

@@ -46,7 +46,7 @@ def ignoring(*numbers):
     return {"preexec_fn": lambda: [signal.signal(number, signal.SIG_IGN) for number in numbers]}
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP], ids=lambda number: number.name)
 @pytest.mark.parametrize("arguments", [["--help"], RUN, [*SWEEP, *SHORT, "--force"]], ids=lambda arguments: arguments[0].strip("-"))
 def test_an_interrupt_at_any_moment_is_one_line(here, arguments, number):
@@ -95,7 +95,7 @@ WAITS = {
 }
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 @pytest.mark.parametrize("text", WAITS.values(), ids=WAITS)
 def test_an_interrupt_in_a_case_is_one_line(here, tmp_path_factory, text, number):
@@ -135,7 +135,7 @@ def test_what_is_ignored_is_no_interrupt():
     assert interrupts() == [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda number: number.name)
 def test_a_sweep_keeps_its_blocks(here, number):
     with program(*SWEEP, *LONG, "--out", "x.h5") as stopped:
@@ -147,7 +147,7 @@ def test_a_sweep_keeps_its_blocks(here, number):
     assert re.fullmatch(KEPT, err)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 def test_an_interrupt_comes_through_while_a_long_axis_is_written(here, number):
     """It takes minutes; the blocks that were committed before stay."""
@@ -172,7 +172,7 @@ STEPPING = {
 }
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize(("name", "number"), zip(STEPPING, [signal.SIGINT, signal.SIGTERM] * 2, strict=True))
 def test_an_interrupt_does_not_wait_for_newtons_steps(here, name, number):
     """The whole takes minutes or hours."""
@@ -186,7 +186,7 @@ def test_an_interrupt_does_not_wait_for_newtons_steps(here, name, number):
     assert not list(here.iterdir())
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP], ids=lambda number: number.name)
 def test_what_was_ignored_at_the_start_stays_ignored(here, number):
     """As by ``nohup``, and of a script's background jobs."""

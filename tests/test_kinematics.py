@@ -26,6 +26,7 @@ from lagrange_casadi.errors import AssemblyError, DeclarationError, MobilityErro
 pytestmark = pytest.mark.usefixtures("interpreted")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.quick
 @pytest.mark.parametrize("name", PATTERNS)
 def test_every_dyad_has_a_closed_form(name):
@@ -304,7 +305,7 @@ def test_a_gear_on_what_a_loop_turns_goes_on_where_that_is_wrapped():
     np.testing.assert_allclose(np.diff(driven), -2.0 * np.diff(turned), atol=1e-12)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("size", [1e-9, 1e-6, 1.0, 1e6])
 def test_a_rough_place_tells_the_branch_at_any_size(size):
     m = Mechanism("small")

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.usefixtures("released")
 both = pytest.mark.parametrize("precision", PRECISIONS)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @both
 @pytest.mark.parametrize("name", SCENES)
 def test_packs_agree_with_scalar_c(name, precision):
@@ -36,7 +36,7 @@ def test_packs_agree_with_scalar_c(name, precision):
 
 
 @both
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("name", SCENES)
 def test_a_tail_of_any_length_has_the_same_bits(name, precision):
     scene = SCENES[name]()
@@ -47,7 +47,7 @@ def test_a_tail_of_any_length_has_the_same_bits(name, precision):
         assert np.array_equal(filled(library, graph, t[:n], precision=precision), whole[:, :n])
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @both
 @pytest.mark.parametrize("language", ["c", "c++"])
 @pytest.mark.parametrize("name", ["effort_alone", "iterated"])
@@ -123,7 +123,7 @@ EXACT += ["lanes_choose", "less", "most", "same", "other", "both", "either"]
 X86 = platform.machine() in ("x86_64", "AMD64")
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("libmvec", ["where it is", "none"])
 @pytest.mark.parametrize("march", ["native", *(["x86-64", "x86-64-v3"] if X86 else [])])
 def test_every_function_of_a_pack(march, libmvec, tmp_path):

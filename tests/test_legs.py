@@ -98,7 +98,7 @@ LEGS = {
 }
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("carried", [False, True], ids=["from the ground", "from a base that moves"])
 @pytest.mark.parametrize("leg", LEGS)
 def test_a_leg_is_solved_without_iteration_and_as_iteration_does(leg, carried):

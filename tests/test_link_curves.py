@@ -128,7 +128,7 @@ def test_curves_are_those_of_the_law(seed, table, loaded, tmp_path):
             assert math.isclose(ours[-1], np.abs(own).max(), rel_tol=1e-11, abs_tol=1e-12)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("table", [PLANE, SPACE], ids=["plane", "space"])
 def test_nothing_along_a_loaded_link_is_beyond_what_the_law_finds(table):
     """Smallest, largest and largest in size are forces at their places, and no point of a fine grid is beyond them."""

@@ -14,7 +14,7 @@ from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("name", SCENES)
 def test_every_way_gives_the_same_within_its_errors(name):
     scene = SCENES[name]()
@@ -32,7 +32,7 @@ def test_every_way_gives_the_same_within_its_errors(name):
             assert gap <= 10.0 * float(np.max(found.errors[quantity])) + 1e-13 * size[exact.unit(quantity)], (way, quantity)
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("name", SCENES)
 def test_designs_have_the_peaks_of_the_api(name):
     """Of the cam some: a search looks at every one of its points."""
@@ -47,7 +47,7 @@ def test_designs_have_the_peaks_of_the_api(name):
             assert_refined(scene, designs, outcome, row, p[row])
 
 
-@pytest.mark.sampled(8)
+@pytest.mark.sampled(17)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("name", SCENES)
 def test_exported_c_has_the_numbers_of_the_api(name, precision, tmp_path):

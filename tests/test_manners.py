@@ -80,7 +80,7 @@ FUNCTIONS = {
 }
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.filterwarnings("ignore::FutureWarning")
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_numpys_functions_of_symbols_are_what_they_are_of_numbers(name):

@@ -80,7 +80,7 @@ def shown(text):
     return {(row[0], row[1]): np.array(row[2:], float) for row in rows}
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize(("name", "rung"), RUNGS)
 def test_every_output_over_a_cycle(name, rung, built):
     folder, agreed, scene = built(name, rung)
@@ -114,7 +114,7 @@ def test_every_output_over_a_cycle(name, rung, built):
             assert np.max(np.abs(found[link.name, force].reshape(len(XI), -1).T - expected)) <= allowed, (link.name, force)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize(("name", "rung"), RUNGS)
 def test_the_example_runs(name, rung, built):
     folder, agreed, _ = built(name, rung)

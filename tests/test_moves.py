@@ -143,7 +143,7 @@ def scene_of_parameters(t=(0.0, 1.5, 151)):
 VALUES = {"h": 0.3, "T": 0.5, "v": 3.0, "ratio": 1.5}
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("values", [VALUES, {}])
 def test_parameters_change_all_of_it(values):
     """As if numbers stood in their place, here and in a sweep's engine."""
@@ -177,7 +177,7 @@ def test_moves_that_cannot_be_are_refused_everywhere():
     assert engine.evaluate(np.array(rows)).status.tolist() == [Status.OK, *[Status.IMPOSSIBLE] * 4]
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_exported_c_has_the_same_numbers(tmp_path, precision):
     """With parameters in all of the moves; instants at their seams too."""

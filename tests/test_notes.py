@@ -81,7 +81,7 @@ def test_nothing_vanishes_before_the_base_or_beyond_the_tip():
     np.testing.assert_allclose(section.bending[0], np.where(inside, 0.0, -weight * (0.65 + 0.5 * u)), atol=1e-12)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("backend", ["auto", "c", "vm"])
 @pytest.mark.parametrize("scene", [bracket, slotted])
 def test_designs_have_the_peaks_of_the_api(scene, backend):

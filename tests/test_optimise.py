@@ -51,7 +51,7 @@ def test_a_counterweight_balances_a_slow_arm():
     assert found.residual <= 1e-8
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize(
     ("name", "parameter", "bounds", "quantity"),
     [

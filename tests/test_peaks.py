@@ -28,7 +28,7 @@ def columns(graph, t, p):
     return [x.full().ravel() for x in rates(graph)(ca.vertcat(t, z), p)]
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.sampled(19)
 @pytest.mark.parametrize("name", NAMES)
 def test_rates_are_those_of_differences(name):
     scene = load_case(CASES / name).scene
@@ -146,7 +146,7 @@ def test_angles_that_a_loop_sets_keep_their_turns():
     assert coarse.peak(name).value - peak.value > 1e-6
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(15)
 @pytest.mark.parametrize("name", [*PLANAR, "rssr", "spatial_slider_crank"])
 def test_peaks_are_those_of_far_finer_instants(name):
     """To rounding: an ulp of the largest quantity of the same unit, from which small ones are left over."""

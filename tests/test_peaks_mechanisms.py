@@ -78,13 +78,13 @@ def _assert_none_is_short(scene, dense):
         assert not [name for name in names if not abs(peaks[name] - found[name]) <= 1e-9 * scale[dense.unit(name)]], backend
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", SCENES)
 def test_no_peak_is_short(name):
     assert_none_is_short(SCENES[name], 51, 101)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("seed", range(4))
 def test_random_crank_rockers(seed):
     random = np.random.default_rng(seed)

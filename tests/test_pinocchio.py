@@ -78,7 +78,7 @@ def peer():
     return pytest.importorskip("benchmarks.peers.pinocchio_arm", reason="Pinocchio is not installed: pip install '.[bench]'")
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("seed", range(12))
 def test_random_chains(seed):
     assert_same(*drawn(seed))

@@ -51,7 +51,7 @@ def accepted(scene, values):
     return found
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("name", MATTER)
 def test_all_programs_draw_the_same_line(name, tmp_path):
     scene = arm(MATTER[name], ["c"], default=0.25)

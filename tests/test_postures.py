@@ -37,7 +37,7 @@ def pasted(error):
     return [ast.literal_eval(text) for text in re.findall(r"posture=(\{[^}]*\})", str(error))]
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("joint", ["A", "B", "C"])
 @pytest.mark.parametrize("rocker", [1.5, -1.5])
 def test_a_joints_coordinate_chooses_the_branch(joint, rocker):
@@ -111,7 +111,7 @@ def test_a_part_of_a_posture_leaves_the_rest_open():
     assert "joint 'B'" not in str(error.value)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(("case", "many"), [("four_bar", 2), ("six_bar", 4), ("andrews_squeezer", 4), ("quick_return", 2)])
 def test_all_ways_are_there_and_differ(case, many):
     scene = replace(load_case(case).scene, posture={})
@@ -125,7 +125,7 @@ def test_all_ways_are_there_and_differ(case, many):
         assert not any(same({name: other.pose(name) for name in own}, own) for other in others)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("command", [["run", "own"], ["info", "own"], ["export", "own", "--out", "c"], ["trade", "own"]])
 def test_the_command_line_draws_the_ways(here, capfd, command):
     assert main(["new", "own", "--like", "four_bar"]) == 0

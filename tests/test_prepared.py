@@ -23,7 +23,7 @@ def few(scene, count=33):
     return (*scene.span, count)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", ["slider_crank", "four_bar", "engine", "rssr", "arm6"])
 def test_series_are_those_of_evaluate(name):
     scene = case(name)

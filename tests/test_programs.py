@@ -107,7 +107,7 @@ def test_a_time_limit_that_is_none_is_one_line(here, fresh_cache, monkeypatch, c
     )
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 @pytest.mark.parametrize("script", ["{hangs}", "{tells} {hangs}"], ids=["version", "compiling"])
 def test_an_interrupt_stops_the_compiler(here, tmp_path_factory, monkeypatch, number, script):

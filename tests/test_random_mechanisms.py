@@ -30,7 +30,7 @@ def verdict(seed):
     return found, told
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("seed", QUICK)
 def test_right_or_refused(seed):
     found, told = verdict(seed)
@@ -96,7 +96,7 @@ def test_nothing_of_many_that_is_unique_is_withheld():
 REGULAR = [3, 4, 6, 7]
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("seed", REGULAR)
 @pytest.mark.parametrize("backend", ["lanes", "c"])
 def test_every_backend_is_right(seed, backend):
@@ -104,14 +104,14 @@ def test_every_backend_is_right(seed, backend):
     assert found.kind == "right", found.details
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("seed", REGULAR)
 def test_counted_steps_are_as_right_as_they_claim(seed):
     found = judge(draw(seed), newton=3, claims=10.0)
     assert found.kind == "right", found.details
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("seed", REGULAR)
 def test_single_precision_is_as_right_as_it_claims(seed):
     found = judge(draw(seed), precision="single", tolerance=1e-4, claims=10.0)

@@ -41,6 +41,7 @@ def test_charts_hold_the_solution_to_the_last_bit(name):
 LAWS = {name: functools.partial(solved, name) for name in ("quick_return", "excavator", "engine", "rssr", "delta")}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("what", [*LAWS, "loads along a link", "loads along a link in space"])
 def test_the_section_law_of_a_page_is_that_of_the_solution(what):
     """Summed up as the viewer does: terms, and what acts beyond a section at stations, which may slide."""

@@ -287,7 +287,7 @@ ODD = {
 """Solutions of which little is to be seen, or something that is hard to draw."""
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("what", ODD)
 def test_nothing_that_a_reader_presses_fails(page, what):
     one = page(ODD[what]())

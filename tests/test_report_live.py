@@ -73,7 +73,7 @@ def near(found, expected, scale, what):
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * scale, err_msg=str(what))
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("what", SCENES)
 def test_another_design_is_what_the_package_makes_of_it(chromium, tmp_path, what):
     """Every array, every row and every part of the picture, to 1e-12 of the largest value."""

@@ -44,7 +44,7 @@ NUMBERS = {
 }
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", LAWS)
 def test_samples_scaled_by_parameters_are_those_of_scaled_numbers(name):
     scene = geared(LAWS[name])

@@ -234,7 +234,7 @@ def test_a_resultant_may_have_two_summits_between_its_ends():
         assert sizes[top] <= values[0, k] <= sizes[top] * (1 + 1e-9)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("force", ["shear", "bending"])
 @pytest.mark.parametrize("density", ["even", "in cells"])
 def test_where_a_resultant_turns_goes_on_from_instant_to_instant(force, density):

@@ -51,7 +51,7 @@ def built(name, precision, language, folder):
     return folder / "scene.o"
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("newton", [None, 2])
 @pytest.mark.parametrize("name", WHOLE)
 def test_emitted_c_is_pedantically_clean(name, newton, tmp_path):
@@ -92,7 +92,7 @@ tools = pytest.mark.skipif(
 )
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(13)
 @tools
 @pytest.mark.parametrize("language", ["c", "c++"])
 @pytest.mark.parametrize("name", WHOLE)

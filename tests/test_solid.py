@@ -7,7 +7,7 @@ from drawn_scenes import CASES, every_kind, moved
 from lagrange_casadi.draw.solid import BLOCK, MARKS, axes_of, cloud_of, direction_of, grounds_of, lines_of, marks_of, place_of
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", CASES)
 def test_points_are_where_joints_hold_them(name):
     """A joint that does not slide holds two points together; one that does, on its line, and where its motion says."""

@@ -49,7 +49,7 @@ def test_links_are_where_their_poses_put_them_in_every_view():
         assert all(line.get_zorder() < strong.get_zorder() for line in faint)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("solution", [*CASES, every_kind], ids=[*CASES, "every_kind"])
 def test_names_are_apart_and_scales_are_one(solution):
     solution = solution() if callable(solution) else moved(solution)

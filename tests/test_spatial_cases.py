@@ -257,7 +257,7 @@ def test_a_design_whose_small_quantities_are_rounding_is_judged():
     assert designs.failures(np.array(list(scene.mechanism.values({"aside": 0.05}).values()))) == {}
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", SMALL)
 def test_estimates_are_near_the_errors(name):
     """Of all but sections, which the tests' fifty digits know in a plane."""
@@ -267,7 +267,7 @@ def test_estimates_are_near_the_errors(name):
     assert_near(ratios(evaluate(scene, backend="c"), exactly(scene)))
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", ["rssr", "cardan_shaft"])
 def test_figures_can_be_drawn(name, tmp_path):
     scene = scene_of(name)

@@ -55,6 +55,7 @@ def test_what_is_wrong_is_seen(name, wrong):
     assert all(found[kind] > 1e-5 for kind in wrong), found
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "name", ["pose:bar2:y", "pose:bar2:xx", "pose:bar2:yz", "reaction:H2:fy", "effort:travel:slide_3", "pose:hub:xz"]
 )

@@ -58,7 +58,7 @@ def true_errors(drawn, solution, exact):
     return errors, {key: sizes[solution.unit(key)] for key in errors}
 
 
-@pytest.mark.sampled(13)
+@pytest.mark.sampled(27)
 @pytest.mark.parametrize("rung", RUNGS)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, case)))
 def test_estimates_are_near_the_errors(case, rung):

@@ -27,7 +27,7 @@ def near(value, other, size):
     return abs(value - float(other)) <= ROUNDING * size
 
 
-@pytest.mark.sampled(17)
+@pytest.mark.sampled(35)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, case)))
 def test_all_is_as_the_oracle_has_it_and_certified(case):
     drawn, solution = evaluated(*case)
@@ -107,7 +107,7 @@ def spun(forces):
     return np.array([axial, math.hypot(y, z), torsion, math.hypot(about_y, about_z)])
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize(
     "case", [("tree", 3), ("rssr", 1), ("suspension", 0), ("bennett", 0), ("stewart", 0)], ids=lambda case: case[0]
 )
@@ -150,7 +150,7 @@ def test_angles_that_loops_set_go_on():
     assert solution.motion("B").value[-1] == pytest.approx(solution.motion("B").value[0], abs=1e-9)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("made", "values"),
     [

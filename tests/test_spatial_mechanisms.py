@@ -33,7 +33,7 @@ def identity(case):
     return "-".join(map(str, case))
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("case", CASES, ids=identity)
 def test_both_sides_of_a_section_tell_the_same(case):
     one = drawn(case)
@@ -46,7 +46,7 @@ def test_both_sides_of_a_section_tell_the_same(case):
             assert max(gap[3:]) < 1e-13 * moment
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("case", CASES, ids=identity)
 def test_efforts_do_the_power_of_any_motion(case):
     """For a unit rate of each coordinate that is driven: d'Alembert's principle, in which no reaction is."""
@@ -74,7 +74,7 @@ def test_efforts_do_the_power_of_any_motion(case):
             assert abs(power) < 1e-11 * sum(largest(found)) * (1 + np.max(np.abs(apart)) + np.max(np.abs(child.w)))
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("case", PRECISE, ids=identity)
 def test_rates_are_derivatives_and_power_is_what_energy_gains(case):
     one, h = drawn(case), arithmetic_of(DIGITS).number("1e-10")
@@ -116,7 +116,7 @@ def energy(mechanism, result):
     return total
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("case", [*PRECISE, ("stewart", 0)], ids=identity)
 def test_doubles_are_as_right_as_doubles_can_be(case):
     one = drawn(case)
@@ -135,7 +135,7 @@ def test_doubles_are_as_right_as_doubles_can_be(case):
         assert np.max(gap[shut] / np.array([force] * 3 + [moment] * 3)[shut], initial=0.0) < 1e-12
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("draw", [planar_four_bar, planar_slider_crank])
 @pytest.mark.parametrize("seed", range(6))
 def test_a_planar_loop_somewhere_in_space_has_the_planar_forces(draw, seed):

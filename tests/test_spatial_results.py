@@ -130,7 +130,7 @@ def test_peaks_between_instants_are_those_of_dense_ones(scene, solution, dense):
     assert {"section:beam:bending", "section:beam:bending_y", "section:beam:bending_z"} <= inner
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("rung", "tolerance"), [(Rung("lanes"), 1e-11), (Rung("c"), 1e-11), (Rung("vm"), 1e-11), (Rung("lanes", "single"), 1e-5)]
 )

@@ -18,7 +18,7 @@ ROUNDING = 1e-12
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(15)
 def test_a_planar_mechanism_is_the_same_in_space(name, seed):
     rng = np.random.default_rng([NAMES.index(name), seed])
     scene, R = load_case(CASES / name).scene, orientation(rng)
@@ -53,6 +53,7 @@ def test_a_planar_mechanism_is_the_same_in_space(name, seed):
                 assert found[f"section:{link}:law:{own}"] == pytest.approx(one, abs=ROUNDING * max(size, abs(one)))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", DYADS)
 def test_dyads_need_no_iteration_however_their_plane_lies(name):
     scene = load_case(CASES / name).scene

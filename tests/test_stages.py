@@ -75,7 +75,7 @@ def case(name, later):
     return graph, t, exact(graph, t, z=z)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("name", NAMES)
 def test_plain_stages_are_the_graphs_bits(name):
     graph = derive(load_case(CASES / name).scene, ["all"])
@@ -87,7 +87,7 @@ def test_plain_stages_are_the_graphs_bits(name):
         assert out.full().tobytes() == graph.instant(t, *graph.motion(t, p), z, p).full().tobytes()
 
 
-@pytest.mark.sampled(25)
+@pytest.mark.sampled(51)
 @pytest.mark.parametrize("later", [1e3, 1e6])
 @pytest.mark.parametrize("rung", DOUBLE, ids=lambda rung: rung.backend)
 @pytest.mark.parametrize("name", NAMES)
@@ -96,7 +96,7 @@ def test_doubles_after_days(name, rung, later):
     assert gap(graph, t, rung, truth) < 1e-13
 
 
-@pytest.mark.sampled(13)
+@pytest.mark.sampled(27)
 @pytest.mark.parametrize("rung", SINGLE, ids=lambda rung: rung.backend)
 @pytest.mark.parametrize("name", [name for name in NAMES if name != "andrews_squeezer"])
 def test_singles_after_hours(name, rung):
@@ -105,7 +105,7 @@ def test_singles_after_hours(name, rung):
     assert gap(graph, t, rung, truth) < max(1e-5, BOUNDS.get(name, 0.0))
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.sampled(19)
 @pytest.mark.parametrize("name", NAMES)
 def test_singles_at_the_start(name):
     graph, t, truth = case(name, 0.0)
@@ -128,7 +128,7 @@ LOADS = {
 }
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("name", LOADS)
 def test_loads_that_count(name):
     """After a million radians in double; in single, after an hour, as in :func:`test_singles_after_hours`."""
@@ -151,7 +151,7 @@ LAWS = {
 }
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", LAWS)
 def test_laws_of_motion_that_count(name):
     """Roots, quotients, pieces and clamps of a law keep their phase in single precision too."""

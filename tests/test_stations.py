@@ -88,7 +88,7 @@ def at_c(a, b, c, l):
 BENT = {"shear", "bending"}
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("rung", [{"backend": b} for b in ("vm", "c", "lanes")] + [{"precision": "single"}], ids=str)
 def test_two_pins_at_one_place_bear_one_sum(rung):
     """What both bear together holds the beam on its base's pin; along it, the base and they share the thrust."""
@@ -114,14 +114,14 @@ def test_it_is_judged_for_the_places_as_they_are():
     assert unique(scene, {"a": 0.7, "b": 0.7}) == BENT
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("apart", [1e-3, 1e-6, 1e-8, 1e-11])
 def test_what_is_nearly_at_one_place_is_not(apart):
     solution = evaluate(beam(at_a, lambda a, b, c, l: a + apart))
     assert not any(solution.determined(f"section:bar:{force}") for force in FORCES)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize(
     ("first", "second"),
@@ -238,7 +238,7 @@ def shaper(slots, length, base, **keywords):
 SHAPERS = {"within": (0.9, 0.0), "past the tip": (0.6, 0.0), "before the base": (0.9, 0.45)}
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", SHAPERS)
 def test_what_slides_along_together_is_felt_as_a_sum(name):
     """The slots are at one place, which moves: within the rail, past its tip and back, before its base and back."""

@@ -79,6 +79,7 @@ def test_csv_goes_through_a_pipe(file, pipe, listen, capfd, command):
     assert "wrote pipe: " in capfd.readouterr().out
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
 def test_a_picture_goes_through_a_pipe(pipe, listen, ending):
     one = Measurement(Rung("c"), 1e-9, 1e-3, 1e-3, "effort:O")
@@ -142,7 +143,7 @@ def test_a_device_that_is_full_is_one_line(here, capfd):
     assert stat.S_ISCHR(os.stat(here / "full").st_mode)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("command", TABLES)
 @pytest.mark.parametrize("onto", ["pipe", "file"])
 def test_standard_output_is_the_csv_alone(file, here, command, onto):

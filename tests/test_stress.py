@@ -31,7 +31,7 @@ def solutions():
     }
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", SHAPES)
 def test_the_largest_is_that_of_a_fine_grid(solutions, name, kind):

@@ -109,20 +109,20 @@ def assert_found(name, rungs):
         assert abs(value) <= largest * (1 + max(1e-6, tolerance))
 
 
-@pytest.mark.sampled(10)
+@pytest.mark.sampled(21)
 @pytest.mark.parametrize("name", SIGNALS)
 def test_the_largest_is_found(name):
     assert_found(name, RUNGS)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", ["in the first interval", "a spike of a tenth of a step", "a kink", "a jump", "a plateau"])
 def test_other_rungs_search_alike(name):
     """Singles come in other packs: a jump between the lanes of one must be seen too."""
     assert_found(name, OTHERS)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("count", [211, 1500])
 def test_a_hundred_summits(count):
     """All but as high as each other; of few instants each has at most two."""
@@ -136,7 +136,7 @@ def test_a_hundred_summits(count):
         assert abs(value) >= largest * (1 - tolerance)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 7, 8, 9])
 def test_few_instants(count):
     """However few the instants are, the peak is that of all times between the first and the last."""
@@ -193,7 +193,7 @@ def test_a_known_kink_cuts_a_step_in_two(law, kind, at):
     assert source.times <= 80
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     "law",
     [

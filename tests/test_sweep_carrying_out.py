@@ -19,7 +19,7 @@ from lagrange_casadi.sweep.parts import Folder
 from lagrange_casadi.system.room import cores
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("workers", [1, 2, 5, None])
 def test_the_same_bytes_whatever_the_workers(whole, engine, tmp_path, workers):
     engine.pause = 1e-3
@@ -146,7 +146,7 @@ def test_a_file_that_another_program_writes_is_left_alone(whole, tmp_path):
     assert os.listdir(tmp_path) == ["whole.h5"]
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize(
     ("change", "says"),
     [

@@ -162,7 +162,7 @@ def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, 
     assert sweep(slider_crank, GRID, **ASKED, out=path, resume=True).path.read_bytes() == whole
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 @pytest.mark.parametrize("frozen", ["scheduler", "worker"])
 def test_an_interrupt_does_not_wait_for_what_is_frozen(slider_crank, tmp_path, number, frozen):
@@ -282,7 +282,7 @@ OTHERS = {
 }
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(("says", "told"), OTHERS.values(), ids=OTHERS)
 def test_what_is_no_scheduler_is_one_line(slider_crank, tmp_path, monkeypatch, capfd, says, told):
     monkeypatch.setattr(cluster, "_PATIENCE", 1.0)
@@ -303,7 +303,7 @@ def test_a_worker_is_no_scheduler(slider_crank, two_workers, tmp_path):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 def test_an_interrupt_comes_through_while_nothing_answers(slider_crank, tmp_path, number):
     asked = ["sweep", str(slider_crank.path), "--grid", "l=0.2,0.3", "--out", "x.h5"]

@@ -115,7 +115,7 @@ def program(out, *, pause=0.0, limit=resource.RLIM_INFINITY, grid=GRID):
     return sweeps.process(sys.executable, "-c", textwrap.dedent(text))
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("limit", [500, 2_900, 30_000, 60_000])
 def test_a_full_disk_is_one_line_and_loses_nothing(whole, tmp_path, limit):
     """Real writes that fail, of the plan, of a part, and at places of the file; the system's limit stands for a full disk."""

@@ -164,7 +164,7 @@ def test_blocks_of_what_is_selected(swept):
         list(swept.blocks(["peak_at:section:rod:axial"]))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("size", [1, 9, 40, 1 << 15])
 @pytest.mark.parametrize("along", [("t",), ("xi",), ("t", "xi")])
 def test_blocks_of_rows_along_axes(histories, monkeypatch, size, along):

@@ -64,6 +64,7 @@ SMOOTH = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", SMOOTH)
 def test_a_table_gives_what_the_graph_gives(name):
     """At any angle, of some turns either way, and rates of either sign; for 1e-9, of each column's peak."""
@@ -262,7 +263,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_has_no_table_is_refused_with_the_reason(name):
     build, message = REFUSED[name]

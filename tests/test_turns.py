@@ -82,7 +82,7 @@ def assert_followed(scene, joints, count=5, **keywords):
     return solution
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("joint", ["A", "B", "C"])
 @pytest.mark.parametrize("kind", [{}, DRAG_LINK], ids=["crank_rocker", "drag_link"])
 def test_a_torsion_spring_goes_on_past_half_a_turn(kind, joint):
@@ -115,7 +115,7 @@ def test_random_four_bars(seed):
     assert_followed(scene, joints, count=3)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize(
     "law", [polynomial(5.0, -3.0), harmonic(0.4, 9.0, 0.5), harmonic(100.0, 0.3, 2.0)], ids=["back", "both", "swing"]
 )
@@ -138,7 +138,7 @@ def test_it_does_not_matter_which_instants_are_asked_for():
             np.testing.assert_allclose(part.series[name], whole.series[name][rows], rtol=1e-12, atol=1e-12)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize(
     "options",
     [{"precision": "single"}, {"backend": "vm"}, {"backend": "c"}, {"newton": 3}, {"newton": 4, "precision": "single"}],

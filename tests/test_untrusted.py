@@ -232,14 +232,14 @@ def assert_one_line(file, fifo, capsys, kind, long, commands, drawn):
     assert "Traceback" not in "".join(capsys.readouterr())
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("kind", ["attributes", "datasets"])
 @pytest.mark.parametrize("long", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_a_forged_run_is_one_line(run, fifo, capsys, kind, long):
     assert_one_line(run, fifo, capsys, kind, long, RUN, 10)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("kind", ["attributes", "datasets"])
 @pytest.mark.parametrize("long", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_a_forged_sweep_is_one_line(swept, fifo, capsys, kind, long):

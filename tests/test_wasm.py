@@ -37,7 +37,7 @@ def loaded(one, folder, prefix):
     )
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize(("name", "precision"), [("quick_return", "double"), ("slider_crank", "single"), ("rssr", "double")])
 def test_the_module_gives_what_the_api_gives(chromium, tmp_path, name, precision):
     scene = load_case(CASES / name).scene
