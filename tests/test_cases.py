@@ -42,7 +42,7 @@ def test_certificate_is_at_rounding_level(name):
         assert np.max(certificate[residual]) < 1e-13, residual
 
 
-@pytest.mark.sampled(27)
+@pytest.mark.long
 @pytest.mark.parametrize("name", PLANAR)
 def test_every_figure_can_be_drawn(name, tmp_path):
     case = load_case(CASES / name)

@@ -31,7 +31,7 @@ def test_what_fails_on_the_machine_fails_here(tmp_path):
         target.selftest()
 
 
-@pytest.mark.sampled(19)
+@pytest.mark.sampled(29)
 @pytest.mark.parametrize(("name", "rung"), [pair for pair in PAIRS if pair[1] != "double"])
 def test_single_precision_asks_for_no_arithmetic_of_doubles(name, rung, tmp_path):
     target = exported(name, rung, tmp_path / name)
@@ -46,6 +46,7 @@ def test_doubles_are_seen_where_they_are(tmp_path):
     assert {"__aeabi_dmul", "__aeabi_dadd"} <= target.doubles(target.object)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", TABLED)
 def test_a_table_needs_no_sine(name, tmp_path):
     assert exported(name, TABLE, tmp_path / name).needed <= {"floorf", "memset", "memcpy"}

@@ -40,6 +40,7 @@ def swept(monkeypatch, tmp_path):
     return sweep(sweeps.scene(), {"l": (0.15, 0.4, 60), "r": (0.05, 0.1, 20)}, out=tmp_path / "sweep.h5", xi=(0, 1, 3)).path
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", ["run", "swept"])
 @pytest.mark.parametrize("count", [FEW, pytest.param(MANY, marks=pytest.mark.long)])
 def test_damage_is_refused(request, tmp_path, kind, count):
@@ -52,6 +53,7 @@ def test_damage_is_refused(request, tmp_path, kind, count):
         assert done.stderr == ""
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", ["run", "swept"])
 def test_what_is_whole_is_believed(request, tmp_path, kind):
     """The same program finds that every reader takes the file as it was written, so it would find a reader that takes another."""

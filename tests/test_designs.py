@@ -24,7 +24,7 @@ INSTANTS = 128
 FIELDS = ("status", "value", "t", "xi", "mean", "rms")
 
 
-@pytest.mark.sampled(19)
+@pytest.mark.sampled(14)
 @pytest.mark.parametrize("name", PLANAR)
 def test_designs_are_their_own_evaluations(name):
     """Every number of a case a parameter."""

@@ -28,6 +28,7 @@ PROSE = ["README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in
 LINKING = [*PROSE, "cases/slider_crank/README.md"]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("page", PAGES)
 def test_examples_run(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)

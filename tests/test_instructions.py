@@ -67,6 +67,7 @@ def chain(links):
     return Scene(m, laws, t=(0.0, 1.0, 11))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("wanted", [["effort"], ["effort", "section"]], ids=["efforts", "sections too"])
 def test_instructions_grow_with_the_links_of_an_open_chain(wanted):
     """Three more links take as many instructions more, however many there are."""

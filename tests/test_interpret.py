@@ -28,7 +28,7 @@ def same_bits(found, expected):
     return np.array(found, float).tobytes() == np.array(expected, float).tobytes()
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize("name", NAMES)
 def test_doubles_are_the_virtual_machines(name):
     scene = load_case(CASES / name).scene

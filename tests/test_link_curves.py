@@ -99,6 +99,7 @@ int main(void) {{
 """
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("loaded", [False, True])
 @pytest.mark.parametrize("table", [PLANE, SPACE], ids=["plane", "space"])
 @pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.long)])

@@ -50,6 +50,7 @@ def few_are_refused(seeds):
     assert len(refused) <= REFUSED * sum(v.regular for v in found), "\n".join(refused)
 
 
+@pytest.mark.long
 def test_few_regular_mechanisms_are_refused():
     few_are_refused(QUICK)
 

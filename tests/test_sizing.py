@@ -138,6 +138,7 @@ def test_a_table_that_is_not_there(here):
         read_profiles("bars.csv")
 
 
+@pytest.mark.long
 def test_one_command_sizes(here, capsys, sized):
     lines = ("import sys", f"sys.path.insert(0, {str(Path(__file__).parent)!r})", "from strong import arms as scene")
     (here / "case.py").write_text("\n".join(lines))

@@ -52,7 +52,7 @@ BUILT += [(case, "newton", name) for case in CASES for name in COMPILERS if name
 BUILT += [(case, "table", name) for case in ("slider_crank", "six_bar") for name in COMPILERS]
 
 
-@pytest.mark.sampled(59)
+@pytest.mark.sampled(97)
 @pytest.mark.parametrize(("case", "rung", "compiler"), BUILT)
 def test_the_stack_that_the_header_states_is_never_exceeded(case, rung, compiler, sources, tmp_path):
     command = (*COMPILERS[compiler], *FLAGS)

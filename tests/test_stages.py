@@ -87,7 +87,7 @@ def test_plain_stages_are_the_graphs_bits(name):
         assert out.full().tobytes() == graph.instant(t, *graph.motion(t, p), z, p).full().tobytes()
 
 
-@pytest.mark.sampled(51)
+@pytest.mark.sampled(97)
 @pytest.mark.parametrize("later", [1e3, 1e6])
 @pytest.mark.parametrize("rung", DOUBLE, ids=lambda rung: rung.backend)
 @pytest.mark.parametrize("name", NAMES)
@@ -105,7 +105,7 @@ def test_singles_after_hours(name, rung):
     assert gap(graph, t, rung, truth) < max(1e-5, BOUNDS.get(name, 0.0))
 
 
-@pytest.mark.sampled(19)
+@pytest.mark.sampled(31)
 @pytest.mark.parametrize("name", NAMES)
 def test_singles_at_the_start(name):
     graph, t, truth = case(name, 0.0)

@@ -181,6 +181,7 @@ LONG = ["--grid", "l=0.11:0.4:4000", "--grid", "r=0.05:0.1:25"]
 SHORT = ["--grid", "l=0.11:0.4:25", "--grid", "r=0.05:0.1:6"]
 
 
+@pytest.mark.long
 def test_killed_and_resumed_from_the_command_line(here):
     """The real engine, in processes of its own."""
     with program(*ASKED, *SHORT, "--out", "whole.h5") as whole:

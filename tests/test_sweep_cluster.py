@@ -162,7 +162,7 @@ def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, 
     assert sweep(slider_crank, GRID, **ASKED, out=path, resume=True).path.read_bytes() == whole
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 @pytest.mark.parametrize("frozen", ["scheduler", "worker"])
 def test_an_interrupt_does_not_wait_for_what_is_frozen(slider_crank, tmp_path, number, frozen):
@@ -183,6 +183,7 @@ def test_an_interrupt_does_not_wait_for_what_is_frozen(slider_crank, tmp_path, n
     assert re.fullmatch(r"error: stopped; [\d ]+ of 1 000 000 designs are kept in x\.h5\.parts: go on with --resume\n", err)
 
 
+@pytest.mark.long
 def test_a_worker_that_is_frozen_for_a_while_is_waited_for(slider_crank, whole, tmp_path):
     path, held = tmp_path / "x.h5", []
     with started(tmp_path, 1) as (address, _, (worker,)):

@@ -78,6 +78,7 @@ def test_what_a_scene_has_not_is_refused_with_the_reason():
     assert "one driven joint" in found.refused["--backend c --table 64"]
 
 
+@pytest.mark.long
 def test_what_is_zero_but_for_rounding_is_judged_beside_other_motions():
     """A cardan shaft in phase: its tube turns about one axis, so that all of some unit is zero."""
     found = trade(
