@@ -250,6 +250,7 @@ def test_the_command_shows_a_file_and_a_case(here, capsys):
     assert [one.text.split(":")[0] for one in root.iter(f"{SVG}text")] == ["arrows"]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [

@@ -149,7 +149,7 @@ def drive(scene):
     return next(iter(scene.motion))
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "how", "within"), [("robot", {"newton": 4}, 1e-12), ("slider_crank", {"table": 1e-9}, 1e-7)])
 def test_the_other_rungs(unit, name, how, within):
     scene, path = unit(name, **how)

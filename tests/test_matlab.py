@@ -80,7 +80,7 @@ def shown(text):
     return {(row[0], row[1]): np.array(row[2:], float) for row in rows}
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.sampled(10)
 @pytest.mark.parametrize(("name", "rung"), RUNGS)
 def test_every_output_over_a_cycle(name, rung, built):
     folder, agreed, scene = built(name, rung)

@@ -41,6 +41,7 @@ def golden(f, low, high, name, quantity, steps=60):
     return (low + high) / 2, value((low + high) / 2)
 
 
+@pytest.mark.long
 def test_a_counterweight_balances_a_slow_arm():
     """The moments about the pin are equal where weight x reach is 2 kg x 0.25 m; of a motion this slow gravity is all."""
     found = optimise(balanced(), minimise="peak:effort:O", over={"weight": (0.0, 8.0)}, starts=2)
@@ -51,7 +52,7 @@ def test_a_counterweight_balances_a_slow_arm():
     assert found.residual <= 1e-8
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("name", "parameter", "bounds", "quantity"),
     [

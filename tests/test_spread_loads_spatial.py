@@ -92,6 +92,7 @@ def test_exported_c_has_the_numbers_of_the_api(precision, tmp_path):
     compare(by_c99(tmp_path, told, instants(solution.t, precision)), expected(one, told, solution), told, made, solution)
 
 
+@pytest.mark.long
 def test_peaks_between_instants_and_of_sweeps():
     one, designs = scene(t=(0.0, 1.0, 81)), np.array([[1.0, 0.1], [-2.0, 0.0]])
     forces = [f"section:{link}:{force}" for link in ("boom", "jib") for force in SPACE.forces]

@@ -142,6 +142,7 @@ def test_exported_c_has_the_numbers_of_the_api(precision, tmp_path):
     compare(by_c99(tmp_path, told, instants(solution.t, precision)), expected(one, told, solution), told, made, solution)
 
 
+@pytest.mark.long
 def test_peaks_between_instants_and_of_sweeps():
     m = SpatialMechanism("swept")
     push, width = m.parameter("push", 5.0, "N"), m.parameter("width", 0.02, "kg m", low=0.0)

@@ -100,6 +100,7 @@ def test_graphs_that_call_functions_have_no_reference():
         trade(Scene(m, {"J": motion.polynomial(0.3, 1)}, t=(0, 1, 9)), rungs=(Rung("c"),))
 
 
+@pytest.mark.long
 def test_the_command(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("lagrange_casadi.study.trade.RUNGS", RUNGS)

@@ -20,6 +20,7 @@ _TEXT = 40
 def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) -> None:
     """Write the picture into a file; its kind is told by a name's ending."""
     from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
 
     figure = Figure(figsize=(12, 8), layout="constrained")
     grid = figure.add_gridspec(2, 2, height_ratios=(3, 2))
@@ -39,6 +40,7 @@ def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) ->
         axes.plot(np.flatnonzero(holds), rows[holds, 1], "o", color="tab:blue", ms=4)
         axes.plot(np.flatnonzero(~holds), rows[~holds, 1], "x", color="tab:red", ms=5)
     axes.axhline(optimum.objective, color="tab:blue", lw=0.8, ls=":")
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set(xlabel="program", ylabel=f"{optimum.minimised} [{optimum.unit}]")
     axes.set_title("each start: o within the limits, x beyond one", fontsize=10)
     axes.grid(True, color="0.93")
