@@ -132,6 +132,7 @@ def figures(): return list({{type(spec): spec for spec in CASE.figures}}.values(
 """
 
 
+@pytest.mark.long
 def test_plot_draws_what_run_drew(here):
     """Of the case's own figures some: one of each kind."""
     (here / "case.py").write_text(FEW_FIGURES.format(case=str(CASE)))

@@ -75,7 +75,7 @@ def test_the_folder_tests_itself(tmp_path):
     assert result.stdout.count("Passed") == 2
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.long
 @needs_cmake
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "rrr3"])
 def test_a_cpp17_program_finds_the_package(name, tmp_path):

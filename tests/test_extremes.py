@@ -32,7 +32,7 @@ def assert_exact(extreme, **options):
     assert not understated(solution, extreme.graph, extreme.meant)
 
 
-@pytest.mark.sampled(27)
+@pytest.mark.sampled(97)
 @pytest.mark.parametrize("extreme", EXTREMES, ids=[extreme.name for extreme in EXTREMES])
 def test_extremes(extreme):
     """In both precisions, by steps of Newton's method where no dead centre is near, and without a compiler where one is.

@@ -135,7 +135,7 @@ def test_what_is_ignored_is_no_interrupt():
     assert interrupts() == [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda number: number.name)
 def test_a_sweep_keeps_its_blocks(here, number):
     with program(*SWEEP, *LONG, "--out", "x.h5") as stopped:

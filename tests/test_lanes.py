@@ -19,7 +19,7 @@ pytestmark = pytest.mark.usefixtures("released")
 both = pytest.mark.parametrize("precision", PRECISIONS)
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(29)
 @both
 @pytest.mark.parametrize("name", SCENES)
 def test_packs_agree_with_scalar_c(name, precision):

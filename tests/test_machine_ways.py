@@ -14,7 +14,7 @@ from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.sampled(19)
 @pytest.mark.parametrize("name", SCENES)
 def test_every_way_gives_the_same_within_its_errors(name):
     scene = SCENES[name]()

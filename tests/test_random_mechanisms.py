@@ -145,6 +145,7 @@ def right():
     return drawn, solution
 
 
+@pytest.mark.sampled(2)
 def test_a_small_fault_in_any_quantity_is_found(right):
     """A millionth of what is largest of its kind, in one quantity after the other."""
     drawn, solution = right

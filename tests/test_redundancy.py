@@ -33,6 +33,7 @@ def test_single_precision_closes_what_is_too_many():
     np.testing.assert_allclose(single.effort("O"), exact.effort("O"), atol=1e-5 * np.max(np.abs(exact.effort("O"))))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("scene", [parallelogram(), load_case("bricard").scene], ids=["plane", "space"])
 def test_steps_that_are_counted_leave_equations_that_are_too_many_as_little_closed_as_others(scene):
     """Two steps give what closed loops do; one is worth less, and says so. What does not fit by more is refused all the same."""

@@ -226,6 +226,7 @@ def test_names_are_texts_and_never_markup(page):
     quiet(one)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("width", [390, 1000, 1920])
 def test_nothing_is_wider_than_the_window_and_it_prints(page, tmp_path, width):
     one = page(press())

@@ -65,6 +65,7 @@ def scene(**keywords):
     return Scene(m, laws, **({"t": (0.0, 1.0, 5)} | keywords))
 
 
+@pytest.mark.long
 def test_every_way_of_evaluating_agrees(tmp_path):
     expected_ = evaluate(scene(), backend="vm")
     assert expected_.certified

@@ -38,7 +38,7 @@ def shell(line, **keywords):
     return subprocess.run(line, shell=True, capture_output=True, text=True, timeout=120, check=False, **keywords)
 
 
-@pytest.mark.sampled(13)
+@pytest.mark.long
 @pytest.mark.parametrize("closed", ["2>&-", "<&-", "<&- 2>&-", ">&- 2>&-", "<&- >&- 2>&-", "2>/dev/full"])
 def test_streams_that_are_closed_stop_nothing(here, closed):
     done = shell(f"{PROGRAM} {RUN} {closed} && {PROGRAM} {SWEEP} {closed}")
@@ -75,7 +75,7 @@ def test_a_warning_that_nobody_hears_stops_nothing(here):
     assert (here / "x.h5").exists()
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.long
 @pytest.mark.parametrize("backend", ["module://matplotlib_inline.backend_inline", "module://nowhere.at_all", "nonsense", "TkAgg"])
 def test_a_backend_that_a_notebook_set_draws_all_the_same(here, backend):
     done = shell(f"{PROGRAM} {RUN} --figures f", env={**os.environ, "MPLBACKEND": backend})

@@ -210,6 +210,7 @@ def test_workers_without_the_package_are_named_at_once(slider_crank, tmp_path):
     assert not (tmp_path / "x.h5").exists()
 
 
+@pytest.mark.long
 def test_a_worker_without_the_package_that_comes_later_is_named(slider_crank, tmp_path):
     asked = {"grid": {"l": (0.12, 0.4, 4000), "r": (0.05, 0.1, 250)}, "t": (0, 0.08, 21), "wanted": ["effort"]}
     with started(tmp_path, 1) as (address, *_), contextlib.ExitStack() as stack:

@@ -23,6 +23,7 @@ def listed(monkeypatch, tmp_path):
     return plotted.list_of(monkeypatch, tmp_path)
 
 
+@pytest.mark.sampled(2)
 def test_the_usual_figures(swept, tmp_path):
     names = [spec.name for spec in default_plots(swept)]
     assert names == [

@@ -335,6 +335,7 @@ def test_a_forged_plan_is_one_line(here, capsys):
                 progress(folder)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("long", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_a_forged_part_is_done_again(monkeypatch, here, long):
     """Whatever the head of a part says, with a digest that fits, the file is the one that there would have been."""
