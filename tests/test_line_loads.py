@@ -158,6 +158,7 @@ def test_exported_c_has_the_numbers_of_the_api(precision, tmp_path):
     compare(by_c99(tmp_path, told, instants(solution.t, precision)), expected(scene, told, solution), told, made, solution)
 
 
+@pytest.mark.long
 def test_sweeps_find_the_peaks_along_the_links():
     scene, _ = linkage(t=(0.1, 0.9, 81))
     for backend in ("vm", "lanes"):

@@ -229,6 +229,7 @@ def test_a_mechanism_without_links_or_parameters_says_so(built):
     ]
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 @pytest.mark.parametrize(("name", "rung"), [("slider_crank", "single"), ("slider_crank", "double"), ("andrews_squeezer", "single")])
 def test_compilers_have_nothing_to_say(name, rung, compiler, built):

@@ -91,6 +91,7 @@ def test_a_limit_of_a_parameter_and_what_it_costs():
     assert (found.objective - relaxed.objective) / 1e-4 == pytest.approx(mass.multiplier, rel=1e-2)
 
 
+@pytest.mark.long
 def test_an_active_limit_has_the_multiplier_of_its_slope():
     """The longest rod is best, but bends: the limit is met, and each of ten starts ends where it is."""
     scene = case("slider_crank")
@@ -208,6 +209,7 @@ def test_what_has_instants_of_its_own_is_refused():
         optimise(scene, minimise="peak:effort:O", over={"rpm": (30.0, 90.0)})
 
 
+@pytest.mark.long
 def test_motions_by_samples():
     """At a bound the multiplier is the slope of the peak, which is found in another way."""
     times = np.linspace(0.0, 1.0, 9)

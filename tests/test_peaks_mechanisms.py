@@ -78,7 +78,7 @@ def _assert_none_is_short(scene, dense):
         assert not [name for name in names if not abs(peaks[name] - found[name]) <= 1e-9 * scale[dense.unit(name)]], backend
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(97)
 @pytest.mark.parametrize("name", SCENES)
 def test_no_peak_is_short(name):
     assert_none_is_short(SCENES[name], 51, 101)

@@ -33,6 +33,7 @@ def many(tmp_path_factory):
     return path
 
 
+@pytest.mark.sampled(2)
 def test_each_knows_of_the_other(many):
     with h5py.File(many) as file:
         for number in (0, 1, MANY - 1):
@@ -47,6 +48,7 @@ def test_each_knows_of_the_other(many):
             assert set(belonging["dimension"]) == {["t", "xi"].index(name)}
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("engine", ["h5netcdf", "netcdf4"])
 def test_xarray_finds_them(many, engine):
     with xarray.open_dataset(many, engine=engine, group="55") as found:

@@ -267,7 +267,7 @@ def test_estimates_are_near_the_errors(name):
     assert_near(ratios(evaluate(scene, backend="c"), exactly(scene)))
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["rssr", "cardan_shaft"])
 def test_figures_can_be_drawn(name, tmp_path):
     scene = scene_of(name)

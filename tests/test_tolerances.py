@@ -43,6 +43,7 @@ def test_spreads_are_those_of_the_closed_form():
     assert found.failed == 0
 
 
+@pytest.mark.long
 def test_what_is_drawn_is_what_sweeps_have():
     """The largest that was drawn lies between the nominal peak and that of the worst corner; the same in every run."""
     scene = load_case(CASES / "slider_crank").scene
