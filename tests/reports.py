@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, density, evaluate
 from lagrange_casadi.case import load_case
 from lagrange_casadi.motion import polynomial
 
@@ -49,6 +49,19 @@ def snowed(space=False):
     m.force("push", bar.at(0.7), x=1.0, y=20.0)
     m.line_load("snow", bar, x=(1.0, 2.0), y=(-40.0, 0.0), **({"z": (5.0, 60.0)} if space else {}), between=(0.3, 1.4))
     return evaluate(Scene(m, {"O": polynomial(0, 3)}, t=(0, 1, 9)), backend="vm")
+
+
+@functools.cache
+def wound():
+    """A bar in space that tumbles, whose slices have rotary inertia that changes along it, under a load along a part of it."""
+    m = SpatialMechanism("wound")
+    slices = {"yy": density.polynomial(0.02, 0.03, -0.01), "zz": density.polynomial(0.05), "yz": density.polynomial(0.0, 4e-3)}
+    bar = m.link("bar", length=m.parameter("l", 0.8, "m"), density=density.thick(density.polynomial(3.0, 1.0), **slices))
+    m.spherical("O", m.ground, bar)
+    m.line_load("snow", bar, y=(-40.0, 0.0), z=(5.0, 60.0), between=(0.3, 0.5))
+    m.force("push", bar.at(0.2), x=1.0, y=20.0, z=-4.0)
+    laws = [polynomial(0.1, 2.0, 1.5), polynomial(0.2, -3.0), polynomial(0.3, 1.0, -2.0)]
+    return Scene(m, {"O": laws}, t=(0, 0.3, 9), xi=(0, 1, 7))
 
 
 def hostile():

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from drawn_scenes import every_kind
-from reports import HOSTILE, held, hostile, press, snowed, solved
+from reports import HOSTILE, held, hostile, press, snowed, solved, wound
 
 from lagrange_casadi import evaluate, load, save
 from lagrange_casadi.case import load_case
@@ -39,6 +39,7 @@ def test_charts_hold_the_solution_to_the_last_bit(name):
 
 
 LAWS = {name: functools.partial(solved, name) for name in ("quick_return", "excavator", "engine", "rssr", "delta")}
+LAWS["couples of slices"] = lambda: evaluate(wound(), backend="vm")
 
 
 @pytest.mark.sampled(3)

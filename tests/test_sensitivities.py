@@ -5,12 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import CASES
+from reports import wound
 
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, sensitivities
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import harmonic
 from lagrange_casadi.sensitivity.peaks import PeakKind
+from lagrange_casadi.tables import SPACE
 
 pytestmark = pytest.mark.quick
 
@@ -49,6 +51,16 @@ def test_series_and_sections_are_those_of_differences(parameter):
         assert found.shape == solution.array(name).shape
         size = np.abs(exact).max() + np.abs(solution.array(name)).max() / abs(at)
         np.testing.assert_allclose(found, exact, rtol=0, atol=1e-9 * size, err_msg=name)
+
+
+def test_sections_of_links_whose_slices_have_rotary_inertia():
+    scene = wound()
+    solution = evaluate(scene, certificate=False, backend="vm")
+    changes = sensitivities(scene, solution, backend="vm")
+    for force in SPACE.forces[:6]:
+        name = f"section:bar:{force}"
+        exact = differences(lambda l: evaluate(scene, parameters={"l": l}, certificate=False, backend="vm"), name, "l", 0.8)
+        np.testing.assert_allclose(changes.array(name, "l"), exact, rtol=0, atol=1e-9 * np.abs(exact).max(), err_msg=name)
 
 
 def test_means_and_peaks():

@@ -86,7 +86,13 @@ def _matter(mechanism: Mechanism, body: Any) -> tuple[list[tuple[Any, Point]], l
     if isinstance(body.mass, Density):
         base, tip, inertia = body.mass.ends(body.length)
         axis = body.base, body.tip
-        return [(base, body.base), (tip, body.tip)], [(inertia / (body.length * body.length), axis, axis)]
+        moments = [(inertia / (body.length * body.length), axis, axis)]
+        if body.mass.slices is not None:
+            across = [(body.base, body.at(0.0, y, z)) for y, z in ((1.0, 0.0), (0.0, 1.0))]
+            yy, zz, yz = body.mass.slices.whole(body.length)
+            pairs = ((yy, 0, 0), (zz, 1, 1), (yz, 0, 1), (yz, 1, 0))
+            moments += [(moment, across[i], across[j]) for moment, i, j in pairs]
+        return [(base, body.base), (tip, body.tip)], moments
     matter = body.mass
     place = [*matter.centre, 0.0][:3]
     centre = body.at(*place)

@@ -17,7 +17,7 @@ from .checks import Column
 from .kinematics import Kinematics
 from .mobility import stations_of
 from .multibody import Multibody, column
-from .spreads import felt, spreads_of
+from .spreads import felt_along
 
 
 def own_outputs(body: Multibody, solved: Kinematics, found: Mapping[Column, Any]) -> dict[Column, Any]:
@@ -68,9 +68,4 @@ def _section(link: Link, force: str, ratio: Any, found: Mapping[Column, Any], ta
             load = load + across * (terms.arm * (l * (place - ratio)))
         seen = ca.logic_or(ca.SX(ratio) < place, ca.logic_and(ca.SX(ratio) >= 1, place >= 1))
         total += ca.SX(load) if seen.is_one() else ca.SX(0) if seen.is_zero() else ca.if_else(seen, load, 0)
-    for name, powers in spreads_of((key for key in found if isinstance(key, Output)), link.name).items():
-        if Output("spread", link.name, terms.spread, name, 0) in found:
-            total += felt(found, link, name, powers, terms.spread, ratio, arm=bool(terms.arm)) * (terms.arm or 1)
-        if Output("spread", link.name, terms.couple, name, 0) in found:
-            total += felt(found, link, name, powers, terms.couple, ratio, arm=False)
-    return total
+    return sum(felt_along(found, link, terms, ratio), total)

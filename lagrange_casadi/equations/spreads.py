@@ -23,7 +23,7 @@ from ..declare.density import Density
 from ..declare.mechanism import Mechanism
 from ..declare.parts import LineLoad, Link, Vector
 from ..quantities import Output
-from ..tables import table_of
+from ..tables import Terms, table_of
 from .checks import Column
 from .multibody import Multibody
 
@@ -106,7 +106,15 @@ def spreads_of(outputs: Iterable[Output], link: str) -> dict[str, int]:
     return found
 
 
-def felt(outputs: Mapping[Column, Any], link: Link, load: str, powers: int, direction: str, ratio: Any, *, arm: bool) -> Any:
+def felt_along(outputs: Mapping[Column, Any], link: Link, terms: Terms, ratio: Any) -> Iterator[Any]:
+    """What a section force at a ratio is of each that acts along the link: loads by their arms, and couples of slices."""
+    for load, powers in spreads_of((key for key in outputs if isinstance(key, Output)), link.name).items():
+        for direction, sign, arm in ((terms.spread, terms.arm or 1, bool(terms.arm)), (terms.couple, 1, False)):
+            if Output("spread", link.name, direction, load, 0) in outputs:
+                yield sign * _felt(outputs, link, load, powers, direction, ratio, arm=arm)
+
+
+def _felt(outputs: Mapping[Column, Any], link: Link, load: str, powers: int, direction: str, ratio: Any, *, arm: bool) -> Any:
     """What a section at a ratio feels of a load along its link in a direction: the force, or with ``arm`` its moment."""
 
     def value(member: str, power: int | None = None) -> Any:

@@ -58,31 +58,41 @@ def section_entries(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Ar
             {"name": load.name} | {member: added(Output("station", link, member, load.name)) for member in table.station}
             for load in law.loads
         ]
-        spread = {
-            direction: [
-                added(Output("spread", link, direction, load.name, power)) for load in law.spreads for power in range(load.powers)
-            ]
-            for direction in table.spread
-        }
+        spread = [
+            {
+                direction: [added(Output("spread", link, direction, load.name, power)) for power in range(load.powers)]
+                for direction in load.terms
+            }
+            for load in law.spreads
+        ]
         forces = []
         for name in table.forces:
             output = Output("section", link, name)
-            rows = of_moment if name in table.sections and table.sections[name].arm else of_force
-            made = _made(name, table, columns, spread, rows)
+            made = _made(name, table, columns, spread, (of_force, of_moment))
             words = what(output, table), solution.unit(output), not solution.determined(output)
             forces.append(asdict(Force(name, *words, **made)))
         yield {"link": link, "length": law.length, "xi": arrays.add(xi), "forces": forces, "loads": loads}
 
 
 def _made(
-    name: str, table: Table, columns: Mapping[str, int], spread: Mapping[str, Sequence[int]], rows: Sequence[int]
+    name: str,
+    table: Table,
+    columns: Mapping[str, int],
+    spread: Sequence[Mapping[str, Sequence[int]]],
+    rows: tuple[Sequence[int], Sequence[int]],
 ) -> dict[str, Any]:
     """What a force is made of."""
     terms = table.sections.get(name)
     if terms is None:
         return {"parts": table.parts("section", name)}
-    factors = [columns[coefficient] for coefficient in terms.coefficients] + list(spread.get(terms.spread, ()))
-    signs = [1] + [terms.arm or 1] * (len(factors) - 1)
-    summed = tuple(zip(factors, rows, signs, strict=False))
+    plain, sign = rows[1 if terms.arm else 0], terms.arm or 1
+    law = [columns[coefficient] for coefficient in terms.coefficients]
+    summed = [*zip(law, plain, [1, *(sign for _ in law[1:])], strict=False)]
+    # After those of the law, a row for each power of each load; couples have no arm.
+    first = 0
+    for load in spread:
+        for direction, there, way in ((terms.spread, plain[4 if terms.arm else 3 :], sign), (terms.couple, rows[0][3:], 1)):
+            summed += [(factor, there[first + power], way) for power, factor in enumerate(load.get(direction, ()))]
+        first += max(map(len, load.values()))
     across = table.sections[terms.shear].acting if terms.arm else ""
-    return {"terms": summed, "acting": terms.acting, "across": across, "arm": terms.arm}
+    return {"terms": tuple(summed), "acting": terms.acting, "across": across, "arm": terms.arm}

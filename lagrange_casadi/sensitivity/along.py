@@ -16,7 +16,7 @@ from ..declare.mechanism import Mechanism
 from ..declare.parts import Link
 from ..equations.checks import Column
 from ..equations.mobility import stations_of
-from ..equations.spreads import felt, spreads_of
+from ..equations.spreads import felt_along, spreads_of
 from ..quantities import Output
 from ..tables import Terms, table_of
 
@@ -62,10 +62,7 @@ class Along:
         law = [self.columns[Output("law", self.link.name, member)] for member in terms.coefficients]
         value = sum(column * row for column, row in zip(law, rows, strict=False))
         value += sum(self._beyond(terms, station, place) for station in self.stations)
-        for load, powers in self.spreads.items() if terms.spread else ():
-            sign = terms.arm or 1
-            value += sign * felt(self.columns, self.link, load, powers, terms.spread, u, arm=bool(terms.arm))
-        return ca.SX(value)
+        return ca.SX(sum(felt_along(self.columns, self.link, terms, u), value))
 
     def _beyond(self, terms: Terms, station: str, place: Place) -> Any:
         """What a section feels of what acts at a station, where that is towards the tip."""
