@@ -79,11 +79,11 @@ class AngleError(DeclarationError, ValueError):
 class PostureError(DeclarationError):
     """A posture that leaves open how loops are assembled.
 
-    ``ways`` are the two of each loop that may be closed in two ways, as entries of a posture; ``lacking`` tells whether others need
+    ``ways`` are those of each loop that may be closed in several, as entries of a posture; ``lacking`` tells whether others need
     rough values to be iterated from. ``scene`` is what it was tried with, where that is known.
     """
 
-    def __init__(self, message: str, ways: Sequence[tuple[Mapping[str, float], Mapping[str, float]]] = (), lacking: bool = False):
+    def __init__(self, message: str, ways: Sequence[tuple[Mapping[str, float], ...]] = (), lacking: bool = False):
         super().__init__(message)
         self.ways, self.lacking = tuple(ways), lacking
         self.scene: object = None

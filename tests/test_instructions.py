@@ -28,7 +28,7 @@ INSTANT = {
     "roller_cam": 304,
     "v_twin": 1778,
     "rssr": 779,
-    "spatial_slider_crank": 414,
+    "spatial_slider_crank": 430,
     "stewart_gough": 5322,
     "arm6": 1434,
     "cardan_shaft": 771,
@@ -36,7 +36,7 @@ INSTANT = {
     "delta": 4560,
     "bricard": 2044,
 }
-LOOPS = {"rrr3": 239, "beam_pump": 50, "spatial_slider_crank": 53, "cardan_shaft": 62}
+LOOPS = {"rrr3": 239, "beam_pump": 50, "cardan_shaft": 62}
 LOOPS |= {"five_link_suspension": 783, "delta": 1002, "bricard": 338}
 
 

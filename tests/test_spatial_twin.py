@@ -10,8 +10,8 @@ from spatial_twin import planar, twin
 from lagrange_casadi import derive, load_case
 
 NAMES = ("slider_crank", "engine", "four_bar", "quick_return", "six_bar", "andrews_squeezer", "rrr3", "arm", "jansen_leg")
-DYADS = ("slider_crank", "engine", "four_bar", "six_bar", "andrews_squeezer")
-"""Those that are made of dyads alone, with no slot."""
+DYADS = ("slider_crank", "engine", "four_bar", "quick_return", "six_bar", "andrews_squeezer", "jansen_leg")
+"""Those that are made of dyads alone."""
 
 ROUNDING = 1e-12
 

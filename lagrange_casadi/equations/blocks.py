@@ -21,6 +21,7 @@ from .balls import axes_of, turn
 from .bars import idle_spins
 from .iteration import place_roughly
 from .legs import solve_leg
+from .lines import solve_line
 from .loops import ClosedForm, solve_loop
 from .multibody import Coordinate, LoopEquations, Multibody, column
 from .sampling import drawn
@@ -252,10 +253,12 @@ def _forms(multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coo
     bar, phi = all(equation.loop.bar is not None for equation in rows), column(equation.gap for equation in rows)
     form = solve_loop(phi, unknown, multibody.coordinates, bar=bar)
     forms: tuple[ClosedForm, ...] = (form,) if form is not None else ()
-    if not forms and len(unknown) in (2, 3) and len({equation.loop for equation in rows}) == 1 and rows[0].loop.joint is not None:
-        forms = solve_leg(phi, rows[0].loop.joint, unknown, multibody)
+    if not forms and unknown and len({equation.loop for equation in rows}) == 1 and (joint := rows[0].loop.joint) is not None:
+        forms = solve_line(joint, [equation.row for equation in rows], phi, unknown, multibody)
+        if not forms and len(unknown) in (2, 3):
+            forms = solve_leg(phi, joint, unknown, multibody)
     # An angle whose turns some constraint counts must not come back from its cosine and sine.
-    if any(form.branch is not None for form in forms) and any(ca.depends_on(counted, c.value) for c in unknown):
+    if any(form.branches for form in forms) and any(ca.depends_on(counted, c.value) for c in unknown):
         return ()
     return forms
 

@@ -8,6 +8,7 @@ matrix, transposed, gives the multipliers too.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,10 +16,7 @@ from functools import cached_property
 from typing import Any
 
 import casadi as ca
-import numpy as np
-import numpy.typing as npt
 
-from ..declare.density import Array
 from ..errors import AssemblyError
 from ..geometry.vectors import AXES
 from .balls import Ball
@@ -36,9 +34,6 @@ _WAYS = 32
 
 _READ = {"angle": 12, "slide": 15}
 """Decimals of what is said of a coordinate [rad or m]."""
-
-NEAR = 0.3
-"""Sines of the transmission angle below which a loop may pass a dead centre."""
 
 
 @dataclass(frozen=True)
@@ -96,8 +91,9 @@ def solve(multibody: Multibody, posture: Mapping[str, float], start: Start, *, i
             break
         except AssemblyError:
             # A loop whose way is open may have to be closed in the other one: the last such loop first.
-            taken = solver.ways + (0,) * (len(solver.undecided.ways) - len(solver.ways))
-            waiting += [(*taken[:k], 1) for k in range(len(solver.ways), len(taken))]
+            open_ = solver.undecided.ways[len(solver.ways) :]
+            for k, (_, ways) in enumerate(open_):
+                waiting += [(*solver.ways, *(0,) * k, other) for other in reversed(range(1, len(ways)))]
             if not waiting or tried == _WAYS - 1:
                 raise
             solver = _Solver(multibody, dict(posture), start, iterate, waiting.pop())
@@ -163,14 +159,14 @@ class _Solver:
             elif block.unknown and not self.undecided.lacking:
                 self._iterate(block, rough)
             return
-        left_to_newton = self.iterate and any(form.branch is not None for form in block.forms)
+        left_to_newton = self.iterate and any(form.branches for form in block.forms)
         closures = [self._solved(block, form) for form in block.forms]
         if left_to_newton:
             self.dyads[block] = ca.mmin(column(closure for closure in closures if closure is not None))
             self._iterate(block, {c: self.numbers.of(self.known[c])[-1] for c in block.unknown})
             return
         for form, closure in zip(block.forms, closures, strict=True):
-            if form.branch is not None:
+            if form.branches:
                 self.loose |= {c.name for c in form.unknown if c.kind == "angle"}
             if closure is not None:
                 self._judge(block, closure)
@@ -178,11 +174,12 @@ class _Solver:
     def _solved(self, block: Block, form: ClosedForm) -> Any | None:
         """Take note of what one closed form of a block solves, on the branch that is nearest to the posture; its closure."""
         closure, variables = form.closure, form.variables
+        if form.branches:
+            signs = ca.SX(ca.DM(self._signs(block, form)))
+            told = [ca.substitute(value, column(form.branches), signs) for value in (closure, *variables)]
+            closure, variables = told[0], tuple(told[1:])
         if closure is not None:
             closure = self.found.put_into(closure)
-        if form.branch is not None:
-            sign = ca.SX(self._branch(block, form, form.branch))
-            variables = tuple(ca.substitute(value, form.branch, sign) for value in variables)
         for coordinate, value in zip(form.unknown, variables, strict=True):
             self.numbers.note(coordinate.variables, self.numbers.of(value))
             self._know(coordinate, self.found.put_into(value))
@@ -199,24 +196,29 @@ class _Solver:
             closure = ca.fmin(*(ca.sqrt(value) if sine and not is_sine else value for value, is_sine in both))
         self.closures[block.name] = closure, sine
 
-    def _branch(self, block: Block, form: ClosedForm, branch: Any) -> int:
-        """The sign of the branch that is nearest to the posture."""
-        (closure,) = self.numbers.of(form.closure)
-        if not closure > 0.0:
-            what = "is at a dead centre" if closure == 0.0 else "cannot be closed"
+    def _signs(self, block: Block, form: ClosedForm) -> tuple[int, ...]:
+        """The signs of the branches with which a form is nearest to the posture."""
+        told, branches = column([form.closure, *form.variables]), column(form.branches)
+        every = {
+            signs: self.numbers.of(ca.substitute(told, branches, ca.SX(ca.DM(signs))))
+            for signs in itertools.product((1, -1), repeat=len(form.branches))
+        }
+        values = {signs: found for signs, (closure, *found) in every.items() if closure > 0.0}
+        if not values:
+            what = "is at a dead centre" if any(closure == 0.0 for closure, *_ in every.values()) else "cannot be closed"
             raise AssemblyError(f"the loop closed by {block.joints} {what} at the start of the motion{self._where()}")
-        variables = column(form.variables)
-        values = {sign: self.numbers.of(ca.substitute(variables, branch, ca.SX(sign))) for sign in (1, -1)}
-        distance = {sign: self._distance(form, found) for sign, found in values.items()}
-        if abs(distance[1] - distance[-1]) <= 1e-6 * (1.0 + distance[1]):
+        distance = {signs: self._distance(form, found) for signs, found in values.items()}
+        least = min(distance.values())
+        near = [signs for signs, gap in distance.items() if gap - least <= 1e-6 * (1.0 + least)]
+        if len(near) > 1:
             # Taken for now, so that the loops after it are looked at too.
             number = len(self.undecided.ways)
-            signs = (1, -1) if number >= len(self.ways) or not self.ways[number] else (-1, 1)
-            ways = [_numbers(form.unknown, values[sign]) for sign in signs]
+            first = self.ways[number] if number < len(self.ways) else 0
+            near = near[first:] + near[:first]
+            ways = [_numbers(form.unknown, values[signs]) for signs in near]
             words = [_describe(way) for way in ways]
             self.undecided.note_ways(block, ways, words, self.numbers.of(self.length)[0])
-            return signs[0]
-        return min(distance, key=lambda sign: distance[sign])
+        return near[0]
 
     def _distance(self, form: ClosedForm, values: Sequence[float]) -> float:
         """How far a solution is from the posture, by all that the posture says of what it places."""
@@ -362,20 +364,6 @@ def where(coordinates: Iterable[tuple[str, str, float]]) -> str:
     """Coordinates by joint, kind and value, to end a message with; nothing where there are none."""
     listed = ", ".join(describe_coordinate(*coordinate) for coordinate in coordinates)
     return f", where {listed}" if listed else ""
-
-
-def passes_dead_centre(closure: Array, *, ends: bool = False) -> npt.NDArray[np.bool_]:
-    """After which instants a loop may pass a dead centre: straight on from either side its transmission angle's sine meets zero.
-
-    The closed forms keep to their branch there, with a kink; the mechanism itself may not. With ``ends`` the first interval and the
-    last are looked at too, each from its one side.
-    """
-    found = np.zeros(closure.size, dtype=bool)
-    sine = np.sqrt(np.where((closure > 0.0) & (closure < np.inf), closure, 0.0))
-    left, right = np.full((2, max(closure.size - 1, 0)), -1.0 if ends else 1.0)
-    left[1:], right[:-1] = 2 * sine[1:-1] - sine[:-2], 2 * sine[1:-1] - sine[2:]
-    found[:-1] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[:-1], sine[1:]) < NEAR)
-    return found
 
 
 def describe_coordinate(joint: str, kind: str, value: float) -> str:

@@ -21,7 +21,7 @@ import casadi as ca
 
 from ..declare.joints import Joint
 from ..geometry.vectors import Vector, cross, dot, minus, times
-from .loops import ClosedForm, solve_one, solves
+from .loops import ClosedForm, held, solve_in_turn, solves
 from .multibody import Coordinate, Multibody, column
 from .sampling import vanish
 
@@ -43,38 +43,30 @@ def _leg(joint: Joint, first: Coordinate, later: Sequence[Coordinate], multibody
     foot = multibody.frames[branch.near.body.name].place_of(branch.near.place)
     axis = times(branch.sign, multibody.axes[first.name])
     ends = [multibody.frames[point.body.name].place_of(point.place) for point in (joint.parent, joint.child)]
-    ends.sort(key=lambda end: not _held(end, (first,)))
+    ends.sort(key=lambda end: not held(end, (first,)))
     head, target = (minus(end, foot) for end in ends)
-    if _held((*target, *foot), (first,)) or _held(axis, (first, *later)):
+    if held((*target, *foot), (first,)) or held(axis, (first, *later)):
         return ()
     if len(later) == 1:
         head, target = cross(axis, head), cross(axis, target)
-    squares = _in_fewest(dot(head, head), later, multibody.coordinates), dot(target, target)
+    squares = in_fewest(dot(head, head), later, multibody.coordinates), dot(target, target)
     # One of the two is a length that nothing changes: beside it the gap is one in metres.
-    fixed = next((square for square in squares if square is not None and not _held((square,), later)), None)
+    fixed = next((square for square in squares if square is not None and not held((square,), later)), None)
     if squares[0] is None or fixed is None:
         return ()
     length = ca.sqrt(fixed)
     near, far = (length if square is fixed else square / length for square in squares)
     equations = [(near - far) / 2]
     if len(later) == 2:
-        height = _in_fewest(dot(axis, head), later, multibody.coordinates)
+        height = in_fewest(dot(axis, head), later, multibody.coordinates)
         if height is None:
             return ()
         equations.append(height - dot(axis, target))
-    equations.sort(key=lambda equation: len(_held((equation,), later)))
-    forms, rest = [], list(later)
-    for equation in equations:
-        found = _held((equation,), rest)
-        form = solve_one(equation, found[0], multibody.coordinates) if len(found) == 1 else None
-        if form is None:
-            return ()
-        forms.append(form)
-        rest.remove(found[0])
-    return (*forms, _turned(first, axis, head, target, across=len(later) == 1))
+    forms = solve_in_turn(equations, later, multibody.coordinates)
+    return (*forms, _turned(first, axis, head, target, across=len(later) == 1)) if forms else ()
 
 
-def _in_fewest(expression: Any, later: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> Any | None:
+def in_fewest(expression: Any, later: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> Any | None:
     """An expression with all coordinates at rest but as few of the ``later`` ones as change it; None where others change it too."""
     for count in range(len(later) + 1):
         for kept in combinations(later, count):
@@ -96,16 +88,10 @@ def _turned(first: Coordinate, axis: Vector, head: Vector, target: Vector, *, ac
     length = ca.sqrt(cosine * cosine + sine * sine)
     variables = ca.vertcat(cosine / length, sine / length, ca.atan2(sine, cosine))
     closure = None if across else dot(beside, beside) / dot(target, target)
-    return ClosedForm((variables,), closure, None, (first,))
+    return ClosedForm((variables,), closure, unknown=(first,))
 
 
 def _at_rest(expression: Any, coordinates: Sequence[Coordinate]) -> Any:
     """An expression with coordinates that are zero."""
     symbols = column(c.variables for c in coordinates)
     return ca.substitute(expression, symbols, column(ca.DM(c.resting) for c in coordinates))
-
-
-def _held(expressions: Sequence[Any], coordinates: Sequence[Coordinate]) -> list[Coordinate]:
-    """The coordinates that expressions hold."""
-    parts = ca.vertcat(*map(ca.SX, expressions))
-    return [c for c in coordinates if ca.depends_on(parts, c.variables)]

@@ -31,14 +31,15 @@ from .sampling import vanish
 
 @dataclass(frozen=True, eq=False)
 class ClosedForm:
-    """Solved variables of ``unknown`` coordinates, one column each, as expressions in what is known and in ``branch`` (+1 or -1).
+    """Solved variables of ``unknown`` coordinates, one column each, as expressions in what is known and in ``branches``.
 
-    ``branch`` is None where the solution is unique; ``closure`` is None where it cannot fail but by a division by zero.
+    Each of the branches is a symbol of a sign (+1 or -1); there are none where the solution is unique. ``closure`` is None where
+    it cannot fail but by a division by zero.
     """
 
     variables: tuple[Any, ...]
     closure: Any | None = None
-    branch: Any | None = None
+    branches: tuple[Any, ...] = ()
     unknown: tuple[Coordinate, ...] = ()
 
 
@@ -57,14 +58,36 @@ def solve_loop(
     return form if solves((form,), phi, coordinates) else None
 
 
-def solve_one(phi: Any, coordinate: Coordinate, coordinates: Sequence[Coordinate]) -> ClosedForm | None:
-    """The closed form of one equation, which may be half of a square; the solution is not put back."""
-    form = _matching(phi, (coordinate,), coordinates) or _spanned(phi, (coordinate,), coordinates)
-    return form and replace(form, unknown=(coordinate,))
+def solve_in_turn(
+    equations: Sequence[Any], unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]
+) -> tuple[ClosedForm, ...]:
+    """The closed forms of equations, one after another, each of which holds one unknown more; none where they do not.
+
+    An equation may be half of a square. The solutions are not put back.
+    """
+    forms: list[ClosedForm] = []
+    rest = list(unknown)
+    for equation in sorted(equations, key=lambda equation: len(held((equation,), unknown))):
+        own = held((equation,), rest)
+        form = _matching(equation, own, coordinates) or _spanned(equation, own, coordinates) if len(own) == 1 else None
+        if form is None:
+            return ()
+        forms.append(replace(form, unknown=tuple(own)))
+        rest.remove(own[0])
+    return tuple(forms)
+
+
+def held(expressions: Sequence[Any], coordinates: Sequence[Coordinate]) -> list[Coordinate]:
+    """The coordinates that expressions hold."""
+    parts = ca.vertcat(*map(ca.SX, expressions))
+    return [c for c in coordinates if ca.depends_on(parts, c.variables)]
 
 
 def _spanned(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> ClosedForm | None:
-    """A bar's end that turns about one axis, or slides along one: two points of a circle or a line are so far from another one."""
+    """A bar's end that turns about one axis, or slides along one: two points of a circle or a line are so far from another one.
+
+    What turns may also lie askew, and its distance from an axis be told: a sine, or a cosine, of either sign, and both ways round.
+    """
     (coordinate,) = unknown
     symbols = _pair(coordinate) if coordinate.kind == "angle" else coordinate.variables
     curvature = ca.hessian(phi, symbols)[0]
@@ -72,17 +95,42 @@ def _spanned(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coor
         return None
     branch = ca.SX.sym("branch")
     if coordinate.kind == "angle":
-        if not vanish(ca.vertcat(curvature[0, 1], curvature[0, 0] - curvature[1, 1]), coordinates, curvature):
+        if not vanish(curvature[0, 1], coordinates, curvature):
             return None
+        if not vanish(curvature[0, 0] - curvature[1, 1], coordinates, curvature):
+            return _askew(phi, coordinate, curvature, coordinates)
         # Where the squares of cosine and sine have one factor, they are one number.
         straight = phi - curvature[0, 0] * (ca.sumsqr(symbols) - 1) / 2
         slope, rest = (ca.substitute(e, symbols, ca.SX.zeros(2)) for e in (ca.jacobian(straight, symbols), straight))
         solved = _direction_on_line(slope @ symbols + rest, coordinate, branch)
-        return solved and ClosedForm((_variables(solved[0]),), solved[1], branch)
+        return solved and ClosedForm((_variables(solved[0]),), solved[1], (branch,))
     slope, rest = (ca.substitute(e, symbols, 0) for e in (ca.jacobian(phi, symbols), phi))
     # The slope of Phi at its zeros, which is the cosine between bar and slide.
     squared = _square(slope) - 2 * curvature * rest
-    return ClosedForm(((branch * ca.sqrt(squared) - slope) / curvature,), squared, branch)
+    return ClosedForm(((branch * ca.sqrt(squared) - slope) / curvature,), squared, (branch,))
+
+
+def _askew(phi: Any, angle: Coordinate, curvature: Any, coordinates: Sequence[Coordinate]) -> ClosedForm | None:
+    """A square of a sine, or of a cosine, and that sine are known to be of one sum: of two signs, each with two ways round."""
+    pair = _pair(angle)
+    slope, rest = (ca.substitute(e, pair, ca.SX.zeros(2)) for e in (ca.jacobian(phi, pair), phi))
+    number = 0 if curvature[1, 1].is_zero() or not vanish(slope[0], coordinates, curvature) else 1
+    other = 1 - number
+    if not vanish(slope[other], coordinates, curvature):
+        return None
+    # With the square of the other one, which is one less this one's: bend x x + 2 slope x + rest = 0.
+    bend = curvature[number, number] - curvature[other, other]
+    rest = rest + rest + curvature[other, other]
+    signs = ca.SX.sym("branch"), ca.SX.sym("other_branch")
+    if vanish(slope, coordinates, curvature):
+        squared = -rest / bend
+        found = signs[0] * ca.sqrt(squared)
+    else:
+        squared = (_square(slope[number]) - bend * rest) / _square(bend)
+        found = signs[0] * ca.sqrt(squared) - slope[number] / bend
+    beside = (1 - found) * (1 + found)
+    direction = ca.vertcat(found, signs[1] * ca.sqrt(beside))
+    return ClosedForm((_variables(direction if number == 0 else direction[::-1]),), ca.fmin(squared, beside), signs)
 
 
 def _matching(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> ClosedForm | None:
@@ -99,7 +147,7 @@ def _matching(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coo
     if kinds == "as":
         angle, slide = sorted(unknown, key=lambda c: c.kind)
         form = _direction_and_slide(phi, angle, slide, coordinates)
-        return ClosedForm(form.variables[::-1], form.closure, form.branch) if form and unknown[0] is slide else form
+        return replace(form, variables=form.variables[::-1]) if form and unknown[0] is slide else form
     return _slides(phi, unknown) if set(kinds) == {"s"} else None
 
 
@@ -113,7 +161,7 @@ def solves(forms: Sequence[ClosedForm], phi: Any, coordinates: Sequence[Coordina
         directions = [c[0] * c[0] + c[1] * c[1] - 1 for c in form.variables if c.numel() > 1]
         left = ca.vertcat(left[:-1], *(left[-1] * off for off in directions), left[-1])
         left = ca.substitute(left, column(c.variables for c in form.unknown), column(form.variables))
-    branches = column(form.branch for form in forms if form.branch is not None)
+    branches = column(branch for form in forms for branch in form.branches)
     ways = [ca.substitute(left, branches, ca.SX(ca.DM(signs))) for signs in product((1, -1), repeat=branches.numel())]
     return vanish(column(way[:-1] for way in ways), coordinates, column(way[-1] for way in ways))
 
@@ -129,7 +177,7 @@ def _affine(phi: Any, symbols: Any, all_unknown: Any) -> tuple[Any, Any] | None:
 def _one_direction(phi: Any, angle: Coordinate) -> ClosedForm | None:
     branch = ca.SX.sym("branch")
     solved = _direction_on_line(phi, angle, branch)
-    return solved and ClosedForm((_variables(solved[0]),), solved[1], branch)
+    return solved and ClosedForm((_variables(solved[0]),), solved[1], (branch,))
 
 
 def _direction_on_line(phi: Any, angle: Coordinate, branch: Any, largest: Any = None) -> tuple[Any, Any] | None:
@@ -178,7 +226,7 @@ def _two_circles(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[
     # What is left of p: its error is what p's own rounding makes of this arm.
     second = (px - first[0], py - first[1])
     directions = tuple(_variables(_direction(v, arm)) for v, arm in zip((first, second), arms, strict=True))
-    return ClosedForm(directions, root / _square(2 * (l1 * l2)), branch)
+    return ClosedForm(directions, root / _square(2 * (l1 * l2)), (branch,))
 
 
 def _turns(columns: Any, coordinates: Sequence[Coordinate]) -> bool:
@@ -217,7 +265,7 @@ def _direction_and_slide(phi: Any, angle: Coordinate, slide: Coordinate, coordin
     place = -ca.substitute(along, unknown, ca.vertcat(direction, 0))
     if not vanish(ca.sumsqr(along_axis) - 1, coordinates):
         place = place / ca.sumsqr(along_axis)
-    return ClosedForm((_variables(direction), place), closure, branch)
+    return ClosedForm((_variables(direction), place), closure, (branch,))
 
 
 def _tied(phi: Any, angle: Coordinate) -> ClosedForm | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -72,9 +73,9 @@ def directions(
 
 @dataclass(eq=False)
 class Undecided:
-    """What a posture leaves open of loops: the two ways of each that has a closed form, and names that iterated ones need."""
+    """What a posture leaves open of loops: the ways of each that has a closed form, and names that iterated ones need."""
 
-    ways: list[tuple[str, Mapping[str, float], Mapping[str, float]]] = field(default_factory=list)
+    ways: list[tuple[str, tuple[Mapping[str, float], ...]]] = field(default_factory=list)
     lacking: list[tuple[str, list[tuple[str, bool]]]] = field(default_factory=list)
     words: list[str] = field(default_factory=list)
 
@@ -82,18 +83,17 @@ class Undecided:
         return bool(self.ways or self.lacking)
 
     def note_ways(self, block: Block, ways: Sequence[Mapping[Coordinate, float]], words: Sequence[str], length: float) -> None:
-        """Note that a loop can be assembled in two ways; the coordinate that differs most is to tell them apart."""
-        first, second = ways
+        """Note that a loop can be assembled in some ways; the coordinate that differs most is to tell them apart."""
 
         def apart(coordinate: Coordinate) -> float:
-            gap = first[coordinate] - second[coordinate]
-            return abs(math.remainder(gap, math.tau)) if coordinate.kind == "angle" else abs(gap) / length
+            gaps = (one[coordinate] - other[coordinate] for one, other in itertools.combinations(ways, 2))
+            return min(abs(math.remainder(gap, math.tau)) if coordinate.kind == "angle" else abs(gap) / length for gap in gaps)
 
-        chosen = max(first, key=apart)
-        name = chosen.told_as
-        self.ways.append((block.joints, {name: first[chosen]}, {name: second[chosen]}))
+        chosen = max(ways[0], key=apart)
+        self.ways.append((block.joints, tuple({chosen.told_as: way[chosen]} for way in ways)))
+        many = "two" if len(ways) == 2 else "several"
         self.words.append(
-            f"the loop closed by {block.joints} can be assembled in two ways at the start of the motion: {' or '.join(words)}"
+            f"the loop closed by {block.joints} can be assembled in {many} ways at the start of the motion: {' or '.join(words)}"
         )
 
     def note_lacking(self, block: Block, missing: Sequence[Coordinate]) -> None:
@@ -104,19 +104,19 @@ class Undecided:
 
     def refusal(self, multibody: Multibody) -> PostureError:
         """All of it as an error, with lines to paste."""
-        kinds = {name for _, first, _ in self.ways for name in first if turns(multibody, name)}
+        kinds = {name for _, ways in self.ways for name in ways[0] if turns(multibody, name)}
         lines = []
-        for k in (0, 1) if self.ways and len(self.ways) == 1 and not self.lacking else (0,):
+        for k in range(len(self.ways[0][1])) if len(self.ways) == 1 and not self.lacking else (0,):
             told = {}
-            for _, *ends in self.ways:
-                for name, value in ends[k].items():
-                    text = readable(math.degrees(value), math.degrees(ends[1 - k][name])) if name in kinds else ""
-                    told[name] = f"'{text} deg'" if text else readable(value, ends[1 - k][name])
+            for _, ways in self.ways:
+                for name, value in ways[k].items():
+                    values = [value, *(way[name] for way in ways)]
+                    told[name] = f"'{readable(*map(math.degrees, values))} deg'" if name in kinds else readable(*values)
             told |= {name: "'... deg'" if angular else "..." for _, names in self.lacking for name, angular in names}
             lines.append("posture={" + ", ".join(f"'{name}': {text}" for name, text in told.items()) + "}")
         say = f"say which by {' or '.join(lines)}" if self.ways else lines[0]
         after = " or the like: each loop is told as it is with the first way of those before it" if len(self.ways) > 1 else ""
-        return PostureError(f"{'; '.join(self.words)}; {say}{after}", tuple((a, b) for _, a, b in self.ways), bool(self.lacking))
+        return PostureError(f"{'; '.join(self.words)}; {say}{after}", tuple(ways for _, ways in self.ways), bool(self.lacking))
 
 
 def _direction(multibody: Multibody, body: str) -> Any:
