@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrange_casadi import Scene, SpatialMechanism, evaluate
+from lagrange_casadi import Scene, SpatialMechanism, evaluate, load, save
 from lagrange_casadi.declare.joints import Joint
 from lagrange_casadi.errors import DeclarationError, ParameterError
 from lagrange_casadi.motion import polynomial
@@ -100,6 +100,16 @@ def test_a_plane_in_space_rubs_as_in_the_plane():
     assert solution.series["friction:rub:along"] == pytest.approx(
         -0.1 * 0.02 * np.sqrt(reaction.fx**2 + reaction.fz**2) - 0.3 * rate, rel=1e-11
     )
+
+
+def test_a_file_holds_it(tmp_path):
+    scene = Scene(jack(0.02, 0.1), {"O": polynomial(0, 3.0)}, t=(0, 1, 3), posture={"thread": 0.0})
+    solution = evaluate(scene, backend="vm")
+    save(solution, tmp_path / "jack.h5")
+    again = load(tmp_path / "jack.h5")
+    assert again.certified
+    assert again.series["friction:flanks:along"].tolist() == solution.series["friction:flanks:along"].tolist()
+    assert again.description == solution.description
 
 
 def test_what_no_couple_drives_is_refused():

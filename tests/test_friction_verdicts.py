@@ -13,7 +13,7 @@ from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.motion import expression, polynomial
+from lagrange_casadi.motion import expression, harmonic, polynomial
 from lagrange_casadi.store.runs import check, load, save
 
 WEIGHT, ARM = 50.0, 0.2
@@ -109,6 +109,18 @@ def test_at_a_dead_centre_the_sign_is_that_of_the_instants_right_after(backend):
     assert ring == pytest.approx(after.series["friction:ring:along"], rel=1e-6)
     assert solution.effort("O") == pytest.approx(after.effort("O"), rel=1e-6, abs=1e-6)
     assert ring[0] > 0.0 > ring[4]
+
+
+@every
+def test_where_the_drive_itself_turns_back_too(backend):
+    """Its rate there is what rounding leaves of a cosine, of any sign."""
+    law, t = harmonic(0.4, 0.3, 5.0, 0.1), [(math.pi * (0.5 + k) - 0.1) / (2 * math.pi * 5.0) for k in range(8)]
+    for at in t:
+        scene = reciprocating(law, t=(at, at + 1.0, 2))
+        solution, after = (evaluate(scene, backend=backend, t=(one, one + 1.0, 2)) for one in (at, at + 1e-9))
+        assert abs(solution.motion("O").rate[0]) < 1e-12
+        for name in ("friction:ring:along", "friction:pin:along", "effort:O"):
+            assert solution.array(name)[0] == pytest.approx(after.array(name)[0], rel=1e-6)
 
 
 def start_and_stop(t):

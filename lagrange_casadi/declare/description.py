@@ -228,11 +228,13 @@ def _described(
         }
 
     def load_of(load: Load) -> Description:
-        found = {"kind": type(load).__name__.lower(), "points": [place(point) for point in load.points]}
+        found: Description = {"kind": type(load).__name__.lower(), "points": [place(point) for point in load.points]}
+        if mechanism.space:
+            found["turning"] = getattr(load, "turning", False)
         if isinstance(load, Friction):
             numbers = {word: number(value) for word, value in load.numbers.items()}
-            return found | {"friction": {"coordinate": load.axis.coordinate, "numbers": numbers}}
-        return found | {"turning": getattr(load, "turning", False)} if mechanism.space else found
+            found["friction"] = {"coordinate": load.axis.coordinate, "numbers": numbers}
+        return found
 
     bodies = {body.name: matter(body) for body in mechanism.moving}
     loads = {name: load_of(load) for name, load in mechanism.loads.items()}

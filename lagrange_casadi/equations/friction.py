@@ -33,7 +33,8 @@ STEPS = 4
 """Newton's steps: the error goes as the 4th, 10th, 22nd, 46th power of how much of itself a friction brings about."""
 
 _REST = 1e-12
-"""Of the fastest motion in the mechanism: a rate below is that of rest, but for rounding."""
+"""Of the fastest motion in the mechanism, of now or as soon as it has turned by a radian: a rate below is that of rest, but for
+rounding."""
 
 _NOTHING = 1e-30
 
@@ -116,7 +117,8 @@ def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vec
         else:
             tilt = couple[2] / friction.length
             contacts = tuple(Contact(1.0, (pressing / 2 + sign * tilt,)) for sign in (1, -1))
-    return Rubbing(friction, contacts, rate, acceleration, (least * fastest, least * quickest))
+    # Where the drives themselves turn back, nothing moves: what is slow is told by how soon it moves.
+    return Rubbing(friction, contacts, rate, acceleration, (least * ca.sqrt(quickest), least * quickest))
 
 
 def _in_space(multibody: Multibody, friction: Friction, force: Vector, couple: Vector) -> tuple[Contact, ...]:

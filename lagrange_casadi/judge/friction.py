@@ -13,7 +13,7 @@ from ..quantities import Output
 from .placing import Moving, axis_of
 
 _SLOW = 1e-9
-"""Of a joint's fastest rate: below, either sign may be that of its rate."""
+"""Of a joint's fastest rate, of the cycle or soon after: below, either sign may be that of its rate."""
 
 Pressing = Callable[[Array], Array]
 """What mu is multiplied by, for signs of the rate."""
@@ -44,10 +44,18 @@ def law_gaps(solution: Solution, bodies: Mapping[str, Moving] | None = None) -> 
         gap = np.abs(value - steady + mu * sign * pressing(sign))
         if "smooth" not in numbers:
             ends = [np.abs(value - steady + one * mu * pressing(one * np.ones_like(rate))) for one in (1.0, -1.0)]
-            gap = np.where(np.abs(rate) > _SLOW * np.max(np.abs(rate)), gap, np.minimum(*ends))
+            gap = np.where(np.abs(rate) > _SLOW * _fastest(solution, joint, rate), gap, np.minimum(*ends))
         scale = float(np.max(mu)) * numbers.get("radius", 1.0) * _most(solution, numbers) + float(np.max(np.abs(steady)))
         worst = np.maximum(worst, np.divide(gap, scale, out=gap.copy(), where=scale > 0.0))
     return (worst, 1.0) if found else None
+
+
+def _fastest(solution: Solution, joint: str, rate: Array) -> float:
+    """The fastest rate of a joint, or what it would be a radian or the length of all links after its fastest start."""
+    lengths = sum(body["length"] or 0.0 for body in solution.description["bodies"].values())
+    unit = lengths if solution.unit(f"motion:{joint}") == "m" else 1.0
+    change = solution.outputs.get(Output("motion", joint, "acceleration"), np.zeros(1))
+    return float(max(np.max(np.abs(rate)), np.sqrt(unit * np.max(np.abs(change)))))
 
 
 def _most(solution: Solution, numbers: Mapping[str, float]) -> float:
