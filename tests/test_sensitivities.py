@@ -10,7 +10,7 @@ from reports import wound
 from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, sensitivities
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
-from lagrange_casadi.motion import harmonic
+from lagrange_casadi.motion import dwell, harmonic, move, moves
 from lagrange_casadi.sensitivity.peaks import PeakKind
 from lagrange_casadi.tables import SPACE
 
@@ -61,6 +61,21 @@ def test_sections_of_links_whose_slices_have_rotary_inertia():
         name = f"section:bar:{force}"
         exact = differences(lambda l: evaluate(scene, parameters={"l": l}, certificate=False, backend="vm"), name, "l", 0.8)
         np.testing.assert_allclose(changes.array(name, "l"), exact, rtol=0, atol=1e-9 * np.abs(exact).max(), err_msg=name)
+
+
+def test_where_friction_rests_there_are_no_numbers():
+    m = Mechanism("resting")
+    l = m.parameter("l", 0.4, "m")
+    bar = m.link("bar", length=l, mass=2.0)
+    m.friction("rub", m.revolute("O", m.ground, bar), mu=0.1, radius=0.02)
+    law = moves([move(1.0, time=0.4), dwell(0.1), move(by=-1.0, time=0.5)])
+    scene = Scene(m, {"O": law}, t=(0, 1, 41), wanted=["effort"])
+    solution = evaluate(scene, backend="vm")
+    assert 0 < np.count_nonzero(solution.resting) < 41
+    found = sensitivities(scene, solution, backend="vm").array("effort:O", "l")
+    assert np.isnan(found).tolist() == solution.resting.tolist()
+    exact = differences(lambda x: evaluate(scene, parameters={"l": x}, backend="vm"), "effort:O", "l", 0.4)
+    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-8 * np.nanmax(np.abs(exact)))
 
 
 def test_means_and_peaks():

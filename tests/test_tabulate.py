@@ -217,6 +217,12 @@ def two_drives():
     return Scene(m, {"near": motion.polynomial(0, 1), "far": motion.polynomial(0, 1)})
 
 
+def rubbing():
+    m = Mechanism("rubbing")
+    m.friction("rub", m.revolute("pin", m.ground, m.link("bar", length=0.3, mass=1.0)), mu=0.1, radius=0.02)
+    return Scene(m, {"pin": motion.polynomial(0, 1)})
+
+
 REFUSED = {
     "no drive": (fixed, r"expected one driven joint, whose angle decides all, got none"),
     "two": (two_drives, r"expected one driven joint, whose angle decides all, got 'near', 'far'"),
@@ -235,6 +241,7 @@ REFUSED = {
     ),
     "cube": (lambda: arm(lambda q, w, t: 1e-6 * w**3), r"sign, size or another power enters 'load:load:mz', 'effort:pin'$"),
     "at rest": (lambda: arm(lambda q, w, t: w**2 / ca.fabs(w)), r"'load:load:mz' is not finite at rest, where pin = 0\.\d+ rad"),
+    "friction": (rubbing, r"quadratic in the rate of joint 'pin', but its sign decides friction 'rub'$"),
     "quick_return": (lambda: case("quick_return"), r"quadratic in the rate of joint 'O', .* enters 'load:cut:fx', .* and 16 more"),
     "rocker": (
         unreachable,

@@ -250,6 +250,11 @@ def cycle_of(graph: SceneGraph, p: Array, rates: tuple[float, float]) -> Cycle:
     Raises :class:`DeclarationError`, with the reason, where there is none.
     """
     drive = Drive.of(graph, p)
+    if rubbing := graph.checks("rest"):
+        raise DeclarationError(
+            f"table: expected columns quadratic in the rate of joint '{drive.joint}', but its sign decides friction "
+            + ", ".join(f"'{name}'" for name in rubbing)
+        )
     for turns in range(1, TURNS + 1):
         course, values = drive.follow(2 * turns)
         sizes = _sizes(graph, p, np.abs(values).max(axis=-1))

@@ -173,8 +173,12 @@ def _refuse_other(found: Sensitivities, quantities: Sequence[Output]) -> None:
     sizes: dict[str, float] = {}
     for output in plain:
         unit = solution.unit(output)
-        sizes[unit] = max(sizes.get(unit, 0.0), float(np.abs(solution.array(output)).max()))
-    some = np.array([0, solution.t.size // 2, solution.t.size - 1])
+        sizes[unit] = max(sizes.get(unit, 0.0), float(np.fmax.reduce(np.abs(solution.array(output)), initial=0.0)))
+    # Where a friction rests there are no numbers.
+    moving = np.flatnonzero(~solution.resting)
+    if not moving.size:
+        return
+    some = moving[[0, moving.size // 2, -1]]
     z = found.slopes.iterated(solution.t, found.p, solution.t[some])
     agrees = np.ones(some.size, bool)
     for output in plain:
