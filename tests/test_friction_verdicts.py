@@ -163,6 +163,32 @@ def test_a_design_at_rest_has_its_status(backend):
     assert moving.evaluate(np.array([[0.1]])).status.tolist() == [Status.OK]
 
 
+def test_what_never_moves_is_open_and_what_bears_nothing_does_not_rub():
+    """A bar held by two guides beside a crank that turns; and a weightless tongue that follows it in a slot."""
+    m = Mechanism("held")
+    crank, bar, block = (
+        m.link("crank", length=0.1, mass=1.0),
+        m.link("bar", length=0.4, mass=1.0),
+        m.link("block", length=0.1, mass=1.0),
+    )
+    m.friction("drive", m.revolute("O", m.ground, crank), mu=0.1, radius=0.01)
+    m.prismatic("one", m.ground.at(0.5, 0.0), bar, axis=(1, 0))
+    m.friction("pin", m.revolute("P", bar.tip, block), mu=0.1, radius=0.01)
+    m.friction("held", m.prismatic("two", m.ground.at(0.9, 0.0), block, axis=(0, 1)), mu=0.1, length=0.05)
+    tongue = m.link("tongue", length=0.5, mass=0.0)
+    m.revolute("Q", crank.tip, tongue)
+    m.friction("tip", m.slot("S", m.ground.at(0.0, -0.2), tongue.at(0.4), axis=(1, 0)), mu=0.1)
+    solution = evaluate(Scene(m, {"O": polynomial(0.2, 3.0)}, t=(0, 0.2, 5), posture={"tongue": -1.0}), backend="vm")
+    assert solution.certified
+    assert np.isnan(solution.series["friction:pin:along"]).all()
+    assert np.isnan(solution.series["friction:held:along"]).all()
+    assert solution.series["friction:tip:along"].tolist() == [0.0] * 5
+    assert np.isfinite(solution.effort("O")).all()
+    assert solution.resting.all()
+    (note,) = solution.notes
+    assert "pin, held" in note or "held, pin" in note
+
+
 def test_what_friction_does_not_reach_is_told_at_rest_too():
     """A crank alone rubs: the rod's forces know nothing of it."""
     m = Mechanism("free_end")

@@ -176,7 +176,7 @@ def solve(found: Sequence[Rubbing], open_: Any) -> Solved:
         values = _doubted(laws, values, ca.fabs(doubts) @ open_)
     lost = {one.friction.name: -value * one.rate for one, value in zip(found, values, strict=True)}
     forces = {one.friction.name: value for one, value in zip(found, values, strict=True)}
-    return Solved(symbols, column(values), checks, forces, lost)
+    return Solved(symbols, ca.densify(column(values)), checks, forces, lost)
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,8 +241,9 @@ class _Law:
         moves, turns = ca.fabs(v) > one.slowest[0], ca.fabs(one.acceleration) > one.slowest[1]
         rest = ca.if_else(moves, 0, ca.if_else(turns, 0, 1))
         way = ca.if_else(moves, v, ca.if_else(turns, one.acceleration, 0))
-        # At rest it is 0 times infinity, which is no number.
-        return cls(friction.name, pressed, mu, ca.sign(way) / (1 - rest), steady, rest)
+        # No number at rest: zero over zero, which of what never moves would be read as zero.
+        sigma = ca.sqrt(1 - 2 * rest) - 1 if ca.SX(way).is_zero() else ca.sign(way) / (1 - rest)
+        return cls(friction.name, pressed, mu, sigma, steady, rest)
 
     def pushed(self, values: Sequence[Any]) -> Any:
         """The force for values of all frictions."""

@@ -65,7 +65,7 @@ def certify(
     phases: Mapping[Output, Array] | None = None,
 ) -> dict[str, Array]:
     """The residuals that the solution's outputs allow: ``balance``, ``power``, ``closure``, ``ends``, ``friction``, each where it
-    can be had; where a joint that rubs is at rest, ``closure`` alone.
+    can be had; where a joint that rubs is at rest, ``closure``, and ``friction`` of others.
 
     ``equations`` are the constraints and rows of its mechanism, which a solution does not hold: without them, a solution of a
     mechanism that has some is looked at for ``closure`` alone. ``hidden`` are forces that it does not give: multipliers that were
@@ -104,7 +104,10 @@ def _residuals(solution: Solution, turned: Solution, equations: Sequence[Written
     if len(bodies) < len(description["bodies"]) + 1:
         return {}
     found = {"closure": (_closure(solution, bodies, equations or ()), digits.size(solution))}
+    if (rubbed := law_gaps(solution, bodies)) is not None:
+        found["friction"] = rubbed
     wanted = [Output("reaction", name, "fx") for name in joints] + [Output("load", name, "fx") for name in description["loads"]]
+    wanted += [output for output in solution.outputs if output.group in ("reaction", "load")]
     wanted += [Output("effort", name) for name in drives_of(description)]
     wanted += [Output("multiplier", name) for name in (*description["constraints"], *description["rows"])]
     told = equations is not None or not (description["constraints"] or description["rows"])
@@ -113,8 +116,6 @@ def _residuals(solution: Solution, turned: Solution, equations: Sequence[Written
         matter = {name: _matter(body) for name, body in description["bodies"].items()}
         acting = [*_acting(solution, bodies), *(push for e in equations or () for push in _held(solution, bodies, e))]
         tally = _tally(solution, bodies, acting, matter)
-        if (rubbed := law_gaps(solution, bodies)) is not None:
-            found["friction"] = rubbed
         found["balance"], found["power"] = _balance(solution, bodies, tally, matter)
         if solution.links_with_sections:
             found["ends"] = _ends(solution, bodies, acting, matter)

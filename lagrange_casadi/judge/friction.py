@@ -22,7 +22,8 @@ Pressing = Callable[[Array], Array]
 def law_gaps(solution: Solution, bodies: Mapping[str, Moving] | None = None) -> tuple[Array, float] | None:
     """How far frictions are from what their laws say (t,), over what they would be under the largest reaction of the cycle.
 
-    ``bodies`` are those of a planar mechanism. None where there is no friction, or what it takes is not among the outputs.
+    ``bodies`` are those of a planar mechanism. None where there is no friction, or what it takes is not among the outputs. What is
+    open at rest is no gap.
     """
     worst, found = np.zeros_like(solution.t), False
     for name, load in solution.description["loads"].items():
@@ -46,7 +47,7 @@ def law_gaps(solution: Solution, bodies: Mapping[str, Moving] | None = None) -> 
             ends = [np.abs(value - steady + one * mu * pressing(one * np.ones_like(rate))) for one in (1.0, -1.0)]
             gap = np.where(np.abs(rate) > _SLOW * _fastest(solution, joint, rate), gap, np.minimum(*ends))
         scale = float(np.max(mu)) * numbers.get("radius", 1.0) * _most(solution, numbers) + float(np.max(np.abs(steady)))
-        worst = np.maximum(worst, np.divide(gap, scale, out=gap.copy(), where=scale > 0.0))
+        worst = np.fmax(worst, np.divide(gap, scale, out=gap.copy(), where=scale > 0.0))
     return (worst, 1.0) if found else None
 
 

@@ -74,8 +74,10 @@ def residuals(solution: Solution, turned: Solution, equations: Sequence[Written]
     if len(bodies) < len(description["bodies"]) + 1:
         return {}
     found = {"closure": (_closure(reported, bodies, equations or ()), digits.size(solution))}
+    if (rubbed := law_gaps(solution)) is not None:
+        found["friction"] = rubbed
     wanted = [Output("reaction", name, "fx") for name in description["joints"]]
-    wanted += [output for output in solution.outputs if output.group == "reaction"]
+    wanted += [output for output in solution.outputs if output.group in ("reaction", "load")]
     wanted += [Output("load", name, "fx") for name in description["loads"]]
     wanted += [Output("effort", name) for name in drives_of(description)]
     wanted += [Output("multiplier", name) for name in (*description["constraints"], *description["rows"])]
@@ -85,8 +87,6 @@ def residuals(solution: Solution, turned: Solution, equations: Sequence[Written]
         acting = [*_acting(reported, bodies)]
         acting += [push for equation in equations or () for push in _held(reported, bodies, equation)]
         tally = _tally(solution, bodies, acting, matter)
-        if (rubbed := law_gaps(solution)) is not None:
-            found["friction"] = rubbed
         found["balance"], found["power"] = _balance(solution, bodies, tally, matter)
         if solution.links_with_sections:
             found["ends"] = _ends(solution, bodies, acting, matter)
