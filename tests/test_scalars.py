@@ -44,6 +44,6 @@ def test_two_products_are_joined_in_this_order():
 
 
 def test_what_is_an_expression_stays_it():
-    assert scalars.graph(X) is X
-    assert scalars.graph(0.1).is_constant()
-    assert float(scalars.graph(0.1)) == 0.1
+    assert scalars.as_expression(X) is X
+    assert scalars.as_expression(0.1).is_constant()
+    assert float(scalars.as_expression(0.1)) == 0.1

@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 
 from .interpret import Arithmetic
-from .scalars import added, graph, less, product
+from .scalars import added, as_expression, less, product
 
 Precision = Literal["double", "single"]
 PRECISIONS: tuple[Precision, ...] = ("double", "single")
@@ -251,7 +251,7 @@ class Pairs:
 
     def _rounded(self, x: Any) -> Any:
         """A constant as it is where the precision's own arithmetic makes it: CasADi folds constants in doubles."""
-        if not graph(x).is_constant():
+        if not as_expression(x).is_constant():
             return x
         with np.errstate(over="ignore"):
             return ca.SX(float(DTYPES[self.precision].type(float(x))))

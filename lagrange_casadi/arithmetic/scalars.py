@@ -39,6 +39,6 @@ def products_less(a: Any, b: Any, c: Any, d: Any) -> Any:
     return less(product(a, b), product(c, d))
 
 
-def graph(value: Any) -> Any:
+def as_expression(value: Any) -> Any:
     """A number as an expression, an expression as it is."""
     return value if isinstance(value, _SX) else _SX(value)

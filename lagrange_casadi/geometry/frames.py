@@ -12,8 +12,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..arithmetic.scalars import added, less, product, products_added, products_less
-from ..arithmetic.scalars import graph as as_graph
+from ..arithmetic.scalars import added, as_expression, less, product, products_added, products_less
 from .rotation import Rotation
 from .vectors import ZERO, Expression, Vector, minus, nil, plus
 
@@ -161,5 +160,5 @@ class Velocities:
             return ca.SX(0)
         self.symbols.append(ca.SX.sym(f"w{len(self.symbols)}"))
         for column, entry in ((self.graphs, graph), (self.rates, rate), (self.forces, force)):
-            column.append(as_graph(entry))
+            column.append(as_expression(entry))
         return self.symbols[-1]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..arithmetic.scalars import added, graph, less, product, products_added, products_less
+from ..arithmetic.scalars import added, as_expression, less, product, products_added, products_less
 
 Expression = Any
 """A number, or a ``casadi.SX`` scalar."""
@@ -46,4 +46,4 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 def nil(value: Any) -> bool:
     """Whether a value is zero by structure."""
-    return bool(graph(value).is_zero())
+    return bool(as_expression(value).is_zero())
