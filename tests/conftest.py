@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import json
 import os
+import shutil
 import signal
 import sys
 import zlib
@@ -47,17 +48,22 @@ sys.path.append(str(ROOT))
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _cache(tmp_path_factory):
+def _cache(pytestconfig, tmp_path_factory):
     """Compile into a cache of this session's own, which its processes share."""
     base = tmp_path_factory.getbasetemp()
     shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(shared / "cache"))
-        if sys.dont_write_bytecode:
-            # Each program that is started would read all modules anew, in half a second: let them share what they read, elsewhere.
-            patch.delenv("PYTHONDONTWRITEBYTECODE", raising=False)
-            patch.setenv("PYTHONPYCACHEPREFIX", str(shared / "bytecode"))
+        kept = bytecode(pytestconfig)
+        if kept is None:
+            yield
+            return
+        # Each program that is started would read all modules anew, in half a second.
+        patch.delenv("PYTHONDONTWRITEBYTECODE", raising=False)
+        patch.setenv("PYTHONPYCACHEPREFIX", str(kept))
         yield
+        # No other run will have the modules that tests wrote.
+        shutil.rmtree(kept.joinpath(*shared.parts[1:]), ignore_errors=True)
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -149,6 +155,22 @@ def pytest_configure(config):
     if config.getoption("--long"):
         settings.register_profile("long", settings.default, max_examples=200)
         settings.load_profile("long")
+
+
+def bytecode(config):
+    """Where bytecode is kept if none may be written beside modules: with what else pytest keeps of earlier runs. Else None."""
+    return config.cache.mkdir("bytecode") if sys.dont_write_bytecode and hasattr(config, "cache") else None
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_collection(session):
+    """Read test modules as an earlier run compiled them, in half the time; what is there now stays to the end."""
+    before, kept = (sys.dont_write_bytecode, sys.pycache_prefix), bytecode(session.config)
+    if kept is not None:
+        sys.dont_write_bytecode, sys.pycache_prefix = False, str(kept)
+    yield
+    sys.dont_write_bytecode, sys.pycache_prefix = before
+    gc.freeze()  # no need to look for circles in it again and again
 
 
 def pytest_collection_modifyitems(config, items):

@@ -8,6 +8,7 @@ from spatial_solutions import evaluated, residuals
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate, motion
 from lagrange_casadi.judge.certificate import certify
+from lagrange_casadi.judge.spatial_placing import cross
 from lagrange_casadi.judge.written import written
 from lagrange_casadi.quantities import Output
 
@@ -208,3 +209,9 @@ def test_many_turns_do_not_blur_what_is_judged():
     solution = evaluate(Scene(m, laws, t=(0, 1000, 101)))
     assert max(residuals(solution.certificate).values()) < 1e-11
     assert solution.certified
+
+
+@pytest.mark.parametrize("shapes", [((3,), (3,)), ((7, 3), (3,)), ((3,), (7, 3)), ((7, 3), (7, 3))], ids=str)
+def test_products_of_vectors_are_numpys_to_the_bit(shapes):
+    a, b = (np.random.default_rng(k).normal(size=shape) for k, shape in enumerate(shapes))
+    assert cross(a, b).tobytes() == np.cross(a, b).tobytes()

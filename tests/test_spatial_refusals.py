@@ -14,6 +14,8 @@ from lagrange_casadi.errors import AssemblyError, DeclarationError, MobilityErro
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 
+pytestmark = pytest.mark.usefixtures("interpreted")
+
 LOCK = math.pi / 2
 
 

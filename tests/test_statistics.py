@@ -18,7 +18,7 @@ from lagrange_casadi.instants.statistics import Statistics
 from lagrange_casadi.motion import polynomial
 from lagrange_casadi.study.peaks import resultants
 
-pytestmark = pytest.mark.quick
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 
 @pytest.fixture(scope="module")

@@ -18,6 +18,7 @@ import casadi as ca
 import numpy as np
 
 from .interpret import Arithmetic
+from .scalars import added, as_expression, less, product
 
 Precision = Literal["double", "single"]
 PRECISIONS: tuple[Precision, ...] = ("double", "single")
@@ -36,7 +37,7 @@ def closed(x: Any) -> Any:
     Its patterns are of operations on operations, and none holds this one. So a value stays as it is written, in every thread and
     however often the expression is made anew. Emitted C has no trace of it: see :func:`.opened`. A constant is folded.
     """
-    return ca.copysign(x, x)
+    return ca.SX.binary(ca.OP_COPYSIGN, x, x)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +51,7 @@ class Pair:
     @property
     def value(self) -> Any:
         """The one number that is nearest."""
-        return self.high if self.low is None else closed(self.high + self.low)
+        return self.high if self.low is None else closed(added(self.high, self.low))
 
 
 @dataclass(frozen=True)
@@ -231,13 +232,13 @@ class Pairs:
         return lambda x, y: Pair(self._rounded(ca.SX.binary(code, self._value(x), self._value(y))))
 
     def _plus(self, a: Any, b: Any) -> Any:
-        return self._closed(a + b)
+        return self._closed(added(a, b))
 
     def _minus(self, a: Any, b: Any) -> Any:
-        return self._closed(a - b)
+        return self._closed(less(a, b))
 
     def _times(self, a: Any, b: Any) -> Any:
-        return self._closed(a * b)
+        return self._closed(product(a, b))
 
     def _over(self, a: Any, b: Any) -> Any:
         return self._closed(a / b)
@@ -250,7 +251,7 @@ class Pairs:
 
     def _rounded(self, x: Any) -> Any:
         """A constant as it is where the precision's own arithmetic makes it: CasADi folds constants in doubles."""
-        if not ca.SX(x).is_constant():
+        if not as_expression(x).is_constant():
             return x
         with np.errstate(over="ignore"):
             return ca.SX(float(DTYPES[self.precision].type(float(x))))

@@ -12,6 +12,7 @@ from typing import Any
 import casadi as ca
 
 from ..arithmetic.interpret import Step, followable, steps
+from ..arithmetic.scalars import less, product
 
 
 def share_reciprocals(function: Any, parameters: str) -> Any:
@@ -31,10 +32,10 @@ def share_reciprocals(function: Any, parameters: str) -> Any:
         if k in divisors and (divisors[k][1] or uses[divisors[k][0]] > 1):
             x = operands[-1]
             # It is given its own sign, for else CasADi writes (1/x) y as y/x again.
-            inverse = inverses.setdefault(divisors[k][0], ca.copysign(1 / x, x))
-            return operands[0] * inverse if operation == ca.OP_DIV else inverse
+            inverse = inverses.setdefault(divisors[k][0], ca.SX.binary(ca.OP_COPYSIGN, ca.SX.binary(ca.OP_DIV, 1.0, x), x))
+            return product(operands[0], inverse) if operation == ca.OP_DIV else inverse
         if operation == ca.OP_NEG and operands[0].op() == ca.OP_SUB:
-            return operands[0].dep(1) - operands[0].dep(0)
+            return less(operands[0].dep(1), operands[0].dep(0))
         return _applied(operation, operands)
 
     return _replayed(function, made)

@@ -7,6 +7,8 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import as_expression
+
 
 class Expressions:
     """Expressions by the symbols that they stand for."""
@@ -36,7 +38,7 @@ class Expressions:
 
     def put_into(self, expression: Any) -> Any:
         """An expression with what is known in the place of its symbols."""
-        expression = ca.SX(expression)
+        expression = as_expression(expression)
         there = [self._known[key] for symbol in ca.symvar(expression) if (key := symbol.element_hash()) in self._known]
         if not there:
             return expression
@@ -56,11 +58,12 @@ class Numbers:
 
     def of(self, expression: Any) -> list[float]:
         """The entries of an expression all of whose symbols are known."""
-        expression = ca.SX(expression)
+        expression = as_expression(expression)
         symbols = ca.symvar(expression)
         function = ca.Function("number", [ca.vertcat(ca.SX(0, 1), *symbols)], [ca.densify(ca.vec(expression))])
         return [float(x) for x in function([self._known[symbol.element_hash()] for symbol in symbols]).full().ravel()]
 
 
 def _entries(column: Any) -> list[Any]:
-    return ca.vertsplit(ca.SX(column)) if ca.SX(column).numel() else []
+    column = as_expression(column)
+    return ca.vertsplit(column) if column.numel() else []

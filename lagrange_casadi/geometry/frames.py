@@ -12,6 +12,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.scalars import added, as_expression, less, product, products_added, products_less
 from .rotation import Rotation
 from .vectors import ZERO, Expression, Vector, minus, nil, plus
 
@@ -76,8 +77,8 @@ class Frame:
     def _squares(self) -> tuple[Vector, Vector]:
         """The products of two components of the rate: of y and z, z and x, x and y; and the sums of squares of those two."""
         x, y, z = self.rate
-        xx, yy, zz = x * x, y * y, z * z
-        return (y * z, z * x, x * y), (yy + zz, zz + xx, xx + yy)
+        xx, yy, zz = product(x, x), product(y, y), product(z, z)
+        return (product(y, z), product(z, x), product(x, y)), (added(yy, zz), added(zz, xx), added(xx, yy))
 
     def _motion(self, r: Vector) -> tuple[Vector, Vector]:
         """Velocity and acceleration of what a lever leads to; the latter is that of the anchor and ([alpha] + w w' - w^2) r."""
@@ -85,11 +86,15 @@ class Frame:
         u, v, w = self.speed
         a, b, c = self.acceleration
         return (
-            (u - (z * r[1] - y * r[2]), v + (z * r[0] - x * r[2]), w - (y * r[0] - x * r[1])),
             (
-                a - (xc * r[0] + (az - xy) * r[1] - (ay + zx) * r[2]),
-                b + ((az + xy) * r[0] - yc * r[1] - (ax - yz) * r[2]),
-                c - ((ay - zx) * r[0] - (ax + yz) * r[1] + zc * r[2]),
+                less(u, products_less(z, r[1], y, r[2])),
+                added(v, products_less(z, r[0], x, r[2])),
+                less(w, products_less(y, r[0], x, r[1])),
+            ),
+            (
+                less(a, less(products_added(xc, r[0], less(az, xy), r[1]), product(added(ay, zx), r[2]))),
+                added(b, less(products_less(added(az, xy), r[0], yc, r[1]), product(less(ax, yz), r[2]))),
+                less(c, added(products_less(less(ay, zx), r[0], added(ax, yz), r[1]), product(zc, r[2]))),
             ),
         )
 
@@ -155,5 +160,5 @@ class Velocities:
             return ca.SX(0)
         self.symbols.append(ca.SX.sym(f"w{len(self.symbols)}"))
         for column, entry in ((self.graphs, graph), (self.rates, rate), (self.forces, force)):
-            column.append(ca.SX(entry))
+            column.append(as_expression(entry))
         return self.symbols[-1]

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import casadi as ca
 
+from ..arithmetic.scalars import less, product, products_added, products_less
 from .vectors import AXES, Expression, Vector, cross, dot, plus, times
 
 
@@ -40,7 +41,7 @@ class Rotation:
         if _same(axis, AXES[2]):
             return cls.flat(c, s, angle)
         # Linear in cosine and sine, by which loops are known that have a closed form.
-        x, y, z = (plus(plus(times(c, e), times(s, cross(axis, e))), times((1 - c) * dot(axis, e), axis)) for e in AXES)
+        x, y, z = (plus(plus(times(c, e), times(s, cross(axis, e))), times(product(less(1, c), dot(axis, e)), axis)) for e in AXES)
         return cls(x, y, None, z)
 
     @classmethod
@@ -66,14 +67,14 @@ class Rotation:
     def apply(self, v: Vector) -> Vector:
         """Components in the axes turned from of a vector given in the turned axes."""
         if self.angle is not None:
-            return self.c * v[0] - self.s * v[1], self.s * v[0] + self.c * v[1], v[2]
+            return products_less(self.c, v[0], self.s, v[1]), products_added(self.s, v[0], self.c, v[1]), v[2]
         x, y, z = (times(component, axis) for component, axis in zip(v, (self.x, self.y, self.z), strict=True))
         return plus(plus(x, y), z)
 
     def resolve(self, v: Vector) -> Vector:
         """Components in the turned axes of a vector given in the axes turned from."""
         if self.angle is not None:
-            return self.c * v[0] + self.s * v[1], self.c * v[1] - self.s * v[0], v[2]
+            return products_added(self.c, v[0], self.s, v[1]), products_less(self.c, v[1], self.s, v[0]), v[2]
         return dot(self.x, v), dot(self.y, v), dot(self.z, v)
 
     def then(self, other: Rotation) -> Rotation:

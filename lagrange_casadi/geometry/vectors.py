@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import casadi as ca
+from ..arithmetic.scalars import added, as_expression, less, product, products_added, products_less
 
 Expression = Any
 """A number, or a ``casadi.SX`` scalar."""
@@ -17,29 +17,33 @@ AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0
 
 def plus(a: Vector, b: Vector) -> Vector:
     """a + b."""
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+    return added(a[0], b[0]), added(a[1], b[1]), added(a[2], b[2])
 
 
 def minus(a: Vector, b: Vector) -> Vector:
     """a - b."""
-    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+    return less(a[0], b[0]), less(a[1], b[1]), less(a[2], b[2])
 
 
 def times(factor: Expression, a: Vector) -> Vector:
     """A vector by a factor."""
-    return factor * a[0], factor * a[1], factor * a[2]
+    return product(factor, a[0]), product(factor, a[1]), product(factor, a[2])
 
 
 def dot(a: Vector, b: Vector) -> Expression:
     """a . b."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    return added(products_added(a[0], b[0], a[1], b[1]), product(a[2], b[2]))
 
 
 def cross(a: Vector, b: Vector) -> Vector:
     """a x b."""
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+    return (
+        products_less(a[1], b[2], a[2], b[1]),
+        products_less(a[2], b[0], a[0], b[2]),
+        products_less(a[0], b[1], a[1], b[0]),
+    )
 
 
 def nil(value: Any) -> bool:
     """Whether a value is zero by structure."""
-    return bool(ca.SX(value).is_zero())
+    return bool(as_expression(value).is_zero())

@@ -205,16 +205,17 @@ def follow(
         return np.zeros((0, t.size)), np.full(t.size, OK, dtype=np.int32)
     last, rule = np.array(graph.newton.guess) if guess is None else guess, newton_rule("double", newton)
     z, status = rows(last.size, t.size), np.full(t.size, OK, dtype=np.int32)
+    fixed = ca.DM(p)  # converted once, not at each step
     for start in range(0, t.size, _VM_BLOCK):
         counted = np.atleast_2d(stages.drive(t[None, start : start + _VM_BLOCK], p)[0].full())
         for i, now in enumerate(counted.T, start):
-            z[:, i], status[i] = _iterate(graph, stages.loops, last, now, p, rule)
+            z[:, i], status[i] = _iterate(graph, stages.loops, last, ca.DM(now), fixed, rule)
             last = last if status[i] == NOT_CONVERGED else z[:, i]
     return z, status
 
 
 def _iterate(
-    graph: SceneGraph, loops: ca.Function, guess: Array, counted: Array, p: Array, rule: dict[str, float]
+    graph: SceneGraph, loops: ca.Function, guess: Array, counted: ca.DM, p: ca.DM, rule: dict[str, float]
 ) -> tuple[Array, int]:
     assert graph.newton is not None
     z, size, before, step = guess, 1.0, 1.0, 0

@@ -18,7 +18,7 @@ from ..quantities import Output, force_members
 from . import digits
 from .friction import law_gaps
 from .locked import without_locked
-from .spatial_placing import Moving, Reported, measured, oriented, relative, resolve, spot, told, turn
+from .spatial_placing import Moving, Reported, cross, measured, oriented, relative, resolve, spot, told, turn
 from .spatial_rest import axes_of, gaps_of, place_all
 from .written import Written
 
@@ -145,7 +145,7 @@ def _closure(reported: Reported, bodies: Mapping[str, Moving], equations: Sequen
             axes = axes_of(solution, name)
             crooked = np.swapaxes(axes, 1, 2) @ axes - np.eye(3), axes - body.axes
             worst = np.maximum(worst, np.abs(crooked).max(axis=(0, 2, 3)) * size)
-            worst = np.maximum(worst, _size(np.cross(axes[:, :, 0], axes[:, :, 1]) - axes[:, :, 2]) * size)
+            worst = np.maximum(worst, _size(cross(axes[:, :, 0], axes[:, :, 1]) - axes[:, :, 2]) * size)
     for equation in equations:
         entries = [measured(solution, bodies, entry) for entry in equation.entries]
         units = [1.0 if entry.kind == "coordinate" else size for entry in equation.entries]
@@ -176,7 +176,7 @@ def _reciprocal(axes: Sequence[Array], number: int) -> Array:
     if len(axes) < 3:
         return axes[number]
     first, second, third = (axes[(number + k) % 3] for k in range(3))
-    across = np.cross(second, third)
+    across = cross(second, third)
     with np.errstate(all="ignore"):
         return np.asarray(across / np.sum(first * across, axis=1)[:, None])
 
@@ -233,13 +233,13 @@ def _tally(solution: Solution, bodies: Mapping[str, Moving], acting: Sequence[_A
             continue
         motion = bodies[act.body]
         middle = motion.point(matter[act.body][1])[0]
-        moment = np.cross(act.at - middle, act.force) + act.couple
+        moment = cross(act.at - middle, act.force) + act.couple
         tally.force[act.body] = tally.force.get(act.body, 0.0) + act.force
         tally.moment[act.body] = tally.moment.get(act.body, 0.0) + moment
         push, twist = act.pushes
         tally.bear(push, twist, digits.size(solution))
         if act.works:
-            speed = motion.speed + np.cross(motion.rate, act.at - motion.at)
+            speed = motion.speed + cross(motion.rate, act.at - motion.at)
             tally.power = tally.power + np.sum(speed * act.force + motion.rate * act.couple, axis=1)
             tally.flow = tally.flow + _size(speed) * push + _size(motion.rate) * twist
     return tally
@@ -264,7 +264,7 @@ def _balance(
         inertial = mass * (change - gravity)
         spin = turn(motion.axes, turn(inertia, resolve(motion.axes, motion.rate)))
         gains = turn(motion.axes, turn(inertia, resolve(motion.axes, motion.acceleration)))
-        turning = gains + np.cross(motion.rate, spin)
+        turning = gains + cross(motion.rate, spin)
         weight = _weight(solution, motion, mass, float(_size(centre)))
         tally.bear(weight, _size(gains) + _size(motion.rate) * _size(spin), size)
         worst = np.maximum(worst, _size(tally.force.get(name, 0.0) - inertial))
@@ -342,5 +342,5 @@ def _before(motion: Moving, acting: Sequence[_Action], edge: float) -> tuple[Arr
         arm, push = motion.under(act.at), resolve(motion.axes, act.force)
         here = arm[:, :1] <= edge
         force = force + np.where(here, push, 0.0)
-        moment = moment + np.where(here, np.cross(arm, push) + resolve(motion.axes, act.couple), 0.0)
+        moment = moment + np.where(here, cross(arm, push) + resolve(motion.axes, act.couple), 0.0)
     return force, moment

@@ -50,8 +50,8 @@ class Moving:
     def point(self, point: Any) -> Motion:
         """Place, velocity and acceleration of the body's point, (3,) or (t, 3)."""
         arm = turn(self.axes, point)
-        moves = np.cross(self.rate, arm)
-        return self.at + arm, self.speed + moves, self.change + np.cross(self.acceleration, arm) + np.cross(self.rate, moves)
+        moves = cross(self.rate, arm)
+        return self.at + arm, self.speed + moves, self.change + cross(self.acceleration, arm) + cross(self.rate, moves)
 
     def under(self, place: Array) -> Array:
         """The body's point at a place."""
@@ -128,7 +128,7 @@ def relative(reported: Reported, joint: Description) -> Relative:
         axis = turn(turned, direction)
         about.append(axis)
         # Each turn is carried by those before it.
-        acceleration = acceleration + motion.acceleration[:, None] * axis + np.cross(rate, motion.rate[:, None] * axis)
+        acceleration = acceleration + motion.acceleration[:, None] * axis + cross(rate, motion.rate[:, None] * axis)
         rate = rate + motion.rate[:, None] * axis
         turned = turned @ _rotation(direction, reported.turned.motion(name).value)
     return Relative((slide, speed, change), turned @ np.array(joint["turned"]).T, rate, acceleration, tuple(about))
@@ -160,6 +160,15 @@ def resolve(axes: Array, vector: Array) -> Array:
     return turn(np.swapaxes(axes, -1, -2), vector)
 
 
+def cross(a: Array, b: Array) -> Array:
+    """a x b of vectors (..., 3), (3,) or one each instant, to the bit as NumPy's own, which takes three times as long."""
+    x, y, z, u, v, w = a[..., 0], a[..., 1], a[..., 2], b[..., 0], b[..., 1], b[..., 2]
+    first = y * w - z * v
+    found = np.empty((*first.shape, 3))
+    found[..., 0], found[..., 1], found[..., 2] = first, z * u - x * w, x * v - y * u
+    return found
+
+
 def measured(solution: Solution, bodies: Mapping[str, Moving], entry: Entry) -> Motion:
     """An entry of an equation, its rate and its acceleration."""
     if entry.kind == "coordinate":
@@ -181,11 +190,11 @@ def _hang(reported: Reported, joint: Description, bodies: Mapping[str, Moving]) 
             return None
         place, moves, changes = base.point(spot(parent) + at)
         slides = turn(base.axes, speed)
-        moves, changes = moves + slides, changes + 2.0 * np.cross(base.rate, slides) + turn(base.axes, change)
+        moves, changes = moves + slides, changes + 2.0 * cross(base.rate, slides) + turn(base.axes, change)
         if not whole:
             return Moving.holding((place, moves, changes), spot(child), *_undirected(reported.count))
         spin = turn(base.axes, motion.rate)
-        gains = turn(base.axes, motion.acceleration) + np.cross(base.rate, spin)
+        gains = turn(base.axes, motion.acceleration) + cross(base.rate, spin)
         axes, rate, acceleration = base.axes @ motion.turned, base.rate + spin, base.acceleration + gains
         return Moving.holding((place, moves, changes), spot(child), axes, rate, acceleration)
     far = bodies[child["body"]]
@@ -197,8 +206,8 @@ def _hang(reported: Reported, joint: Description, bodies: Mapping[str, Moving]) 
     axes = far.axes @ np.swapaxes(motion.turned, 1, 2)
     spin, slides = turn(axes, motion.rate), turn(axes, speed)
     rate = far.rate - spin
-    acceleration = far.acceleration - turn(axes, motion.acceleration) - np.cross(rate, spin)
-    under = place, moves - slides, changes - 2.0 * np.cross(rate, slides) - turn(axes, change)
+    acceleration = far.acceleration - turn(axes, motion.acceleration) - cross(rate, spin)
+    under = place, moves - slides, changes - 2.0 * cross(rate, slides) - turn(axes, change)
     return Moving.holding(under, spot(parent) + at, axes, rate, acceleration)
 
 

@@ -16,7 +16,7 @@ from ..declare.density import Array
 from ..declare.description import Description
 from ..instants.solution import Solution
 from .affine import rates_and_changes
-from .spatial_placing import Moving, Reported, measured, oriented, place, relative, spot, told, turn
+from .spatial_placing import Moving, Reported, cross, measured, oriented, place, relative, spot, told, turn
 from .written import Written
 
 _LEAST = 1e-12
@@ -130,10 +130,10 @@ def gaps_of(reported: Reported, joint: Description, bodies: Mapping[str, Moving]
     own = far.point(spot(joint["child"]))
     under = near.point(near.under(own[0]))
     speed = own[1] - under[1]
-    change = own[2] - under[2] - 2.0 * np.cross(near.rate, speed) - turn(near.axes, motion.slide[2])
+    change = own[2] - under[2] - 2.0 * cross(near.rate, speed) - turn(near.axes, motion.slide[2])
     spin, gains = far.rate - near.rate, far.acceleration - near.acceleration
     if told(reported.description, joint):
-        about = spin - turn(near.axes, motion.rate), gains - np.cross(near.rate, spin) - turn(near.axes, motion.acceleration)
+        about = spin - turn(near.axes, motion.rate), gains - cross(near.rate, spin) - turn(near.axes, motion.acceleration)
     else:
         about = np.zeros_like(spin), np.zeros_like(spin)
     return speed - turn(near.axes, motion.slide[1]), about[0], change, about[1]

@@ -1,0 +1,44 @@
+"""Sums, differences and products of numbers and expressions.
+
+CasADi's operators first ask of each operand which of all kinds it is. That takes ten times as long as to write the operation down.
+Here there are two kinds alone: numbers, and expressions of scalars (``casadi.SX``).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi as ca
+
+_SX, _binary = ca.SX, ca.SX.binary
+_ADD, _SUB, _MUL = ca.OP_ADD, ca.OP_SUB, ca.OP_MUL
+
+
+def added(a: Any, b: Any) -> Any:
+    """a + b."""
+    return _binary(_ADD, a, b) if isinstance(a, _SX) or isinstance(b, _SX) else a + b
+
+
+def less(a: Any, b: Any) -> Any:
+    """a - b."""
+    return _binary(_SUB, a, b) if isinstance(a, _SX) or isinstance(b, _SX) else a - b
+
+
+def product(a: Any, b: Any) -> Any:
+    """a b."""
+    return _binary(_MUL, a, b) if isinstance(a, _SX) or isinstance(b, _SX) else a * b
+
+
+def products_added(a: Any, b: Any, c: Any, d: Any) -> Any:
+    """a b + c d."""
+    return added(product(a, b), product(c, d))
+
+
+def products_less(a: Any, b: Any, c: Any, d: Any) -> Any:
+    """a b - c d."""
+    return less(product(a, b), product(c, d))
+
+
+def as_expression(value: Any) -> Any:
+    """A number as an expression, an expression as it is."""
+    return value if isinstance(value, _SX) else _SX(value)
