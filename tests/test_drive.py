@@ -270,13 +270,13 @@ def test_one_command_chooses_a_motor_for_every_drive(gantry, capsys):
         first = next(choice for choice in choices if choice.serves)
         told = out.partition(f"\n{name}: ")[2].partition("\nY: ")[0]
         assert f"smallest of 3 motors that serves: '{first.motor.name}'" in told
-        assert f"it feels an inertia of {mass:.4g} to {mass:.4g} kg\n" in told
+        assert f"it feels an inertia of {mass:.5g} to {mass:.5g} kg\n" in told
         ratio = mass / (turns**2 * first.motor.inertia)
-        assert f"inertia of the load over the motor's: {ratio:.4g} to {ratio:.4g}, in the mean {ratio:.4g}\n" in told
+        assert f"inertia of the load over the motor's: {ratio:.5g} to {ratio:.5g}, in the mean {ratio:.5g}\n" in told
         for limit, share in first.shares.items():
             assert f"    {limit:<12} {share:>8.4g} |" in told
-        assert f"rms {first.duty.rms_torque:.4g} N m, peak {first.duty.peak_torque:.4g} N m" in told
-        assert f"{first.duty.energy:.4g} J a cycle, {first.duty.regenerated:.4g} J come back" in told
+        assert f"rms {first.duty.rms_torque:.5g} N m, peak {first.duty.peak_torque:.5g} N m" in told
+        assert f"{first.duty.energy:.5g} J a cycle, {first.duty.regenerated:.5g} J come back" in told
     assert out.splitlines()[-1].startswith("certificate: closure")
 
 

@@ -35,7 +35,7 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
     from matplotlib.figure import Figure
 
     turns = 1.0 if duty.linear else 60.0 / math.tau
-    figure = Figure(figsize=(7.0, 4.5), layout="constrained")
+    figure = Figure(figsize=(7.0, 5.0), layout="constrained")
     axes = figure.subplots()
     axes.plot(turns * np.abs(duty.speed), np.abs(duty.torque), ".-", color="#1f4e79", lw=0.8, ms=3, label=f"motor of {duty.joint}")
     axes.plot(turns * duty.mean_speed, duty.rms_torque, "D", color="#c0392b", label="root mean square, at the mean speed")
@@ -47,6 +47,6 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
     speed, pull = ("speed [m/s]", "force [N]") if duty.linear else ("speed [1/min]", "torque [N m]")
     axes.set(xlabel=speed, ylabel=pull, xlim=(0, None), ylim=(0, None))
     axes.grid(True, color="0.92")
-    axes.legend(frameon=False, fontsize=9)
+    figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
     with writing(target) as (file,), rc_context({"svg.hashsalt": "duty"}):
         figure.savefig(file, format=target.suffix.removeprefix("."), dpi=150, metadata=_PICTURES[target.suffix])

@@ -157,13 +157,13 @@ def _load_lines(load: Duty) -> Iterator[str]:
     """What is asked at the drive itself."""
     force = "N" if load.linear else "N m"
     yield (
-        f"{load.joint}: rms {load.rms_torque:.4g} {force}, peak {load.peak_torque:.4g} {force}, {_speed(load)}, "
-        f"peak power {load.peak_power:.4g} W"
+        f"{load.joint}: rms {load.rms_torque:.5g} {force}, peak {load.peak_torque:.5g} {force}, {_speed(load)}, "
+        f"peak power {load.peak_power:.5g} W"
     )
     yield f"  {_energy(load)}"
     if load.carried is not None:
         unit = "kg" if load.linear else "kg m^2"
-        yield f"  it feels an inertia of {load.carried.min():.4g} to {load.carried.max():.4g} {unit}"
+        yield f"  it feels an inertia of {load.carried.min():.5g} to {load.carried.max():.5g} {unit}"
     if load.coarse:
         yield "  note: every second instant alone tells a mean or a peak more than 1 % off; take more instants"
 
@@ -172,26 +172,26 @@ def _choice_lines(choice: Choice, count: int) -> Iterator[str]:
     """The motor, what it is used to, and why nothing smaller will do."""
     duty, motor = choice.duty, choice.motor
     force = "N" if duty.linear else "N m"
-    yield f"  smallest of {count} motors that serves: '{motor.name}', {motor.rated_power:.4g} W, with a ratio of {duty.ratio:.6g}"
+    yield f"  smallest of {count} motors that serves: '{motor.name}', {motor.rated_power:.5g} W, with a ratio of {duty.ratio:.6g}"
     for name, share in choice.shares.items():
         governs = " governs" if name == choice.governs else ""
         yield f"    {name:<12} {share:>8.4g} |{'#' * min(_BAR, math.ceil(share * _BAR)):<{_BAR}}|{governs}"
     yield (
-        f"    rms {duty.rms_torque:.4g} {force}, peak {duty.peak_torque:.4g} {force}, {_speed(duty)}, "
-        f"peak power {duty.peak_power:.4g} W"
+        f"    rms {duty.rms_torque:.5g} {force}, peak {duty.peak_torque:.5g} {force}, {_speed(duty)}, "
+        f"peak power {duty.peak_power:.5g} W"
     )
     yield f"    {_energy(duty)}"
     if duty.inertia > 0.0:
         ratio = duty.inertia_ratio
-        yield f"    inertia of the load over the motor's: {ratio.least:.4g} to {ratio.largest:.4g}, in the mean {ratio.mean:.4g}"
+        yield f"    inertia of the load over the motor's: {ratio.least:.5g} to {ratio.largest:.5g}, in the mean {ratio.mean:.5g}"
     yield from (f"    smaller: {why}" for why in choice.refused)
 
 
 def _speed(duty: Duty) -> str:
-    told = f"{duty.peak_speed:.4g} m/s" if duty.linear else f"{duty.peak_speed * 60.0 / math.tau:.4g} 1/min"
+    told = f"{duty.peak_speed:.5g} m/s" if duty.linear else f"{duty.peak_speed * 60.0 / math.tau:.5g} 1/min"
     return f"peak speed {told}"
 
 
 def _energy(duty: Duty) -> str:
-    back = f", {duty.regenerated:.4g} J come back, {duty.peak_return:.4g} W at most" if duty.peak_return > 0.0 else ""
-    return f"{duty.energy:.4g} J a cycle{back}"
+    back = f", {duty.regenerated:.5g} J come back, {duty.peak_return:.5g} W at most" if duty.peak_return > 0.0 else ""
+    return f"{duty.energy:.5g} J a cycle{back}"
