@@ -67,6 +67,25 @@ def _quick_return(arithmetic, values):
     return {"loads": [cut]}
 
 
+HEIGHTS, SHARES = (0, 5, 15, 30, 39, 40), (0.55, 0.7, 0.95, 1.0, 0.6, 0.0)
+
+
+def _servo_press(arithmetic, values):
+    """The part's force on the ram on its way down, by a table of the height; and the counterbalance."""
+    number = arithmetic.number
+    heights, shares = ([number(x) for x in row] for row in (HEIGHTS, SHARES))
+
+    def part(place):
+        _, y, _ = place(("ram", 0, 0))
+        height = 1000 * (number(values["r"]) + number(values["l"]) + y.v)
+        i = min(max(bisect.bisect_right(heights, height), 1), len(heights) - 1)
+        share = shares[i - 1] + (shares[i] - shares[i - 1]) / (heights[i] - heights[i - 1]) * (height - heights[i - 1])
+        borne = share if y.d < 0 and height < heights[-1] else number(0)
+        return [(("ram", 0, 0), 0, number(values["drawing"]) * borne + number(values["mass"]) * number(9.81), 0)]
+
+    return {"loads": [part]}
+
+
 def _andrews_squeezer(arithmetic, values):
     number = arithmetic.number
     foot, end = ("ground", number(0.014), number(0.072)), ("k3", number(0.018), number(0.02))
@@ -186,4 +205,5 @@ _CASES = {
     "beam_pump": _beam_pump,
     "scara": _scara,
     "roller_cam": _roller_cam,
+    "servo_press": _servo_press,
 }

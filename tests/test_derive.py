@@ -13,7 +13,7 @@ from compiled import SCENES
 from mechanisms import four_bar, slider_crank
 
 import lagrange_casadi
-from lagrange_casadi import Mechanism, Scene, codegen, derive, evaluate
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, codegen, derive, evaluate
 from lagrange_casadi.declare.motion import Motion, expression, harmonic, polynomial, samples
 from lagrange_casadi.declare.scene import Wanted
 from lagrange_casadi.equations.fingerprint import fingerprint, sources
@@ -87,6 +87,27 @@ def test_every_change_of_a_declaration_has_another_name():
     assert None not in names
     assert len(set(names)) == len(names)
     assert name_of(pendulum()) == names[0]
+
+
+def sleeve(along="slide", apart=False, place=0.0):
+    m = SpatialMechanism("sleeve")
+    rod = m.link("rod", between=((0, 0, 0), (0.4, place, 0)), mass=1.0) if apart else m.link("rod", length=0.4, mass=1.0)
+    joint = m.cylindrical("C", m.ground, rod, axis=(1, 0, 0))
+    m.friction("rub", joint, mu=0.2, radius=0.03, length=0.1, along=along)
+    return Scene(m, {"C:slide": polynomial(0, 1.0), "C:turn": polynomial(0, 2.0)}, t=(0, 1, 9))
+
+
+def test_mechanisms_in_space_have_names_too(fresh_cache):
+    """Of links between places too; and friction along another coordinate of the same joint is another."""
+    scenes = [sleeve(), sleeve("turn"), sleeve(apart=True), sleeve(apart=True, place=0.1)]
+    names = [name_of(scene) for scene in scenes]
+    assert None not in names
+    assert len(set(names)) == len(names)
+    assert name_of(sleeve(apart=True)) == names[2]
+    derive(scenes[0])
+    assert [path.stem for path in fresh_cache.glob("*.graph")] == names[:1]
+    again = SceneGraph.loads(next(fresh_cache.glob("*.graph")).read_text().partition("\n")[2], scenes[0], derive(scenes[0]).wanted)
+    assert codegen.emit(again) == codegen.emit(derive(scenes[0]))
 
 
 def test_what_is_asked_of_an_evaluation_has_no_part_in_the_name():

@@ -21,7 +21,7 @@ PAGES = [
     "README.md",
     *(
         f"docs/{page}.md"
-        for page in ("method", "declaring", "machines", "space", "strength", "sweeps", "report", "animations", "optimise")
+        for page in ("method", "declaring", "loads", "machines", "space", "strength", "sweeps", "report", "animations", "optimise")
     ),
 ]
 PROSE = ["README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md"))]

@@ -124,7 +124,7 @@ def test_mistakes_in_space_are_told():
     m = jack(0.01, 0.1)
     for joint, words in (
         ("O", "bears a moment; expected length, from one bearing"),
-        ("guide", "in space these may rub: revolute, screw"),
+        ("guide", "friction 'more': joint 'guide' bears a moment; expected length, that of its guidance"),
     ):
         found: Joint = m.joints[joint]
         with pytest.raises(DeclarationError, match=words):

@@ -230,3 +230,19 @@ def test_peaks_beside_a_reversal_are_found():
         sampled = abs(dense.peak(peak.name).value)
         assert sampled * (1 - 1e-12) <= abs(peak.value) <= sampled * (1 + 1e-3), peak
         assert swept[peak.name] == pytest.approx(peak.value, rel=1e-7), peak
+
+
+def test_where_the_drive_itself_turns_back_the_sign_is_that_of_its_acceleration():
+    """Its rate is then some rounding beside zero, of either sign, and so are all others."""
+    m = Mechanism("swing")
+    m.set_gravity(0, 0)
+    arm = m.link("arm", length=0.5, mass=2.0)
+    m.friction("rub", m.revolute("O", m.ground, arm), mu=0.1, radius=0.02)
+    m.force("pull", arm.base, x=100.0)
+    top = 0.25 - 0.4 / math.tau
+    solution = evaluate(Scene(m, {"O": harmonic(0.3, 1.0, 1.0, 0.4)}, t=(top, top + 8.0, 17)), backend="vm")
+    assert solution.certified
+    assert np.abs(solution.motion("O").rate).max() < 1e-12
+    found = solution.series["friction:rub:along"]
+    assert np.sign(found).tolist() == np.sign(-solution.motion("O").acceleration).tolist()
+    assert np.abs(found).min() > 0.1

@@ -27,6 +27,7 @@ INSTANT = {
     "scara": 158,
     "roller_cam": 304,
     "v_twin": 1778,
+    "servo_press": 223,
     "rssr": 779,
     "spatial_slider_crank": 430,
     "stewart_gough": 5322,

@@ -223,6 +223,34 @@ def test_misuse_is_told(declare, error, told):
         engine(more=declare)
 
 
+def test_frictions_and_what_they_take_are_results():
+    """Wanted alone they bring their frictions; the heat of all is the drive's power less that of the load."""
+    m = Mechanism("pump")
+    crank, rod = m.link("crank", length=0.05, mass=0.0), m.link("rod", length=0.16, mass=0.0)
+    piston = m.link("piston", length=0.06, mass=1e-12, centre=(0.0, 0.0), inertia=0.0)
+    main = m.revolute("main", m.ground, crank)
+    m.revolute("big_end", crank.tip, rod)
+    m.revolute("wrist", rod.tip, piston)
+    bore = m.prismatic("bore", m.ground, piston, axis=(1, 0))
+    m.force("gas", piston, x=-2000.0)
+    rub = m.friction("bearing", main, mu=0.05, radius=0.02), m.friction("rings", bore, mu=0.1, length=0.05, viscous=20.0)
+    m.output("heat", sum(m.results.friction(one).loss for one in rub), unit="W")
+    m.output("braked", m.results.friction(rub[1]).along, unit="N")
+    with pytest.raises(UnknownNameError, match="unknown friction of mechanism 'pump' 'gas'; valid: bearing, rings"):
+        m.results.friction(m.loads["gas"])
+    with pytest.raises(DeclarationError, match="expected the friction itself, as its declaration returned it, got its name"):
+        m.results.friction("rings")
+    scene = Scene(m, {"main": motion.polynomial(0.1, 60.0)}, t=(0, 0.1, 21), posture={"rod": 0.0})
+    solution = evaluate(scene, wanted=["output"], backend="vm")
+    assert solution.output("braked").tolist() == solution.series["friction:rings:along"].tolist()
+    whole = evaluate(scene, backend="vm")
+    assert solution.output("heat") == pytest.approx(
+        whole.series["friction:bearing:loss"] + whole.series["friction:rings:loss"], rel=1e-13
+    )
+    gained = whole.effort("main") * 60.0 - 2000.0 * whole.motion("bore").rate
+    assert solution.output("heat") == pytest.approx(gained, rel=0, abs=1e-10 * gained.max())
+
+
 def test_an_unknown_output_lists_what_there_is():
     with pytest.raises(UnknownNameError, match=r"output:power"):
         evaluate(engine(), wanted=["output:powr"])

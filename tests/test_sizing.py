@@ -113,8 +113,8 @@ def test_tables_have_units_and_blank_lines(here):
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("", r"bars\.csv: expected a head and a line for every profile"),
-        ("name,d\n", "a head and a line for every profile"),
+        ("", r"bars\.csv: it has no rows; expected a head and a line for every profile"),
+        ("name,d\n", r"bars\.csv, line 1: expected a line for every profile below this head"),
         ("d,e\n1,2\n", "expected a column 'name' and one for each dimension, got d, e"),
         ("name,d,d\nx,1,2\n", "expected a column 'name'"),
         ("name,d [ft]\nx,1\n", r"column 'd \[ft\]': expected a name, and m, cm or mm as its unit"),
@@ -131,10 +131,10 @@ def test_a_bad_line_is_named(here, text, says):
 
 
 def test_a_table_that_is_not_there(here):
-    with pytest.raises(PathError, match=r"cannot read bars\.csv: "):
+    with pytest.raises(PathError, match=r"bars\.csv: cannot be read as text: "):
         read_profiles("bars.csv")
     (here / "bars.csv").write_bytes(b"\xff\xfe\x00name")
-    with pytest.raises(DeclarationError, match="no CSV"):
+    with pytest.raises(PathError, match="cannot be read as text"):
         read_profiles("bars.csv")
 
 

@@ -1,29 +1,46 @@
-"""A catalogue of motors: read from CSV, checked against a duty, and the smallest that serves."""
+"""A catalogue of motors, read from CSV."""
 
 from __future__ import annotations
 
-import csv
 import math
-from collections.abc import Callable, Iterable, Sequence
+import os
+import re
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from ..declare.density import Array
-from ..errors import DeclarationError, NoDesignError, PathError, one_line
-from .duty import Duty
+from ..errors import DeclarationError
+from ..system.csv_rows import Row, read_rows
 
 _RPM = math.tau / 60.0
-_COLUMNS = ("name", "stall_torque", "rated_torque", "rated_speed", "peak_torque", "max_speed", "inertia")
+_ROTARY = ("stall_torque", "rated_torque", "rated_speed", "peak_torque", "max_speed", "inertia")
+_LINEAR = ("stall_force", "rated_force", "rated_speed", "peak_force", "max_speed", "mass")
+_KNEE = ("knee_speed", "end_torque"), ("knee_speed", "end_force")
+_LASTS = "time_constant"
+_UNITS = {
+    "torque": {"N m": 1.0, "N cm": 1e-2, "mN m": 1e-3},
+    "force": {"N": 1.0, "kN": 1e3},
+    "turning": {"1/min": _RPM, "rad/s": 1.0},
+    "sliding": {"m/s": 1.0, "mm/s": 1e-3},
+    "inertia": {"kg m^2": 1.0, "kg cm^2": 1e-4, "g cm^2": 1e-7},
+    "mass": {"kg": 1.0, "g": 1e-3},
+    "constant": {"s": 1.0, "min": 60.0},
+}
+"""The units that a column may have, by the last word of its name; the first is meant where none is said."""
+
+_HEAD = re.compile(r"(\w+)\s*(?:\[\s*(.+?)\s*\])?")
 
 
 @dataclass(frozen=True)
 class Motor:
-    """A motor: torques in N m, speeds in rad/s, the rotor's inertia in kg m^2.
+    """A motor: torques in N m, speeds in rad/s, the rotor's inertia in kg m^2. Of a ``linear`` one forces in N, speeds in m/s, and
+    the mass of what moves in kg.
 
     It bears ``stall_torque`` for ever at rest and ``rated_torque`` at its ``rated_speed``, linear between and on; ``peak_torque``
-    for a short time, and no speed above ``max_speed``.
+    for a short time, and no speed above ``max_speed``. Where its voltage limits it, it gives ``peak_torque`` up to ``knee_speed``
+    alone, and from there less, linear to ``end_torque`` at ``max_speed``. ``time_constant`` [s] is that of its winding: in so long
+    it warms by 63 %. Infinite, it is warm by the mean of a cycle, however long that is.
     """
 
     name: str
@@ -33,11 +50,21 @@ class Motor:
     peak_torque: float
     max_speed: float
     inertia: float
+    knee_speed: float | None = None
+    end_torque: float | None = None
+    time_constant: float = math.inf
+    linear: bool = False
 
     def lasting(self, speed: float | Array) -> Array:
         """The torque that it bears for ever at a speed [N m], zero where there is none."""
         fall = (self.stall_torque - self.rated_torque) / self.rated_speed
         return np.maximum(self.stall_torque - fall * np.abs(speed), 0.0)
+
+    def at_most(self, speed: float | Array) -> Array:
+        """The torque that it gives for a short time at a speed [N m], at speeds that it reaches."""
+        if self.knee_speed is None or self.end_torque is None or self.knee_speed >= self.max_speed:
+            return np.full(np.shape(speed), self.peak_torque)
+        return np.interp(np.abs(speed), [self.knee_speed, self.max_speed], [self.peak_torque, self.end_torque])
 
     @property
     def rated_power(self) -> float:
@@ -45,113 +72,79 @@ class Motor:
         return self.rated_torque * self.rated_speed
 
 
-@dataclass(frozen=True, eq=False)
-class Choice:
-    """A motor with a gear ratio and what it does: its ``duty``, and how much of its limits that takes, each 1 at most.
+def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
+    """The motors of a CSV file, one a row, below a head of columns in any order and beside others.
 
-    ``refused`` says of each smaller motor why it does not serve.
-    """
-
-    motor: Motor
-    duty: Duty
-    heat: float
-    torque: float
-    speed: float
-    refused: tuple[str, ...]
-
-    @property
-    def ratio(self) -> float:
-        """The gear ratio."""
-        return self.duty.ratio
-
-
-def read_motors(path: str | Path) -> list[Motor]:
-    """The motors of a CSV file with the columns name, stall_torque, rated_torque, peak_torque [N m], rated_speed, max_speed [1/min]
-    and inertia [kg m^2], in any order and beside others; columns are parted by commas, semicolons or tabs.
+    The columns are name, stall_torque, rated_torque, peak_torque [N m], rated_speed, max_speed [1/min] and inertia [kg m^2]; of
+    linear motors name, stall_force, rated_force, peak_force [N], rated_speed, max_speed [m/s] and mass [kg]. There may be
+    knee_speed with end_torque or end_force, and time_constant [s]: a motor whose cell is empty has none. Other units stand with the
+    column, as ``inertia [kg cm^2]``. Cells are parted as :func:`.read_rows` says.
 
     Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for a column that is missing, and for a
     line that is no motor, by its number.
     """
-    path = Path(path)
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise PathError(f"{path}: cannot be read as text: {one_line(error)}") from None
-    kept = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
-    if not kept:
-        raise DeclarationError(f"{path.name}: it has no motors; expected the columns {', '.join(_COLUMNS)}")
-    delimiter = next((mark for mark in (";", "\t") if mark in kept[0][1]), ",")
-    rows = [[cell.strip() for cell in row] for row in csv.reader([line for _, line in kept], delimiter=delimiter)]
-    missing = [column for column in _COLUMNS if column not in rows[0]]
-    if missing:
-        raise DeclarationError(f"{path.name}: it lacks the column '{missing[0]}'; expected {', '.join(_COLUMNS)}")
-    places = {column: rows[0].index(column) for column in _COLUMNS}
-    motors = [_motor(f"{path.name}, line {number}", row, places) for (number, _), row in zip(kept[1:], rows[1:], strict=True)]
-    if not motors:
-        raise DeclarationError(f"{path.name}: it has no motors, only heads")
-    return motors
+    rows = read_rows(path, f"the columns name, {', '.join(_ROTARY)}")
+    head = rows[0]
+    cells = [_HEAD.fullmatch(cell) for cell in head.cells]
+    names = [match.group(1) if match else cell for match, cell in zip(cells, head.cells, strict=True)]
+    linear = any(name in names for name in ("stall_force", "rated_force", "peak_force"))
+    needed, knee = (_LINEAR if linear else _ROTARY), _KNEE[linear]
+    if missing := [column for column in ("name", *needed) if column not in names]:
+        raise DeclarationError(f"{head.where}: it lacks the column '{missing[0]}'; expected name, {', '.join(needed)}")
+    if sum(column in names for column in knee) == 1:
+        raise DeclarationError(f"{head.where}: expected both columns {' and '.join(knee)}, or none")
+    if twice := [column for column in ("name", *needed, *knee, _LASTS) if names.count(column) > 1]:
+        raise DeclarationError(f"{head.where}: the column '{twice[0]}' comes twice")
+    units = {
+        column: _unit(head, column, match.group(2) if match else None, linear)
+        for column, match in zip(names, cells, strict=True)
+        if column in (*needed, *knee, _LASTS)
+    }
+    if len(rows) == 1:
+        raise DeclarationError(f"{head.where}: it has no motors, only heads")
+    motors: dict[str, Motor] = {}
+    for row in rows[1:]:
+        motor = _motor(row, names, units, needed, knee, linear)
+        if motor.name in motors:
+            raise DeclarationError(f"{row.where}: motor '{motor.name}' comes twice")
+        motors[motor.name] = motor
+    return list(motors.values())
 
 
-def _motor(where: str, row: Sequence[str], places: dict[str, int]) -> Motor:
-    if len(row) <= max(places.values()):
-        raise DeclarationError(f"{where}: expected {max(places.values()) + 1} columns or more, got {len(row)}")
+def _unit(head: Row, column: str, unit: str | None, linear: bool) -> float:
+    """What a column's unit is in SI units."""
+    kind = column.rpartition("_")[2]
+    units = _UNITS[("sliding" if linear else "turning") if kind == "speed" else kind]
+    if unit is not None and unit not in units:
+        raise DeclarationError(f"{head.where}: column '{column}' cannot be in '{unit}'; valid: {', '.join(units)}")
+    return units[unit] if unit is not None else next(iter(units.values()))
+
+
+def _motor(
+    row: Row, names: list[str], units: dict[str, float], needed: tuple[str, ...], knee: tuple[str, str], linear: bool
+) -> Motor:
+    if len(row.cells) != len(names):
+        raise DeclarationError(f"{row.where}: {len(row.cells)} cells, expected {len(names)}")
+    cells = dict(zip(names, row.cells, strict=True))
+    if not cells["name"]:
+        raise DeclarationError(f"{row.where}: a motor without a name")
     numbers: dict[str, float] = {}
-    for column in _COLUMNS[1:]:
-        cell = row[places[column]]
-        try:
-            number = float(cell)
-        except ValueError:
-            number = math.nan
-        if not math.isfinite(number) or number < 0.0 or (number == 0.0 and column != "inertia"):
-            raise DeclarationError(f"{where}: {column} must be a positive number, got {cell!r}")
-        numbers[column] = number * (_RPM if column.endswith("speed") else 1.0)
-    motor = Motor(row[places["name"]], **numbers)
-    if not motor.name:
-        raise DeclarationError(f"{where}: a motor without a name")
-    if motor.rated_torque > motor.stall_torque or motor.stall_torque > motor.peak_torque or motor.rated_speed > motor.max_speed:
-        raise DeclarationError(f"{where}: expected rated_torque <= stall_torque <= peak_torque, and rated_speed <= max_speed")
-    return motor
-
-
-def select(motors: Iterable[Motor], duty: Callable[[float, float], Duty], *, ratios: Sequence[float] = (1.0,)) -> Choice:
-    """The smallest motor that serves, by rated power, with the ratio that heats it least.
-
-    ``duty(ratio, inertia)`` is what a ratio asks of a motor whose rotor has an inertia, as
-    ``lambda ratio, inertia: duty_of(solution, "J", ratio=ratio, inertia=inertia)``. A motor serves where the root mean square of
-    its torque is no more than it bears for ever at the mean speed, no torque is above its peak torque and no speed above its
-    largest one.
-
-    Raises :class:`.NoDesignError` where none serves, with the motor that comes nearest, and :class:`.DeclarationError` for none.
-    """
-    given = sorted(motors, key=lambda motor: (motor.rated_power, motor.name))
-    if not given or not list(ratios):
-        raise DeclarationError("select: expected motors, and ratios")
-    refused: list[str] = []
-    nearest: Choice | None = None
-    for motor in given:
-        tried = [_judged(motor, duty(float(ratio), motor.inertia), tuple(refused)) for ratio in ratios]
-        serving = [choice for choice in tried if _worst(choice) <= 1.0]
-        if serving:
-            return min(serving, key=lambda choice: choice.heat)
-        best = min(tried, key=_worst)
-        refused.append(f"{motor.name}: {_told(best)}")
-        nearest = best if nearest is None or _worst(best) < _worst(nearest) else nearest
-    assert nearest is not None
-    raise NoDesignError(f"no motor of {len(given)} serves; nearest comes {nearest.motor.name}: {_told(nearest)}")
-
-
-def _judged(motor: Motor, duty: Duty, refused: tuple[str, ...]) -> Choice:
-    lasting = float(motor.lasting(duty.mean_speed))
-    heat = duty.rms_torque / lasting if lasting > 0.0 else math.inf
-    return Choice(motor, duty, heat, duty.peak_torque / motor.peak_torque, duty.peak_speed / motor.max_speed, refused)
-
-
-def _worst(choice: Choice) -> float:
-    return max(choice.heat, choice.torque, choice.speed)
-
-
-def _told(choice: Choice) -> str:
-    """Which limit is broken most, and by how much."""
-    shares = {"heat": choice.heat, "peak torque": choice.torque, "speed": choice.speed}
-    what = max(shares, key=lambda name: shares[name])
-    return f"{what} {100.0 * shares[what]:.3g} % of what it bears, with a ratio of {choice.ratio:g}"
+    for column, unit in units.items():
+        if column not in needed and not cells[column]:
+            continue
+        number = row.number(cells[column])
+        if not number >= 0.0 or (number == 0.0 and column not in (needed[-1], *knee)):
+            raise DeclarationError(f"{row.where}: {column} must be a positive number, got {cells[column]!r}")
+        numbers[column] = number * unit
+    stall, rated, rated_speed, peak, most, inertia = (numbers[column] for column in needed)
+    if rated > stall or stall > peak or rated_speed > most:
+        told = f"{needed[1]} <= {needed[0]} <= {needed[3]}"
+        raise DeclarationError(f"{row.where}: expected {told}, and rated_speed <= max_speed")
+    if (knee[0] in numbers) != (knee[1] in numbers):
+        raise DeclarationError(f"{row.where}: expected both {' and '.join(knee)}, or none")
+    if knee[0] in numbers and not (numbers[knee[0]] <= most and numbers[knee[1]] <= peak):
+        raise DeclarationError(f"{row.where}: expected knee_speed <= max_speed, and {knee[1]} <= {needed[3]}")
+    turning = numbers.get(knee[0]), numbers.get(knee[1])
+    return Motor(
+        cells["name"], stall, rated, rated_speed, peak, most, inertia, *turning, numbers.get(_LASTS, math.inf), linear=linear
+    )

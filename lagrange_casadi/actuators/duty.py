@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,13 +12,26 @@ from ..declare.density import Array
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.solution import Solution
 
+_COARSE = 0.01
+"""By how much every second instant may tell otherwise, where instants are enough."""
+
+
+class InertiaRatio(NamedTuple):
+    """The inertia of what is driven over that of the motor, both at the motor: over a cycle the least, the mean, the largest."""
+
+    least: float
+    mean: float
+    largest: float
+
 
 @dataclass(frozen=True, eq=False)
 class Duty:
     """What a drive asks of its motor over the instants ``t`` [s]: ``speed`` [rad/s], ``torque`` [N m], each (t,).
 
     The motor turns ``ratio`` times as fast as the drive. Its gearbox loses a share of what passes it, whichever way: 1 less its
-    ``efficiency``. The torque turns the motor's own ``inertia`` [kg m^2] too. Of a drive that slides the ratio is in rad/m.
+    ``efficiency``. The torque turns the motor's own ``inertia`` [kg m^2] too. Of a drive that slides the ratio is in rad/m; a
+    ``linear`` motor has speeds in m/s, forces in N and a mass in kg in their place. ``carried`` is the inertia that the drive feels
+    [kg m^2 or kg], (t,), where it is known: see :func:`.inertia_at`.
     """
 
     joint: str
@@ -27,16 +41,23 @@ class Duty:
     t: Array
     speed: Array
     torque: Array
+    linear: bool = False
+    carried: Array | None = None
+
+    @property
+    def pull(self) -> str:
+        """What its torque is called."""
+        return "force" if self.linear else "torque"
 
     @property
     def rms_torque(self) -> float:
         """The root of the mean square of the torque [N m], by trapezia: what heats the motor."""
-        return math.sqrt(_mean(self.t, self.torque**2))
+        return math.sqrt(mean_of(self.t, self.torque**2))
 
     @property
     def mean_speed(self) -> float:
         """The mean of the size of the speed [rad/s]."""
-        return _mean(self.t, np.abs(self.speed))
+        return mean_of(self.t, np.abs(self.speed))
 
     @property
     def peak_torque(self) -> float:
@@ -55,8 +76,13 @@ class Duty:
 
     @property
     def peak_power(self) -> float:
-        """The largest power that it gives [W]."""
+        """The largest power that it gives [W]; negative where it only takes."""
         return float(self.power.max())
+
+    @property
+    def peak_return(self) -> float:
+        """The largest power that comes back to it [W], nothing where none does: what a brake resistor bears."""
+        return max(0.0, float(-self.power.min()))
 
     @property
     def energy(self) -> float:
@@ -68,15 +94,47 @@ class Duty:
         """What comes back to the motor over the instants [J]."""
         return _positive_area(self.t, -self.power)
 
+    @property
+    def inertia_ratio(self) -> InertiaRatio:
+        """The inertia of what is driven, as the motor feels it, over the motor's own.
 
-def duty_of(solution: Solution, joint: str, *, ratio: float = 1.0, efficiency: float = 1.0, inertia: float = 0.0) -> Duty:
+        Raises :class:`.DeclarationError` where the inertia of what is driven is not known, or the motor's is zero.
+        """
+        if self.carried is None or self.inertia == 0.0:
+            lacking = "the motor's inertia" if self.carried is not None else "what the drive feels, as inertia_at tells it"
+            raise DeclarationError(f"inertia ratio of '{self.joint}': expected {lacking}")
+        ratio = self.carried / (self.ratio**2 * self.inertia)
+        return InertiaRatio(float(ratio.min()), mean_of(self.t, ratio), float(ratio.max()))
+
+    @property
+    def coarse(self) -> bool:
+        """Whether instants are too few: every second one tells a root of the mean square, or a peak, that is 1 % off."""
+        half = replace(self, t=self.t[::2], speed=self.speed[::2], torque=self.torque[::2], carried=None)
+        if half.t.size < 2:
+            return True
+        pairs = ((self.rms_torque, half.rms_torque), (self.peak_torque, half.peak_torque), (self.peak_speed, half.peak_speed))
+        return any(abs(whole - part) > _COARSE * whole for whole, part in pairs)
+
+
+def duty_of(
+    solution: Solution,
+    joint: str,
+    *,
+    ratio: float = 1.0,
+    efficiency: float = 1.0,
+    inertia: float = 0.0,
+    linear: bool = False,
+    carried: Array | None = None,
+) -> Duty:
     """The duty of a drive's motor, from a solution that has the drive's effort and its motion.
 
     ``ratio`` is how many times as fast as the drive the motor turns, for a drive that slides in rad/m; a negative one turns it the
     other way. ``efficiency`` is that of the gearbox, ``inertia`` [kg m^2] that of the motor's rotor and what turns with it.
+    A ``linear`` motor pushes a drive that slides; its inertia is the mass of its moving part [kg], and its ratio usually 1.
+    ``carried`` is what :func:`.inertia_at` tells of the drive, for the ratio of inertias.
 
-    Raises :class:`.UnknownNameError` for what is no drive of the solution, :class:`.DeclarationError` for numbers that cannot be
-    and for fewer than two instants.
+    Raises :class:`.UnknownNameError` for what is no drive of the solution, :class:`.DeclarationError` for numbers that cannot be,
+    for fewer than two instants, and where the effort is open, as where a joint that rubs is at rest.
     """
     drives = [str(name).partition(":")[2] for name in solution.names() if str(name).startswith("effort:")]
     if joint not in drives:
@@ -87,16 +145,32 @@ def duty_of(solution: Solution, joint: str, *, ratio: float = 1.0, efficiency: f
         raise DeclarationError(f"efficiency must be above 0 and at most 1, got {efficiency!r}")
     if not 0.0 <= inertia < math.inf:
         raise DeclarationError(f"inertia must be a finite number that is not negative, got {inertia!r}")
+    if linear and not slides(solution, joint):
+        raise DeclarationError(f"drive '{joint}' turns, and a linear motor slides; expected a rotary one")
     if solution.t.size < 2:
         raise DeclarationError("a duty needs two instants or more, over a whole cycle")
+    if carried is not None and np.shape(carried) != solution.t.shape:
+        raise DeclarationError(f"carried: expected an inertia at each of the {solution.t.size} instants")
     effort, motion = solution.effort(joint), solution.motion(joint)
+    open_ = int(np.count_nonzero(~np.isfinite(effort)))
+    if open_:
+        rests = "; joints that rub are at rest there: give their friction smooth" if solution.resting.any() else ""
+        raise DeclarationError(f"the effort of drive '{joint}' is open at {open_} of {solution.t.size} instants{rests}")
     # The gearbox takes its losses from whoever gives power.
     passed = np.where(effort * motion.rate >= 0.0, 1.0 / efficiency, efficiency)
     torque = effort * passed / ratio + inertia * ratio * motion.acceleration
-    return Duty(joint, float(ratio), float(efficiency), float(inertia), solution.t, ratio * motion.rate, torque)
+    return Duty(
+        joint, float(ratio), float(efficiency), float(inertia), solution.t, ratio * motion.rate, torque, bool(linear), carried
+    )
 
 
-def _mean(t: Array, values: Array) -> float:
+def slides(solution: Solution, joint: str) -> bool:
+    """Whether the coordinate of a drive is a length."""
+    return solution.unit(f"motion:{joint}") == "m"
+
+
+def mean_of(t: Array, values: Array) -> float:
+    """The mean over time of straight lines between values."""
     return float(np.sum((values[1:] + values[:-1]) / 2.0 * np.diff(t)) / (t[-1] - t[0]))
 
 

@@ -12,34 +12,41 @@ from ..system.publish import check_writable, writing
 from .catalogue import Motor
 from .duty import Duty
 
-_PICTURES = (".png", ".pdf", ".svg")
+_PICTURES: dict[str, dict[str, None]] = {".png": {"Software": None}, ".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
+"""What pictures end in, and what they must not hold, so that the same duty gives the same bytes."""
+
+
+def check_picture(path: str | Path) -> None:
+    """Raise :class:`.DeclarationError` for a name that ends in none of .png, .pdf and .svg, and :class:`.PathError`."""
+    target = Path(path)
+    if target.suffix not in _PICTURES:
+        raise DeclarationError(f"{target}: expected a name that ends in {', '.join(_PICTURES)}")
+    check_writable(target)
 
 
 def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
     """Draw a duty's points of torque over speed, its root mean square at its mean speed, and the limits of a motor, into a file.
 
-    Raises :class:`.DeclarationError` for a name that ends in none of .png, .pdf and .svg, and :class:`.PathError`.
+    Raises as :func:`check_picture` does.
     """
+    check_picture(path)
     target = Path(path)
-    if target.suffix not in _PICTURES:
-        raise DeclarationError(f"{target}: expected a name that ends in {', '.join(_PICTURES)}")
-    check_writable(target)
+    from matplotlib import rc_context
     from matplotlib.figure import Figure
 
-    turns = 60.0 / math.tau
-    figure = Figure(figsize=(7.0, 4.5), layout="constrained")
+    turns = 1.0 if duty.linear else 60.0 / math.tau
+    figure = Figure(figsize=(7.0, 5.0), layout="constrained")
     axes = figure.subplots()
     axes.plot(turns * np.abs(duty.speed), np.abs(duty.torque), ".-", color="#1f4e79", lw=0.8, ms=3, label=f"motor of {duty.joint}")
     axes.plot(turns * duty.mean_speed, duty.rms_torque, "D", color="#c0392b", label="root mean square, at the mean speed")
     if motor is not None:
-        speeds = np.linspace(0.0, motor.max_speed, 50)
+        speeds = np.linspace(0.0, motor.max_speed, 200)
         axes.plot(turns * speeds, motor.lasting(speeds), color="#2e7d4f", label=f"{motor.name}, for ever")
-        limits = [motor.peak_torque, motor.peak_torque, 0.0]
-        axes.plot(
-            turns * np.array([0.0, motor.max_speed, motor.max_speed]), limits, color="#b3541e", label=f"{motor.name}, at most"
-        )
-    axes.set(xlabel="speed [1/min]", ylabel="torque [N m]", xlim=(0, None), ylim=(0, None))
+        limit, ends = np.append(motor.at_most(speeds), 0.0), np.append(speeds, motor.max_speed)
+        axes.plot(turns * ends, limit, color="#b3541e", label=f"{motor.name}, at most")
+    speed, pull = ("speed [m/s]", "force [N]") if duty.linear else ("speed [1/min]", "torque [N m]")
+    axes.set(xlabel=speed, ylabel=pull, xlim=(0, None), ylim=(0, None))
     axes.grid(True, color="0.92")
-    axes.legend(frameon=False, fontsize=9)
-    with writing(target) as (file,):
-        figure.savefig(file, format=target.suffix.removeprefix("."), dpi=150)
+    figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    with writing(target) as (file,), rc_context({"svg.hashsalt": "duty"}):
+        figure.savefig(file, format=target.suffix.removeprefix("."), dpi=150, metadata=_PICTURES[target.suffix])

@@ -24,6 +24,7 @@ from .cache import cache
 from .cases import cases
 from .check import check
 from .drawing import drawn_ways
+from .drive import drive_command as drive
 from .export import export
 from .info import info
 from .new import new
@@ -78,7 +79,7 @@ class _Commands(click.Group):
 
 
 _COMMANDS = (
-    run, sweep, best, table, trade, export, plot, report, animate, info, check, optimise, tolerances, size, cases, new, cache
+    run, sweep, best, table, trade, export, plot, report, animate, info, check, optimise, tolerances, size, drive, cases, new, cache
 )  # fmt: skip
 
 

@@ -11,23 +11,25 @@ from .joints import Axis, Joint
 from .ownership import Ownership
 from .parts import POSITIVE, Expression, Friction
 
-_IN_PLANE, _IN_SPACE = ("revolute", "prismatic", "slot"), ("revolute", "screw")
+_IN_PLANE, _IN_SPACE = ("revolute", "prismatic", "slot"), ("revolute", "prismatic", "cylindrical", "screw")
 
 
-def friction(own: Ownership, name: str, joint: Joint, told: Mapping[str, Expression | None]) -> Friction:
-    """Friction in a joint of a mechanism, with the numbers that are ``told`` of it.
+def friction(own: Ownership, name: str, joint: Joint, along: str, told: Mapping[str, Expression | None]) -> Friction:
+    """Friction in a joint of a mechanism, with the numbers that are ``told`` of it; ``along`` names a coordinate of a joint of two.
 
     Raises :class:`DeclarationError` where the joint has no such friction, and where a number is missing or says nothing.
     """
     own.free("load", name, own.mechanism.loads)
     what = f"friction '{name}'"
-    axis = _axis(own, what, joint)
+    axis, beside = _axes(own, what, joint, along)
     numbers = {key: _number(own, f"{what}: {key}", value) for key, value in told.items() if value is not None}
     _require(what, joint, axis, numbers)
     if numbers.get("static") is not None and "stribeck" not in numbers:
         raise DeclarationError(f"{what}: static needs stribeck, the speed of sliding [m/s] within which mu falls from static")
     if "stribeck" in numbers and "static" not in numbers:
         raise DeclarationError(f"{what}: stribeck goes with static, the friction coefficient at the start of sliding")
+    if beside is not None and "smooth" in numbers:
+        raise DeclarationError(f"{what}: joint '{joint.name}' slides and turns at once, and has no smooth sign")
     return Friction(
         name,
         joint,
@@ -40,10 +42,12 @@ def friction(own: Ownership, name: str, joint: Joint, told: Mapping[str, Express
         numbers.get("static"),
         numbers.get("stribeck"),
         numbers.get("smooth"),
+        beside,
     )
 
 
-def _axis(own: Ownership, what: str, joint: Joint) -> Axis:
+def _axes(own: Ownership, what: str, joint: Joint, along: str) -> tuple[Axis, Axis | None]:
+    """The coordinate along which it acts, and the other one of a joint that has two."""
     own.joint(joint)
     valid = _IN_SPACE if own.mechanism.space else _IN_PLANE
     if joint.kind not in valid:
@@ -55,7 +59,15 @@ def _axis(own: Ownership, what: str, joint: Joint) -> Axis:
             f"{what}: joint '{joint.name}' has no angle, for '{points[0]}' is a point mass and has no direction; declare it "
             "as a link with mass, centre and inertia"
         )
-    return joint.axes[0]
+    names = [axis.name for axis in joint.axes if axis.name]
+    if len(names) == 2:
+        if along not in names:
+            raise DeclarationError(f"{what}: joint '{joint.name}' has two coordinates; expected along='{names[0]}' or '{names[1]}'")
+        first, second = joint.axes
+        return (first, second) if along == names[0] else (second, first)
+    if along and along not in names:
+        raise DeclarationError(f"{what}: joint '{joint.name}' has one coordinate, and no '{along}'")
+    return joint.axes[0], None
 
 
 def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expression]) -> None:
@@ -71,10 +83,14 @@ def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expressi
         raise DeclarationError(
             f"{what}: joint '{joint.name}' is a screw, and a thread has one mu; valid: mu, radius, viscous, smooth"
         )
-    if axis.kind == "angle":
+    if joint.turned is not None and joint.kind == "prismatic" and joint.bears_moment and "radius" not in numbers:
+        raise DeclarationError(
+            f"{what}: joint '{joint.name}' holds its child against turning about its line; expected radius, at which it does [m]"
+        )
+    if axis.kind == "angle" or joint.kind == "cylindrical":
         if "radius" not in numbers:
             raise DeclarationError(f"{what}: joint '{joint.name}' turns; expected radius, that of its pin [m]")
-        borne = joint.turned is not None and joint.kind == "revolute" and joint.bears_moment
+        borne = joint.turned is not None and joint.kind in ("revolute", "cylindrical") and joint.bears_moment
         if borne and "length" not in numbers:
             raise DeclarationError(
                 f"{what}: joint '{joint.name}' bears a moment; expected length, from one bearing to the other [m]"
@@ -82,7 +98,7 @@ def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expressi
         if "length" in numbers and not borne:
             raise DeclarationError(f"{what}: joint '{joint.name}' turns and has no length of guidance; valid: radius")
         return
-    if "radius" in numbers:
+    if "radius" in numbers and not (joint.turned is not None and joint.bears_moment):
         raise DeclarationError(f"{what}: joint '{joint.name}' slides and has no radius; valid: length")
     if joint.bears_moment and "length" not in numbers:
         raise DeclarationError(

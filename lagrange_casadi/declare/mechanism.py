@@ -295,11 +295,12 @@ class Mechanism:
         static: Expression | None = None,
         stribeck: Expression | None = None,
         smooth: Expression | None = None,
+        along: str = "",
     ) -> Friction:
-        """Let a joint rub: a pin of a ``radius`` [m], or a guide of a ``length`` [m], by what it bears: :class:`.Friction`."""
+        """Let a joint rub, a pin or a guide, by what it bears; ``along`` one of two coordinates of it: see :class:`.Friction`."""
         told = {"mu": mu, "radius": radius, "length": length, "viscous": viscous}
         told |= {"static": static, "stribeck": stribeck, "smooth": smooth}
-        return cast(Friction, self.loads.setdefault(name, friction(self.own, name, joint, told)))
+        return cast(Friction, self.loads.setdefault(name, friction(self.own, name, joint, along, told)))
 
     def output(self, name: str, expression: Any, *, unit: str = "1") -> OwnOutput:
         """Declare an output of one's own, ``output:NAME``, with its unit: an expression of what loads see and of `results`."""

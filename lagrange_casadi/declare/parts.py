@@ -285,6 +285,8 @@ class Friction:
         -sigma mu (|N/2 + M/length| + |N/2 - M/length|) - viscous v   in a guide that bears N across its line and the moment M.
 
     ``static`` is the coefficient where sliding starts: mu + (static - mu) exp(-(speed/stribeck)^2), by the speed of sliding [m/s].
+    In a joint that slides and turns at once, ``beside`` is its other coordinate: sigma is then the share of the speed of sliding
+    that is along this one.
     """
 
     name: str
@@ -298,6 +300,7 @@ class Friction:
     static: Expression | None = None
     stribeck: Expression | None = None
     smooth: Expression | None = None
+    beside: Axis | None = None
 
     @property
     def points(self) -> tuple[Point, ...]:

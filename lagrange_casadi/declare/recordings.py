@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import DeclarationError, PathError, UnknownNameError, one_line
+from ..errors import DeclarationError, UnknownNameError, one_line
+from ..system.csv_rows import read_rows
 from .curves import Curve, curve
 from .density import Array
 from .motion import Motion
@@ -27,7 +27,6 @@ _UNITS = {
     "um": 1e-6,
 }
 _TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
-_DELIMITERS = (";", "\t", ",")
 _LEAST = 5
 """So many rows are needed at least for four pieces."""
 
@@ -110,44 +109,25 @@ def read_samples(
 
 def _read(path: Path, time: str | int, value: str | int, unit: str, second: float) -> Recording:
     """The two columns of a file."""
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise PathError(f"{path}: cannot be read as text: {one_line(error)}") from None
-    kept = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
-    if not kept:
-        raise DeclarationError(f"{path.name}: it has no rows; expected columns of times and values")
-    delimiter = next((mark for mark in _DELIMITERS if mark in kept[0][1]), ",")
-    rows = [
-        (number, [cell.strip() for cell in row])
-        for (number, _), row in zip(kept, csv.reader([line for _, line in kept], delimiter=delimiter), strict=True)
-    ]
-    heads = rows[0][1]
-    if all(_number(cell, delimiter) is not None for cell in heads):
-        heads = []
-    wanted = [_column(path.name, column, heads, len(rows[0][1])) for column in (time, value)]
+    rows = read_rows(path, "columns of times and values")
+    heads = rows[0].cells
+    if not any(math.isnan(rows[0].number(cell)) for cell in heads):
+        heads = ()
+    wanted = [_column(path.name, column, heads, len(rows[0].cells)) for column in (time, value)]
     found: list[list[float]] = []
-    for number, row in rows[1 if heads else 0 :]:
-        cells = [row[column] if column < len(row) else "" for column in wanted]
-        numbers = [_number(cell, delimiter) for cell in cells]
-        for cell, read in zip(cells, numbers, strict=True):
-            if read is None:
-                raise DeclarationError(f"{path.name}, line {number}: expected a finite number, got {cell!r}")
-        if found and not numbers[0] > found[-1][0]:  # type: ignore[operator]
-            raise DeclarationError(f"{path.name}, line {number}: times must rise, but {cells[0]} follows {found[-1][0]:g}")
-        found.append([float(read) for read in numbers if read is not None])
+    for row in rows[1 if heads else 0 :]:
+        cells = [row.cells[column] if column < len(row.cells) else "" for column in wanted]
+        numbers = [row.number(cell) for cell in cells]
+        for cell, number in zip(cells, numbers, strict=True):
+            if math.isnan(number):
+                raise DeclarationError(f"{row.where}: expected a finite number, got {cell!r}")
+        if found and not numbers[0] > found[-1][0]:
+            raise DeclarationError(f"{row.where}: times must rise, but {cells[0]} follows {found[-1][0]:g}")
+        found.append(numbers)
     if len(found) < _LEAST:
         raise DeclarationError(f"{path.name}: expected at least {_LEAST} rows of numbers, got {len(found)}")
     t, values = np.array(found).T
     return Recording(path.name, unit, t * second, values)
-
-
-def _number(cell: str, delimiter: str) -> float | None:
-    try:
-        found = float(cell if delimiter == "," else cell.replace(",", "."))
-    except ValueError:
-        return None
-    return found if math.isfinite(found) else None
 
 
 def _column(place: str, column: str | int, heads: Sequence[str], count: int) -> int:

@@ -14,7 +14,7 @@ from ..tables import table_of
 from .density import Density
 from .joints import Joint
 from .limits import no_sections
-from .parts import Body, Constraint, Expression, Link, Load, Point, Row
+from .parts import Body, Constraint, Expression, Friction, Link, Load, Point, Row
 
 if TYPE_CHECKING:
     from .mechanism import Mechanism
@@ -74,6 +74,13 @@ class SpatialSectionForces(NamedTuple):
     bending_z: Any
 
 
+class Rubbed(NamedTuple):
+    """The symbols of friction along a joint's coordinate, on the child [N or N m], and of the power that it takes [W]."""
+
+    along: Any
+    loss: Any
+
+
 class SectionForces(NamedTuple):
     """The symbols of the forces at a section: axial and shear force [N], bending moment [N m]."""
 
@@ -110,6 +117,12 @@ class Results:
     def load(self, load: Load) -> Force | SpatialForce:
         """The symbols of what a load does to the body of its first point."""
         return self._force("load", self._own("load", load, self.mechanism.loads.values()), moment=True)
+
+    def friction(self, friction: Friction) -> Rubbed:
+        """The symbols of a friction and of the power that it takes."""
+        rubbing = [load for load in self.mechanism.loads.values() if isinstance(load, Friction)]
+        name = self._own("friction", friction, rubbing)
+        return Rubbed(self._ask(Output("friction", name, "along")), self._ask(Output("friction", name, "loss")))
 
     def multiplier(self, of: Constraint | Row) -> Any:
         """The symbol of the multiplier of a constraint or a non-holonomic constraint."""

@@ -17,12 +17,12 @@ import casadi as ca
 
 from ..declare.expressions import sound
 from ..declare.joints import Joint
-from ..declare.kinks import refuse_kinks
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Constraint, Expression, Ground, Link, Point
 from ..errors import DeclarationError
 from ..geometry.rotation import direction
 from .cam_profile import CamProfile, profile_of
+from .lift import rise_of
 
 _ELASTIC = (210e9, 0.3)
 """Young's modulus [Pa] and Poisson's ratio of steel."""
@@ -112,26 +112,14 @@ def disc_cam(
     """
     what, own = f"cam '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
-    for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
-        if own.joint(joint).kind not in kinds or mechanism.space or not isinstance(joint.parent.body, Ground):
-            valid = " or ".join(kinds)
-            raise DeclarationError(f"{what}: expected a {valid} joint whose parent is the ground, in a plane, got '{joint.name}'")
-    if flat and (roller is not None or point is not None):
-        raise DeclarationError(f"{what}: a flat face has neither a roller nor a point")
-    if side not in (1, -1):
-        raise DeclarationError(f"{what}: side must be 1 or -1, got {side!r}")
-    held = follower.child if point is None else own.point(what, point)
-    if held.body is not follower.child.body:
-        raise DeclarationError(f"{what}: its point must be on '{follower.child.body.name}', which joint '{follower.name}' leads")
-    base = _positive(f"{what}: base_radius", own.expression(what, base_radius))
-    radius = 0.0 if roller is None else _positive(f"{what}: roller", own.expression(what, roller))
+    layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side, base_radius)
     x = ca.SX.sym("angle")
-    rise = _rise(what, mechanism, lift, x)
+    rise = rise_of(what, mechanism, lift, x)
     make = (
         (_translating_flat if flat else _translating) if follower.kind == "prismatic" else (_swinging_flat if flat else _swinging)
     )
-    design = make(what, x, rise, _Layout(cam, follower, held, base, radius, side))
-    touched = follower.child if flat and follower.kind == "revolute" else held
+    design = make(what, x, rise, layout)
+    touched = follower.child if flat and follower.kind == "revolute" else layout.held
     constraint = _contact(mechanism, name, cam, touched, design)
     made = Cam(name, mechanism, constraint, design)
     _outputs(made, cam, width, elastic)
@@ -144,7 +132,7 @@ def disc_cam(
 
 
 @dataclass(frozen=True, eq=False)
-class _Layout:
+class Layout:
     """Where a cam and its follower are."""
 
     cam: Joint
@@ -165,6 +153,34 @@ class _Layout:
         return self.held.x - self.follower.child.x, self.held.y - self.follower.child.y
 
 
+def layout_of(
+    what: str,
+    mechanism: Mechanism,
+    cam: Joint,
+    follower: Joint,
+    point: Point | None,
+    roller: Expression | None,
+    flat: bool,
+    side: int,
+    base: Expression,
+) -> Layout:
+    """What :func:`disc_cam` is told of a cam and its follower. Raises :class:`.DeclarationError` as that does."""
+    own = mechanism.own
+    for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
+        if own.joint(joint).kind not in kinds or mechanism.space or not isinstance(joint.parent.body, Ground):
+            valid = " or ".join(kinds)
+            raise DeclarationError(f"{what}: expected a {valid} joint whose parent is the ground, in a plane, got '{joint.name}'")
+    if flat and (roller is not None or point is not None):
+        raise DeclarationError(f"{what}: a flat face has neither a roller nor a point")
+    if side not in (1, -1):
+        raise DeclarationError(f"{what}: side must be 1 or -1, got {side!r}")
+    held = follower.child if point is None else own.point(what, point)
+    if held.body is not follower.child.body:
+        raise DeclarationError(f"{what}: its point must be on '{follower.child.body.name}', which joint '{follower.name}' leads")
+    radius = 0.0 if roller is None else _positive(f"{what}: roller", own.expression(what, roller))
+    return Layout(cam, follower, held, _positive(f"{what}: base_radius", own.expression(what, base)), radius, side)
+
+
 def _positive(what: str, radius: Any) -> Any:
     """A radius; none that parameters make zero or less. Raises :class:`.DeclarationError` for a number of no radius."""
     if isinstance(radius, ca.SX):
@@ -172,16 +188,6 @@ def _positive(what: str, radius: Any) -> Any:
     if not radius > 0.0:
         raise DeclarationError(f"{what} must be positive, got {radius:g} m")
     return radius
-
-
-def _rise(what: str, mechanism: Mechanism, lift: Callable[[Any], Any], x: Any) -> Any:
-    try:
-        rise = ca.SX(lift(x))
-    except Exception as error:
-        raise DeclarationError(f"{what}: lift must be a function of the cam's angle, of CasADi's expressions: {error}") from None
-    defaults = [parameter.default for parameter in mechanism.parameters.values()]
-    refuse_kinks(f"{what}: its lift", rise, x, mechanism.symbols, defaults, (-math.tau, math.tau))
-    return rise
 
 
 def _turned(vector: tuple[Any, Any], angle: Any) -> tuple[Any, Any]:
@@ -209,7 +215,7 @@ def _pitch_normal(x: Any, place: tuple[Any, Any]) -> tuple[Any, Any]:
     return outward[0] / size, outward[1] / size
 
 
-def _translating(what: str, x: Any, rise: Any, layout: _Layout) -> Design:
+def _translating(what: str, x: Any, rise: Any, layout: Layout) -> Design:
     up = layout.follower.axis[0], layout.follower.axis[1]
     aside = up[1], -up[0]
     seat = _sum(layout.away, _turned(layout.arm, layout.follower.angle))
@@ -220,7 +226,7 @@ def _translating(what: str, x: Any, rise: Any, layout: _Layout) -> Design:
     return Design(x, place, normal, 0.0, _sum(place, normal, -layout.roller), up, None, layout.roller)
 
 
-def _translating_flat(what: str, x: Any, rise: Any, layout: _Layout) -> Design:
+def _translating_flat(what: str, x: Any, rise: Any, layout: Layout) -> Design:
     up = layout.follower.axis[0], layout.follower.axis[1]
     aside = up[1], -up[0]
     offset = _dot(_sum(layout.away, _turned(layout.arm, layout.follower.angle)), aside)
@@ -232,7 +238,7 @@ def _translating_flat(what: str, x: Any, rise: Any, layout: _Layout) -> Design:
     return Design(x, place, up, moment, contact, up, _turned((1.0, 0.0), layout.follower.angle), 0.0)
 
 
-def _swinging(what: str, x: Any, rise: Any, layout: _Layout) -> Design:
+def _swinging(what: str, x: Any, rise: Any, layout: Layout) -> Design:
     away, arm = layout.away, layout.arm
     length, distance, prime = ca.sqrt(ca.SX(_dot(arm, arm))), ca.sqrt(ca.SX(_dot(away, away))), layout.base + layout.roller
     along, across = _swung(layout, rise, (length**2 + distance**2 - prime**2) / (2.0 * length * distance), distance)
@@ -241,7 +247,7 @@ def _swinging(what: str, x: Any, rise: Any, layout: _Layout) -> Design:
     return Design(x, place, normal, 0.0, _sum(place, normal, -layout.roller), across, None, layout.roller)
 
 
-def _swinging_flat(what: str, x: Any, rise: Any, layout: _Layout) -> Design:
+def _swinging_flat(what: str, x: Any, rise: Any, layout: Layout) -> Design:
     away = layout.away
     distance = ca.sqrt(ca.SX(_dot(away, away)))
     sine = layout.base / distance
@@ -252,7 +258,7 @@ def _swinging_flat(what: str, x: Any, rise: Any, layout: _Layout) -> Design:
     return Design(x, away, normal, _cross(arm, normal), _sum(away, arm), normal, along, 0.0)
 
 
-def _swung(layout: _Layout, rise: Any, cosine: Any, distance: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+def _swung(layout: Layout, rise: Any, cosine: Any, distance: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
     """The direction of the arm of a swinging follower, and that in which it swings away from the cam.
 
     On the base circle the arm is at an angle of this ``cosine`` to the line from its pin to the cam's centre.

@@ -81,6 +81,8 @@ def _spell(item: Any, words: list[str], expressions: list[Any]) -> None:
         for key, value in item.items():
             _spell(key, words, expressions)
             _spell(value, words, expressions)
+    elif isinstance(item, (set, frozenset)) and all(isinstance(name, str) for name in item):
+        words += [f"set {len(item)}", *sorted(item)]
     elif isinstance(item, (tuple, list)):
         words.append(f"sequence {len(item)}")
         for value in item:

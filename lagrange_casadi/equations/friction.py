@@ -22,59 +22,14 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..declare.mechanism import Mechanism
-from ..declare.parts import Friction, Vector
-from ..geometry.vectors import dot
 from .checks import Check, Column
-from .gaps import reach
-from .multibody import Multibody, column, rates_along
+from .multibody import column
+from .pressing import Rubbing
 
 STEPS = 4
 """Newton's steps: the error goes as the 4th, 10th, 22nd, 46th power of how much of itself a friction brings about."""
 
-_REST = 1e-12
-"""Of the fastest motion in the mechanism, of now or as soon as it has turned by a radian: a rate below is that of rest, but for
-rounding."""
-
 _NOTHING = 1e-30
-
-
-@dataclass(frozen=True, eq=False)
-class Contact:
-    """What presses on a rubbing place [N], of one component or two, and the ``arm`` that its friction has: 1 or a radius [m].
-
-    Of a thread, ``lean`` tells how much more one direction of sliding presses than the other [m].
-    """
-
-    arm: Any
-    pressing: tuple[Any, ...]
-    lean: Any = None
-
-
-@dataclass(frozen=True, eq=False)
-class Rubbing:
-    """A friction as expressions of an instant: its contacts, and rate and acceleration of its coordinate.
-
-    ``slowest`` is the rate below which it rests, and the change of rate below which it goes on to.
-    """
-
-    friction: Friction
-    contacts: tuple[Contact, ...]
-    rate: Any
-    acceleration: Any
-    slowest: tuple[Any, Any]
-
-    @property
-    def rows(self) -> list[Any]:
-        """All its expressions, in an order that :meth:`of_rows` knows."""
-        return [*(x for contact in self.contacts for x in contact.pressing), self.rate, self.acceleration, *self.slowest]
-
-    def of_rows(self, rows: Sequence[Any]) -> Rubbing:
-        """The same with other expressions."""
-        left = iter(rows)
-        contacts = tuple(Contact(c.arm, tuple(next(left) for _ in c.pressing), c.lean) for c in self.contacts)
-        rate, acceleration, *slowest = left
-        return Rubbing(self.friction, contacts, rate, acceleration, (slowest[0], slowest[1]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,59 +41,6 @@ class Solved:
     checks: dict[Column, Any]
     forces: Mapping[str, Any]
     lost: Mapping[str, Any]
-
-
-def frictions_of(mechanism: Mechanism) -> dict[str, Friction]:
-    """The frictions of a mechanism by name."""
-    return {name: load for name, load in mechanism.loads.items() if isinstance(load, Friction)}
-
-
-def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vector) -> Rubbing:
-    """A friction in a joint whose parent does this to its child, in ground axes, the couple about the child's point."""
-    joint, coordinates = friction.joint, multibody.coordinates
-    rate, acceleration = rates_along(joint, friction.axis, multibody.frames, coordinates)
-    unit, fastest, quickest = reach(multibody.mechanism), ca.SX(0), ca.SX(0)
-    for own in (coordinate for coordinate in coordinates if coordinate.driven):
-        size = 1 if own.kind == "angle" else unit
-        fastest += ca.fabs(own.rate) / size
-        quickest += ca.fabs(own.acceleration) / size
-    quickest += fastest * fastest
-    least = _REST * (1 if friction.axis.kind == "angle" else unit)
-    contacts: tuple[Contact, ...] = ()
-    if friction.dry and multibody.mechanism.space:
-        contacts = _in_space(multibody, friction, force, couple)
-    elif friction.dry and friction.axis.kind == "angle":
-        contacts = (Contact(friction.radius, (force[0], force[1])),)
-    elif friction.dry:
-        across = multibody.frames[joint.parent.body.name].rotation.apply(joint.triad[1])
-        pressing = dot(force, across)
-        if friction.length is None:
-            contacts = (Contact(1.0, (pressing,)),)
-        else:
-            tilt = couple[2] / friction.length
-            contacts = tuple(Contact(1.0, (pressing / 2 + sign * tilt,)) for sign in (1, -1))
-    # Where the drives themselves turn back, nothing moves: what is slow is told by how soon it moves.
-    return Rubbing(friction, contacts, rate, acceleration, (least * ca.sqrt(quickest), least * quickest))
-
-
-def _in_space(multibody: Multibody, friction: Friction, force: Vector, couple: Vector) -> tuple[Contact, ...]:
-    """Two bearings, ``length`` apart, and a collar that bears the thrust; or the flanks of a thread.
-
-    With N on a thread's flank at the angle tan(angle) = pitch/radius, the force along the axis is N (cos -+ mu sin), and friction
-    takes mu N radius/cos from the couple: less or more where the load drives the thread, by the sign of what it does.
-    """
-    joint, rotation = friction.joint, multibody.frames[friction.joint.parent.body.name].rotation
-    u, v, w = (rotation.apply(direction) for direction in joint.triad)
-    along, (one, other) = dot(force, u), (dot(force, v), dot(force, w))
-    if joint.kind == "screw":
-        radius: Any = friction.radius
-        pitch = joint.pitch
-        leaning = friction.mu * pitch
-        steep = (radius * radius + pitch * pitch) / (radius * radius - leaning * leaning)
-        return (Contact(steep * radius, (along,), steep * leaning),)
-    about = (dot(couple, v) / friction.length, dot(couple, w) / friction.length)
-    sides = ((one / 2 + sign * about[1], other / 2 - sign * about[0]) for sign in (1, -1))
-    return (*(Contact(friction.radius, side) for side in sides), Contact(friction.radius, (along,)))
 
 
 def solve(found: Sequence[Rubbing], open_: Any) -> Solved:
@@ -232,18 +134,27 @@ class _Law:
         steady = None if _nil(friction.viscous) else friction.viscous * v
         if not pressed:
             return cls(friction.name, [], 0.0, 0.0, steady, None)
-        mu = friction.mu
+        mu, lever = friction.mu, friction.radius if friction.axis.kind == "angle" else 1.0
         if friction.static is not None:
-            speed = v * (1.0 if friction.radius is None else friction.radius) / friction.stribeck
-            mu = mu + (friction.static - mu) * ca.exp(-(speed * speed))
+            speed = v * lever / friction.stribeck
+            squares = speed * speed if not one.beside else speed * speed + (one.beside[0] / friction.stribeck) ** 2
+            mu = mu + (friction.static - mu) * ca.exp(-squares)
         if friction.smooth is not None:
             return cls(friction.name, pressed, mu, ca.tanh(v / friction.smooth), steady, None)
         moves, turns = ca.fabs(v) > one.slowest[0], ca.fabs(one.acceleration) > one.slowest[1]
+        if one.beside:
+            other, change = one.beside
+            least, most = (lever * limit for limit in one.slowest)
+            moves = ca.logic_or(moves, ca.fabs(other) > least)
+            turns = ca.logic_or(turns, ca.fabs(change) > most)
+            rest = ca.if_else(moves, 0, ca.if_else(turns, 0, 1))
+            way = ca.if_else(moves, lever * v, lever * one.acceleration)
+            across = ca.if_else(moves, other, change)
+            share = way / ca.fmax(ca.sqrt(way * way + across * across), _NOTHING)
+            return cls(friction.name, pressed, mu, _no_number(share, rest), steady, rest)
         rest = ca.if_else(moves, 0, ca.if_else(turns, 0, 1))
         way = ca.if_else(moves, v, ca.if_else(turns, one.acceleration, 0))
-        # No number at rest: zero over zero, which of what never moves would be read as zero.
-        sigma = ca.sqrt(1 - 2 * rest) - 1 if ca.SX(way).is_zero() else ca.sign(way) / (1 - rest)
-        return cls(friction.name, pressed, mu, sigma, steady, rest)
+        return cls(friction.name, pressed, mu, _no_number(ca.sign(way), rest), steady, rest)
 
     def pushed(self, values: Sequence[Any]) -> Any:
         """The force for values of all frictions."""
@@ -253,6 +164,11 @@ class _Law:
     def depends(self, k: int) -> bool:
         """Whether it depends on a friction."""
         return any(part.seen(k) is not None for part in self.pressed)
+
+
+def _no_number(sigma: Any, rest: Any) -> Any:
+    """A sign that is no number at rest: zero over zero, which of what never moves would be read as zero."""
+    return ca.sqrt(1 - 2 * rest) - 1 if ca.SX(sigma).is_zero() else sigma / (1 - rest)
 
 
 def _solve_block(laws: Sequence[_Law], block: Sequence[int], values: list[Any]) -> dict[Column, Any]:

@@ -34,12 +34,13 @@ from ..geometry.vectors import ZERO, cross, dot, plus, times
 from ..quantities import Output, force_members, law_members, own_members, station_members
 from .checks import Check, Column
 from .drives import solve_efforts
-from .friction import Solved, frictions_of, needed, rubbing, solve
+from .friction import Solved, needed, solve
 from .gaps import reach
 from .joints import borne, orientation, reaction, slide
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
 from .multibody import Multibody, column, own_coordinate
+from .pressing import frictions_of, rubbing
 from .spreads import rotary, spreads
 from .tree import Branch
 

@@ -7,13 +7,14 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.description import Description
+from ..declare.description import Description, coordinates_of
 from ..instants.solution import Solution
 from ..quantities import Output
+from . import digits
 from .placing import Moving, axis_of
 
 _SLOW = 1e-9
-"""Of a joint's fastest rate, of the cycle or soon after: below, either sign may be that of its rate."""
+"""Of a joint's fastest rate, or of one that its accelerations lead to: below, either sign may be that of its rate."""
 
 Pressing = Callable[[Array], Array]
 """What mu is multiplied by, for signs of the rate."""
@@ -30,33 +31,50 @@ def law_gaps(solution: Solution, bodies: Mapping[str, Moving] | None = None) -> 
         if "friction" not in load:
             continue
         joint, numbers = load["friction"]["coordinate"], load["friction"]["numbers"]
+        holder = joint.partition(":")[0]
         outputs = (Output("friction", name, "along"), Output("motion", joint, "rate"))
         value, rate = (solution.outputs.get(output) for output in outputs)
-        if value is None or rate is None or Output("reaction", joint, "fx") not in solution.outputs:
+        if value is None or rate is None or Output("reaction", holder, "fx") not in solution.outputs:
             continue
         found = True
-        pressing = _in_space(solution, joint, numbers) if bodies is None else _in_plane(solution, joint, numbers, bodies)
-        speed = np.abs(rate) * numbers.get("radius", 1.0)
+        turns = coordinates_of(solution.description)[joint] == "angle"
+        pressing = _in_space(solution, holder, numbers, turns) if bodies is None else _in_plane(solution, joint, numbers, bodies)
+        lever = numbers.get("radius", 1.0) if turns else 1.0
+        speed, share = np.abs(rate) * lever, None
+        if (other := _beside(solution, joint)) is not None:
+            beside = solution.outputs.get(Output("motion", other, "rate"))
+            if beside is None:
+                continue
+            across = beside * (1.0 if turns else numbers.get("radius", 1.0))
+            speed = np.hypot(speed, across)
+            share = np.divide(rate * lever, speed, out=np.zeros_like(rate), where=speed > 0.0)
         mu = np.full_like(rate, numbers.get("mu", 0.0))
         if "static" in numbers:
             mu += (numbers["static"] - mu) * np.exp(-((speed / numbers["stribeck"]) ** 2))
         steady = -numbers.get("viscous", 0.0) * rate
-        sign = np.tanh(rate / numbers["smooth"]) if "smooth" in numbers else np.sign(rate)
+        sign = np.tanh(rate / numbers["smooth"]) if "smooth" in numbers else np.sign(rate) if share is None else share
         gap = np.abs(value - steady + mu * sign * pressing(sign))
         if "smooth" not in numbers:
             ends = [np.abs(value - steady + one * mu * pressing(one * np.ones_like(rate))) for one in (1.0, -1.0)]
-            gap = np.where(np.abs(rate) > _SLOW * _fastest(solution, joint, rate), gap, np.minimum(*ends))
-        scale = float(np.max(mu)) * numbers.get("radius", 1.0) * _most(solution, numbers) + float(np.max(np.abs(steady)))
+            # Where it slides and turns, and both turn back at once, some share of it is along this coordinate.
+            slow = np.minimum(*ends) if share is None else np.maximum(np.abs(value - steady) - mu * pressing(np.sign(rate)), 0.0)
+            gap = np.where(speed > _SLOW * max(float(np.max(speed)), lever * _quick(solution, joint, turns)), gap, slow)
+        scale = float(np.max(mu)) * lever * _most(solution, numbers) + float(np.max(np.abs(steady)))
         worst = np.fmax(worst, np.divide(gap, scale, out=gap.copy(), where=scale > 0.0))
     return (worst, 1.0) if found else None
 
 
-def _fastest(solution: Solution, joint: str, rate: Array) -> float:
-    """The fastest rate of a joint, or what it would be a radian or the length of all links after its fastest start."""
-    lengths = sum(body["length"] or 0.0 for body in solution.description["bodies"].values())
-    unit = lengths if solution.unit(f"motion:{joint}") == "m" else 1.0
+def _quick(solution: Solution, joint: str, turns: bool) -> float:
+    """A rate that the accelerations of a coordinate lead to: where all instants are ends of strokes, the rates are rounding."""
     change = solution.outputs.get(Output("motion", joint, "acceleration"), np.zeros(1))
-    return float(max(np.max(np.abs(rate)), np.sqrt(unit * np.max(np.abs(change)))))
+    return float(np.sqrt(np.max(np.abs(change)) * (1.0 if turns else digits.size(solution))))
+
+
+def _beside(solution: Solution, coordinate: str) -> str | None:
+    """The other coordinate of a joint that slides and turns; None where there is none."""
+    name, _, axis = coordinate.partition(":")
+    others = {"slide": "turn", "turn": "slide"}
+    return f"{name}:{others[axis]}" if axis in others else None
 
 
 def _most(solution: Solution, numbers: Mapping[str, float]) -> float:
@@ -81,10 +99,11 @@ def _in_plane(solution: Solution, name: str, numbers: Mapping[str, float], bodie
     return lambda _: np.abs(normal / 2 + tilt) + np.abs(normal / 2 - tilt)
 
 
-def _in_space(solution: Solution, name: str, numbers: Mapping[str, float]) -> Pressing:
+def _in_space(solution: Solution, name: str, numbers: Mapping[str, float], turns: bool) -> Pressing:
     joint: Description = solution.description["joints"][name]
     nothing = np.zeros_like(solution.t)
-    u, v, w, mv, mw = (solution.outputs.get(Output("reaction", name, member), nothing) for member in ("fu", "fv", "fw", "mv", "mw"))
+    members = ("fu", "fv", "fw", "mu", "mv", "mw")
+    u, v, w, mu, mv, mw = (solution.outputs.get(Output("reaction", name, member), nothing) for member in members)
     radius = numbers.get("radius", 0.0)
     if joint["kind"] == "screw" and "mu" in numbers:
         # By the angles of the thread and of friction: the couple of a force is radius tan(angle + phi) of it, and that without
@@ -100,5 +119,10 @@ def _in_space(solution: Solution, name: str, numbers: Mapping[str, float]) -> Pr
         return pressing
     arm = numbers.get("length", np.inf)
     sides = (np.hypot(v / 2 + k * mw / arm, w / 2 - k * mv / arm) for k in (1, -1))
-    size = radius * (sum(sides, nothing) + np.abs(u))
+    size = sum(sides, nothing)
+    if joint["kind"] == "revolute":
+        size = size + np.abs(u)
+    elif joint["kind"] == "prismatic" and radius:
+        size = size + np.abs(mu) / radius
+    size = size * (radius if turns else 1.0)
     return lambda _: size

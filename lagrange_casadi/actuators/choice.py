@@ -1,0 +1,104 @@
+"""What a duty takes of a motor: its warmth, its torque, its speed; and the smallest of a catalogue that serves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import DeclarationError, NoDesignError
+from .catalogue import Motor
+from .duty import Duty
+from .warmth import warmest
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """A motor with a gear ratio and what it does: its ``duty``, and how much of its limits that takes, each 1 at most.
+
+    ``refused`` says of each smaller motor why it does not serve.
+    """
+
+    motor: Motor
+    duty: Duty
+    heat: float
+    torque: float
+    speed: float
+    refused: tuple[str, ...]
+
+    @property
+    def ratio(self) -> float:
+        """The gear ratio."""
+        return self.duty.ratio
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """How much of each limit it takes, by the limit's name."""
+        return {"heat": self.heat, f"peak {self.duty.pull}": self.torque, "speed": self.speed}
+
+    @property
+    def governs(self) -> str:
+        """The limit of which it takes most."""
+        return max(self.shares, key=lambda name: self.shares[name])
+
+    @property
+    def serves(self) -> bool:
+        """Whether it keeps all limits."""
+        return max(self.shares.values()) <= 1.0
+
+
+def judge(motor: Motor, duty: Duty, refused: tuple[str, ...] = ()) -> Choice:
+    """What a duty takes of a motor.
+
+    Heat is the root mean square of its torque over what it bears for ever at the mean speed; of a motor with a ``time_constant``
+    the root of its largest warmth in a cycle that goes on over and over. The peak torque is beside what it gives at the speed of
+    that instant. Raises :class:`.DeclarationError` for a linear motor where the duty is that of a rotary one, and the reverse.
+    """
+    if motor.linear != duty.linear:
+        kinds = ("a rotary", "a linear")
+        raise DeclarationError(
+            f"motor '{motor.name}' is {kinds[motor.linear]} one, and the duty of '{duty.joint}' is that of {kinds[duty.linear]} one"
+        )
+    lasting = float(motor.lasting(duty.mean_speed))
+    heat = warmest(duty.t, duty.torque, motor.time_constant) / lasting if lasting > 0.0 else math.inf
+    with np.errstate(divide="ignore", invalid="ignore"):
+        torque = float(np.nanmax(np.abs(duty.torque) / motor.at_most(duty.speed)))
+    return Choice(motor, duty, heat, torque, duty.peak_speed / motor.max_speed, refused)
+
+
+def select(motors: Iterable[Motor], duty: Callable[[float, float], Duty], *, ratios: Sequence[float] = (1.0,)) -> Choice:
+    """The smallest motor that serves, by rated power, with the ratio that heats it least.
+
+    ``duty(ratio, inertia)`` is what a ratio asks of a motor whose rotor has an inertia, as
+    ``lambda ratio, inertia: duty_of(solution, "J", ratio=ratio, inertia=inertia)``. A motor serves where no share of its limits is
+    above 1, as :func:`judge` has them.
+
+    Raises :class:`.NoDesignError` where none serves, with the motor that comes nearest, and :class:`.DeclarationError` for none.
+    """
+    given = sorted(motors, key=lambda motor: (motor.rated_power, motor.name))
+    if not given or not list(ratios):
+        raise DeclarationError("select: expected motors, and ratios")
+    refused: list[str] = []
+    nearest: Choice | None = None
+    for motor in given:
+        tried = [judge(motor, duty(float(ratio), motor.inertia), tuple(refused)) for ratio in ratios]
+        serving = [choice for choice in tried if choice.serves]
+        if serving:
+            return min(serving, key=lambda choice: choice.heat)
+        best = min(tried, key=_worst)
+        refused.append(f"{motor.name}: {_told(best)}")
+        nearest = best if nearest is None or _worst(best) < _worst(nearest) else nearest
+    assert nearest is not None
+    raise NoDesignError(f"no motor of {len(given)} serves; nearest comes {nearest.motor.name}: {_told(nearest)}")
+
+
+def _worst(choice: Choice) -> float:
+    return max(choice.shares.values())
+
+
+def _told(choice: Choice) -> str:
+    """Which limit is broken most, and by how much."""
+    share = 100.0 * choice.shares[choice.governs]
+    return f"{choice.governs} {share:.3g} % of what it bears, with a ratio of {choice.ratio:g}"

@@ -1,0 +1,64 @@
+"""The inertia of what a drive moves, as the drive feels it, at every instant of a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..declare.density import Array
+from ..declare.scene import Scene
+from ..declare.times import Over, Times
+from ..equations.derive import assembled
+from ..equations.seen_inertia import SeenInertia, seen_inertia
+from ..errors import DeclarationError, UnknownNameError
+from ..instants.backends import run
+from ..instants.refusal import refuse
+from ..instants.rung import Rung
+
+_VM = Rung("vm")
+
+
+def inertia_at(
+    scene: Scene,
+    joint: str,
+    *,
+    parameters: Mapping[str, float] | None = None,
+    t: Times | None = None,
+    over: Over | None = None,
+) -> Array:
+    """The inertia that a drive feels at the scene's instants, or at others, (t,) [kg m^2; kg of a drive that slides].
+
+    It is twice the kinetic energy of all that moves where the drive moves at unit rate and other drives are at rest, whatever the
+    motion: at rest too. A mechanism's varies over its cycle. It is infinite where the drive cannot move the mechanism, at a dead
+    centre. Where friction is, it is without it.
+
+    Raises :class:`.UnknownNameError` for what is no drive, :class:`.DeclarationError` where drives and motions are not as many, and
+    as :func:`.evaluate` does.
+    """
+    values = scene.mechanism.values(parameters)
+    seen = seen_inertia(assembled(scene, values, ["motion"]))
+    if joint not in seen.drives:
+        raise UnknownNameError("drive", joint, seen.drives)
+    several = len(seen.motions) > 1
+    if scene.mechanism.rows or (several and len(seen.drives) != len(seen.motions)):
+        why = "non-holonomic constraints" if scene.mechanism.rows else f"{len(seen.drives)} drives for {len(seen.motions)} motions"
+        raise DeclarationError(f"inertia at '{joint}': with {why} no drive moves alone, the others at rest")
+    times, p = scene.instants(scene.timing(t, over), values).t, np.array(list(values.values()))
+    found, _ = run(seen.graph, times, p, _VM)
+    refuse(seen.graph, found, times, p, _VM)
+    return _alone(seen, np.asarray(found.out, float), seen.drives.index(joint))
+
+
+def _alone(seen: SeenInertia, out: Array, drive: int) -> Array:
+    """Of the columns M and R (columns, t) the inertia that one drive feels alone."""
+    count = len(seen.motions)
+    matrix, by_rate = (part.reshape(-1, count, out.shape[1]).transpose(2, 0, 1) for part in (out[: count * count], out[count**2 :]))
+    if count == 1:
+        with np.errstate(divide="ignore"):
+            return np.asarray(matrix[:, 0, 0] / by_rate[:, drive, 0] ** 2)
+    found = np.full(out.shape[1], np.inf)
+    moved = np.linalg.det(by_rate) != 0.0
+    unit = np.linalg.solve(by_rate[moved], np.eye(count)[:, [drive]])[:, :, 0]
+    found[moved] = np.einsum("ti,tij,tj->t", unit, matrix[moved], unit)
+    return found

@@ -1,0 +1,197 @@
+"""``lagrange-casadi drive``: what a cycle asks of the motors of drives, and which of a catalogue serve."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import click
+
+from ..actuators import Choice, Duty, Motor, duty_of, inertia_at, plot_duty, read_motors, select
+from ..actuators.duty import slides
+from ..actuators.plot import check_picture
+from ..case import load_case
+from ..declare.density import Array
+from ..declare.even_points import EvenPoints
+from ..declare.scene import kinds
+from ..declare.times import Over
+from ..errors import CertificateError, LagrangeCasadiError, UnknownNameError
+from ..evaluate import evaluate
+from ..instants.solution import Solution
+from ..judge.certificate import failure, summary
+from ..system.numerals import real
+from .options import EVEN_POINTS, even_points, parameters, separated, setting
+from .options import over as by_drive
+
+_BAR = 40
+_FORCES = ("reaction", "multiplier", "load", "friction")
+"""Beside efforts and motion what a certificate needs."""
+
+
+def _ratios(context: click.Context, option: click.Parameter, words: Sequence[str]) -> tuple[float, ...]:
+    """Numbers other than 0, of an option that is repeatable, with commas between several."""
+    found = []
+    for word in separated(context, option, words):
+        try:
+            found.append(real(word))
+        except ValueError:
+            found.append(math.nan)
+        if not math.isfinite(found[-1]) or found[-1] == 0.0:
+            raise click.BadParameter(f"expected numbers other than 0, as in 5 or 5,10,20, got '{word}'")
+    return tuple(found)
+
+
+@click.command(name="drive")
+@click.argument("case", type=click.Path(path_type=Path))
+@click.option("--motors", type=click.Path(path_type=Path), metavar="FILE.csv", help="A catalogue; default: motors.csv of the case.")
+@click.option("--drive", "drives", multiple=True, metavar="JOINT", help="This drive; repeatable. Default: all.")
+@click.option(
+    "--ratio",
+    "ratios",
+    multiple=True,
+    callback=_ratios,
+    metavar="NUMBER,...",
+    help="Turns of the motor for one of the drive; of several the best is taken. Default: 1.",
+)
+@click.option("--lead", type=float, metavar="LENGTH", help="Of a drive that slides by a screw or belt: its way in a turn [m].")
+@click.option("--efficiency", type=float, default=1.0, show_default=True, metavar="SHARE", help="That of the gearbox.")
+@click.option("--inertia", type=float, default=0.0, metavar="NUMBER", help="What turns with the motor's shaft [kg m^2].")
+@click.option(
+    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
+)
+@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s], over a whole cycle; default: the case's.")
+@by_drive
+@click.option("--plot", type=click.Path(path_type=Path), metavar="FILE.png", help="Draw torque over speed; also .pdf, .svg.")
+def drive_command(
+    case: Path,
+    motors: Path | None,
+    drives: Sequence[str],
+    ratios: tuple[float, ...],
+    lead: float | None,
+    efficiency: float,
+    inertia: float,
+    settings: Sequence[tuple[str, float | str]],
+    t: EvenPoints | None,
+    over: Over | None,
+    plot: Path | None,
+) -> None:
+    """Tell what a cycle of CASE asks of the motors of its drives, and which of a catalogue is the smallest that serves."""
+    if lead is not None and not 0.0 < lead < math.inf:
+        raise click.UsageError(f"--lead: expected a positive length [m], got {lead:g}")
+    if not 0.0 <= inertia < math.inf:
+        raise click.UsageError(f"--inertia: expected a number that is not negative [kg m^2], got {inertia:g}")
+    loaded = load_case(case)
+    scene = loaded.scene
+    beside = loaded.path.parent / "motors.csv"
+    catalogue = read_motors(motors or beside) if motors is not None or beside.is_file() else []
+    valid = scene.needs_drives if scene.weights is None else tuple(scene.weights)
+    if unknown := [name for name in drives if name not in valid]:
+        raise UnknownNameError("drive", unknown, valid)
+    chosen = tuple(dict.fromkeys(drives)) or valid
+    if plot is not None:
+        if len(chosen) > 1:
+            raise click.UsageError(f"--plot: expected one drive, by --drive; there are {', '.join(chosen)}")
+        check_picture(plot)
+    given = parameters(settings)
+    wanted = ["effort", "motion", *(kind for kind in kinds(scene.mechanism) if kind in _FORCES)]
+    solution = evaluate(scene, parameters=given, t=t, over=over, wanted=wanted)
+    click.echo(f"{loaded.name}: {solution.t.size} instants from {solution.t[0]:.5g} to {solution.t[-1]:.5g} s")
+    failed: LagrangeCasadiError | None = None
+    for name in chosen:
+        carried = inertia_at(scene, name, parameters=given, t=t, over=over)
+        load = duty_of(solution, name, linear=slides(solution, name), carried=carried)
+        for line in _load_lines(load):
+            click.echo(line)
+        found: Duty | Choice = load
+        if catalogue:
+            try:
+                found = _choose(solution, name, catalogue, ratios, lead, efficiency, inertia, carried)
+            except LagrangeCasadiError as error:
+                if error.exit_status == 2:
+                    raise
+                click.echo(f"  none serves: {error}")
+                failed = failed or error
+                continue
+            for line in _choice_lines(found, len(catalogue)):
+                click.echo(line)
+        if plot is not None:
+            plot_duty(*((found.duty, plot, found.motor) if isinstance(found, Choice) else (found, plot)))
+            click.echo(f"wrote {plot}")
+    for note in solution.notes:
+        click.echo(f"note: {note}")
+    click.echo(summary(solution.certificate))
+    if solution.failed:
+        raise CertificateError(failure(solution))
+    if failed is not None:
+        raise failed
+
+
+def _choose(
+    solution: Solution,
+    name: str,
+    catalogue: Sequence[Motor],
+    ratios: Sequence[float],
+    lead: float | None,
+    efficiency: float,
+    inertia: float,
+    carried: Array,
+) -> Choice:
+    """The motor of a drive. Raises ``click.UsageError`` where its ratio is left open, and :class:`.NoDesignError`."""
+    linear, slide = catalogue[0].linear, slides(solution, name)
+    if lead is not None and (linear or not slide):
+        why = "linear motors have no lead" if linear else f"drive '{name}' turns; expected --ratio"
+        raise click.UsageError(f"--lead: {why}")
+    if slide and not linear and lead is None and not ratios:
+        raise click.UsageError(f"drive '{name}' slides: expected --lead, its way in a turn of the motor, or linear motors")
+    turns = 1.0 if lead is None else math.tau / lead
+
+    def asked(ratio: float, rotor: float) -> Duty:
+        own = rotor + inertia
+        return duty_of(solution, name, ratio=ratio, efficiency=efficiency, inertia=own, linear=linear, carried=carried)
+
+    return select(catalogue, asked, ratios=[turns * ratio for ratio in ratios or (1.0,)])
+
+
+def _load_lines(load: Duty) -> Iterator[str]:
+    """What is asked at the drive itself."""
+    force = "N" if load.linear else "N m"
+    yield (
+        f"{load.joint}: rms {load.rms_torque:.5g} {force}, peak {load.peak_torque:.5g} {force}, {_speed(load)}, "
+        f"peak power {load.peak_power:.5g} W"
+    )
+    yield f"  {_energy(load)}"
+    if load.carried is not None:
+        unit = "kg" if load.linear else "kg m^2"
+        yield f"  it feels an inertia of {load.carried.min():.5g} to {load.carried.max():.5g} {unit}"
+    if load.coarse:
+        yield "  note: every second instant alone tells a mean or a peak more than 1 % off; take more instants"
+
+
+def _choice_lines(choice: Choice, count: int) -> Iterator[str]:
+    """The motor, what it is used to, and why nothing smaller will do."""
+    duty, motor = choice.duty, choice.motor
+    force = "N" if duty.linear else "N m"
+    yield f"  smallest of {count} motors that serves: '{motor.name}', {motor.rated_power:.5g} W, with a ratio of {duty.ratio:.6g}"
+    for name, share in choice.shares.items():
+        governs = " governs" if name == choice.governs else ""
+        yield f"    {name:<12} {share:>8.4g} |{'#' * min(_BAR, math.ceil(share * _BAR)):<{_BAR}}|{governs}"
+    yield (
+        f"    rms {duty.rms_torque:.5g} {force}, peak {duty.peak_torque:.5g} {force}, {_speed(duty)}, "
+        f"peak power {duty.peak_power:.5g} W"
+    )
+    yield f"    {_energy(duty)}"
+    if duty.inertia > 0.0:
+        ratio = duty.inertia_ratio
+        yield f"    inertia of the load over the motor's: {ratio.least:.5g} to {ratio.largest:.5g}, in the mean {ratio.mean:.5g}"
+    yield from (f"    smaller: {why}" for why in choice.refused)
+
+
+def _speed(duty: Duty) -> str:
+    told = f"{duty.peak_speed:.5g} m/s" if duty.linear else f"{duty.peak_speed * 60.0 / math.tau:.5g} 1/min"
+    return f"peak speed {told}"
+
+
+def _energy(duty: Duty) -> str:
+    back = f", {duty.regenerated:.5g} J come back, {duty.peak_return:.5g} W at most" if duty.peak_return > 0.0 else ""
+    return f"{duty.energy:.5g} J a cycle{back}"

@@ -1,0 +1,212 @@
+"""Cylindrical cams with the real forces of their contact: a roller in a groove round a drum, on a follower that slides or swings.
+
+The centre A of the roller is at a(theta) where the drum has turned by theta, and the roller turns about p, across the groove. The
+groove is what the roller leaves of the drum: its flanks touch the roller along the normal n, at right angles to p and to the way of
+A on the drum, a' - u x (a - c), with u the drum's axis through c. So the contact pushes along n through A. On the drum that is told
+by two points of its axis, c and q = c + h u, and the drum's angle: forces g1 + g2 = n there, with h u x g2 that part of the moment
+(a - c) x n that is across the axis. The part about the axis is the slope of the equation of contact by theta,
+
+    n . (A - a) - g1 . (C - c) - g2 . (Q - q) = 0,
+
+whose multiplier is the force of the contact.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..declare.density import Array
+from ..declare.joints import Joint
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Constraint, Expression, Ground, Link, Point
+from ..errors import DeclarationError
+from ..geometry.rotation import Rotation, direction
+from ..geometry.vectors import ZERO, Vector, cross, dot, minus, plus, times
+from .lift import rise_of
+
+_SAME = 1e-9
+"""A cosine, or a share of a size, that is smaller is zero."""
+
+_LEAST = 16
+
+
+@dataclass(frozen=True, eq=False)
+class Groove:
+    """Where the roller is, by the symbol ``angle`` of the drum [rad], in ground axes.
+
+    ``place`` is its centre, ``normal`` of length one along the contact's force, ``way`` the direction in which the follower
+    moves the centre; ``axis`` is that of the drum through ``centre``.
+    """
+
+    angle: Any
+    place: Vector
+    normal: Vector
+    way: Vector
+    axis: Vector
+    centre: Vector
+
+
+@dataclass(frozen=True, eq=False)
+class CylindricalCam:
+    """A cylindrical cam: its ``constraint``, whose multiplier is the force of its contact, and its ``design``.
+
+    Outputs are NAME_force [N], positive where it pushes the follower along its coordinate: where the sign changes, the roller goes
+    over to the other flank; and NAME_pressure_angle [rad] between the force and the way of the roller.
+    """
+
+    name: str
+    mechanism: Mechanism
+    constraint: Constraint
+    design: Groove
+    cam: Joint
+
+    def groove(self, parameters: dict[str, float] | None = None, *, count: int = 720) -> Array:
+        """The path of the roller's centre on the drum at ``count`` angles of one turn, in the drum's own axes, (count, 3) [m].
+
+        Raises :class:`.DeclarationError` for a count below 16.
+        """
+        if type(count) is not int or count < _LEAST:
+            raise DeclarationError(f"cam '{self.name}': count must be a whole number of at least {_LEAST}, got {count!r}")
+        x, values = self.design.angle, self.mechanism.values(parameters)
+        turned = _carried(self.cam, x)
+        here = plus(turned.resolve(minus(self.design.place, self.design.centre)), self.cam.child.place)
+        function = ca.Function("groove", [x, self.mechanism.symbols], [ca.densify(ca.vertcat(*map(ca.SX, here)))])
+        angles = np.arange(count) * (math.tau / count)
+        return np.asarray(function(angles[None], list(values.values())).full().T)
+
+
+def cylindrical_cam(
+    mechanism: Mechanism,
+    name: str,
+    cam: Joint,
+    follower: Joint,
+    lift: Callable[[Any], Any],
+    *,
+    start: Expression = 0.0,
+    point: Point | None = None,
+) -> CylindricalCam:
+    """Declare the contact of a drum's groove with the roller of its follower in space, from the follower's motion.
+
+    Parameters
+    ----------
+    cam, follower
+        The revolute joint of the drum on the ground, and the joint of the follower on the ground: prismatic along the drum's axis,
+        or revolute about an axis at right angles to it.
+    lift
+        The follower's way [m], or its swing [rad], as a function of the drum's angle: a motion of ``moves``, a ``curve``, or any
+        function that takes and returns CasADi's expressions. It must be periodic by a turn.
+    start
+        The coordinate of the follower's joint where the lift is zero [m or rad].
+    point
+        The centre of the roller, in the middle of the groove's depth; by default the point at which the joint holds the follower.
+
+    Of a follower that slides the roller turns about the line from the drum's axis to its centre; of one that swings, about an axis
+    along its joint's. Raises :class:`.DeclarationError` for joints that are others, a roller on the drum's axis, and a lift that
+    has a kink or is not the same after a turn.
+    """
+    what, own = f"cam '{name}'", mechanism.own
+    own.free("constraint", name, mechanism.constraints)
+    for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
+        if own.joint(joint).kind not in kinds or not mechanism.space or not isinstance(joint.parent.body, Ground):
+            raise DeclarationError(
+                f"{what}: expected a {' or '.join(kinds)} joint whose parent is the ground, in space, got '{joint.name}'"
+            )
+    held = follower.child if point is None else own.point(what, point)
+    if held.body is not follower.child.body:
+        raise DeclarationError(f"{what}: its point must be on '{follower.child.body.name}', which joint '{follower.name}' leads")
+    x = ca.SX.sym("angle")
+    rise = rise_of(what, mechanism, lift, x)
+    design = _groove(what, mechanism, x, own.expression(f"{what}: start", start) + rise, cam, follower, held)
+    _check(what, mechanism, design, rise, follower)
+    constraint = _contact(mechanism, name, cam, held, design)
+    made = CylindricalCam(name, mechanism, constraint, design, cam)
+    turn = mechanism.coordinate(cam)
+    cosine, across = (ca.substitute(ca.SX(value), x, turn) for value in _lean(design))
+    mechanism.output(f"{name}_force", mechanism.results.multiplier(constraint), unit="N")
+    mechanism.output(f"{name}_pressure_angle", ca.atan2(across, cosine), unit="rad")
+    return made
+
+
+def _carried(joint: Joint, angle: Any) -> Rotation:
+    """How the child of a joint on the ground is turned, at an angle of the joint."""
+    assert joint.turned is not None
+    resting = Rotation.of(*joint.turned)
+    return resting if joint.kind == "prismatic" else Rotation.about(joint.triad[0], *direction(angle), angle).then(resting)
+
+
+def _groove(what: str, mechanism: Mechanism, x: Any, coordinate: Any, cam: Joint, follower: Joint, held: Point) -> Groove:
+    axis, centre, line = cam.triad[0], cam.parent.place, follower.triad[0]
+    slides = follower.kind == "prismatic"
+    arm = _carried(follower, coordinate).apply(minus(held.place, follower.child.place))
+    place = plus(plus(follower.parent.place, times(coordinate, line) if slides else ZERO), arm)
+    seat = minus(place, centre)
+    way = line if slides else _unit(cross(line, arm))
+    about = _unit(minus(seat, times(dot(seat, axis), axis))) if slides else line
+    moved = tuple(ca.jacobian(ca.SX(component), x) for component in place)
+    normal = _unit(cross(minus((moved[0], moved[1], moved[2]), cross(axis, seat)), about))
+    # Along the follower's coordinate, where the drum alone moves.
+    values = list(mechanism.values().values())
+    ahead = ca.Function("ahead", [x, mechanism.symbols], [ca.SX(dot(cross(about, cross(axis, seat)), way))])
+    side = float(ahead(0.0, values))
+    if not abs(side) > 0.0:
+        raise DeclarationError(f"{what}: the drum does not pass by the roller; expected it off the axis, and a follower along it")
+    return Groove(x, place, normal if side > 0.0 else times(-1.0, normal), way, axis, centre)
+
+
+def _check(what: str, mechanism: Mechanism, design: Groove, rise: Any, follower: Joint) -> None:
+    """Raise :class:`.DeclarationError` for axes that do not lie as they must, and for a lift that is another after a turn."""
+    x, p, values = design.angle, mechanism.symbols, list(mechanism.values().values())
+    cosine = dot(follower.triad[0], design.axis)
+    ends = [ca.substitute(rise, x, turn) for turn in (0.0, math.tau)]
+    seat = minus(design.place, design.centre)
+    radius = ca.norm_2(ca.vertcat(*map(ca.SX, minus(seat, times(dot(seat, design.axis), design.axis)))))
+    angles = np.linspace(0.0, math.tau, 181)
+    told = ca.Function("told", [x, p], [ca.SX(cosine), *ends, rise, radius])
+    lean, first, last, way, reach = (np.broadcast_to(row.full().ravel(), angles.shape) for row in told(angles[None], values))
+    slides = follower.kind == "prismatic"
+    if abs(abs(lean[0]) - (1.0 if slides else 0.0)) > _SAME:
+        place = "along the drum's axis" if slides else "at right angles to the drum's axis"
+        raise DeclarationError(f"{what}: joint '{follower.name}' must be {place}")
+    if not np.isfinite(way).all() or not reach.min() > _SAME * reach.max():
+        raise DeclarationError(f"{what}: its roller comes to the drum's axis")
+    if abs(last[0] - first[0]) > _SAME * (np.ptp(way) or 1.0):
+        raise DeclarationError(f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi")
+
+
+def _contact(mechanism: Mechanism, name: str, cam: Joint, held: Point, design: Groove) -> Constraint:
+    """The equation of the contact, in places, so that its force acts where it is."""
+    drum, turn = cam.child.body, mechanism.coordinate(cam)
+    assert isinstance(drum, Link)
+    moment = cross(minus(design.place, design.centre), design.normal)
+    # At the distance of a metre; of the moment about the axis nothing is left in it.
+    far = cross(moment, design.axis)
+    near = minus(design.normal, far)
+    along = plus(cam.child.place, _carried(cam, 0.0).resolve(design.axis))
+    ends = drum.at(*along)
+    gap: Any = 0.0
+    for point, arm, there in (
+        (held, design.normal, design.place),
+        (cam.child, times(-1.0, near), design.centre),
+        (ends, times(-1.0, far), plus(design.centre, design.axis)),
+    ):
+        seen = mechanism.place(point)
+        off = minus((seen[0], seen[1], seen[2]), there)
+        gap = gap + dot(arm, off)
+    phi = mechanism.own.expression(f"cam '{name}'", ca.substitute(gap, design.angle, turn), moving=True)
+    return mechanism.constraints.setdefault(name, Constraint(name, phi))
+
+
+def _lean(design: Groove) -> tuple[Any, Any]:
+    """The cosine and the sine of the angle between the force and the way of the roller."""
+    across = cross(design.normal, design.way)
+    return dot(design.normal, design.way), ca.sqrt(ca.SX(dot(across, across)))
+
+
+def _unit(vector: Vector) -> Vector:
+    return times(1.0 / ca.sqrt(ca.SX(dot(vector, vector))), vector)

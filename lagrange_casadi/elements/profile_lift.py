@@ -1,0 +1,227 @@
+"""The lift of a follower from a profile of a disc cam, drawn or measured: points of the cam, to the law of its follower.
+
+The normal of the profile at a point tells where the follower's point is while it touches there, in the cam's axes: a roller's
+radius beyond the point. How far that is from the cam's centre tells the follower's place; in which direction it is, the cam's
+angle. A flat face touches where the normal is its own.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..declare.curves import Curve, curve
+from ..declare.density import Array
+from ..declare.joints import Joint
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Point
+from ..errors import DeclarationError, one_line
+from ..system.csv_rows import read_rows
+from .cam import layout_of
+
+_HEAD = re.compile(r"(\w+)\s*(?:\[\s*(\w+)\s*\])?")
+_UNITS = {"m": 1, "mm": 1000, "um": 1_000_000}
+_LEAST = 16
+
+
+@dataclass(frozen=True, eq=False)
+class ProfileLift:
+    """The lift that a profile gives a follower, by the cam's angle: call it as :func:`.disc_cam` does.
+
+    ``curve`` goes smoothly through the lift [m or rad] at the angles of the points; ``base_radius`` [m] is that of the base circle.
+    """
+
+    curve: Curve
+    base_radius: float
+
+    def __call__(self, angle: Any) -> Any:
+        """The lift at an angle of the cam [rad]."""
+        return self.curve(angle)
+
+
+def read_profile(path: str | os.PathLike[str]) -> Array:
+    """The points of a profile from a CSV file, (n, 2) [m], of its columns ``x`` and ``y``, beside others.
+
+    They are in m; other units stand with the column, as ``x [mm]``: m, mm, um. :meth:`.CamProfile.save_csv` writes such a file.
+
+    Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for columns that are missing, and for a
+    line that has no numbers there.
+    """
+    rows = read_rows(path, "the columns x and y")
+    heads = [_HEAD.fullmatch(cell) for cell in rows[0].cells]
+    names = [head.group(1) if head else "" for head in heads]
+    places = []
+    for column in "xy":
+        if names.count(column) != 1:
+            raise DeclarationError(f"{rows[0].where}: expected one column '{column}', as in x [mm], got {', '.join(rows[0].cells)}")
+        head = heads[names.index(column)]
+        unit = (head.group(2) if head else None) or "m"
+        if unit not in _UNITS:
+            raise DeclarationError(f"{rows[0].where}: column '{column}' cannot be in '{unit}'; valid: {', '.join(_UNITS)}")
+        places.append((names.index(column), _UNITS[unit]))
+    points = np.empty((len(rows) - 1, 2))
+    for k, row in enumerate(rows[1:]):
+        for j, (place, unit) in enumerate(places):
+            cell = row.cells[place] if place < len(row.cells) else ""
+            points[k, j] = row.number(cell, unit)
+            if math.isnan(points[k, j]):
+                raise DeclarationError(f"{row.where}: expected a finite number for {'xy'[j]}, got {cell!r}")
+    return points
+
+
+def profile_lift(
+    mechanism: Mechanism,
+    cam: Joint,
+    follower: Joint,
+    points: npt.ArrayLike | str | os.PathLike[str],
+    *,
+    point: Point | None = None,
+    roller: float | None = None,
+    flat: bool = False,
+    side: int = 1,
+    smoothing: float = 0.0,
+) -> ProfileLift:
+    """The lift of a follower on a profile: what :func:`.disc_cam` takes, with the same joints and the same follower.
+
+    ``points`` (n, 2) [m] go once round the profile, either way, seen from the cam's shaft in the cam's own axes; or they are the
+    path of a file that :func:`read_profile` reads. ``cam``, ``follower``, ``point``, ``roller``, ``flat`` and ``side`` are those of
+    :func:`.disc_cam`; dimensions are taken at the default parameters. ``smoothing`` is the noise of the lift, in the root mean
+    square [m or rad], where points were measured: accelerations are second derivatives, and magnify noise.
+
+    Normals are those of a cubic spline through the points, periodic, along its chords: the lift's error goes as the fourth power of
+    the distance of points where the profile is smooth.
+
+    Raises :class:`.DeclarationError` for points that are no profile, a follower that cannot touch all of it, as a roller that is
+    larger than a hollow, and as :func:`.disc_cam` and :func:`.curve` do; :class:`.PathError` for a file that cannot be read.
+    """
+    what = "profile"
+    layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side, base=1.0)
+    values = mechanism.values()
+
+    def number(expression: Any) -> float:
+        return float(mechanism.number(expression, values))
+
+    away, arm = (np.array([number(x) for x in pair]) for pair in (layout.away, layout.arm))
+    at, normal = _normals(what, read_profile(points) if isinstance(points, (str, os.PathLike)) else np.asarray(points, float))
+    radius = number(layout.roller)
+    if follower.kind == "prismatic":
+        up = np.array([number(x) for x in follower.axis[:2]])
+        turned = _turned(arm, number(follower.angle))
+        offset = float((away + turned) @ np.array([up[1], -up[0]]))
+        found = _law(what, *_sliding(at, normal, up, offset, radius, flat), smoothing)
+        least = _least(found)
+        base = least if flat else math.hypot(least, offset) - radius
+    else:
+        reach, length = math.hypot(*away), math.hypot(*arm)
+        found = _law(what, *_swinging(at, normal, away, length, radius, side, flat), smoothing)
+        least = _least(found)
+        base = reach * math.sin(least) if flat else math.sqrt(length**2 + reach**2 - 2 * length * reach * math.cos(least)) - radius
+    cells = tuple((cell[0] - least, *cell[1:]) for cell in found.cells)
+    return ProfileLift(replace(found, cells=cells), base)
+
+
+def _normals(what: str, points: Array) -> tuple[Array, Array]:
+    """Points in counter-clockwise sequence and the normals outward there, each (n, 2)."""
+    if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
+        raise DeclarationError(f"{what}: expected points (x, y), finite numbers, got an array of shape {points.shape}")
+    size = float(np.abs(points).max(initial=0.0))
+    if points.shape[0] > 1 and np.abs(points[-1] - points[0]).max() <= 1e-9 * size:
+        points = points[:-1]
+    if len(points) < _LEAST:
+        raise DeclarationError(f"{what}: expected at least {_LEAST} points, got {len(points)}")
+    x, y = points.T
+    area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2.0
+    if area < 0.0:
+        points = points[::-1]
+    closed = np.vstack([points, points[:1]])
+    steps = np.hypot(*np.diff(closed, axis=0).T)
+    if not steps.min() > 1e-9 * size:
+        raise DeclarationError(f"{what}: points {int(np.argmin(steps)) + 1} and the next lie on each other")
+    way = np.concatenate([[0.0], np.cumsum(steps)])
+    slopes = [[cell[1] for cell in curve(way.tolist(), row.tolist(), periodic=True).cells] for row in closed.T]
+    along = np.array(slopes).T
+    if np.sum(np.unwrap(np.arctan2(points[:, 1], points[:, 0])[[*range(len(points)), 0]])[[0, -1]] * [-1, 1]) < math.pi:
+        raise DeclarationError(f"{what}: its points do not go round the cam's shaft, which is at (0, 0)")
+    return points, np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
+
+
+def _sliding(at: Array, normal: Array, up: Array, offset: float, radius: float, flat: bool) -> tuple[Array, Array]:
+    """The cam's angle and the follower's place along its line while each point is touched."""
+    if flat:
+        return math.atan2(up[1], up[0]) - _direction(normal), np.sum(at * normal, axis=1)
+    pitch = at + radius * normal
+    reach = np.hypot(*pitch.T)
+    if reach.min() < abs(offset):
+        raise DeclarationError(f"profile: the follower's line passes beside it, {abs(offset):.6g} m from the cam's shaft")
+    height = np.sqrt(reach**2 - offset**2)
+    place = offset * np.array([up[1], -up[0]]) + height[:, None] * up
+    return _direction(place) - _direction(pitch), height
+
+
+def _swinging(at: Array, normal: Array, away: Array, arm: float, radius: float, side: int, flat: bool) -> tuple[Array, Array]:
+    """The cam's angle, and the follower's angle from the line to the cam's shaft, while each point is touched."""
+    reach = math.hypot(*away)
+    line = math.atan2(-away[1], -away[0])
+    if flat:
+        sine = np.sum(at * normal, axis=1) / reach
+        if np.abs(sine).max() >= 1.0:
+            raise DeclarationError("profile: the follower's pin is too near: the profile passes it")
+        angle = np.arcsin(sine)
+        return line + side * (angle + math.pi / 2) - _direction(normal), angle
+    pitch = at + radius * normal
+    cosine = (arm**2 + reach**2 - np.sum(pitch**2, axis=1)) / (2.0 * arm * reach)
+    if np.abs(cosine).max() >= 1.0:
+        raise DeclarationError("profile: the follower does not reach all of it, or is too near")
+    angle = np.arccos(cosine)
+    turned = line + side * angle
+    place = away + arm * np.column_stack([np.cos(turned), np.sin(turned)])
+    return _direction(place) - _direction(pitch), angle
+
+
+def _law(what: str, angle: Array, height: Array, smoothing: float) -> Curve:
+    """The curve through the follower's places at angles that fall while the profile is gone round."""
+    turned = np.unwrap(np.concatenate([angle, angle[:1]]))
+    steps = -np.diff(turned)
+    if not (steps > 0.0).all() or abs(steps.sum() - math.tau) > 1e-6:
+        bad = int(np.argmin(steps)) + 1
+        raise DeclarationError(
+            f"{what}: the follower cannot touch it near its point {bad}, counted counter-clockwise: it is hollow there, or its "
+            "points are too rough"
+        )
+    order = slice(None, None, -1)
+    x, y = turned[order], np.concatenate([height, height[:1]])[order]
+    # From a whole turn, so that a period is one to the last digit.
+    start = float(x[0])
+    at = [start, *(x[1:-1].tolist()), start + math.tau]
+    try:
+        return curve(at, y.tolist(), periodic=True, smoothing=smoothing)
+    except DeclarationError as error:
+        raise DeclarationError(f"{what}: {one_line(error)}") from None
+
+
+def _least(found: Curve) -> float:
+    """The least value of a curve, at an end of a piece or where its slope is zero within."""
+    cells, starts = np.array(found.cells), np.array(found.starts)
+    c0, c1, c2, c3 = cells.T
+    ends = np.append(starts[1:], starts[0] + found.high - found.low) - starts
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = np.sqrt(c2**2 - 3.0 * c1 * c3)
+        # The root of c1 + 2 c2 u + 3 c3 u^2 where the slope rises, in the form that loses no digits.
+        within = np.where(c2 > 0.0, -c1 / (c2 + root), (root - c2) / (3.0 * c3))
+    u = np.where((within > 0.0) & (within < ends), within, 0.0)
+    return float((c0 + u * (c1 + u * (c2 + u * c3))).min())
+
+
+def _direction(vectors: Array) -> Array:
+    return np.arctan2(vectors[:, 1], vectors[:, 0])
+
+
+def _turned(vector: Array, angle: float) -> Array:
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]])

@@ -1,0 +1,129 @@
+"""What presses on the rubbing places of joints, and how fast these slide."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Friction, Vector
+from ..geometry.vectors import dot
+from .gaps import reach
+from .multibody import Multibody, rates_along
+
+_REST = 1e-12
+"""Of the fastest motion in the mechanism: a rate below is that of rest, but for rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """What presses on a rubbing place [N], of one component or two, and the ``arm`` that its friction has: 1 or a radius [m].
+
+    Of a thread, ``lean`` tells how much more one direction of sliding presses than the other [m].
+    """
+
+    arm: Any
+    pressing: tuple[Any, ...]
+    lean: Any = None
+
+
+@dataclass(frozen=True, eq=False)
+class Rubbing:
+    """A friction as expressions of an instant: its contacts, and rate and acceleration of its coordinate.
+
+    ``slowest`` is the rate below which it rests, and the change of rate below which it goes on to. ``beside`` is the speed [m/s] of
+    sliding along the joint's other coordinate, and its change, where it has one.
+    """
+
+    friction: Friction
+    contacts: tuple[Contact, ...]
+    rate: Any
+    acceleration: Any
+    slowest: tuple[Any, Any]
+    beside: tuple[Any, ...] = ()
+
+    @property
+    def rows(self) -> list[Any]:
+        """All its expressions, in an order that :meth:`of_rows` knows."""
+        return [
+            *(x for contact in self.contacts for x in contact.pressing),
+            self.rate,
+            self.acceleration,
+            *self.slowest,
+            *self.beside,
+        ]
+
+    def of_rows(self, rows: Sequence[Any]) -> Rubbing:
+        """The same with other expressions."""
+        left = iter(rows)
+        contacts = tuple(Contact(c.arm, tuple(next(left) for _ in c.pressing), c.lean) for c in self.contacts)
+        rate, acceleration, rests, goes_on, *beside = left
+        return Rubbing(self.friction, contacts, rate, acceleration, (rests, goes_on), tuple(beside))
+
+
+def frictions_of(mechanism: Mechanism) -> dict[str, Friction]:
+    """The frictions of a mechanism by name."""
+    return {name: load for name, load in mechanism.loads.items() if isinstance(load, Friction)}
+
+
+def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vector) -> Rubbing:
+    """A friction in a joint whose parent does this to its child, in ground axes, the couple about the child's point."""
+    joint, coordinates = friction.joint, multibody.coordinates
+    rate, acceleration = rates_along(joint, friction.axis, multibody.frames, coordinates)
+    unit, fastest, quickest = reach(multibody.mechanism), ca.SX(0), ca.SX(0)
+    for own in (coordinate for coordinate in coordinates if coordinate.driven):
+        size = 1 if own.kind == "angle" else unit
+        fastest += ca.fabs(own.rate) / size
+        quickest += ca.fabs(own.acceleration) / size
+    quickest += fastest * fastest
+    least = _REST * (1 if friction.axis.kind == "angle" else unit)
+    contacts: tuple[Contact, ...] = ()
+    if friction.dry and multibody.mechanism.space:
+        contacts = _in_space(multibody, friction, force, couple)
+    elif friction.dry and friction.axis.kind == "angle":
+        contacts = (Contact(friction.radius, (force[0], force[1])),)
+    elif friction.dry:
+        across = multibody.frames[joint.parent.body.name].rotation.apply(joint.triad[1])
+        pressing = dot(force, across)
+        if friction.length is None:
+            contacts = (Contact(1.0, (pressing,)),)
+        else:
+            tilt = couple[2] / friction.length
+            contacts = tuple(Contact(1.0, (pressing / 2 + sign * tilt,)) for sign in (1, -1))
+    beside: tuple[Any, ...] = ()
+    if friction.beside is not None:
+        lever = friction.radius if friction.beside.kind == "angle" else 1.0
+        beside = tuple(lever * x for x in rates_along(joint, friction.beside, multibody.frames, coordinates))
+    # Where the drives themselves turn back, their rates are rounding; their accelerations tell how fast they go beside it.
+    return Rubbing(friction, contacts, rate, acceleration, (least * ca.sqrt(quickest), least * quickest), beside)
+
+
+def _in_space(multibody: Multibody, friction: Friction, force: Vector, couple: Vector) -> tuple[Contact, ...]:
+    """Two bearings, ``length`` apart, and a collar that bears the thrust; a guide's two blocks, ``length`` apart, and what holds it
+    against turning about its line, at ``radius``; or the flanks of a thread.
+
+    With N on a thread's flank at the angle tan(angle) = pitch/radius, the force along the axis is N (cos -+ mu sin), and friction
+    takes mu N radius/cos from the couple: less or more where the load drives the thread, by the sign of what it does.
+    """
+    joint, rotation = friction.joint, multibody.frames[friction.joint.parent.body.name].rotation
+    u, v, w = (rotation.apply(direction) for direction in joint.triad)
+    along, (one, other) = dot(force, u), (dot(force, v), dot(force, w))
+    if joint.kind == "screw":
+        radius: Any = friction.radius
+        pitch = joint.pitch
+        leaning = friction.mu * pitch
+        steep = (radius * radius + pitch * pitch) / (radius * radius - leaning * leaning)
+        return (Contact(steep * radius, (along,), steep * leaning),)
+    arm = friction.radius if friction.axis.kind == "angle" else 1.0
+    if friction.length is None:
+        return (Contact(arm, (one, other)),)
+    about = (dot(couple, v) / friction.length, dot(couple, w) / friction.length)
+    sides = tuple(Contact(arm, (one / 2 + sign * about[1], other / 2 - sign * about[0])) for sign in (1, -1))
+    if joint.kind == "cylindrical":
+        return sides
+    if joint.kind == "prismatic":
+        return (*sides, Contact(1.0, (dot(couple, u) / friction.radius,)))
+    return (*sides, Contact(arm, (along,)))

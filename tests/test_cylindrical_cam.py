@@ -1,0 +1,231 @@
+"""Cylindrical cams: forces of closed forms, on bodies cut free; the groove that the roller leaves; and what is refused."""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate
+from lagrange_casadi.elements import cylindrical_cam
+from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.motion import dwell, move, moves, polynomial
+
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+
+RADIUS, OMEGA, MASS, DRUM, G = 0.06, 25.0, 0.9, 3.0, 9.81
+
+
+def law(size):
+    parts = [move(size, time=2.0, law="modified_sine"), dwell(0.8), move(0.0, time=2.4, law="polynomial_345"), dwell()]
+    return moves(parts, cyclic=True, period=2 * math.pi)
+
+
+def sliding(axis=(0.0, 0.0, 1.0), lift=None, across=(1.0, 0.0, 0.0)):
+    """A drum about an axis through (0.1, 0.2, 0.3), and a carriage beside it that slides along that."""
+    m = SpatialMechanism("sliding")
+    h = m.parameter("h", 0.05, "m")
+    u, r = np.array(axis), np.array(across)
+    drum = m.link("drum", length=0.2, mass=DRUM, centre=(0.02, 0.0, 0.01), inertia=(6e-3, 7e-3, 8e-3))
+    cart = m.link("cart", length=0.1, mass=MASS, centre=(0.01, 0.02, 0.03), inertia=(1e-3, 2e-3, 3e-3))
+    centre = np.array([0.1, 0.2, 0.3])
+    main = m.revolute("main", m.ground.at(*centre), drum.at(0.0, 0.0, 0.04), axis=axis, turned=[("x", "40 deg"), ("y", "25 deg")])
+    lead = m.prismatic("lead", m.ground.at(*(centre + 0.15 * r + 0.02 * u)), cart, axis=axis, turned=[("z", "70 deg")])
+    arm = rotation([("z", 70)]).T @ (-(0.15 - RADIUS) * r + 0.03 * u)
+    cam = cylindrical_cam(m, "cam", main, lead, lift or law(h), start=0.01, point=cart.at(*arm))
+    return cam, Scene(m, {"main": polynomial(0.2, OMEGA, 3.0)}, t=(0, 0.24, 61), posture={"lead": 0.02})
+
+
+def rotation(turns):
+    found = np.eye(3)
+    for axis, degrees in turns:
+        c, s, k = math.cos(math.radians(degrees)), math.sin(math.radians(degrees)), "xyz".index(axis)
+        turn = np.eye(3)
+        i, j = (k + 1) % 3, (k + 2) % 3
+        turn[i, i], turn[i, j], turn[j, i], turn[j, j] = c, -s, s, c
+        found = found @ turn
+    return found
+
+
+def values_of(lift, angle):
+    """A law's value, slope and bend."""
+    x = ca.SX.sym("x")
+    rows = [ca.SX(lift(x))]
+    rows += [ca.jacobian(rows[-1], x)]
+    rows += [ca.jacobian(rows[-1], x)]
+    return ca.Function("law", [x], [ca.densify(ca.vertcat(*rows))])(angle[None]).full()
+
+
+TILTED = tuple(np.array([1.0, 2.0, 2.0]) / 3), tuple(np.array([2.0, 1.0, -2.0]) / 3)
+
+
+@pytest.mark.parametrize(("axis", "across"), [((0.0, 0.0, 1.0), (1.0, 0.0, 0.0)), TILTED])
+def test_a_carriage_is_pressed_as_textbooks_say(axis, across):
+    """Norton: tan(pressure angle) = s'/R; the force is that of inertia and weight over its cosine."""
+    _, scene = sliding(axis, across=across)
+    solution = evaluate(scene)
+    assert solution.certified
+    u, r, g = np.array(axis), np.array(across), np.array([0.0, 0.0, -G])
+    w = np.cross(u, r)
+    lead, main = solution.motion("lead"), solution.motion("main")
+    value, slope, bend = values_of(law(0.05), main.value)
+    assert lead.value == pytest.approx(0.01 + value, abs=1e-13)
+    assert lead.acceleration == pytest.approx(bend * main.rate**2 + slope * main.acceleration, abs=1e-9)
+    lean = np.arctan(slope / RADIUS)
+    assert solution.output("cam_pressure_angle") == pytest.approx(np.abs(lean), abs=1e-7)
+    force = solution.output("cam_force")
+    along = MASS * (lead.acceleration - g @ u)
+    size = np.abs(along).max()
+    assert force * np.cos(lean) == pytest.approx(along, abs=1e-10 * size)
+    # On the follower it acts so, through the roller's centre; its guide takes what is across, and the moment.
+    push = force * (np.cos(lean) * u[:, None] + np.sin(lean) * w[:, None])
+    reaction = solution.reaction("lead")
+    held = np.stack([reaction.fx, reaction.fy, reaction.fz])
+    assert held + push == pytest.approx((MASS * (lead.acceleration * u[:, None] - g[:, None])), abs=1e-10 * size)
+    seat = (np.array([0.1, 0.2, 0.3]) + RADIUS * r + 0.05 * u)[:, None] + lead.value * u[:, None]  # of the roller
+    guide = (np.array([0.1, 0.2, 0.3]) + 0.15 * r + 0.02 * u)[:, None] + lead.value * u[:, None]
+    heavy = guide + (rotation([("z", 70)]) @ [0.01, 0.02, 0.03])[:, None]
+    moment = np.stack([reaction.mx, reaction.my, reaction.mz])
+    borne = moment + np.cross(seat - heavy, push, axis=0) + np.cross(guide - heavy, held, axis=0)
+    assert borne == pytest.approx(0.0 * borne, abs=1e-10 * size)
+    # The drum takes the opposite: its drive, and its bearing with all moments.
+    place = np.array([0.1, 0.2, 0.3])[:, None]
+    bearing = solution.reaction("main")
+    shaft, tilt = np.stack([bearing.fx, bearing.fy, bearing.fz]), np.stack([bearing.mx, bearing.my, bearing.mz])
+    drum, (middle, momentum, spin) = solution.effort("main"), inertia_of_drum(main, u, place)
+    assert shaft - push == pytest.approx(momentum - DRUM * g[:, None], abs=1e-9 * size)
+    total = tilt + drum * u[:, None] - np.cross(seat - middle, push, axis=0) + np.cross(place - middle, shaft, axis=0)
+    assert total == pytest.approx(spin, abs=1e-9 * size)
+
+
+def inertia_of_drum(main, u, place):
+    """Where its centre is, what its momentum changes by, and its moment of momentum about the centre."""
+    resting = rotation([("x", 40), ("y", 25)])
+    skew = np.array([[0, -u[2], u[1]], [u[2], 0, -u[0]], [-u[1], u[0], 0]])
+    middle, momentum, spin = [], [], []
+    for angle, rate, change in zip(main.value, main.rate, main.acceleration, strict=True):
+        axes = (np.eye(3) + math.sin(angle) * skew + (1 - math.cos(angle)) * skew @ skew) @ resting
+        arm = axes @ [0.02, 0.0, 0.01 - 0.04]
+        inertia = axes @ np.diag([6e-3, 7e-3, 8e-3]) @ axes.T
+        middle.append(place[:, 0] + arm)
+        momentum.append(DRUM * (np.cross(change * u, arm) + np.cross(rate * u, np.cross(rate * u, arm))))
+        spin.append(inertia @ (change * u) + np.cross(rate * u, inertia @ (rate * u)))
+    return (np.array(rows).T for rows in (middle, momentum, spin))
+
+
+def swinging(side=1.0):
+    """A drum about x, and an arm above it that swings about z; its roller goes round a circle beside the drum's line."""
+    m = SpatialMechanism("swinging")
+    swing = m.parameter("swing", 0.5, "rad")
+    drum = m.link("drum", length=0.2, mass=DRUM, centre=(0.0, 0.0, 0.0), inertia=(6e-3, 7e-3, 7e-3))
+    arm = m.link("arm", length=0.12, mass=MASS, centre=(0.05, 0.0, 0.01), inertia=(1e-4, 1e-3, 1e-3))
+    main = m.revolute("main", m.ground, drum, axis=(1, 0, 0))
+    lead = m.revolute("lead", m.ground.at(0.1, 0.12 * side, RADIUS), arm, axis=(0, 0, 1), turned=[("z", f"{-90 * side} deg")])
+    cam = cylindrical_cam(m, "cam", main, lead, law(swing), start=-0.25, point=arm.tip)
+    return cam, Scene(m, {"main": polynomial(0.2, OMEGA)}, t=(0, 2 * math.pi / OMEGA, 61), posture={"lead": -0.2})
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_an_arm_is_pressed_across_the_way_of_its_roller_on_the_drum(side):
+    """The pin's reaction and the contact balance the arm; the contact is across the groove, and across the roller's axis."""
+    _, scene = swinging(side)
+    solution = evaluate(scene)
+    assert solution.certified
+    lead, turn = solution.motion("lead"), solution.motion("main").value
+    value, slope, _ = values_of(law(0.5), turn)
+    assert lead.value == pytest.approx(value - 0.25, abs=1e-12)
+    angle = lead.value - side * math.pi / 2
+    zero = np.zeros_like(angle)
+    along, over = np.stack([np.cos(angle), np.sin(angle), zero]), np.stack([-np.sin(angle), np.cos(angle), zero])
+    roller = np.array([[0.1], [0.12 * side], [RADIUS]]) + 0.12 * along
+    passing = 0.12 * slope * over - np.cross([1.0, 0.0, 0.0], roller, axis=0)
+    bearing = solution.reaction("lead")
+    held = np.stack([bearing.fx, bearing.fy, bearing.fz])
+    centre = 0.05 * along + np.array([[0.0], [0.0], [0.01]])
+    momentum = MASS * (0.05 * (lead.acceleration * over - lead.rate**2 * along) + np.array([[0.0], [0.0], [G]]))
+    push = momentum - held
+    force, size = solution.output("cam_force"), np.abs(held).max()
+    assert np.abs(force) == pytest.approx(np.linalg.norm(push, axis=0), abs=1e-9 * size)
+    assert push[2] == pytest.approx(zero, abs=1e-9 * size)
+    assert (push * passing).sum(axis=0) == pytest.approx(zero, abs=1e-9 * size)
+    pressed = np.abs(force) > 1e-3 * size
+    assert (np.sign((push * over).sum(axis=0)) == np.sign(force))[pressed].all()
+    turning = np.cross(0.12 * along - centre, push, axis=0)[2] - np.cross(centre, held, axis=0)[2]
+    assert turning == pytest.approx(1e-3 * lead.acceleration, abs=1e-9 * size)
+    cosine = (np.abs((push * over).sum(axis=0)) / np.maximum(np.abs(force), 1e-30))[pressed]
+    assert np.cos(solution.output("cam_pressure_angle"))[pressed] == pytest.approx(cosine, rel=1e-9)
+    # The drum gives what the arm takes.
+    power = solution.effort("main") * OMEGA
+    assert power == pytest.approx((1e-3 + MASS * 0.05**2) * lead.acceleration * lead.rate, abs=1e-9 * np.abs(power).max())
+    thrust, spin = solution.reaction("main").fx, push[0]
+    assert thrust == pytest.approx(spin, abs=1e-9 * size)
+
+
+@pytest.mark.parametrize("machine", [sliding, swinging])
+def test_the_groove_is_the_way_of_the_roller_on_the_drum(machine):
+    cam, scene = machine()
+    path = cam.groove(count=90)
+    scene = Scene(scene.mechanism, {"main": polynomial(0.0, 1.0)}, over=("main", 0, "356 deg", 90), posture=scene.posture)
+    solution = evaluate(scene, wanted=["motion"])
+    pose = solution.pose("drum")
+    body = "cart" if machine is sliding else "arm"
+    follower = solution.pose(body)
+    local = np.array([cam.mechanism.number(x, cam.mechanism.values()) for x in roller_of(cam).place])
+    at = np.stack([follower.x, follower.y, follower.z]).T + np.einsum("tik,i->tk", follower.axes, local)
+    seen = np.einsum("tik,tk->ti", pose.axes, at - np.stack([pose.x, pose.y, pose.z]).T)
+    assert path == pytest.approx(seen, abs=1e-12)
+    assert path.shape == (90, 3)
+    with pytest.raises(DeclarationError, match="cam 'cam': count must be a whole number of at least 16, got 3"):
+        cam.groove(count=3)
+
+
+def roller_of(cam):
+    """The point of the follower that the cam's equation sees."""
+    return next(m.of for m in cam.mechanism.measures.asked if getattr(m.of, "body", None) in followers(cam))
+
+
+def followers(cam):
+    return [body for name, body in cam.mechanism.bodies.items() if name in ("cart", "arm")]
+
+
+def broken(**options):
+    m = SpatialMechanism("m")
+    drum, cart = m.link("drum", length=0.1, mass=1.0), m.link("cart", length=0.1, mass=1.0)
+    main = m.revolute("main", m.ground, drum, axis=(1, 0, 0))
+    place = options.pop("place", (0.0, 0.0, 0.05))
+    lead = m.prismatic("lead", m.ground.at(*place), cart, axis=options.pop("axis", (1, 0, 0)))
+    given = {"cam": main, "follower": lead, "lift": lambda x: 0.02 * ca.sin(x)} | options
+    if given["follower"] == "main":
+        given |= {"cam": lead, "follower": main}
+    if given.get("point") == "drum":
+        given["point"] = drum.tip
+    return cylindrical_cam(m, "cam", given.pop("cam"), given.pop("follower"), given.pop("lift"), **given)
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"follower": "main"}, "cam 'cam': expected a revolute joint whose parent is the ground, in space, got 'lead'"),
+        ({"point": "drum"}, "its point must be on 'cart', which joint 'lead' leads"),
+        ({"axis": (1, 0.1, 0)}, "joint 'lead' must be along the drum's axis"),
+        ({"place": (0.0, 0.0, 0.0)}, "cam 'cam': the drum does not pass by the roller; expected it off the axis"),
+        ({"lift": lambda x: 0.01 * x}, "its lift must be the same after a turn of the cam; expected a period of 2 pi"),
+        (
+            {"lift": math.sin},
+            "lift is no finite number at 0 deg of the cam; expected a function of CasADi's expressions, with casadi",
+        ),
+        ({"lift": 0.02}, "lift must be a function of the cam's angle, of CasADi's expressions: "),
+        ({"lift": lambda x: abs(ca.sin(x))}, "its lift: its slope jumps"),
+    ],
+)
+def test_misuse_is_named(options, says):
+    with pytest.raises(DeclarationError, match=says):
+        broken(**options)
+
+
+def test_planes_have_disc_cams():
+    m = Mechanism("flat")
+    drum, cart = m.link("drum", length=0.1, mass=1.0), m.point_mass("cart", 1.0)
+    main, lead = m.revolute("main", m.ground, drum), m.prismatic("lead", m.ground, cart, axis=(1, 0))
+    with pytest.raises(DeclarationError, match="expected a revolute joint whose parent is the ground, in space, got 'main'"):
+        cylindrical_cam(m, "cam", main, lead, lambda x: 0.0 * x)

@@ -1,0 +1,125 @@
+"""Random mechanisms whose joints rub: right by vector Newton-Euler with the law iterated around it, or refused as they jam."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+import rubbing
+from oracle import FORCES
+from random_mechanisms import draw
+from random_verdict import is_regular
+
+from lagrange_casadi import evaluate
+from lagrange_casadi.errors import AssemblyError
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+SEEDS = range(120)
+_RUBS, _INSTANTS = 3, 3
+_STEADY = 0.05
+
+
+@dataclass(frozen=True)
+class Rubbed:
+    """A random mechanism with friction: its source, where it is looked at, and the draft that the oracle is made of."""
+
+    source: str
+    t: tuple[float, ...]
+    drawn: object
+
+    def scene(self):
+        space: dict = {}
+        exec(compile(self.source, "random mechanism that rubs", "exec"), space)
+        return space["scene"]
+
+
+def rubbed(seed):
+    """Friction in up to three joints of a regular mechanism that moves, and whose reactions are all told; None for others."""
+    drawn, rng = draw(seed), np.random.default_rng((seed, 77))
+    d = drawn.draft
+    if not is_regular(drawn) or drawn.grid[2] < 2 or drawn.path.steadiness < _STEADY or "wanted" in drawn.keywords:
+        return None
+    times = np.linspace(*drawn.grid[:2], _INSTANTS + 2)[1:-1].tolist()
+    results = [d.oracle(t).solve(d.drives(t), drawn.path.near(t)) for t in times]
+    if any(result.open or result.vague for result in results):
+        return None
+    size, lines = d.oracle(d.start).size, []
+    joints = [j for name, j in d.joints.items() if name in d.movable() and (j.slides or all(_oriented(d, p) for p in _ends(j)))]
+    for joint in (joints[k] for k in rng.permutation(len(joints))[:_RUBS]):
+        rates = [abs(rubbing.Rub(joint).rate(d.oracle(t).places(r))) for t, r in zip(times, results, strict=True)]
+        if min(rates) < 1e-3 * max(rates) or min(rates) < 1e-6:
+            continue
+        numbers = {"mu": rng.uniform(0.0, 0.15)}
+        if not joint.slides:
+            numbers["radius"] = size * rng.uniform(0.002, 0.03)
+        elif joint.kind == "prismatic" and all(_oriented(d, point) for point in _ends(joint)):
+            numbers["length"] = size * rng.uniform(0.3, 0.9)
+        if rng.random() < 0.3:
+            numbers |= {"static": rng.uniform(0.05, 0.2), "stribeck": rng.uniform(0.05, 1.0)}
+        if rng.random() < 0.3:
+            numbers["viscous"] = rng.uniform(0.0, 2.0)
+        told = ", ".join(f"{word}={float(number)!r}" for word, number in numbers.items())
+        lines.append(f'm.friction("rub_{joint.name}", m.joints["{joint.name}"], {told})')
+    if not lines:
+        return None
+    before, scene = drawn.source.split("scene = Scene(", 1)
+    return Rubbed("\n".join([before.rstrip(), *lines, f"scene = Scene({scene}"]), tuple(times), drawn)
+
+
+def _ends(joint):
+    return joint.parent[0], joint.child[0]
+
+
+def _oriented(d, body):
+    return body == "ground" or d.bodies[body].oriented
+
+
+def compare(made):
+    """The largest gap of efforts, reactions and frictions over the largest of their kind; None where it jams."""
+    drawn, scene = made.drawn, made.scene()
+    d, size = drawn.draft, drawn.draft.oracle(drawn.draft.start).size
+    parameters = drawn.keywords.get("parameters")
+    values = scene.mechanism.values(parameters)
+    worst = 0.0
+    for t in made.t:
+        try:
+            solution = evaluate(scene, parameters=parameters, t=(t, t, 1))
+        except AssemblyError as error:
+            if "jams" not in str(error):
+                raise
+            return None
+        assert solution.certified
+        exact = rubbing.solve(d.oracle(t), scene.mechanism, values, d.drives(t), drawn.path.near(t))
+        named = {f"effort:{name}": x for name, x in exact.efforts.items()} | exact.frictions
+        named |= {f"reaction:{name}:{k}": x for name, xs in exact.reactions.items() for k, x in zip(FORCES, xs, strict=True)}
+        largest = max(abs(x) / (size if name.endswith(":mz") else 1.0) for name, x in named.items() if name.startswith("reaction"))
+        assert exact.frictions
+        fastest = max(1.0, *(abs(y.d) for q in exact.q.values() for y in q))
+        for name, x in named.items():
+            if name in solution.series:
+                unit = max(1.0, size) * (fastest if name.endswith("loss") else 1.0)
+                worst = max(worst, abs(float(solution.series[name][0]) - x) / (largest * unit))
+    return worst
+
+
+def found(seed):
+    made = rubbed(seed)
+    if made is None:
+        pytest.skip("nothing here may rub")
+    return made, compare(made)
+
+
+@pytest.mark.sampled(30)
+@pytest.mark.parametrize("seed", SEEDS)
+def test_right_or_refused(seed):
+    made, worst = found(seed)
+    assert worst is None or worst < 1e-10, f"{worst}\n{made.source}"
+
+
+@pytest.mark.long
+def test_many_of_them_rub_and_few_jam():
+    made = [one for one in map(rubbed, SEEDS) if one is not None]
+    assert len(made) > len(SEEDS) / 10
+    assert sum(compare(one) is None for one in made) < len(made) / 4
+    assert math.isfinite(max(worst for one in made if (worst := compare(one)) is not None))
