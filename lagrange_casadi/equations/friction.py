@@ -23,6 +23,7 @@ import casadi as ca
 import numpy as np
 
 from ..declare.mechanism import Mechanism
+from ..declare.meshes import Transmission
 from ..declare.parts import Friction, Vector
 from ..geometry.vectors import dot
 from .checks import Check, Column
@@ -54,10 +55,12 @@ class Contact:
 class Rubbing:
     """A friction as expressions of an instant: its contacts, and rate and acceleration of its coordinate.
 
+    What presses the parts of a transmission apart is found with frictions, because they depend on each other. It has no rate.
+
     ``slowest`` is the rate below which it rests, and the change of rate below which it goes on to.
     """
 
-    friction: Friction
+    friction: Friction | Transmission
     contacts: tuple[Contact, ...]
     rate: Any
     acceleration: Any
@@ -227,6 +230,8 @@ class _Law:
     @classmethod
     def of(cls, one: Rubbing, pressed: list[_Pressed]) -> _Law:
         friction, v = one.friction, one.rate
+        if isinstance(friction, Transmission):
+            return cls(friction.name, pressed, 1.0, -1.0, None, None)
         steady = None if _nil(friction.viscous) else friction.viscous * v
         if not pressed:
             return cls(friction.name, [], 0.0, 0.0, steady, None)
