@@ -27,6 +27,8 @@ INSTANT = {
     "scara": 158,
     "roller_cam": 304,
     "v_twin": 1778,
+    "planetary_gear": 628,
+    "screw_lift": 237,
     "rssr": 779,
     "spatial_slider_crank": 414,
     "stewart_gough": 5322,

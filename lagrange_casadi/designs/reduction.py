@@ -17,8 +17,8 @@ from ..declare.density import Array, Density
 from ..declare.mechanism import Mechanism
 from ..declare.parts import LineLoad, Link
 from ..declare.scene import Scene
+from ..equations.dead_centres import NEAR
 from ..equations.gaps import extent
-from ..equations.kinematics import NEAR
 from ..equations.mobility import stations_of
 from ..equations.scene_graph import SceneGraph
 from ..equations.spreads import spreads_of

@@ -141,10 +141,12 @@ def _crossed(what: str, numbers: Numbers, first: Course, second: Course, teeth: 
     assert v is not None
     away = minus(second.place, first.place)
     distance = length(away)
-    fits = [Fit("its centres are {got} m apart; expected {meant} m as the sum of their radii", distance, r1 + r2, r1 + r2)]
-    for number, axis in ((2, u), (1, v)):
+    fits = []
+    for number, axis in ((1, u), (2, v)):
         words = f"the centre of its gear {number} is {{got}} m beside the line at right angles to both axes; expected {{meant}} m"
         fits.append(Fit(words, dot(away, axis), 0.0, r1 + r2))
+    words = "its centres are {got} m apart; expected {meant} m as the sum of their radii"
+    fits.append(Fit(words, distance, r1 + r2, r1 + r2))
     for fit in fits:
         got, meant = numbers.of(fit.got), numbers.of(fit.meant)
         if abs(got - meant) > FITTING * numbers.of(r1 + r2):

@@ -11,6 +11,7 @@ from ..declare.mechanism import Mechanism
 from ..declare.parts import Body, Expression, Link, Point
 from ..errors import DeclarationError
 from .gears import Gears, gears
+from .ranges import positive
 from .wheel import wheel
 
 
@@ -85,6 +86,7 @@ def planetary(
     if planets > 1 and apart > (of_sun + of_planet) * math.sin(math.pi / planets):
         raise DeclarationError(f"{what}: {planets} planets of {of_planet} teeth have no room round a sun of {of_sun}")
     size = own.expression(f"{what}: module", module)
+    positive(what, "module", size)
     middle, centres = own.point(what, carrier), size * (of_sun + of_planet) / 2
     found, pins = [], []
     for k in range(planets):

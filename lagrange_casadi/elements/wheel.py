@@ -52,8 +52,11 @@ def wheel(
     link = mechanism.link(name, length=outer, mass=whole, centre=(0.0, 0.0), inertia=polar)
     if teeth is not None and (type(teeth) is not int or teeth < 1):
         raise DeclarationError(f"{what}: teeth must be a whole number, got {teeth!r}")
-    edges = [(radius, teeth if (radius is inner) == internal else None) for radius in (outer, inner)]
-    link = replace(link, outline=_outline(*(_edge(radius, count, turned) for radius, count in edges)))
+    edges = [
+        _edge(size, teeth if inward == internal else None, turned, inward=inward)
+        for size, inward in ((outer, False), (inner, True))
+    ]
+    link = replace(link, outline=_outline(*edges))
     mechanism.bodies[name] = link
     return link
 
@@ -66,7 +69,7 @@ def _outline(outer: _Corners, inner: _Corners) -> tuple[tuple[Expression, Expres
     return (*outer, *([outer[0], inner[0], *reversed(inner)] if inner else ()))
 
 
-def _edge(radius: Expression, teeth: int | None, turned: float) -> _Corners:
+def _edge(radius: Expression, teeth: int | None, turned: float, *, inward: bool) -> _Corners:
     """A circle, or a circle with teeth on both its sides; nothing for no radius."""
     if isinstance(radius, float) and radius == 0.0:
         return []
@@ -76,7 +79,8 @@ def _edge(radius: Expression, teeth: int | None, turned: float) -> _Corners:
     for k in range(teeth):
         # The teeth of a straight profile: a tip, a foot, and half of the pitch on the pitch circle.
         for part, height in ((-0.36, -2.0), (-0.14, 2.0), (0.14, 2.0), (0.36, -2.0)):
-            found.append(_corner(radius * (1.0 + height / (2.0 * teeth)), turned + math.tau * (k + part) / teeth))
+            size = 1.0 + (-height if inward else height) / (2.0 * teeth)
+            found.append(_corner(radius * size, turned + math.tau * (k + part) / teeth))
     return found
 
 

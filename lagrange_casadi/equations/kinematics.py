@@ -15,10 +15,7 @@ from functools import cached_property
 from typing import Any
 
 import casadi as ca
-import numpy as np
-import numpy.typing as npt
 
-from ..declare.density import Array
 from ..errors import AssemblyError
 from ..geometry.vectors import AXES
 from .balls import Ball
@@ -30,15 +27,13 @@ from .loops import ClosedForm
 from .multibody import Coordinate, Multibody, column
 from .postures import Undecided, directions, measured, turns
 from .substitution import Expressions, Numbers
+from .winding import wound
 
 _WAYS = 32
 """How many ways to close loops that are open are tried, where the first does not close the others."""
 
 _READ = {"angle": 12, "slide": 15}
 """Decimals of what is said of a coordinate [rad or m]."""
-
-NEAR = 0.3
-"""Sines of the transmission angle below which a loop may pass a dead centre."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +52,7 @@ class Kinematics:
     ``found`` has the expression of every variable, rate and acceleration of a :class:`.Multibody`; ``systems`` are the factorized
     Phi_z of ``blocks``. ``closures`` say by joint how far each loop is from a dead centre, ``gaps`` [m] what is
     left of the equations of a block, ``misfits`` how far the equations that are too many are from holding. ``loose`` names the
-    joints whose angles are known up to whole turns.
+    joints whose angles are known up to whole turns, ``swings`` how far those of screws are from what counts their turns.
     """
 
     driven: Any
@@ -72,6 +67,7 @@ class Kinematics:
     misfits: dict[str, Any]
     newton: NewtonLoop | None
     loose: frozenset[str]
+    swings: dict[str, Any]
 
     def evaluate(self, expression: Any) -> Any:
         """An expression in the multibody's symbols, as one in t, d, d', d'', z and the parameters."""
@@ -124,6 +120,7 @@ class _Solver:
         self.closures: dict[str, tuple[Any, bool]] = {}
         self.dyads: dict[Block, Any] = {}
         self.loose: set[str] = set()
+        self.swings: dict[str, Any] = {}
         self.undecided = Undecided()
         self.length = reach(multibody.mechanism)
         self.found = Expressions()
@@ -171,7 +168,7 @@ class _Solver:
             return
         for form, closure in zip(block.forms, closures, strict=True):
             if form.branch is not None:
-                self.loose |= {c.name for c in form.unknown if c.kind == "angle"}
+                self.loose |= {c.name for c in form.unknown if c.kind == "angle" and c.name not in self.swings}
             if closure is not None:
                 self._judge(block, closure)
 
@@ -184,9 +181,16 @@ class _Solver:
             sign = ca.SX(self._branch(block, form, form.branch))
             variables = tuple(ca.substitute(value, form.branch, sign) for value in variables)
         for coordinate, value in zip(form.unknown, variables, strict=True):
+            if coordinate.axis.move == "screw" and form.branch is not None:
+                value, swing = wound(coordinate, value, self._counting(), self.numbers)
+                self.swings[coordinate.name] = self.found.put_into(swing)
             self.numbers.note(coordinate.variables, self.numbers.of(value))
             self._know(coordinate, self.found.put_into(value))
         return closure
+
+    def _counting(self) -> list[Coordinate]:
+        """The coordinates known so far whose angles count turns."""
+        return [c for c in self.known if c.kind == "angle" and c.name not in self.loose]
 
     def _judge(self, block: Block, closure: Any) -> None:
         """Note how far a block is from a dead centre: of blocks that one joint closes, the one that is nearest."""
@@ -335,6 +339,7 @@ class _Solver:
             misfits=misfits,
             newton=newton,
             loose=frozenset(self.loose),
+            swings=self.swings,
         )
 
     def _side(self, ball: Ball) -> int:
@@ -362,20 +367,6 @@ def where(coordinates: Iterable[tuple[str, str, float]]) -> str:
     """Coordinates by joint, kind and value, to end a message with; nothing where there are none."""
     listed = ", ".join(describe_coordinate(*coordinate) for coordinate in coordinates)
     return f", where {listed}" if listed else ""
-
-
-def passes_dead_centre(closure: Array, *, ends: bool = False) -> npt.NDArray[np.bool_]:
-    """After which instants a loop may pass a dead centre: straight on from either side its transmission angle's sine meets zero.
-
-    The closed forms keep to their branch there, with a kink; the mechanism itself may not. With ``ends`` the first interval and the
-    last are looked at too, each from its one side.
-    """
-    found = np.zeros(closure.size, dtype=bool)
-    sine = np.sqrt(np.where((closure > 0.0) & (closure < np.inf), closure, 0.0))
-    left, right = np.full((2, max(closure.size - 1, 0)), -1.0 if ends else 1.0)
-    left[1:], right[:-1] = 2 * sine[1:-1] - sine[:-2], 2 * sine[1:-1] - sine[2:]
-    found[:-1] = (left < 0.0) & (right < 0.0) & (np.maximum(sine[:-1], sine[1:]) < NEAR)
-    return found
 
 
 def describe_coordinate(joint: str, kind: str, value: float) -> str:

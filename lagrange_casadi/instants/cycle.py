@@ -17,7 +17,8 @@ import numpy.typing as npt
 
 from ..declare.density import Array
 from ..equations.checks import FRACTIONS, Check, Column
-from ..equations.kinematics import describe_coordinate, passes_dead_centre, where
+from ..equations.dead_centres import passes_dead_centre
+from ..equations.kinematics import describe_coordinate, where
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
 from ..tables import ANGLE, FORCE, LENGTH, MOMENT

@@ -16,8 +16,9 @@ from ..codegen.designs import INSIDE, ROUNDS
 from ..codegen.emit import NOT_CONVERGED, NOT_FINITE, OK, SLOW
 from ..declare.density import Array
 from ..declare.ends import share_beyond
+from ..equations.dead_centres import passes_dead_centre
 from ..equations.iteration import LARGEST_STEP
-from ..equations.kinematics import passes_dead_centre, where
+from ..equations.kinematics import where
 from ..equations.scene_graph import SceneGraph
 from ..equations.turns import LEAP
 from ..errors import AssemblyError
