@@ -39,7 +39,7 @@ def test_the_case_is_that_of_closed_forms(values):
     assert solution.output("set_sun_radial") == pytest.approx(np.full(421, force * TAN), rel=1e-12)
 
 
-def gear(driven, held, planets=1):
+def gear(driven, held, planets=1, efficiency=None, load=40.0):
     """A planetary set of which one member is driven, one held, and the third loaded."""
     m = Mechanism("set")
     m.set_gravity(0, 0)
@@ -48,9 +48,9 @@ def gear(driven, held, planets=1):
     bodies = {"sun": sun, "ring": ring, "carrier": carrier}
     for name, body in bodies.items():
         (m.weld if name == held else m.revolute)(f"{name}_bearing", m.ground, body)
-    planetary(m, "set", sun, carrier, ring, teeth=(20, 15, 50), module=0.002, planets=planets, mass=0.3)
+    planetary(m, "set", sun, carrier, ring, teeth=(20, 15, 50), module=0.002, planets=planets, mass=0.3, efficiency=efficiency)
     (last,) = set(bodies) - {driven, held}
-    m.torque("load", bodies[last], 40.0)
+    m.torque("load", bodies[last], load)
     return evaluate(Scene(m, {f"{driven}_bearing": polynomial(0.0, 10.0)}, t=(0, 1, 3))), last
 
 
@@ -80,6 +80,19 @@ def test_each_member_may_drive_and_each_be_held(driven, held, planets):
     turning = 0.3 * 0.035 * solution.motion("carrier_bearing").rate ** 2 if held != "carrier" else 0.0
     for pin in pins:
         assert pin.resultant == pytest.approx(np.hypot(2 * teeth, turning), rel=1e-11)
+
+
+@pytest.mark.parametrize("planets", [1, 2])
+@pytest.mark.parametrize("load", [-40.0, 40.0])
+def test_its_efficiency_is_that_of_its_meshes_seen_from_the_carrier(planets, load):
+    """Niemann and Winter: with i the ring's teeth over the sun's, (1 + i e)/(1 + i), with e of both meshes; backward (1 + i/e)."""
+    solution, _ = gear("sun", "ring", planets, 0.97, load)
+    assert solution.certified
+    given, taken = solution.effort("sun_bearing") * 10.0, -load * solution.motion("carrier_bearing").rate
+    share = (1 + 2.5 * 0.97 ** (2 if load < 0.0 else -2)) / 3.5
+    assert taken / given == pytest.approx(np.full(3, share), rel=1e-9)
+    lost = solution.output("set_sun_loss") + sum(solution.output(f"set_ring_{k + 1}_loss") for k in range(planets))
+    assert lost == pytest.approx(given - taken, rel=1e-8)
 
 
 @pytest.mark.quick

@@ -9,6 +9,7 @@ import casadi as ca
 
 from ..geometry.vectors import ZERO
 from ..system.numerals import readable
+from .joints import Joint
 from .parts import Body, Expression, Point, Vector
 
 FITTING = 1e-9
@@ -27,9 +28,10 @@ class Wrench:
 class Mesh:
     """Where two bodies touch, or a belt runs over them; ``carrier`` is the body on which both turn.
 
-    The first bears, at its point ``first``, lambda ``along`` + s ``apart``, and the second the opposite. lambda is the multiplier,
-    of either sign; s is never negative. ``centre`` is the place of ``first`` in the carrier's axes, and ``reach`` leads from there
-    to ``second``, which may be at a place that moves on its body: it is an expression of coordinates then.
+    The first bears, at its point ``first``, lambda ``along`` + s ``apart`` + c ``braking``, and the second the opposite. lambda is
+    the multiplier, of either sign; s is never negative; c is what friction takes. ``centre`` is the place of ``first`` in the
+    carrier's axes, and ``reach`` leads from there to ``second``, which may be at a place that moves on its body: it is an
+    expression of coordinates then.
     """
 
     first: Point
@@ -39,6 +41,22 @@ class Mesh:
     reach: Vector
     along: Wrench
     apart: Wrench | None = None
+    braking: Wrench | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Loss:
+    """What friction takes in a transmission: c = -(sigma ``arm`` |lambda| + ``lean`` lambda), with sigma the sign of a rate.
+
+    The rate is that of the sum of coordinates of joints, each with its sign, ``turns``. ``symbol`` stands for c until it is found,
+    as a friction's does.
+    """
+
+    name: str
+    arm: Expression
+    lean: Expression
+    turns: tuple[tuple[int, Joint], ...]
+    symbol: Any = field(default_factory=lambda: ca.SX.sym("loss"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,13 +79,14 @@ class Transmission:
 
     It acts in every one of ``meshes``: several share a load evenly. With it comes s = (|lambda + slack| + |lambda - slack|)/2: of
     teeth, whose ``slack`` is zero, the size of lambda; of a belt the sum of its tensions, of which none can be negative.
-    ``symbol`` stands for s until it is found. ``fits`` say of which numbers the parts must be.
+    ``symbol`` stands for s until it is found. ``loss`` is there where parts rub. ``fits`` say of which numbers the parts must be.
     """
 
     name: str
     meshes: tuple[Mesh, ...]
     slack: Expression = 0.0
     fits: tuple[Fit, ...] = ()
+    loss: Loss | None = None
     symbol: Any = field(default_factory=lambda: ca.SX.sym("apart"))
 
     @property

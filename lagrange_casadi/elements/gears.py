@@ -21,6 +21,7 @@ from ..declare.parts import Body, Constraint, Expression, Point
 from ..errors import DeclarationError
 from ..geometry.vectors import cross, dot, minus
 from .courses import Course, Numbers, courses_on, fits_of
+from .losses import braking_of, loss_of, lost
 from .pitch import Pitch, Teeth, pitch_of
 from .ranges import positive, whole, within
 
@@ -52,6 +53,8 @@ def gears(
     pressure_angle: Expression = "20 deg",
     helix_angle: Expression = 0.0,
     hand: Literal["right", "left"] = "right",
+    efficiency: Expression | None = None,
+    mu: Expression | None = None,
     carrier: Body | None = None,
     offset: Expression = 0.0,
 ) -> Gears:
@@ -74,6 +77,10 @@ def gears(
         positive where the teeth of the first gear are a right-handed screw. A plane has no helix.
     hand
         Of crossed axes, the hand of the first gear's teeth.
+    efficiency
+        What comes out of the mesh over what goes into it, whichever gear drives, seen from the carrier; by default nothing is lost.
+    mu
+        Of crossed axes in its place the friction coefficient of the teeth, which slide on each other.
     carrier
         The body on which both turn; by default the one that joints tell.
     offset
@@ -81,7 +88,8 @@ def gears(
 
     The multiplier is the force along the pitch circle on the first gear, positive where it turns this forward. The flank that
     touches follows from its sign, and both flanks press the gears apart. Outputs are NAME_tangential, NAME_radial toward the axis
-    of the first gear, or off it of a ring, and in space NAME_axial on the first gear along its joint's axis [N].
+    of the first gear, or off it of a ring, and in space NAME_axial on the first gear along its joint's axis [N]: without friction's
+    part. Where teeth rub, NAME_loss is the power that all meshes take [W]. At rest friction is open, as in joints that rub.
 
     Raises :class:`.DeclarationError` for bodies that do not turn about axes through these points, centres that do not fit the
     radii, numbers of teeth that are not whole, and angles out of range; values of parameters that break these are refused as well.
@@ -97,7 +105,7 @@ def gears(
     if not many:
         raise DeclarationError(f"{what}: expected a second gear")
     found = [courses_on(mechanism, what, centre, one, carrier) for one in many]
-    numbers, fits = Numbers(mechanism), []
+    numbers, fits, rubs = Numbers(mechanism), [], efficiency is not None or mu is not None
     told, more = _teeth(what, mechanism, found[0], teeth, module, radii, (pressure_angle, helix_angle), hand == "right")
     fits += more
     pitches = [pitch_of(what, numbers, *pair, told) for pair in found]
@@ -105,15 +113,22 @@ def gears(
     for pair, pitch, point in zip(found, pitches, many, strict=True):
         if pitch.kind == "crossed" and (teeth is None or radii is None):
             raise DeclarationError(f"{what}: crossed axes need both numbers of teeth and radii")
-        meshes.append(_mesh(mechanism, centre, point, *pair, pitch))
+        mesh = _mesh(mechanism, centre, point, *pair, pitch)
+        meshes.append(replace(mesh, braking=braking_of(pitch)) if rubs else mesh)
         fits += [*pitch.fits, *(fit for one in pair for fit in fits_of("its centre", one))]
     ways = [course.way(mechanism) for course in found[0]]
     ahead = own.expression(f"{what}: offset", offset)
     constraint = mechanism.constraint(name, told.radii[0] * ways[0] + pitches[0].other * ways[1] - ahead)
+    loss = None
+    if rubs:
+        loss, more = loss_of(what, mechanism, name, found[0][0], pitches[0], told, efficiency, mu)
+        fits += more
     varying = [fit for fit in fits if isinstance(fit.got, ca.SX) or isinstance(fit.meant, ca.SX)]
-    constraint = replace(constraint, transmission=Transmission(name, tuple(meshes), 0.0, tuple(varying)))
+    constraint = replace(constraint, transmission=Transmission(name, tuple(meshes), 0.0, tuple(varying), loss))
     mechanism.constraints[name] = constraint
     _outputs(mechanism, name, constraint, pitches[0])
+    if loss is not None:
+        mechanism.output(f"{name}_loss", len(meshes) * lost(mechanism, constraint, loss, pitches[0]), unit="W")
     return Gears(constraint, pitches[0].kind, -(told.radii[0] / pitches[0].other))
 
 

@@ -19,7 +19,7 @@ import casadi as ca
 from ..declare.meshes import FITTING, Fit
 from ..declare.parts import Expression, Vector
 from ..errors import DeclarationError
-from ..geometry.vectors import cross, dot, minus, plus, times
+from ..geometry.vectors import ZERO, cross, dot, minus, plus, times
 from .courses import Course, Numbers, along, length
 
 
@@ -38,7 +38,8 @@ class Teeth:
 class Pitch:
     """A pitch point: its ``arm`` from the first centre, forces ``force`` and ``apart`` there, the ``second`` gear's place.
 
-    The equation is radius way_1 + ``other`` way_2 = 0. ``outward`` is e, ``axis`` u.
+    The equation is radius way_1 + ``other`` way_2 = 0. ``outward`` is e, ``axis`` u. ``relative`` is the angular velocity of the
+    first against the second, of crossed axes the velocity with which it slides on that, for a unit of the first one's rate.
     """
 
     kind: str
@@ -49,6 +50,7 @@ class Pitch:
     other: Expression
     outward: Vector
     axis: Vector
+    relative: Vector = ZERO
     fits: tuple[Fit, ...] = ()
 
 
@@ -98,7 +100,8 @@ def _parallel(what: str, numbers: Numbers, first: Course, second: Course, teeth:
     # Off the teeth: toward the axis of a gear, away from that of a ring.
     apart = times(size if side == -2 else -size, e)
     other = r2 * sense if side == 1 else -(r2 * sense)
-    return Pitch("parallel", times(r1, e), force, apart, minus(second.place, first.place), other, e, u, tuple(fits))
+    relative = plus(u, times(r1 / other, second.axis))
+    return Pitch("parallel", times(r1, e), force, apart, minus(second.place, first.place), other, e, u, relative, tuple(fits))
 
 
 def _bevel(what: str, numbers: Numbers, first: Course, second: Course, teeth: Teeth) -> Pitch:
@@ -131,7 +134,8 @@ def _bevel(what: str, numbers: Numbers, first: Course, second: Course, teeth: Te
     force = minus(t, times(_tan(teeth.helix) * one, generator))
     size = _tan(teeth.pressure) / _cos(teeth.helix)
     apart = times(size, along(minus(times(r1, w1), times(heights[0], e)), slant))
-    return Pitch("bevel", times(r1, e), force, apart, away, one * two * r2, e, u, tuple(fits))
+    other = one * two * r2
+    return Pitch("bevel", times(r1, e), force, apart, away, other, e, u, plus(u, times(r1 / other, v)), tuple(fits))
 
 
 def _crossed(what: str, numbers: Numbers, first: Course, second: Course, teeth: Teeth) -> Pitch:
@@ -163,7 +167,8 @@ def _crossed(what: str, numbers: Numbers, first: Course, second: Course, teeth: 
     force = plus(t, times(lean, u))
     apart = times(-(_tan(teeth.pressure) * _root(1 + lean * lean)), e)
     other = way * teeth.ratio * r1
-    return Pitch("crossed", times(r1, e), force, apart, away, other, e, u, tuple(fits))
+    sliding = minus(times(r1, t), times(r1 * r2 / other, cross(v, e)))
+    return Pitch("crossed", times(r1, e), force, apart, away, other, e, u, sliding, tuple(fits))
 
 
 def _rack(what: str, numbers: Numbers, first: Course, second: Course, teeth: Teeth) -> Pitch:
@@ -187,7 +192,7 @@ def _rack(what: str, numbers: Numbers, first: Course, second: Course, teeth: Tee
     t = cross(u, e)
     force = minus(t, times(_tan(teeth.helix), u))
     apart = times(-(_tan(teeth.pressure) / _cos(teeth.helix)), e)
-    return Pitch("rack", times(radius, e), force, apart, times(radius, e), -_sign(numbers, dot(t, d)), e, u, fits)
+    return Pitch("rack", times(radius, e), force, apart, times(radius, e), -_sign(numbers, dot(t, d)), e, u, u, fits)
 
 
 def _refuse_beside(what: str, numbers: Numbers, beside: Expression, size: Expression) -> None:

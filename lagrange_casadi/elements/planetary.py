@@ -43,6 +43,7 @@ def planetary(
     mass: Expression | None = None,
     width: Expression | None = None,
     pressure_angle: Expression = "20 deg",
+    efficiency: Expression | None = None,
 ) -> Planetary:
     """Declare the planets of a planetary set in a plane: links NAME_planet_1 and so on, pins NAME_pin_1, and how they mesh.
 
@@ -59,8 +60,8 @@ def planetary(
         How many there are, evenly round: their number divides the teeth of sun and ring together.
     mass, width
         The mass of a planet [kg], or its width [m], of steel.
-    pressure_angle
-        As of :func:`.gears`.
+    pressure_angle, efficiency
+        As of :func:`.gears`; the efficiency is that of each mesh.
 
     The planets share the load evenly. The mesh with the sun is NAME_sun, those with the ring NAME_ring_1 and so on, with the
     outputs of :func:`.gears`, all of one planet.
@@ -99,7 +100,7 @@ def planetary(
         found.append(planet)
         pins.append(mechanism.revolute(f"{name}_pin_{k + 1}", spot, planet))
     body = middle.body
-    told = {"module": size, "pressure_angle": pressure_angle, "carrier": body}
+    told = {"module": size, "pressure_angle": pressure_angle, "efficiency": efficiency, "carrier": body}
     inner = gears(mechanism, f"{name}_sun", sun, found, teeth=(of_sun, of_planet), **told)
     outer = tuple(
         gears(mechanism, f"{name}_ring_{k + 1}", planet, ring, teeth=(of_planet, of_ring), **told) for k, planet in enumerate(found)

@@ -23,60 +23,17 @@ import casadi as ca
 import numpy as np
 
 from ..declare.mechanism import Mechanism
-from ..declare.meshes import Transmission
+from ..declare.meshes import Loss, Transmission
 from ..declare.parts import Friction, Vector
 from ..geometry.vectors import dot
 from .checks import Check, Column
-from .gaps import reach
 from .multibody import Multibody, column, rates_along
+from .rubbing import Contact, Rubbing, slowest_of
 
 STEPS = 4
 """Newton's steps: the error goes as the 4th, 10th, 22nd, 46th power of how much of itself a friction brings about."""
 
-_REST = 1e-12
-"""Of the fastest motion in the mechanism: a rate below is that of rest, but for rounding."""
-
 _NOTHING = 1e-30
-
-
-@dataclass(frozen=True, eq=False)
-class Contact:
-    """What presses on a rubbing place [N], of one component or two, and the ``arm`` that its friction has: 1 or a radius [m].
-
-    Of a thread, ``lean`` tells how much more one direction of sliding presses than the other [m].
-    """
-
-    arm: Any
-    pressing: tuple[Any, ...]
-    lean: Any = None
-
-
-@dataclass(frozen=True, eq=False)
-class Rubbing:
-    """A friction as expressions of an instant: its contacts, and rate and acceleration of its coordinate.
-
-    What presses the parts of a transmission apart is found with frictions, because they depend on each other. It has no rate.
-
-    ``slowest`` is the rate below which it rests, and the change of rate below which it goes on to.
-    """
-
-    friction: Friction | Transmission
-    contacts: tuple[Contact, ...]
-    rate: Any
-    acceleration: Any
-    slowest: tuple[Any, Any]
-
-    @property
-    def rows(self) -> list[Any]:
-        """All its expressions, in an order that :meth:`of_rows` knows."""
-        return [*(x for contact in self.contacts for x in contact.pressing), self.rate, self.acceleration, *self.slowest]
-
-    def of_rows(self, rows: Sequence[Any]) -> Rubbing:
-        """The same with other expressions."""
-        left = iter(rows)
-        contacts = tuple(Contact(c.arm, tuple(next(left) for _ in c.pressing), c.lean) for c in self.contacts)
-        rate, acceleration, *slowest = left
-        return Rubbing(self.friction, contacts, rate, acceleration, (slowest[0], slowest[1]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,13 +56,7 @@ def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vec
     """A friction in a joint whose parent does this to its child, in ground axes, the couple about the child's point."""
     joint, coordinates = friction.joint, multibody.coordinates
     rate, acceleration = rates_along(joint, friction.axis, multibody.frames, coordinates)
-    unit, fastest, quickest = reach(multibody.mechanism), ca.SX(0), ca.SX(0)
-    for own in (coordinate for coordinate in coordinates if coordinate.driven):
-        size = 1 if own.kind == "angle" else unit
-        fastest += ca.fabs(own.rate) / size
-        quickest += ca.fabs(own.acceleration) / size
-    quickest += fastest * fastest
-    least = _REST * (1 if friction.axis.kind == "angle" else unit)
+    slowest = slowest_of(multibody, slides=friction.axis.kind != "angle")
     contacts: tuple[Contact, ...] = ()
     if friction.dry and multibody.mechanism.space:
         contacts = _in_space(multibody, friction, force, couple)
@@ -119,7 +70,7 @@ def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vec
         else:
             tilt = couple[2] / friction.length
             contacts = tuple(Contact(1.0, (pressing / 2 + sign * tilt,)) for sign in (1, -1))
-    return Rubbing(friction, contacts, rate, acceleration, (least * fastest, least * quickest))
+    return Rubbing(friction, contacts, rate, acceleration, slowest)
 
 
 def _in_space(multibody: Multibody, friction: Friction, force: Vector, couple: Vector) -> tuple[Contact, ...]:
@@ -232,6 +183,9 @@ class _Law:
         friction, v = one.friction, one.rate
         if isinstance(friction, Transmission):
             return cls(friction.name, pressed, 1.0, -1.0, None, None)
+        if isinstance(friction, Loss):
+            sigma, rest = _way(one)
+            return cls(friction.name, pressed, 1.0, sigma, None, rest)
         steady = None if _nil(friction.viscous) else friction.viscous * v
         if not pressed:
             return cls(friction.name, [], 0.0, 0.0, steady, None)
@@ -241,11 +195,8 @@ class _Law:
             mu = mu + (friction.static - mu) * ca.exp(-(speed * speed))
         if friction.smooth is not None:
             return cls(friction.name, pressed, mu, ca.tanh(v / friction.smooth), steady, None)
-        moves, turns = ca.fabs(v) > one.slowest[0], ca.fabs(one.acceleration) > one.slowest[1]
-        rest = ca.if_else(moves, 0, ca.if_else(turns, 0, 1))
-        way = ca.if_else(moves, v, ca.if_else(turns, one.acceleration, 0))
-        # At rest it is 0 times infinity, which is no number.
-        return cls(friction.name, pressed, mu, ca.sign(way) / (1 - rest), steady, rest)
+        sigma, rest = _way(one)
+        return cls(friction.name, pressed, mu, sigma, steady, rest)
 
     def pushed(self, values: Sequence[Any]) -> Any:
         """The force for values of all frictions."""
@@ -255,6 +206,15 @@ class _Law:
     def depends(self, k: int) -> bool:
         """Whether it depends on a friction."""
         return any(part.seen(k) is not None for part in self.pressed)
+
+
+def _way(one: Rubbing) -> tuple[Any, Any]:
+    """The sign of what slides, and whether it rests."""
+    moves, turns = ca.fabs(one.rate) > one.slowest[0], ca.fabs(one.acceleration) > one.slowest[1]
+    rest = ca.if_else(moves, 0, ca.if_else(turns, 0, 1))
+    way = ca.if_else(moves, one.rate, ca.if_else(turns, one.acceleration, 0))
+    # At rest it is 0 times infinity, which is no number.
+    return ca.sign(way) / (1 - rest), rest
 
 
 def _solve_block(laws: Sequence[_Law], block: Sequence[int], values: list[Any]) -> dict[Column, Any]:

@@ -13,12 +13,12 @@ from typing import Any
 import casadi as ca
 
 from ..declare.mechanism import Mechanism
-from ..declare.meshes import Mesh, Transmission, Wrench
+from ..declare.meshes import Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Point, Vector
 from ..geometry.vectors import cross, nil, plus, times
-from .friction import Contact, Rubbing
 from .growing import Grown
-from .multibody import Applied
+from .multibody import Applied, Multibody, rates_along
+from .rubbing import Contact, Rubbing, slowest_of
 
 
 def meshed_by(resting: Grown, transmission: Transmission, multiplier: ca.SX) -> Iterator[Applied]:
@@ -45,13 +45,25 @@ def pressing_apart(transmission: Transmission, multiplier: Any) -> Rubbing:
     return Rubbing(transmission, contacts, ca.SX(0), ca.SX(0), (ca.SX(0), ca.SX(0)))
 
 
+def braking(multibody: Multibody, loss: Loss, multiplier: Any) -> Rubbing:
+    """What friction takes in a transmission, by its multiplier."""
+    rate, acceleration = ca.SX(0), ca.SX(0)
+    for sign, joint in loss.turns:
+        one, change = rates_along(joint, joint.axes[0], multibody.frames, multibody.coordinates)
+        rate, acceleration = rate + sign * one, acceleration + sign * change
+    contact = Contact(loss.arm, (multiplier,), loss.lean)
+    return Rubbing(loss, (contact,), rate, acceleration, slowest_of(multibody, slides=False))
+
+
 def _summed(transmission: Transmission, mesh: Mesh, multiplier: ca.SX) -> tuple[Vector, Vector]:
     """The force on the first body, and the couple about its point, in the carrier's axes."""
     force, couple = _times(multiplier, mesh.along)
-    if mesh.apart is None:
-        return force, couple
-    more, about = _times(transmission.symbol, mesh.apart)
-    return plus(force, more), plus(couple, about)
+    beside = [(transmission.symbol, mesh.apart), (transmission.loss and transmission.loss.symbol, mesh.braking)]
+    for factor, wrench in beside:
+        if factor is not None and wrench is not None:
+            more, about = _times(factor, wrench)
+            force, couple = plus(force, more), plus(couple, about)
+    return force, couple
 
 
 def _times(factor: ca.SX, wrench: Wrench) -> tuple[Vector, Vector]:

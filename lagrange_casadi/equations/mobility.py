@@ -39,7 +39,7 @@ from .gaps import reach
 from .joints import borne, orientation, reaction, slide
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
-from .meshes import pressing_apart, transmissions_of
+from .meshes import braking, pressing_apart, transmissions_of
 from .multibody import Multibody, column, own_coordinate
 from .multipliers import multipliers_of
 from .spreads import rotary, spreads
@@ -131,6 +131,8 @@ def internal_forces(
     for name, transmission in transmissions_of(multibody.mechanism).items():
         if transmission.presses:
             rubbed[name] = pressing_apart(transmission, tying[name])
+        if transmission.loss is not None:
+            rubbed[transmission.loss.name] = braking(multibody, transmission.loss, tying[name])
     rows = [*columns.values(), *(row for one in rubbed.values() for row in one.rows)]
     resting = ca.substitute(column(rows), rates, ca.SX.zeros(rates.numel()))
     every = iter(ca.vertsplit(ca.substitute(kinematics.evaluate(resting), unknowns, values)) if rows else ())

@@ -222,7 +222,8 @@ def _acting(solution: Solution, bodies: dict[str, Moving]) -> Iterator[_Action]:
 def _held(solution: Solution, bodies: dict[str, Moving], equation: Written) -> Iterator[_Action]:
     """What the multiplier of an equation does: along whatever stands in it, or where the parts of a transmission touch."""
     for touch in equation.touches:
-        for body, spot, borne, couple in actions(touch, _placed(bodies[touch.carrier]), solution.multiplier(equation.name)):
+        told = solution.multiplier(equation.name), touch.sense(solution)
+        for body, spot, borne, couple in actions(touch, _placed(bodies[touch.carrier]), *told):
             yield body, spot[:, 0] + 1j * spot[:, 1], borne[:, 0] + 1j * borne[:, 1], couple[:, 2], True
     if equation.touches:
         return

@@ -223,7 +223,8 @@ def _held(reported: Reported, bodies: Mapping[str, Moving], equation: Written) -
     """What the multiplier of an equation does: along whatever stands in it, or where the parts of a transmission touch."""
     solution = reported.solution
     for touch in equation.touches:
-        for part in actions(touch, _placed(bodies[touch.carrier]), solution.multiplier(equation.name)):
+        told = solution.multiplier(equation.name), touch.sense(solution)
+        for part in actions(touch, _placed(bodies[touch.carrier]), *told):
             yield _Action(*part, True)
     if equation.touches:
         return

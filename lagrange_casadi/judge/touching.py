@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..declare.density import Array
+from ..declare.description import motions_of
 from ..declare.mechanism import Mechanism
 from ..declare.meshes import Mesh, Transmission, Wrench
 from ..geometry.vectors import Vector
+from ..instants.solution import Solution
+from ..quantities import Output
+
+_REST = 1e-12
+"""Of the fastest motion that is given: a rate below is that of rest, but for rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,13 +31,29 @@ class Touch:
     along: tuple[Array, Array]
     apart: tuple[Array, Array]
     slack: float
+    braking: tuple[Array, Array]
+    loss: tuple[float, float] = (0.0, 0.0)
+    turns: tuple[tuple[int, str], ...] = ()
 
-    def borne(self, multiplier: Array) -> tuple[Array, Array, Array]:
-        """Force and couple on the first body, and couple on the second, whose force is the opposite: on the carrier's axes."""
+    def sense(self, solution: Solution) -> Array:
+        """The sign with which the first turns on the carrier; where it turns back, that of the instants right after."""
+        if not self.turns:
+            return np.zeros_like(solution.t)
+        motions = [(sign, solution.motion(name)) for sign, name in self.turns]
+        rate, change = (np.sum([s * getattr(m, k) for s, m in motions], axis=0) for k in ("rate", "acceleration"))
+        drives = [name for name in motions_of(solution.description) if Output("motion", name) in solution.outputs]
+        fastest = np.sum([np.abs(solution.motion(name).rate) for name in drives], axis=0)
+        return np.asarray(np.sign(np.where(np.abs(rate) > _REST * fastest, rate, change)))
+
+    def borne(self, multiplier: Array, sense: Array) -> tuple[Array, Array, Array]:
+        """Force and couple on the first body, and couple on the second, whose force is the opposite: on the carrier's axes.
+
+        ``sense`` is the sign of its rate, or zero without friction.
+        """
         pressed = (np.abs(multiplier + self.slack) + np.abs(multiplier - self.slack)) / 2.0
-        force, couple = (
-            np.outer(multiplier, one) + np.outer(pressed, two) for one, two in zip(self.along, self.apart, strict=True)
-        )
+        taken = -(sense * self.loss[0] * np.abs(multiplier) + sense**2 * self.loss[1] * multiplier)
+        each = zip(self.along, self.apart, self.braking, strict=True)
+        force, couple = (np.outer(multiplier, a) + np.outer(pressed, b) + np.outer(taken, c) for a, b, c in each)
         return force, couple, np.cross(self.reach, force) - couple
 
 
@@ -61,17 +83,22 @@ def touches_of(mechanism: Mechanism, values: Mapping[str, float], transmission: 
 
     def touch(mesh: Mesh, slack: float) -> Touch:
         names = (mesh.first.body.name, mesh.second.body.name, mesh.carrier.name)
-        return Touch(*names, numbers(mesh.centre), numbers(mesh.reach), both(mesh.along), both(mesh.apart), slack)
+        wrenches = both(mesh.along), both(mesh.apart)
+        told = Touch(*names, numbers(mesh.centre), numbers(mesh.reach), *wrenches, slack, both(mesh.braking))
+        if loss is None:
+            return told
+        turns = tuple((sign, joint.name) for sign, joint in loss.turns)
+        return replace(told, loss=(mechanism.number(loss.arm, values), mechanism.number(loss.lean, values)), turns=turns)
 
     if transmission is None:
         return ()
-    slack = mechanism.number(transmission.slack, values)
+    slack, loss = mechanism.number(transmission.slack, values), transmission.loss
     return tuple(touch(mesh, slack) for mesh in transmission.meshes)
 
 
-def actions(touch: Touch, carrier: Placed, multiplier: Array) -> Iterator[tuple[str, Array, Array, Array]]:
+def actions(touch: Touch, carrier: Placed, multiplier: Array, sense: Array) -> Iterator[tuple[str, Array, Array, Array]]:
     """On each of the two bodies: its name, where, the force and the couple, in ground axes."""
-    force, couple, back = touch.borne(multiplier)
+    force, couple, back = touch.borne(multiplier, sense)
     at = carrier.at + carrier.out(touch.centre)
     yield touch.first, at, carrier.out(force), carrier.out(couple)
     yield touch.second, at + carrier.out(touch.reach), -carrier.out(force), carrier.out(back)
@@ -83,8 +110,7 @@ def idle(touch: Touch, bodies: Mapping[str, Placed]) -> Array:
     terms: list[Array] = []
     for k in (1.0, -1.0):
         # What presses apart takes none either.
-        pressed = Touch(touch.first, touch.second, touch.carrier, touch.centre, touch.reach, touch.along, touch.apart, 0.0)
-        for name, at, force, couple in actions(pressed, bodies[touch.carrier], k * one):
+        for name, at, force, couple in actions(replace(touch, slack=0.0), bodies[touch.carrier], k * one, 0.0 * one):
             body = bodies[name]
             speed = body.speed + np.cross(body.rate, at - body.at)
             terms += [force * speed, couple * body.rate]
