@@ -193,7 +193,42 @@ def _roller_cam(arithmetic, values):
     return {"loads": [spring], "extras": [oracle.Extra("contact", gap, effect)]}
 
 
+def _planetary_gear(arithmetic, values):
+    """Teeth as forces at pitch points, their flanks those that the load presses; the sun pushes all planets alike; and the load."""
+    number, sin, cos, pi = arithmetic.number, arithmetic.sin, arithmetic.cos, arithmetic.number(math.pi)
+    tangent, module = sin(pi / 9) / cos(pi / 9), number(values["module"])
+    sun, planet, ring = (module * teeth / 2 for teeth in (24, 18, 60))
+    carrier = ("carrier", 0, 0)
+
+    def angle(place, name):
+        return place((name, 0, 0))[2] - place(carrier)[2]
+
+    def mesh(place, number_, first, second, radii, flank):
+        turned = place(carrier)[2].v + 2 * pi * (number_ - 1) / 3
+        c, s = cos(turned), sin(turned)
+        x, y = -s - flank * tangent * c, c - flank * tangent * s
+        return [((first, 0, 0), x, y, radii[0]), ((second, 0, 0), -x, -y, radii[1])]
+
+    def inner(place):
+        return [force for k in (1, 2, 3) for force in mesh(place, k, "sun", f"set_planet_{k}", (sun, planet), -1)]
+
+    def outer(k):
+        name = f"set_planet_{k}"
+        return oracle.Extra(
+            f"set_ring_{k}",
+            lambda place: angle(place, name) * planet - angle(place, "ring") * ring,
+            lambda place: mesh(place, k, name, "ring", (planet, -ring), 1),
+        )
+
+    def stirred(place):
+        return [(carrier, 0, 0, -number(values["torque"]) * (1 + number(values["unsteady"]) * sin(4 * place(carrier)[2].v)))]
+
+    first = oracle.Extra("set_sun", lambda place: angle(place, "sun") * sun + angle(place, "set_planet_1") * planet, inner)
+    return {"loads": [stirred], "extras": [first, *(outer(k) for k in (1, 2, 3))]}
+
+
 _CASES = {
+    "planetary_gear": _planetary_gear,
     "connecting_rod": _connecting_rod,
     "v_twin": _v_twin,
     "engine": _engine,

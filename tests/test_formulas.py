@@ -33,8 +33,8 @@ RATIOS = (0.0, 0.1234567, 0.5012345, 0.9034567, 1.0)
 # Of the servo press, where its ram meets no part: what that bears is a table too.
 PARTS = {"engine": (340 / 720, 371.5 / 720, 397 / 720), "servo_press": (0.0, 0.13, 0.77)}
 # Of the connecting rod the oracle has densities that doubles work out of dimensions, not to forty digits; and for the cam's right
-# angle the package takes the double nearest to it, which the oracle takes as it is, 6e-17 off.
-EXACTLY = [name for name in PLANAR if name not in ("connecting_rod", "roller_cam")]
+# angle the package takes the double nearest to it, which the oracle takes as it is, 6e-17 off. So it is with a third of a turn.
+EXACTLY = [name for name in PLANAR if name not in ("connecting_rod", "roller_cam", "planetary_gear")]
 
 
 @pytest.mark.sampled(7)

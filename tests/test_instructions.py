@@ -28,6 +28,8 @@ INSTANT = {
     "roller_cam": 304,
     "v_twin": 1778,
     "servo_press": 223,
+    "planetary_gear": 628,
+    "screw_lift": 237,
     "rssr": 779,
     "spatial_slider_crank": 430,
     "stewart_gough": 5322,

@@ -33,3 +33,15 @@ def test_a_guided_nut_is_lifted():
 def test_a_screw_that_would_close_a_loop_is_named():
     with pytest.raises(DeclarationError, match="joint 'thread' is a screw between bodies that drives"):
         derive(Scene(jack(), {"O": polynomial(0, 3.0), "guide": polynomial(0, 1.0)}))
+
+
+@pytest.mark.parametrize("turns", [0.6, 3.2, -40.0])
+def test_a_screw_counts_the_turns_of_what_turns_it(turns):
+    """A loop tells its direction alone; many turns lift the nut by as many leads, at whatever instant one begins."""
+    scene = Scene(jack(), {"O": polynomial(0.4, math.tau * turns)}, t=(0, 1, 5), posture={"thread": 0.0})
+    solution = evaluate(scene)
+    assert solution.certified
+    assert solution.motion("guide").value == pytest.approx(-LEAD * (0.4 / math.tau + turns * solution.t), abs=1e-14)
+    assert solution.motion("thread").value == pytest.approx(-0.4 - math.tau * turns * solution.t, abs=1e-12)
+    late = evaluate(scene, t=(0.75, 1.0, 2))
+    assert late.motion("guide").value[0] == pytest.approx(solution.motion("guide").value[3], abs=1e-14)

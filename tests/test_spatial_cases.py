@@ -278,5 +278,5 @@ def test_figures_can_be_drawn(name, tmp_path):
     assert {"mechanism", f"section_{link}"} <= {spec.name for spec, _ in drawn}
 
 
-def test_there_are_eight():
-    assert len(SPATIAL) == 8
+def test_there_are_nine():
+    assert len(SPATIAL) == 9

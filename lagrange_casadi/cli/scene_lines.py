@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from ..declare.motion import Motion, motion_function
-from ..declare.parts import Force, Friction, LineLoad, Load, Torque
+from ..declare.parts import Constraint, Force, Friction, LineLoad, Load, Torque
 from ..declare.scene import Scene
 from ..declare.spatial import reference_posture
 from ..equations.kinematics import describe_coordinate
@@ -28,7 +28,7 @@ def scene_lines(scene: Scene) -> Iterator[str]:
         yield f"  {word} {joint}: {_law(law, symbol)}; {_course(scene, joint)}"
         yield from _moves(scene, joint) if law.stretches else ()
     yield from (f"load {name}: {_load(load, space=mechanism.space)}" for name, load in mechanism.loads.items())
-    yield from (f"constraint {name}: 0 = {_short(constraint.phi)}" for name, constraint in mechanism.constraints.items())
+    yield from (f"constraint {name}: 0 = {_constraint(constraint)}" for name, constraint in mechanism.constraints.items())
     for name, row in mechanism.rows.items():
         yield f"non-holonomic constraint {name}: 0 = {_short(row.expression)}; it moves joint {row.replaces}, without an effort"
     yield from (f"output {name} [{own.unit}]: {_short(own.expression)}" for name, own in mechanism.outputs.items())
@@ -39,6 +39,14 @@ def scene_lines(scene: Scene) -> Iterator[str]:
     yield f"posture: {', '.join(postures) or 'none'}"
     if scene.assembly:
         yield f"assembled first with: {', '.join(f'{name} = {value:g}' for name, value in scene.assembly.items())}"
+
+
+def _constraint(constraint: Constraint) -> str:
+    told = _short(constraint.phi)
+    if constraint.transmission is None:
+        return told
+    pairs = ", ".join(f"{mesh.first.body.name} and {mesh.second.body.name}" for mesh in constraint.transmission.meshes)
+    return f"{told}; it acts where these touch: {pairs}"
 
 
 def _law(law: Motion, symbol: Any) -> str:

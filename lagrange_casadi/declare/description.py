@@ -72,7 +72,8 @@ def shape_of(value: Any) -> dict[str, Any]:
     """What a description is like: that of a planar mechanism, or that of one in space."""
     gravity = value.get("gravity") if isinstance(value, dict) else None
     shape = IN_SPACE if isinstance(gravity, list) and len(gravity) > 2 else IN_PLANE
-    return shape | {"outlines": {str: [[float, float]]}} if isinstance(value, dict) and "outlines" in value else shape
+    optional = {"outlines": {str: [[float, float]]}, "losses": [str]}
+    return shape | {name: kind for name, kind in optional.items() if isinstance(value, dict) and name in value}
 
 
 def density_of(body: Description) -> NumericDensity:
@@ -245,6 +246,7 @@ def _described(
     }
     paths = {name: place(path.point) for name, path in mechanism.paths.items()}
     outlines = {name: [vector(corner) for corner in link.outline] for name, link in mechanism.links.items() if link.outline}
+    lossy = [c.name for c in mechanism.constraints.values() if c.transmission is not None and c.transmission.loss is not None]
     return {
         "name": mechanism.name,
         "parameters": parameters,
@@ -254,4 +256,4 @@ def _described(
         "loads": loads,
         "rows": {name: row.replaces for name, row in mechanism.rows.items()},
         "constraints": list(mechanism.constraints),
-    } | {name: found for name, found in (("paths", paths), ("outlines", outlines)) if found}
+    } | {name: found for name, found in (("paths", paths), ("outlines", outlines), ("losses", lossy)) if found}

@@ -16,6 +16,7 @@ from .density import Density
 
 if TYPE_CHECKING:
     from .joints import Axis, Joint
+    from .meshes import Transmission
 
 End = Literal["base", "tip"]
 
@@ -324,10 +325,11 @@ Load: TypeAlias = Force | Torque | Spring | LineLoad | Friction
 
 @dataclass(frozen=True, eq=False)
 class Constraint:
-    """Phi(q, t) = 0 in joint coordinates (paper eq. 5)."""
+    """Phi(q, t) = 0 in joint coordinates (paper eq. 5). Of a ``transmission`` the multiplier acts where its parts touch."""
 
     name: str
     phi: Any
+    transmission: Transmission | None = None
 
 
 @dataclass(frozen=True, eq=False)

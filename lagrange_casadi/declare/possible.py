@@ -24,6 +24,7 @@ from .joints import Joint
 from .limits import END, margins
 from .lowest import lowest
 from .matter import inertias, second_moments
+from .meshes import FITTING, Fit
 from .parts import POSITIVE, Expression, Friction, LineLoad, Link, PointMass, RigidMass, Vector
 
 if TYPE_CHECKING:
@@ -104,6 +105,9 @@ def _of(mechanism: Mechanism, precision: Precision) -> Demands:
             continue
         for point in load.points:
             found += _of_station(f"load '{load.name}'", point, precision, space=mechanism.space)
+    for constraint in mechanism.constraints.values():
+        if constraint.transmission is not None:
+            found += [_of_fit(constraint.name, fit, precision) for fit in constraint.transmission.fits]
     return Demands(mechanism.symbols, tuple(found))
 
 
@@ -156,6 +160,12 @@ def _of_part(load: LineLoad, precision: Precision) -> list[Demand]:
     margins = (start + END[precision] * link.length, (link.length - end) + END[precision] * link.length)
     rising = Demand(load.reach, True, lambda number: f"{told(number)}; it must end beyond where it begins")
     return [*(Demand(margin, False, beyond) for margin in margins), rising]
+
+
+def _of_fit(name: str, fit: Fit, precision: Precision) -> Demand:
+    """That two numbers of a transmission are the same."""
+    apart = max(FITTING, END[precision]) * fit.size - ca.fabs(ca.SX(fit.got - fit.meant))
+    return Demand(apart, False, lambda number: f"'{name}': {fit.refusal(number(fit.got), number(fit.meant))}")
 
 
 def _of_friction(friction: Friction) -> Iterator[Demand]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -10,6 +10,7 @@ import casadi as ca
 
 from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
+from ..declare.parts import Constraint
 from ..errors import DeclarationError
 from ..geometry.frames import Carried, Frame, Velocities
 from ..geometry.vectors import times
@@ -17,7 +18,8 @@ from .applied import applied_by, held_by, push, work
 from .growing import Grown, coordinates_of
 from .inertia import kinetic_energy
 from .joints import closing_gaps
-from .multibody import LoopEquations, Multibody, RowGraph, change, column
+from .meshes import meshed_by
+from .multibody import Applied, LoopEquations, Multibody, RowGraph, change, column
 from .tree import Tree
 
 
@@ -57,9 +59,7 @@ def assemble(
         loops.append(_loop_equations(constraint.name, None, gap, rate, change(rate, resting.coordinates, mechanism.time)))
     rows = tuple(_row(resting, row) for row in mechanism.rows.values())
     applied = tuple(part for load in mechanism.loads.values() for part in applied_by(load, resting))
-    held = [
-        part for loop in loops if loop.declared for part in held_by(resting, loop.name, mechanism.constraints[loop.name].phi, loop)
-    ]
+    held = [part for loop in loops if loop.declared for part in _held(resting, mechanism.constraints[loop.name], loop)]
     held += [part for graph in rows for part in held_by(resting, graph.row.name, graph.row.expression, graph)]
     velocities = Velocities()
     spun = {b.far.body for b in tree.branches if not b.joint.slides and (b.joint.name in driven or b.near.body is mechanism.ground)}
@@ -101,6 +101,13 @@ def assemble(
         kinetic=kinetic,
         velocities=velocities,
     )
+
+
+def _held(resting: Grown, constraint: Constraint, loop: LoopEquations) -> Iterable[Applied]:
+    """What a constraint's multiplier does to bodies."""
+    if constraint.transmission is not None:
+        return meshed_by(resting, constraint.transmission, loop.multipliers)
+    return held_by(resting, constraint.name, constraint.phi, loop)
 
 
 def _refuse_unmeasured(name: str, joint: Joint, axis: Axis, tree: Tree, unmeasured: Collection[Joint]) -> None:

@@ -115,7 +115,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     columns |= {Check("misfit", name): misfit for name, misfit in solved.misfits.items()}
     for graph in body.rows:
         columns |= {Check("row", graph.row.name): graph.residual, Check("rowsize", graph.row.name): graph.size}
-    columns |= {Check("turned", name): swing for name, swing in swings.items()}
+    columns |= {Check("turned", name): swing for name, swing in (solved.swings | swings).items()}
     loop_angles: dict[Output, dict[Column, int]] = {}
     if want.motion:
         motions = _motion_columns(mechanism, body, solved, driven)

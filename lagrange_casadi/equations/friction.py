@@ -22,6 +22,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..declare.meshes import Loss, Transmission
 from .checks import Check, Column
 from .multibody import column
 from .pressing import Rubbing
@@ -131,6 +132,11 @@ class _Law:
     @classmethod
     def of(cls, one: Rubbing, pressed: list[_Pressed]) -> _Law:
         friction, v = one.friction, one.rate
+        if isinstance(friction, Transmission):
+            return cls(friction.name, pressed, 1.0, -1.0, None, None)
+        if isinstance(friction, Loss):
+            sigma, rest = _way(one)
+            return cls(friction.name, pressed, 1.0, sigma, None, rest)
         steady = None if _nil(friction.viscous) else friction.viscous * v
         if not pressed:
             return cls(friction.name, [], 0.0, 0.0, steady, None)
@@ -141,20 +147,8 @@ class _Law:
             mu = mu + (friction.static - mu) * ca.exp(-squares)
         if friction.smooth is not None:
             return cls(friction.name, pressed, mu, ca.tanh(v / friction.smooth), steady, None)
-        moves, turns = ca.fabs(v) > one.slowest[0], ca.fabs(one.acceleration) > one.slowest[1]
-        if one.beside:
-            other, change = one.beside
-            least, most = (lever * limit for limit in one.slowest)
-            moves = ca.logic_or(moves, ca.fabs(other) > least)
-            turns = ca.logic_or(turns, ca.fabs(change) > most)
-            rest = ca.if_else(moves, 0, ca.if_else(turns, 0, 1))
-            way = ca.if_else(moves, lever * v, lever * one.acceleration)
-            across = ca.if_else(moves, other, change)
-            share = way / ca.fmax(ca.sqrt(way * way + across * across), _NOTHING)
-            return cls(friction.name, pressed, mu, _no_number(share, rest), steady, rest)
-        rest = ca.if_else(moves, 0, ca.if_else(turns, 0, 1))
-        way = ca.if_else(moves, v, ca.if_else(turns, one.acceleration, 0))
-        return cls(friction.name, pressed, mu, _no_number(ca.sign(way), rest), steady, rest)
+        sigma, rest = _way(one, lever)
+        return cls(friction.name, pressed, mu, sigma, steady, rest)
 
     def pushed(self, values: Sequence[Any]) -> Any:
         """The force for values of all frictions."""
@@ -166,9 +160,24 @@ class _Law:
         return any(part.seen(k) is not None for part in self.pressed)
 
 
-def _no_number(sigma: Any, rest: Any) -> Any:
-    """A sign that is no number at rest: zero over zero, which of what never moves would be read as zero."""
-    return ca.sqrt(1 - 2 * rest) - 1 if ca.SX(sigma).is_zero() else sigma / (1 - rest)
+def _way(one: Rubbing, lever: Any = 1.0) -> tuple[Any, Any]:
+    """The sign of what slides, or its share of where it slides along two coordinates, and whether it rests."""
+    v, acceleration = one.rate, one.acceleration
+    moves, turns = ca.fabs(v) > one.slowest[0], ca.fabs(acceleration) > one.slowest[1]
+    if one.beside:
+        other, change = one.beside
+        least, most = (lever * limit for limit in one.slowest)
+        moves = ca.logic_or(moves, ca.fabs(other) > least)
+        turns = ca.logic_or(turns, ca.fabs(change) > most)
+    rest = ca.if_else(moves, 0, ca.if_else(turns, 0, 1))
+    if one.beside:
+        way = ca.if_else(moves, lever * v, lever * acceleration)
+        across = ca.if_else(moves, other, change)
+        sigma = way / ca.fmax(ca.sqrt(way * way + across * across), _NOTHING)
+    else:
+        sigma = ca.sign(ca.if_else(moves, v, ca.if_else(turns, acceleration, 0)))
+    # No number at rest: zero over zero, which of what never moves would be read as zero.
+    return (ca.sqrt(1 - 2 * rest) - 1 if ca.SX(sigma).is_zero() else sigma / (1 - rest)), rest
 
 
 def _solve_block(laws: Sequence[_Law], block: Sequence[int], values: list[Any]) -> dict[Column, Any]:

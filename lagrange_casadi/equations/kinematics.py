@@ -28,6 +28,7 @@ from .loops import ClosedForm
 from .multibody import Coordinate, Multibody, column
 from .postures import Undecided, directions, measured, turns
 from .substitution import Expressions, Numbers
+from .winding import wound
 
 _WAYS = 32
 """How many ways to close loops that are open are tried, where the first does not close the others."""
@@ -52,7 +53,7 @@ class Kinematics:
     ``found`` has the expression of every variable, rate and acceleration of a :class:`.Multibody`; ``systems`` are the factorized
     Phi_z of ``blocks``. ``closures`` say by joint how far each loop is from a dead centre, ``gaps`` [m] what is
     left of the equations of a block, ``misfits`` how far the equations that are too many are from holding. ``loose`` names the
-    joints whose angles are known up to whole turns.
+    joints whose angles are known up to whole turns, ``swings`` how far those of screws are from what counts their turns.
     """
 
     driven: Any
@@ -67,6 +68,7 @@ class Kinematics:
     misfits: dict[str, Any]
     newton: NewtonLoop | None
     loose: frozenset[str]
+    swings: dict[str, Any]
 
     def evaluate(self, expression: Any) -> Any:
         """An expression in the multibody's symbols, as one in t, d, d', d'', z and the parameters."""
@@ -120,6 +122,7 @@ class _Solver:
         self.closures: dict[str, tuple[Any, bool]] = {}
         self.dyads: dict[Block, Any] = {}
         self.loose: set[str] = set()
+        self.swings: dict[str, Any] = {}
         self.undecided = Undecided()
         self.length = reach(multibody.mechanism)
         self.found = Expressions()
@@ -167,7 +170,7 @@ class _Solver:
             return
         for form, closure in zip(block.forms, closures, strict=True):
             if form.branches:
-                self.loose |= {c.name for c in form.unknown if c.kind == "angle"}
+                self.loose |= {c.name for c in form.unknown if c.kind == "angle" and c.name not in self.swings}
             if closure is not None:
                 self._judge(block, closure)
 
@@ -181,9 +184,16 @@ class _Solver:
         if closure is not None:
             closure = self.found.put_into(closure)
         for coordinate, value in zip(form.unknown, variables, strict=True):
+            if coordinate.axis.move == "screw" and form.branches:
+                value, swing = wound(coordinate, value, self._counting(), self.numbers)
+                self.swings[coordinate.name] = self.found.put_into(swing)
             self.numbers.note(coordinate.variables, self.numbers.of(value))
             self._know(coordinate, self.found.put_into(value))
         return closure
+
+    def _counting(self) -> list[Coordinate]:
+        """The coordinates known so far whose angles count turns."""
+        return [c for c in self.known if c.kind == "angle" and c.name not in self.loose]
 
     def _judge(self, block: Block, closure: Any) -> None:
         """Note how far a block is from a dead centre: of blocks that one joint closes, the one that is nearest."""
@@ -337,6 +347,7 @@ class _Solver:
             misfits=misfits,
             newton=newton,
             loose=frozenset(self.loose),
+            swings=self.swings,
         )
 
     def _side(self, ball: Ball) -> int:

@@ -139,7 +139,7 @@ def _matching(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coo
     if phi.numel() != len(unknown):
         return None
     if ca.depends_on(phi, column(c.value for c in unknown if c.kind == "angle")):
-        return _tied(phi, unknown[0]) if kinds == "a" else None
+        return _tied(phi, unknown)
     if kinds == "a":
         return _one_direction(phi, unknown[0])
     if kinds == "aa":
@@ -268,13 +268,22 @@ def _direction_and_slide(phi: Any, angle: Coordinate, slide: Coordinate, coordin
     return ClosedForm((_variables(direction), place), closure, (branch,))
 
 
-def _tied(phi: Any, angle: Coordinate) -> ClosedForm | None:
-    """An angle that counts turns and follows another one, as in a gear."""
-    affine = _affine(phi, angle.value, angle.variables)
-    if affine is None or ca.depends_on(affine[1], _pair(angle)):
+def _tied(phi: Any, unknown: Sequence[Coordinate]) -> ClosedForm | None:
+    """Angles that count turns, and slides, that follow others, as in a train of gears; of several, by their volume."""
+    if any(c.kind == "ball" for c in unknown):
         return None
-    value = -affine[1] / affine[0]
-    return ClosedForm((ca.vertcat(ca.cos(value), ca.sin(value), value),))
+    affine = _affine(phi, column(c.value for c in unknown), column(c.variables for c in unknown))
+    if affine is None or ca.depends_on(affine[1], column(c.variables for c in unknown)):
+        return None
+    if len(unknown) == 1:
+        return ClosedForm((_told(unknown[0], -affine[1] / affine[0]),))
+    system = LinearSystem.of(affine[0])
+    values = ca.vertsplit(system.solve(-affine[1]))
+    return ClosedForm(tuple(_told(c, value) for c, value in zip(unknown, values, strict=True)), _square(system.volume))
+
+
+def _told(coordinate: Coordinate, value: Any) -> Any:
+    return value if coordinate.kind == "slide" else ca.vertcat(ca.cos(value), ca.sin(value), value)
 
 
 def _slides(phi: Any, unknown: Sequence[Coordinate]) -> ClosedForm | None:

@@ -39,7 +39,9 @@ from .gaps import reach
 from .joints import borne, orientation, reaction, slide
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
+from .meshes import braking, pressing_apart, transmissions_of
 from .multibody import Multibody, column, own_coordinate
+from .multipliers import multipliers_of
 from .pressing import frictions_of, rubbing
 from .spreads import rotary, spreads
 from .tree import Branch
@@ -88,7 +90,7 @@ def internal_forces(
     """
     along, across = multibody.terms()
     along = kinematics.evaluate(along)
-    unknowns, values, free = _multipliers(multibody, kinematics, along)
+    unknowns, values, free = multipliers_of(multibody, kinematics, along)
 
     unaided = {graph.row.replaces for graph in multibody.rows}
     drives = {c.name: along[i] for i, c in enumerate(multibody.coordinates) if c.driven and c.name not in unaided}
@@ -127,6 +129,11 @@ def internal_forces(
     for name, friction in frictions_of(multibody.mechanism).items():
         borne_there = found[friction.joint.name].ground
         rubbed[name] = rubbing(multibody, friction, borne_there.force, borne_there.couple)
+    for name, transmission in transmissions_of(multibody.mechanism).items():
+        if transmission.presses:
+            rubbed[name] = pressing_apart(transmission, tying[name])
+        if transmission.loss is not None:
+            rubbed[transmission.loss.name] = braking(multibody, transmission.loss, tying[name])
     rows = [*columns.values(), *(row for one in rubbed.values() for row in one.rows)]
     resting = ca.substitute(column(rows), rates, ca.SX.zeros(rates.numel()))
     every = iter(ca.vertsplit(ca.substitute(kinematics.evaluate(resting), unknowns, values)) if rows else ())
@@ -309,34 +316,6 @@ def _loads_on(
 def _at_base(point: Point) -> bool:
     x = at_end(point)
     return isinstance(x, float) and x == 0.0
-
-
-def _multipliers(multibody: Multibody, kinematics: Kinematics, along: Any) -> tuple[Any, Any, Any]:
-    """lambda and mu: their symbols, their values, and the symbols of what equilibrium leaves open.
-
-    lambda comes from the undriven rows of R = Phi_q' lambda + A' mu (paper eq. 2, 8), the blocks of the loops last one first; mu
-    from the driven rows that bear no effort.
-    """
-    rows = {c: along[i] for i, c in enumerate(multibody.coordinates)}
-    symbols, values, free = ca.SX(0, 1), ca.SX(0, 1), ca.SX(0, 1)
-    every = column(loop.multipliers for loop in multibody.loop_equations)
-    for block, system in reversed(list(zip(kinematics.blocks, kinematics.systems, strict=True))):
-        own = block.multipliers
-        left = column(rows[c] for c in block.unknown)
-        left = ca.substitute(left, symbols, values)
-        # What no equation of theirs moves, others may still be written in, with factors that cancel.
-        left = ca.substitute(left, every, ca.SX.zeros(every.numel()))
-        open_here = ca.SX.sym(f"free_{block.loop_equations[0].name}", system.free)
-        free = ca.vertcat(free, open_here)
-        symbols, values = ca.vertcat(own, symbols), ca.vertcat(system.solve_transposed(left, open_here), values)
-    if multibody.rows:
-        mu = column(graph.multiplier for graph in multibody.rows)
-        replaced = [next(c for c in rows if c.name == graph.row.replaces) for graph in multibody.rows]
-        unaided = ca.substitute(column(rows[c] for c in replaced), symbols, values)
-        solved = ca.solve(ca.jacobian(unaided, mu), -ca.substitute(unaided, mu, ca.SX.zeros(mu.numel())))
-        values = ca.substitute(values, mu, solved)
-        symbols, values = ca.vertcat(symbols, mu), ca.vertcat(values, solved)
-    return symbols, values, free
 
 
 def _reaction(multibody: Multibody, joint: Joint, actions: Mapping[str, Any]) -> Reaction:

@@ -9,6 +9,7 @@ from typing import Any
 import casadi as ca
 
 from ..declare.mechanism import Mechanism
+from ..declare.meshes import Loss, Transmission
 from ..declare.parts import Friction, Vector
 from ..geometry.vectors import dot
 from .gaps import reach
@@ -34,11 +35,13 @@ class Contact:
 class Rubbing:
     """A friction as expressions of an instant: its contacts, and rate and acceleration of its coordinate.
 
+    What presses the parts of a transmission apart is found with frictions, because they depend on each other. It has no rate.
+
     ``slowest`` is the rate below which it rests, and the change of rate below which it goes on to. ``beside`` is the speed [m/s] of
     sliding along the joint's other coordinate, and its change, where it has one.
     """
 
-    friction: Friction
+    friction: Friction | Transmission | Loss
     contacts: tuple[Contact, ...]
     rate: Any
     acceleration: Any
@@ -73,13 +76,6 @@ def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vec
     """A friction in a joint whose parent does this to its child, in ground axes, the couple about the child's point."""
     joint, coordinates = friction.joint, multibody.coordinates
     rate, acceleration = rates_along(joint, friction.axis, multibody.frames, coordinates)
-    unit, fastest, quickest = reach(multibody.mechanism), ca.SX(0), ca.SX(0)
-    for own in (coordinate for coordinate in coordinates if coordinate.driven):
-        size = 1 if own.kind == "angle" else unit
-        fastest += ca.fabs(own.rate) / size
-        quickest += ca.fabs(own.acceleration) / size
-    quickest += fastest * fastest
-    least = _REST * (1 if friction.axis.kind == "angle" else unit)
     contacts: tuple[Contact, ...] = ()
     if friction.dry and multibody.mechanism.space:
         contacts = _in_space(multibody, friction, force, couple)
@@ -97,8 +93,21 @@ def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vec
     if friction.beside is not None:
         lever = friction.radius if friction.beside.kind == "angle" else 1.0
         beside = tuple(lever * x for x in rates_along(joint, friction.beside, multibody.frames, coordinates))
+    slowest = slowest_of(multibody, slides=friction.axis.kind != "angle")
+    return Rubbing(friction, contacts, rate, acceleration, slowest, beside)
+
+
+def slowest_of(multibody: Multibody, *, slides: bool) -> tuple[Any, Any]:
+    """The rate below which a coordinate rests, and the change of rate below which it goes on to: beside those of the drives."""
+    unit, fastest, quickest = reach(multibody.mechanism), ca.SX(0), ca.SX(0)
+    for own in (coordinate for coordinate in multibody.coordinates if coordinate.driven):
+        size = 1 if own.kind == "angle" else unit
+        fastest += ca.fabs(own.rate) / size
+        quickest += ca.fabs(own.acceleration) / size
+    quickest += fastest * fastest
+    least = _REST * (unit if slides else 1)
     # Where the drives themselves turn back, their rates are rounding; their accelerations tell how fast they go beside it.
-    return Rubbing(friction, contacts, rate, acceleration, (least * ca.sqrt(quickest), least * quickest), beside)
+    return least * ca.sqrt(quickest), least * quickest
 
 
 def _in_space(multibody: Multibody, friction: Friction, force: Vector, couple: Vector) -> tuple[Contact, ...]:

@@ -227,7 +227,7 @@ class Solution:
     def resting(self) -> npt.NDArray[np.bool_]:
         """At which instants (t,) a joint that rubs is at rest: what depends on its friction is NaN there."""
         found = np.zeros(self.t.size, dtype=bool)
-        if any("friction" in load for load in self.description["loads"].values()):
+        if "losses" in self.description or any("friction" in load for load in self.description["loads"].values()):
             for output, values in self.outputs.items():
                 if output not in self.left_open:
                     found |= np.isnan(values)

@@ -26,6 +26,7 @@ from .digits import blur as blur
 from .friction import law_gaps
 from .placing import Complex, Moving, axis_of, measured, oriented, place
 from .spatial_certificate import residuals as spatial_residuals
+from .touching import Placed, actions, idle
 from .written import Written
 
 NEAR = 1e3
@@ -182,7 +183,18 @@ def _closure(solution: Solution, bodies: dict[str, Moving], equations: Sequence[
         scale = np.sum(np.abs(equation.slopes_at(motion, solution.t)) * moving, axis=0)
         missed = np.abs(equation.at(motion, solution.t)[0])
         worst = np.maximum(worst, np.divide(missed, scale, out=missed.copy(), where=scale > 0.0) * digits.size(solution))
+        for touch in equation.touches:
+            worst = np.maximum(worst, idle(touch, {name: _placed(body) for name, body in bodies.items()}) * digits.size(solution))
     return worst
+
+
+def _placed(body: Moving) -> Placed:
+    """A body of the plane in vectors of three."""
+    nil = np.zeros_like(body.angle)
+    c, s = np.cos(body.angle), np.sin(body.angle)
+    axes = np.moveaxis(np.array([[c, -s, nil], [s, c, nil], [nil, nil, nil + 1.0]]), 2, 0)
+    at, speed = (np.stack([one.real, one.imag, nil], axis=1) for one in (body.at, body.speed))
+    return Placed(at, axes, speed, np.stack([nil, nil, body.rate], axis=1))
 
 
 def _acting(solution: Solution, bodies: dict[str, Moving]) -> Iterator[_Action]:
@@ -209,7 +221,13 @@ def _acting(solution: Solution, bodies: dict[str, Moving]) -> Iterator[_Action]:
 
 
 def _held(solution: Solution, bodies: dict[str, Moving], equation: Written) -> Iterator[_Action]:
-    """What the multiplier of an equation does: along whatever stands in it."""
+    """What the multiplier of an equation does: along whatever stands in it, or where the parts of a transmission touch."""
+    for touch in equation.touches:
+        told = solution.multiplier(equation.name), touch.sense(solution)
+        for body, spot, borne, couple in actions(touch, _placed(bodies[touch.carrier]), *told):
+            yield body, spot[:, 0] + 1j * spot[:, 1], borne[:, 0] + 1j * borne[:, 1], couple[:, 2], True
+    if equation.touches:
+        return
     motion = [measured(solution, bodies, entry) for entry in equation.entries]
     forces = solution.multiplier(equation.name) * equation.slopes_at(motion, solution.t)
     push: Any

@@ -20,6 +20,7 @@ from .friction import law_gaps
 from .locked import without_locked
 from .spatial_placing import Moving, Reported, cross, measured, oriented, relative, resolve, spot, told, turn
 from .spatial_rest import axes_of, gaps_of, place_all
+from .touching import Placed, actions, idle
 from .written import Written
 
 _EDGE = 1e-9
@@ -153,7 +154,13 @@ def _closure(reported: Reported, bodies: Mapping[str, Moving], equations: Sequen
         scale = np.sum(np.abs(equation.slopes_at(entries, solution.t)) * moving, axis=0)
         missed = np.abs(equation.at(entries, solution.t)[0])
         worst = np.maximum(worst, np.divide(missed, scale, out=missed.copy(), where=scale > 0.0) * size)
+        for touch in equation.touches:
+            worst = np.maximum(worst, idle(touch, {name: _placed(body) for name, body in bodies.items()}) * size)
     return worst
+
+
+def _placed(body: Moving) -> Placed:
+    return Placed(body.at, body.axes, body.speed, body.rate)
 
 
 def _along(reported: Reported, joint: Description, bodies: Mapping[str, Moving], name: str, effort: Array) -> Iterator[_Action]:
@@ -213,8 +220,14 @@ def _vector(solution: Solution, group: str, name: str, members: Sequence[str]) -
 
 
 def _held(reported: Reported, bodies: Mapping[str, Moving], equation: Written) -> Iterator[_Action]:
-    """What the multiplier of an equation does: along whatever stands in it."""
+    """What the multiplier of an equation does: along whatever stands in it, or where the parts of a transmission touch."""
     solution = reported.solution
+    for touch in equation.touches:
+        told = solution.multiplier(equation.name), touch.sense(solution)
+        for part in actions(touch, _placed(bodies[touch.carrier]), *told):
+            yield _Action(*part, True)
+    if equation.touches:
+        return
     motion = [measured(solution, bodies, entry) for entry in equation.entries]
     forces = solution.multiplier(equation.name) * equation.slopes_at(motion, solution.t)
     joints = {name: joint for joint in solution.description["joints"].values() for name in joint["coordinates"]}

@@ -7,7 +7,7 @@ nothing of the graphs that loops were solved from.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import casadi as ca
@@ -16,6 +16,7 @@ import numpy as np
 from ..declare.density import Array
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Point
+from .touching import Touch, touches_of
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,7 @@ class Written:
 
     ``values(places, rates, accelerations, t)`` gives the equation and, of a constraint, its first and second total time derivative;
     ``slopes(places, rates, t)`` what it changes by an entry: by its place, or of a row by its rate.
+    Of a transmission, ``touches`` say where and how its multiplier acts.
     """
 
     name: str
@@ -40,6 +42,7 @@ class Written:
     entries: tuple[Entry, ...]
     values: Any
     slopes: Any
+    touches: tuple[Touch, ...] = ()
 
     def at(self, motion: Sequence[tuple[Array, Array, Array]], t: Array) -> tuple[Array, ...]:
         """The equation over instants, and of a constraint its derivatives; each entry's motion is its place, rate, acceleration."""
@@ -53,9 +56,11 @@ class Written:
 
 def written(mechanism: Mechanism, values: Mapping[str, float]) -> tuple[Written, ...]:
     """All constraints and rows of a mechanism, for values of its parameters."""
-    given = [*((c.name, c.phi, False) for c in mechanism.constraints.values())]
-    given += [(row.name, row.expression, True) for row in mechanism.rows.values()]
-    return tuple(_written(mechanism, values, *equation) for equation in given)
+    given = [
+        replace(_written(mechanism, values, c.name, c.phi, False), touches=touches_of(mechanism, values, c.transmission))
+        for c in mechanism.constraints.values()
+    ]
+    return (*given, *(_written(mechanism, values, row.name, row.expression, True) for row in mechanism.rows.values()))
 
 
 def _written(mechanism: Mechanism, values: Mapping[str, float], name: str, expression: Any, row: bool) -> Written:

@@ -1,0 +1,112 @@
+"""Belts and chains between two pulleys or sprockets, with the tensions of both strands on their bearings.
+
+Half of the strands' sum of tensions is the preload, until the slack strand is slack: then the other bears all. So the sum is the
+larger of twice the preload and of the force that is passed on, and a chain is a belt without preload. Strands are straight and
+have no mass, they do not stretch and do not slip.
+
+Source: J. E. Shigley, C. R. Mischke, *Mechanical Engineering Design*, chapter 17: the initial tension is half of the sum of both.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+
+from ..declare.mechanism import Mechanism
+from ..declare.meshes import FITTING, Fit, Mesh, Transmission, Wrench
+from ..declare.parts import Body, Constraint, Expression, Point
+from ..errors import DeclarationError
+from ..geometry.vectors import cross, dot, minus, times
+from .courses import Numbers, along, courses_on, fits_of, length
+from .ranges import positive
+
+
+@dataclass(frozen=True, eq=False)
+class Belt:
+    """A belt: its ``constraint``, whose multiplier is the difference of its tensions [N], and the ``ratio`` of the rates."""
+
+    constraint: Constraint
+    ratio: Expression
+
+
+def belt(
+    mechanism: Mechanism,
+    name: str,
+    first: Body | Point,
+    second: Body | Point,
+    *,
+    radii: Sequence[Expression],
+    preload: Expression = 0.0,
+    crossed: bool = False,
+    carrier: Body | None = None,
+    offset: Expression = 0.0,
+) -> Belt:
+    """Lay a belt or a chain round two pulleys.
+
+    ``first`` and ``second`` are the centres of the pulleys, points on the axes about which revolute joints let their bodies turn,
+    in parallel; ``radii`` those of their pitch circles [m]. ``preload`` is the tension of both strands where nothing is passed on
+    [N]: of a chain nothing. A ``crossed`` belt turns the second pulley the other way round. ``carrier`` is the body on which both
+    turn, by default the one that joints tell; ``offset`` is the way that the first pitch circle is ahead where both coordinates are
+    zero [m].
+
+    The multiplier is the force along the first pulley's pitch circle, positive where it turns this forward. Outputs are NAME_tight
+    and NAME_slack, the tensions of the strands [N]. The slack one is zero where the preload is too small for what is passed on: a
+    chain or toothed belt bears that, a flat belt slips.
+
+    Raises :class:`.DeclarationError` for bodies that do not turn about parallel axes through these points, radii for which the
+    pulleys touch, and a preload that is negative.
+    """
+    what, own = f"belt '{name}'", mechanism.own
+    own.free("constraint", name, mechanism.constraints)
+    ends = own.point(what, first), own.point(what, second)
+    one, two = courses_on(mechanism, what, *ends, None if carrier is None else own.point(what, carrier).body, rack=False)
+    if not isinstance(radii, (list, tuple)) or len(radii) != 2:
+        raise DeclarationError(f"{what}: expected 2 radii, got {radii!r}")
+    r1, r2 = (own.expression(f"{what}: radii", radius) for radius in radii)
+    fits = [fit for radius in (r1, r2) for fit in positive(what, "radii", radius)]
+    tension = own.expression(f"{what}: preload", preload)
+    if isinstance(tension, float) and tension < 0.0:
+        raise DeclarationError(f"{what}: preload must not be negative, got {tension:g} N")
+    if isinstance(tension, ca.SX):
+        fits.append(Fit("preload must not be negative, got {got} N", tension, ca.fmax(tension, 0.0), 1.0))
+    numbers, u, v, away = Numbers(mechanism), one.axis, two.axis, minus(two.place, one.place)
+    assert u is not None
+    assert v is not None
+    beside, scale = dot(away, u), r1 + r2
+    if numbers.size(cross(u, v)) > FITTING or abs(numbers.of(beside)) > FITTING * numbers.of(scale):
+        raise DeclarationError(f"{what}: expected pulleys in one plane, which turn about parallel axes")
+    distance, reach = length(away), r1 + r2 if crossed else ca.fabs(ca.SX(r1 - r2))
+    if not numbers.of(distance) > numbers.of(reach):
+        told = "the sum" if crossed else "the difference"
+        raise DeclarationError(
+            f"{what}: its centres are {numbers.of(distance):.6g} m apart, and {told} of its radii is {numbers.of(reach):.6g} m"
+        )
+    fits.append(Fit("its pulleys are {got} m beside each other along their axes; expected {meant} m", beside, 0.0, scale))
+    fits.append(Fit("its centres are {got} m apart, too near for the radii", distance, ca.fmax(distance, reach), scale))
+    e = along(away, distance)
+    # The sine of the angle between a strand and the line of the centres, where the strands lead apart.
+    lean = (-(r1 + r2) if crossed else r2 - r1) / distance
+    across = times(-lean, cross(u, e))
+    both = times(_root(1 - lean * lean), e)
+    mesh = Mesh(*ends, one.carrier, one.place, away, Wrench(across, times(r1, u)), Wrench(both))
+    sense = 1 if (numbers.of(dot(u, v)) > 0.0) != crossed else -1
+    other = -sense * r2
+    ahead = own.expression(f"{what}: offset", offset)
+    constraint = mechanism.constraint(name, r1 * one.way(mechanism) + other * two.way(mechanism) - ahead)
+    fits += [fit for course in (one, two) for fit in fits_of("its centre", course)]
+    varying = [fit for fit in fits if isinstance(fit.got, ca.SX) or isinstance(fit.meant, ca.SX)]
+    constraint = replace(constraint, transmission=Transmission(name, (mesh,), 2 * tension, tuple(varying)))
+    mechanism.constraints[name] = constraint
+    force = ca.fabs(mechanism.results.multiplier(constraint))
+    whole = ca.fmax(2 * tension, force)
+    mechanism.output(f"{name}_tight", (whole + force) / 2, unit="N")
+    mechanism.output(f"{name}_slack", (whole - force) / 2, unit="N")
+    return Belt(constraint, -(r1 / other))
+
+
+def _root(value: Any) -> Any:
+    return ca.sqrt(value) if isinstance(value, ca.SX) else math.sqrt(value)

@@ -1,0 +1,163 @@
+"""How a body turns or slides on another one: about which axis, and by which coordinates of joints."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from ..declare.joints import Joint
+from ..declare.mechanism import Mechanism
+from ..declare.meshes import FITTING, Fit
+from ..declare.parts import Body, Expression, Point, Vector
+from ..errors import DeclarationError
+from ..geometry.rotation import Rotation
+from ..geometry.vectors import cross, dot, minus, plus
+
+_KINDS = ("revolute", "prismatic", "weld")
+_AS_IT_IS = Rotation()
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """How a point of a body moves as seen from a carrier: it stays on an ``axis``, or ``slides`` along it.
+
+    ``place`` and ``axis``, of length one, are in the carrier's axes where all coordinates are zero; ``turns`` are the joints whose
+    coordinates, each with its sign, add up to the angle about the axis, or the way along it. ``joints`` are all joints between,
+    and ``shifted`` how far the point is from their axes. ``seen`` turns the carrier's axes from those of the body.
+    """
+
+    carrier: Body
+    place: Vector
+    axis: Vector | None
+    turns: tuple[tuple[int, Joint], ...]
+    slides: bool
+    joints: tuple[Joint, ...]
+    shifted: tuple[Expression, ...] = ()
+    seen: Rotation = _AS_IT_IS
+
+    def way(self, mechanism: Mechanism) -> Any:
+        """The angle about its axis, or the way along it, as an expression of coordinates."""
+        return sum((sign * mechanism.coordinate(joint) for sign, joint in self.turns), ca.SX(0))
+
+
+@dataclass(frozen=True, eq=False)
+class Numbers:
+    """A mechanism's expressions at its default parameters."""
+
+    mechanism: Mechanism
+
+    def of(self, value: Expression) -> float:
+        """One of them."""
+        defaults = {name: parameter.default for name, parameter in self.mechanism.parameters.items()}
+        return self.mechanism.number(value, defaults)
+
+    def size(self, vector: Vector) -> float:
+        """The length of a vector."""
+        return math.hypot(*map(self.of, vector))
+
+
+def length(vector: Vector) -> Expression:
+    """The length of a vector: a number where it lies along an axis of numbers."""
+    found = dot(vector, vector)
+    return ca.sqrt(found) if isinstance(found, ca.SX) else float(found) ** 0.5
+
+
+def along(vector: Vector, by: Expression) -> Vector:
+    """A vector over a number."""
+    return vector[0] / by, vector[1] / by, vector[2] / by
+
+
+def courses_on(
+    mechanism: Mechanism, what: str, first: Point, second: Point, carrier: Body | None, *, rack: bool = True
+) -> tuple[Course, Course]:
+    """How two points move on the one body on which both turn, or the second slides.
+
+    Raises :class:`.DeclarationError` where there is none, or where that is not the ``carrier``.
+    """
+    found = [{course.carrier.name: course for course in _courses(mechanism, point)} for point in (first, second)]
+    both = [name for name in found[0] if name in found[1] and not found[0][name].slides and (rack or not found[1][name].slides)]
+    if carrier is not None:
+        both = [name for name in both if name == carrier.name]
+    if not both:
+        where = f"'{carrier.name}'" if carrier is not None else "one body"
+        told = "; ".join(f"{_told(point)} turns on {_listed(one)}" for point, one in zip((first, second), found, strict=True))
+        raise DeclarationError(
+            f"{what}: expected the centres of two bodies that turn on {where} by revolute joints through these; {told}"
+        )
+    nearest = min(both, key=lambda name: sum(len(one[name].joints) for one in found))
+    return found[0][nearest], found[1][nearest]
+
+
+def _told(point: Point) -> str:
+    return f"'{point.body.name}'"
+
+
+def _listed(found: dict[str, Course]) -> str:
+    return ", ".join(f"'{name}'" for name in found) or "nothing"
+
+
+def fits_of(what: str, course: Course) -> list[Fit]:
+    """That the axes of all joints of a course are one, for other parameters too."""
+    words = f"{what} and joints {', '.join(joint.name for joint in course.joints)} must be on one axis, {{got}} m off"
+    return [Fit(words, off, 0.0, 1.0) for off in course.shifted if isinstance(off, ca.SX) and not off.is_constant()]
+
+
+def _courses(mechanism: Mechanism, point: Point) -> list[Course]:
+    """All courses of a point: to every body on which it turns about one axis, or slides."""
+    start = Course(point.body, point.place, None, (), False, ())
+    reached, found = {point.body.name}, [start]
+    for course in found:
+        for joint in mechanism.joints.values():
+            if joint.kind not in _KINDS or course.carrier not in joint.bodies:
+                continue
+            other = joint.child.body if joint.parent.body is course.carrier else joint.parent.body
+            if other.name not in reached and (further := _through(mechanism, course, joint, other)) is not None:
+                reached.add(other.name)
+                found.append(further)
+    return [course for course in found if course.axis is not None]
+
+
+def _through(mechanism: Mechanism, course: Course, joint: Joint, other: Body) -> Course | None:
+    """A course seen from beyond a joint of its carrier; None where it does not stay on one axis."""
+    outward = joint.child.body is other
+    zero = _zero(joint)
+    if joint.kind != "weld" and (not joint.axes or course.slides or (joint.kind == "prismatic" and course.axis is not None)):
+        return None
+
+    def seen(place: Vector) -> Vector:
+        if outward:
+            return plus(joint.child.place, zero.resolve(minus(place, joint.parent.place)))
+        return plus(joint.parent.place, zero.apply(minus(place, joint.child.place)))
+
+    turn = zero.resolve if outward else zero.apply
+    whole = (zero.inverse if outward else zero).then(course.seen)
+    axis, place, shifted = course.axis, course.place, course.shifted
+    if joint.kind == "weld":
+        return Course(other, seen(place), axis and turn(axis), course.turns, course.slides, (*course.joints, joint), shifted, whole)
+    # The joint's axis is in its parent's axes, and the same in its child's, turned.
+    own = joint.axes[0].direction
+    here = own if outward else zero.resolve(own)
+    sign = -1 if outward else 1
+    if axis is None:
+        axis = here
+    elif Numbers(mechanism).size(cross(axis, here)) > FITTING:
+        return None
+    elif Numbers(mechanism).of(dot(axis, here)) < 0.0:
+        sign = -sign
+    if joint.kind == "revolute":
+        off = cross(minus(place, (joint.parent if outward else joint.child).place), here)
+        if Numbers(mechanism).size(off) > FITTING * max(1.0, Numbers(mechanism).size(place)):
+            return None
+        shifted = (*shifted, *off)
+    turns, joints = (*course.turns, (sign, joint)), (*course.joints, joint)
+    return Course(other, seen(place), turn(axis), turns, joint.kind == "prismatic", joints, shifted, whole)
+
+
+def _zero(joint: Joint) -> Rotation:
+    """How a joint's child is turned in its parent's axes where its coordinates are zero."""
+    if joint.turned is not None:
+        return Rotation.of(*joint.turned)
+    return Rotation.by(joint.angle) if joint.kind != "revolute" else Rotation()

@@ -1,0 +1,208 @@
+"""Gears that mesh, of any kind by how their axes lie, with the real forces of their teeth on bearings and shafts.
+
+Parallel axes make spur and helical gears, and a gear in a ring where one is inside the other; axes that meet make bevel gears;
+axes that cross make a worm and its wheel; a body that slides makes a rack. One function declares all of them, because they are one
+thing: a force along the teeth at the pitch point, and what presses the gears apart.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import casadi as ca
+
+from ..declare.expressions import typed
+from ..declare.mechanism import Mechanism
+from ..declare.meshes import Fit, Mesh, Transmission, Wrench
+from ..declare.parts import Body, Constraint, Expression, Point
+from ..errors import DeclarationError
+from ..geometry.vectors import cross, dot, minus
+from .courses import Course, Numbers, courses_on, fits_of
+from .losses import braking_of, loss_of, lost
+from .pitch import Pitch, Teeth, pitch_of
+from .ranges import positive, whole, within
+
+_FLATTEST, _STEEPEST = math.pi / 4, 75 * math.pi / 180
+"""Pressure and helix angles are below these [rad]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Gears:
+    """Gears that mesh: their ``constraint``, whose multiplier is the force along the pitch circle [N], and their ``kind``.
+
+    ``ratio`` is the second coordinate's rate over the first one's.
+    """
+
+    constraint: Constraint
+    kind: str
+    ratio: Expression
+
+
+def gears(
+    mechanism: Mechanism,
+    name: str,
+    first: Body | Point,
+    second: Body | Point | Sequence[Body | Point],
+    *,
+    teeth: Sequence[Expression] | None = None,
+    module: Expression | None = None,
+    radii: Sequence[Expression] | None = None,
+    pressure_angle: Expression = "20 deg",
+    helix_angle: Expression = 0.0,
+    hand: Literal["right", "left"] = "right",
+    efficiency: Expression | None = None,
+    mu: Expression | None = None,
+    carrier: Body | None = None,
+    offset: Expression = 0.0,
+) -> Gears:
+    """Let two gears mesh, or a gear and a rack, and bear the force of their teeth where they touch.
+
+    Parameters
+    ----------
+    first, second
+        The centres of the gears: points of bodies, on the axes about which revolute joints let these turn. A link stands for its
+        base, the ground for its origin. A rack is a point of a body that slides, on its pitch line. Several second gears, alike,
+        share the load evenly; what ties their own turning must be declared beside.
+    teeth, module
+        Numbers of teeth, and the module in the plane at right angles to the teeth [m]: the radii are module teeth/(2 cos helix).
+        A rack takes the teeth of its gear alone.
+    radii
+        Radii of the pitch circles [m] in place of the module: of bevel gears in the middle of the teeth's width. Crossed axes need
+        both the numbers of teeth and the radii.
+    pressure_angle, helix_angle
+        Angles [rad, or text as ``"20 deg"``] at right angles to the teeth, and between the teeth and the axis (or the cone's side):
+        positive where the teeth of the first gear are a right-handed screw. A plane has no helix.
+    hand
+        Of crossed axes, the hand of the first gear's teeth.
+    efficiency
+        What comes out of the mesh over what goes into it, whichever gear drives, seen from the carrier; by default nothing is lost.
+    mu
+        Of crossed axes in its place the friction coefficient of the teeth, which slide on each other.
+    carrier
+        The body on which both turn; by default the one that joints tell.
+    offset
+        The way that the first pitch circle is ahead where both coordinates are zero [m].
+
+    The multiplier is the force along the pitch circle on the first gear, positive where it turns this forward. The flank that
+    touches follows from its sign, and both flanks press the gears apart. Outputs are NAME_tangential, NAME_radial toward the axis
+    of the first gear, or off it of a ring, and in space NAME_axial on the first gear along its joint's axis [N]: without friction's
+    part. Where teeth rub, NAME_loss is the power that all meshes take [W]. At rest friction is open, as in joints that rub.
+
+    Raises :class:`.DeclarationError` for bodies that do not turn about axes through these points, centres that do not fit the
+    radii, numbers of teeth that are not whole, and angles out of range; values of parameters that break these are refused as well.
+    """
+    what, own = f"gears '{name}'", mechanism.own
+    own.free("constraint", name, mechanism.constraints)
+    if hand not in ("right", "left"):
+        raise DeclarationError(f"{what}: hand must be 'right' or 'left', got {hand!r}")
+    if carrier is not None:
+        carrier = own.point(what, carrier).body
+    centre = own.point(what, first)
+    many = [own.point(what, one) for one in (second if isinstance(second, Sequence) else [second])]
+    if not many:
+        raise DeclarationError(f"{what}: expected a second gear")
+    found = [courses_on(mechanism, what, centre, one, carrier) for one in many]
+    numbers, fits, rubs = Numbers(mechanism), [], efficiency is not None or mu is not None
+    told, more = _teeth(what, mechanism, found[0], teeth, module, radii, (pressure_angle, helix_angle), hand == "right")
+    fits += more
+    pitches = [pitch_of(what, numbers, *pair, told) for pair in found]
+    meshes = []
+    for pair, pitch, point in zip(found, pitches, many, strict=True):
+        if pitch.kind == "crossed" and (teeth is None or radii is None):
+            raise DeclarationError(f"{what}: crossed axes need both numbers of teeth and radii")
+        mesh = _mesh(mechanism, centre, point, *pair, pitch)
+        meshes.append(replace(mesh, braking=braking_of(pitch)) if rubs else mesh)
+        fits += [*pitch.fits, *(fit for one in pair for fit in fits_of("its centre", one))]
+    ways = [course.way(mechanism) for course in found[0]]
+    ahead = own.expression(f"{what}: offset", offset)
+    constraint = mechanism.constraint(name, told.radii[0] * ways[0] + pitches[0].other * ways[1] - ahead)
+    loss = None
+    if rubs:
+        loss, more = loss_of(what, mechanism, name, found[0][0], pitches[0], told, efficiency, mu)
+        fits += more
+    varying = [fit for fit in fits if isinstance(fit.got, ca.SX) or isinstance(fit.meant, ca.SX)]
+    constraint = replace(constraint, transmission=Transmission(name, tuple(meshes), 0.0, tuple(varying), loss))
+    mechanism.constraints[name] = constraint
+    _outputs(mechanism, name, constraint, pitches[0])
+    if loss is not None:
+        mechanism.output(f"{name}_loss", len(meshes) * lost(mechanism, constraint, loss, pitches[0]), unit="W")
+    return Gears(constraint, pitches[0].kind, -(told.radii[0] / pitches[0].other))
+
+
+def _teeth(
+    what: str,
+    mechanism: Mechanism,
+    pair: tuple[Course, Course],
+    teeth: Sequence[Expression] | None,
+    module: Expression | None,
+    radii: Sequence[Expression] | None,
+    angles: tuple[Expression, Expression],
+    right: bool,
+) -> tuple[Teeth, list[Fit]]:
+    """Radii, ratio and angles, and what they must be for other parameters."""
+    own, count = mechanism.own, 1 if pair[1].slides else 2
+    fits: list[Fit] = []
+
+    def each(word: str, values: Any) -> list[Expression]:
+        listed = list(values) if isinstance(values, (list, tuple)) else [values]
+        if len(listed) != count:
+            raise DeclarationError(f"{what}: expected {count} {word}, got {len(listed)}")
+        return [own.expression(f"{what}: {word}", value) for value in listed]
+
+    if (module is None) == (radii is None):
+        raise DeclarationError(f"{what}: give module and teeth, or radii")
+    names = ("pressure_angle", "helix_angle")
+    pressure, helix = (
+        own.expression(f"{what}: {one}", typed(f"{what}: {one}", angle)) for one, angle in zip(names, angles, strict=True)
+    )
+    fits += within(what, "pressure_angle", pressure, 0.0, _FLATTEST)
+    fits += within(what, "helix_angle", helix, -_STEEPEST, _STEEPEST)
+    if not mechanism.space and not (isinstance(helix, float) and helix == 0.0):
+        raise DeclarationError(f"{what}: gears in a plane have no helix; in space declare a SpatialMechanism")
+    z = None if teeth is None else each("numbers of teeth", teeth)
+    for value in z or ():
+        fits += whole(what, "numbers of teeth", value)
+    if module is not None:
+        if z is None:
+            raise DeclarationError(f"{what}: give module and teeth, or radii")
+        size = own.expression(f"{what}: module", module)
+        fits += positive(what, "module", size)
+        cosine = ca.cos(helix) if isinstance(helix, ca.SX) else math.cos(helix)
+        r = [size * value / (2 * cosine) for value in z]
+    else:
+        r = each("radii", radii)
+        for value in r:
+            fits += positive(what, "radii", value)
+    ratio = 1.0 if count == 1 else r[1] / r[0] if z is None else z[1] / z[0]
+    return Teeth(tuple(r), ratio, pressure, helix, right), fits
+
+
+def _mesh(mechanism: Mechanism, first: Point, second: Point, one: Course, two: Course, pitch: Pitch) -> Mesh:
+    """Where two gears touch; on a rack it is a place that moves."""
+    if two.slides:
+        way = two.way(mechanism)
+        assert two.axis is not None
+        gone = tuple(way * x for x in two.axis)
+        back = two.seen.resolve(minus(minus(_sum(one.place, pitch.arm), two.place), (gone[0], gone[1], gone[2])))
+        x, y, z = _sum(second.place, back)
+        second = Point(second.body, x, y, z=z)
+    wrenches = (Wrench(force, cross(pitch.arm, force)) for force in (pitch.force, pitch.apart))
+    return Mesh(first, second, one.carrier, one.place, pitch.reach, *wrenches)
+
+
+def _sum(a: Any, b: Any) -> Any:
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def _outputs(mechanism: Mechanism, name: str, constraint: Constraint, pitch: Pitch) -> None:
+    force = mechanism.results.multiplier(constraint)
+    size = ca.fabs(force)
+    radial = ca.fabs(ca.SX(dot(pitch.apart, pitch.outward)))
+    mechanism.output(f"{name}_tangential", force, unit="N")
+    mechanism.output(f"{name}_radial", radial * size, unit="N")
+    if mechanism.space:
+        along, apart = (dot(one, pitch.axis) for one in (pitch.force, pitch.apart))
+        mechanism.output(f"{name}_axial", along * force + apart * size, unit="N")

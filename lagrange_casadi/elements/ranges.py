@@ -1,0 +1,43 @@
+"""What numbers of parts must be: numbers are refused where a part is declared, expressions for values of parameters."""
+
+from __future__ import annotations
+
+import math
+
+import casadi as ca
+
+from ..declare.meshes import FITTING, Fit
+from ..declare.parts import Expression
+from ..errors import DeclarationError
+from ..system.numerals import readable
+
+_LEAST = 1e-12
+
+
+def whole(what: str, told: str, value: Expression) -> list[Fit]:
+    """That a number is whole, and 1 or more."""
+    if isinstance(value, ca.SX):
+        nearest = ca.fmax(ca.floor(value + 0.5), 1.0)
+        return [Fit(f"{told} must be whole, and 1 or more, got {{got}}", value, nearest, 1.0)]
+    if value < 1.0 or abs(value - round(value)) > FITTING:
+        raise DeclarationError(f"{what}: {told} must be whole, and 1 or more, got {readable(value)}")
+    return []
+
+
+def positive(what: str, told: str, value: Expression) -> list[Fit]:
+    """That a length is positive."""
+    if isinstance(value, ca.SX):
+        return [Fit(f"{told} must be positive, got {{got}} m", value, ca.fmax(value, _LEAST), _LEAST)]
+    if value <= 0.0:
+        raise DeclarationError(f"{what}: {told} must be positive, got {readable(value)} m")
+    return []
+
+
+def within(what: str, told: str, angle: Expression, low: float, high: float) -> list[Fit]:
+    """That an angle [rad] is between two others."""
+    bounds = f"{told} must be from {math.degrees(low):.6g} to {math.degrees(high):.6g} deg"
+    if isinstance(angle, ca.SX):
+        return [Fit(f"{bounds}, got {{got}} rad", angle, ca.fmin(ca.fmax(angle, low), high), 1.0)]
+    if not low <= angle <= high:
+        raise DeclarationError(f"{what}: {bounds}, got {math.degrees(angle):.6g} deg")
+    return []

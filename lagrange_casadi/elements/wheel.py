@@ -1,0 +1,88 @@
+"""Wheels: gears, pulleys and flywheels as round bodies, whose mass and moments of inertia follow from what they are made of."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Expression, Link
+from ..errors import DeclarationError
+
+_CORNERS = 48
+
+
+def wheel(
+    mechanism: Mechanism,
+    name: str,
+    *,
+    radius: Expression,
+    bore: Expression = 0.0,
+    width: Expression | None = None,
+    mass: Expression | None = None,
+    density: Expression = 7850.0,
+    teeth: int | None = None,
+    internal: bool = False,
+    turned: float = 0.0,
+) -> Link:
+    """Declare a round disc about its base, and return it as a link: a gear by its pitch radius, a pulley, a flywheel.
+
+    ``radius`` and ``bore`` are its outer and inner radius [m]; a ring has a large bore. Its ``mass`` [kg] is told, or follows from
+    its ``width`` [m] and its ``density`` [kg/m^3], steel's by default. In space it lies in the plane of its y and z axes, the
+    middle of its width at the base. It has no sections: what is to have some is a shaft that it is welded on, or a link of its own.
+
+    In the plane it is drawn round, or with a number of ``teeth``, the first at the angle ``turned`` [rad]: on its radius, or where
+    ``internal`` on its bore, which are those of the pitch circle then.
+
+    Raises :class:`.DeclarationError` for sizes that cannot be.
+    """
+    what, own = f"wheel '{name}'", mechanism.own
+    if (mass is None) == (width is None):
+        raise DeclarationError(f"{what}: give its mass, or its width and density")
+    outer, inner = own.expression(f"{what}: radius", radius), own.expression(f"{what}: bore", bore)
+    if isinstance(outer, float) and isinstance(inner, float) and not 0.0 <= inner < outer:
+        raise DeclarationError(f"{what}: its bore must be smaller than its radius, got {inner:g} m in {outer:g} m")
+    thick = 0.0 if width is None else own.expression(f"{what}: width", width)
+    told = own.expression(f"{what}: mass", mass) if mass is not None else None
+    whole = density * math.pi * (outer * outer - inner * inner) * thick if told is None else told
+    polar = whole * (outer * outer + inner * inner) / 2
+    if mechanism.space:
+        across = polar / 2 + whole * thick * thick / 12
+        return mechanism.link(name, length=outer, mass=whole, centre=(0.0, 0.0, 0.0), inertia=(polar, across, across))  # type: ignore[arg-type]
+    link = mechanism.link(name, length=outer, mass=whole, centre=(0.0, 0.0), inertia=polar)
+    if teeth is not None and (type(teeth) is not int or teeth < 1):
+        raise DeclarationError(f"{what}: teeth must be a whole number, got {teeth!r}")
+    edges = [
+        _edge(size, teeth if inward == internal else None, turned, inward=inward)
+        for size, inward in ((outer, False), (inner, True))
+    ]
+    link = replace(link, outline=_outline(*edges))
+    mechanism.bodies[name] = link
+    return link
+
+
+_Corners = list[tuple[Expression, Expression]]
+
+
+def _outline(outer: _Corners, inner: _Corners) -> tuple[tuple[Expression, Expression], ...]:
+    """The outer edge, and the inner one where there is one: along a line inward, round, and back."""
+    return (*outer, *([outer[0], inner[0], *reversed(inner)] if inner else ()))
+
+
+def _edge(radius: Expression, teeth: int | None, turned: float, *, inward: bool) -> _Corners:
+    """A circle, or a circle with teeth on both its sides; nothing for no radius."""
+    if isinstance(radius, float) and radius == 0.0:
+        return []
+    if teeth is None:
+        return [_corner(radius, math.tau * k / _CORNERS) for k in range(_CORNERS)]
+    found: _Corners = []
+    for k in range(teeth):
+        # The teeth of a straight profile: a tip, a foot, and half of the pitch on the pitch circle.
+        for part, height in ((-0.36, -2.0), (-0.14, 2.0), (0.14, 2.0), (0.36, -2.0)):
+            size = 1.0 + (-height if inward else height) / (2.0 * teeth)
+            found.append(_corner(radius * size, turned + math.tau * (k + part) / teeth))
+    return found
+
+
+def _corner(radius: Expression, angle: float) -> tuple[Expression, Expression]:
+    return radius * math.cos(angle), radius * math.sin(angle)

@@ -1,0 +1,50 @@
+"""Turns of screws in loops: a loop tells a direction, and a screw slides by every turn.
+
+While an angle that counts turns goes round once, the screw's turns by a whole number of turns too. So its angle is a sum of such
+angles, each so often, and about that it swings by less than half a turn, which the direction tells.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from .multibody import Coordinate
+from .substitution import Numbers
+
+_STEPS, _DIGITS = 256, 2
+
+
+def wound(screw: Coordinate, variables: Any, counting: Sequence[Coordinate], numbers: Numbers) -> tuple[Any, Any]:
+    """The variables of a screw's angle with its turns, of those that a loop tells; and how far it swings.
+
+    ``counting`` are the coordinates whose angles count turns, and ``numbers`` where all is at the start of the motion, where the
+    angle is in (-pi, pi].
+    """
+    c, s, angle = ca.vertsplit(variables)
+    about, beside = ca.SX(0), numbers.of(angle)[0]
+    for other in counting:
+        if ca.depends_on(angle, other.variables) and (turns := _turns(angle, other, numbers)):
+            about += turns * other.value
+            beside -= turns * numbers.of(other.value)[0]
+    # In few digits, lest the last ones of some library's sines be told in the graph.
+    about += round(beside, _DIGITS)
+    swing = ca.atan2(s * ca.cos(about) - c * ca.sin(about), c * ca.cos(about) + s * ca.sin(about))
+    return ca.vertcat(c, s, about + swing), swing
+
+
+def _turns(angle: Any, other: Coordinate, numbers: Numbers) -> int:
+    """How often an angle goes round while another one does so once; none where that cannot go round."""
+    turn = ca.SX.sym("turn")
+    start = numbers.of(other.value)[0]
+    placed = ca.substitute(angle, other.variables, other.placed(other.value, turn))
+    left = [symbol for symbol in ca.symvar(placed) if not ca.is_equal(symbol, turn)]
+    row = ca.Function("row", [turn, ca.vertcat(ca.SX(0, 1), *left)], [placed])
+    known = [numbers.of(symbol)[0] for symbol in left]
+    angles = [float(row(start + math.tau * k / _STEPS, known)) for k in range(_STEPS + 1)]
+    gone = np.unwrap(angles)
+    return round((gone[-1] - gone[0]) / math.tau) if np.isfinite(gone).all() else 0

@@ -1,0 +1,237 @@
+"""Gears in space: helical, bevel, worm and rack against the forces of textbooks, on the bearings and sections of their shafts."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lagrange_casadi import Scene, SpatialMechanism, evaluate
+from lagrange_casadi.elements import belt, gears, wheel
+from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.motion import harmonic, polynomial
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+TAN = math.tan(math.radians(20.0))
+
+
+def frame(seed):
+    """Three directions at right angles, turned at random."""
+    x, y, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0].T
+    return x, y, np.cross(x, y)
+
+
+def shaft(m, name, place, axis, beside, slender=False):
+    """A shaft along an axis through a place of the ground, its joint at its base."""
+    known = {"mass": 2.0} if slender else {"mass": 2.0, "centre": (0.1, 0, 0), "inertia": (1e-3, 1e-2, 1e-2)}
+    link = m.link(name, length=0.5, **known)
+    turned = (tuple(map(float, axis)), tuple(map(float, beside)))
+    m.revolute(f"{name}_bearing", m.ground.at(*map(float, place)), link, axis=turned[0], turned=turned)
+    return link
+
+
+def space(moment, driven, axis):
+    """A mechanism without gravity, and how its shaft ``driven`` is loaded about its axis."""
+    m = SpatialMechanism("pair")
+    m.set_gravity(0, 0, 0)
+
+    def load(link):
+        m.torque("load", link, **dict(zip("xyz", (float(moment * x) for x in axis), strict=True)))
+
+    return m, load
+
+
+def borne(solution, name):
+    """What a bearing does to its shaft about its base: force and moment."""
+    reaction = solution.reaction(f"{name}_bearing")
+    parts = [getattr(reaction, key) for key in ("fx", "fy", "fz", "mx", "my", "mz")]
+    values = np.array([0.0 if part is None else part[0] for part in parts])
+    return values[:3], values[3:]
+
+
+def holds(solution, name, base, axis, point, force):
+    """The bearing holds a force that acts at a point on its shaft, but for the moment about the axis."""
+    push, moment = borne(solution, name)
+    size = np.linalg.norm(force)
+    assert push == pytest.approx(-force, abs=1e-12 * size)
+    lever = np.cross(point - base, force)
+    assert moment == pytest.approx(-(lever - np.dot(lever, axis) * axis), abs=1e-12 * size)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("moment", [50.0, -50.0])
+@pytest.mark.parametrize("helix", [20.0, -35.0])
+def test_helical_gears(seed, moment, helix):
+    """Shigley, equations 13-38: radial W tan(phi_n)/cos(psi) and axial W tan(psi), of the tangential force W."""
+    u, e, t = frame(seed)
+    r1, r2, base = 0.05, 0.12, np.array([0.1, -0.2, 0.3])
+    m, load = space(moment, "second", u)
+    first, second = shaft(m, "first", base, u, e), shaft(m, "second", base + (r1 + r2) * e, u, e)
+    mesh = gears(m, "mesh", first.at(0.15), second.at(0.15), radii=(r1, r2), helix_angle=f"{helix} deg")
+    load(second)
+    solution = evaluate(Scene(m, {"first_bearing": polynomial(0.3)}, t=(0, 1, 2)))
+    assert solution.certified
+    assert mesh.kind == "parallel"
+    psi = math.radians(helix)
+    # The teeth hold the load: on the second gear about its axis -moment, at -r2 e from its centre.
+    way = moment / r2
+    on_second = way * t
+    # A right-handed first gear pushes along -u where it is pushed along t.
+    on_first = -on_second + way * math.tan(psi) * u - abs(way) * TAN / math.cos(psi) * e
+    point = base + 0.15 * u + r1 * e
+    holds(solution, "first", base, u, point, on_first)
+    holds(solution, "second", base + (r1 + r2) * e, u, point, -on_first)
+    assert solution.output("mesh_radial")[0] == pytest.approx(abs(way) * TAN / math.cos(psi))
+    assert solution.output("mesh_axial")[0] == pytest.approx(way * math.tan(psi))
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("angle", [90.0, 60.0, 110.0])
+@pytest.mark.parametrize("moment", [50.0, -50.0])
+def test_bevel_gears(seed, angle, moment):
+    """Shigley, equations 13-36 and 13-37: radial W tan(phi) cos(gamma), axial W tan(phi) sin(gamma) off the apex."""
+    x, y, _ = frame(seed + 10)
+    sigma, z = math.radians(angle), (20, 33)
+    apex, v = np.array([0.3, 0.1, -0.2]), math.cos(sigma) * x + math.sin(sigma) * y
+    gamma = math.atan2(math.sin(sigma), z[1] / z[0] + math.cos(sigma)), math.atan2(math.sin(sigma), z[0] / z[1] + math.cos(sigma))
+    assert sum(gamma) == pytest.approx(sigma)
+    radii = [0.002 * count for count in z]
+    heights = [r / math.tan(one) for r, one in zip(radii, gamma, strict=True)]
+    m, load = space(moment, "second", v)
+    first, second = shaft(m, "first", apex, x, y), shaft(m, "second", apex, v, np.cross(v, np.cross(x, y)))
+    mesh = gears(m, "mesh", first.at(heights[0]), second.at(heights[1]), teeth=z, module=0.004)
+    load(second)
+    solution = evaluate(Scene(m, {"first_bearing": polynomial(0.3, 2.0)}, t=(0, 1, 2)), wanted=["all"])
+    assert solution.certified
+    assert mesh.kind == "bevel"
+    assert abs(solution.motion("second_bearing").rate[0]) == pytest.approx(2.0 * z[0] / z[1], rel=1e-13)
+    point = apex + heights[0] * x + radii[0] * y
+    across = np.cross(v, point - apex) / radii[1]  # the way of the second gear at the pitch point
+    on_second = -moment / radii[1] * across
+    size, toward = abs(moment) / radii[1] * TAN, -(point - apex - heights[1] * v) / radii[1]
+    on_second = on_second + size * (math.cos(gamma[1]) * toward + math.sin(gamma[1]) * v)
+    on_first = abs(moment) / radii[1] * TAN * (-math.cos(gamma[0]) * y + math.sin(gamma[0]) * x) + moment / radii[1] * across
+    assert on_first == pytest.approx(-on_second, abs=1e-11 * size)
+    # Gyroscopic moments of rotors that are round about their axes are none.
+    holds(solution, "first", apex, x, point, on_first)
+    holds(solution, "second", apex, v, point, on_second)
+
+
+@pytest.mark.parametrize("hand", ["right", "left"])
+@pytest.mark.parametrize("moment", [50.0, -50.0])
+def test_a_worm_and_its_wheel(hand, moment):
+    """Shigley, equations 13-39 to 13-41 without friction: W cos(phi) sin(lead), W sin(phi), W cos(phi) cos(lead)."""
+    u, e, v = frame(5)
+    r1, r2, base = 0.02, 0.08, np.array([0.0, 0.1, 0.2])
+    m, load = space(moment, "wheel", v)
+    worm, turned = shaft(m, "worm", base, u, e), shaft(m, "wheel", base + 0.1 * u + (r1 + r2) * e - 0.2 * v, v, e)
+    mesh = gears(m, "mesh", worm.at(0.1), turned.at(0.2), radii=(r1, r2), teeth=(2, 40), hand=hand)
+    load(turned)
+    solution = evaluate(Scene(m, {"worm_bearing": polynomial(0.3, 1.0)}, t=(0, 1, 2)))
+    assert solution.certified
+    assert mesh.kind == "crossed"
+    lead = math.atan(2 * 2 * math.pi * r2 / 40 / (2 * math.pi * r1))
+    tangential, radial, axial = (solution.output(f"mesh_{name}")[0] for name in ("tangential", "radial", "axial"))
+    assert abs(axial) == pytest.approx(50.0 / r2, rel=1e-12)
+    assert abs(tangential) == pytest.approx(50.0 / r2 * math.tan(lead), rel=1e-12)
+    assert radial == pytest.approx(50.0 / r2 * TAN / math.cos(lead), rel=1e-12)
+    # A right-handed worm that turns forward moves its thread backward along its axis as seen at a fixed place, and the wheel there.
+    rate = solution.motion("wheel_bearing").rate[0]
+    there = rate * np.dot(np.cross(v, -r2 * e), u)
+    assert there == pytest.approx((-1 if hand == "right" else 1) * 2 * 2 * math.pi * r2 / 40 / (2 * math.pi), rel=1e-12)
+    point = base + 0.1 * u + r1 * e
+    on_worm = tangential * np.cross(u, e) - radial * e + axial * u
+    holds(solution, "worm", base, u, point, on_worm)
+    holds(solution, "wheel", base + 0.1 * u + (r1 + r2) * e - 0.2 * v, v, point, -on_worm)
+    assert abs(solution.effort("worm_bearing")[0]) == pytest.approx(50.0 * 2 / 40, rel=1e-12)
+
+
+def test_sections_of_a_shaft_feel_the_teeth_where_they_are():
+    """A slender shaft between the gear and its bearing: torsion up to the gear, bending by its force's arm."""
+    m = SpatialMechanism("shaft")
+    m.set_gravity(0, 0, 0)
+    driver, driven = (
+        shaft(m, "driver", (0, 0, 0), (1, 0, 0), (0, 1, 0)),
+        shaft(m, "driven", (0, 0.1, 0), (1, 0, 0), (0, 1, 0), True),
+    )
+    gears(m, "mesh", driver.at(0.2), driven.at(0.2), radii=(0.04, 0.06))
+    m.torque("load", driven.tip, x=30.0)
+    solution = evaluate(Scene(m, {"driver_bearing": polynomial(0.0)}, t=(0, 1, 2)))
+    assert solution.certified
+    section = solution.section("driven")
+    at = (section.xi * 0.5) if section.xi.max() <= 1.0 else section.xi
+    torsion, bending = section.torsion[0], section.bending[0]
+    assert np.abs(torsion[at > 0.2001]) == pytest.approx(30.0, rel=1e-12)
+    assert torsion[at < 0.1999] == pytest.approx(0.0, abs=1e-10)
+    normal = 30.0 / 0.06 / math.cos(math.radians(20))
+    before = at < 0.1999
+    assert bending[before] == pytest.approx(normal * (0.2 - at[before]), rel=1e-11)
+    assert bending[at > 0.2001] == pytest.approx(0.0, abs=1e-10)
+
+
+def test_a_planet_on_a_tilted_arm():
+    """A differential of bevel gears: side gears on one axis, a planet on a carrier that turns about it; its rate is their mean."""
+    m = SpatialMechanism("differential")
+    m.set_gravity(0, 0, 0)
+    r = 0.05
+    left, right = (wheel(m, name, radius=r, mass=1.0, width=None) for name in ("left", "right"))
+    cage = m.link("cage", length=r, mass=1.0, centre=(0, 0, 0), inertia=(1e-3, 1e-3, 1e-3))
+    planet = wheel(m, "planet", radius=r, mass=0.5)
+    m.revolute("left_axle", m.ground.at(-r, 0, 0), left, axis=(1, 0, 0))
+    m.revolute("right_axle", m.ground.at(r, 0, 0), right, axis=(1, 0, 0))
+    m.revolute("cage_bearing", m.ground, cage, axis=(1, 0, 0))
+    m.revolute("pin", cage.at(0, r, 0), planet, axis=(0, 1, 0), turned=((0, 1, 0), (-1, 0, 0)))
+    gears(m, "one", left, planet, radii=(r, r))
+    gears(m, "other", right, planet, radii=(r, r))
+    m.torque("left_load", left, x=-20.0)
+    m.torque("right_load", right, x=-20.0)
+    laws = {"cage_bearing": harmonic(0.0, 1.0, 1.0), "left_axle": harmonic(0.0, 0.4, 1.0)}
+    solution = evaluate(Scene(m, laws, t=(0, 1, 9)))
+    assert solution.certified
+    rates = [solution.motion(name).rate for name in ("left_axle", "right_axle", "cage_bearing")]
+    assert rates[0] + rates[1] == pytest.approx(2 * rates[2], abs=1e-12)
+    # Nothing turns at the ends of the swing but by inertia, which is small: half of the cage's torque on each side.
+    gain = solution.motion("pin").acceleration * 0.5 * r**2 / 2
+    teeth = solution.multiplier("one"), solution.multiplier("other")
+    assert np.abs(np.abs(teeth[0] * r) - np.abs(teeth[1] * r)) == pytest.approx(np.abs(gain), abs=1e-9)
+
+
+def test_a_belt_in_space_is_that_of_the_plane():
+    m = SpatialMechanism("belt")
+    m.set_gravity(0, 0, 0)
+    first, second = shaft(m, "first", (0, 0, 0), (1, 0, 0), (0, 1, 0)), shaft(m, "second", (0, 0.3, 0.4), (1, 0, 0), (0, 1, 0))
+    belt(m, "belt", first.at(0.1), second.at(0.1), radii=(0.05, 0.1), preload=500.0)
+    m.torque("load", second, x=20.0)
+    solution = evaluate(Scene(m, {"first_bearing": polynomial(0.0)}, t=(0, 1, 2)))
+    assert solution.certified
+    assert (solution.output("belt_tight")[0], solution.output("belt_slack")[0]) == pytest.approx((600.0, 400.0))
+    lean = math.asin(0.05 / 0.5)
+    push = borne(solution, "first")[0]
+    assert np.linalg.norm(push) == pytest.approx(math.hypot(1000.0 * math.cos(lean), 200.0 * math.sin(lean)), rel=1e-12)
+    assert push[0] == pytest.approx(0.0, abs=1e-10)
+
+
+@pytest.mark.quick
+def test_bad_gears_in_space_are_refused_by_name():
+    m = SpatialMechanism("bad")
+    first, second = shaft(m, "first", (0, 0, 0), (1, 0, 0), (0, 1, 0)), shaft(m, "second", (0, 0, 0), (0, 1, 0), (0, 0, 1))
+    third = shaft(m, "third", (0, 0.1, 0), (1, 0, 0), (0, 1, 0))
+    worm = shaft(m, "worm", (0, 0, 0.1), (0, 1, 0), (0, 0, 1))
+
+    def one_line(told, *where, of=gears, **more):
+        with pytest.raises(DeclarationError) as error:
+            of(m, "mesh", *where, **more)
+        assert told in str(error.value)
+        assert "\n" not in str(error.value)
+
+    one_line(
+        "the centre of its gear 1 is 0.1 m from where the axes meet; expected 0.06 m",
+        first.at(0.1),
+        second.at(0.04),
+        radii=(0.04, 0.06),
+    )
+    one_line("0.1 m beside each other along the axis", first.at(0.1), third, radii=(0.04, 0.06))
+    one_line("crossed axes need both numbers of teeth and radii", first, worm, radii=(0.04, 0.06))
+    one_line("0.02 m beside the line at right angles", first, worm.at(0.02), radii=(0.04, 0.06), teeth=(1, 40))
+    one_line("helix_angle must be from -75 to 75 deg, got 80 deg", first, third, radii=(0.04, 0.06), helix_angle="80 deg")
+    one_line("parallel axes", first, second, of=belt, radii=(0.04, 0.06))
