@@ -71,7 +71,8 @@ _MEANINGS = {
     Status.PASSES_DEAD_CENTRE: "a loop passes a dead centre between two instants, a joint gimbal lock, or drives such a place",
     Status.MISFIT: "loops are over-constrained and do not fit",
     Status.ROW_VIOLATED: "the motion violates a non-holonomic constraint",
-    Status.IMPOSSIBLE: "a length is not positive, a mass or density is negative, a station is off its link, or a move cannot be",
+    Status.IMPOSSIBLE: "a length is not positive, a mass or density is negative, a station is off its link, a move cannot be, "
+    "or gears do not fit",
     Status.INVALID: "a parameter is not finite",
     Status.NOT_CLOSED: "what was found for a loop does not satisfy its equations",
     Status.UNCERTIFIED: "the design was checked in full, and fails its certificate: others may be wrong as well",
