@@ -30,6 +30,7 @@ ORDER = (
     "instants",
     "judge",
     "strength",
+    "elastic",
     "evaluate",
     "sensitivity",
     "designs",

@@ -58,6 +58,7 @@ from .strength_lines import strength_lines
 @click.option("--no-figures", is_flag=True, help="Draw nothing.")
 @click.option("--csv", type=click.Path(path_type=Path), metavar="FILE.csv", help="Write a row for every instant as CSV too.")
 @click.option("--refine-peaks", is_flag=True, help="Seek the reported peaks between the instants too.")
+@click.option("--elastic", is_flag=True, help="Let the beams of links tell what equilibrium leaves open.")
 @click.option("--no-certificate", is_flag=True, help="Do not check the solution.")
 def run(
     case: Path,
@@ -77,6 +78,7 @@ def run(
     no_figures: bool,
     csv: Path | None,
     refine_peaks: bool,
+    elastic: bool,
     no_certificate: bool,
 ) -> None:
     """Evaluate CASE, a folder with a case.py, a Python file, or one that cases lists, and write an HDF5 file and figures."""
@@ -110,6 +112,7 @@ def run(
         flags=flags,
         threads=threads,
         certificate=not no_certificate,
+        elastic=elastic or None,
     )
     usual = Path(f"{loaded.name}_figures") if out == Path(f"{loaded.name}.h5") else None
     place = folder or usual

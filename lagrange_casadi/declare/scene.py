@@ -16,6 +16,7 @@ from .angles import angle
 from .density import Density
 from .drives import weighed
 from .even_points import EvenPoints, checked
+from .giving import Elastic, giving
 from .guiding import guided, laws_of
 from .limits import no_sections, told_parameters
 from .mechanism import Mechanism
@@ -201,6 +202,9 @@ class Scene:
         The joints whose efforts make the motion; by default those whose motion is given. Of more drives than are needed, the
         efforts are those of the least sum of squares, each times its joint's weight: a mapping gives weights by joint, numbers or
         expressions of parameters; a list gives each the weight 1.
+    elastic
+        Whether least strain energy tells the forces that equilibrium leaves open, by the beams of links: of all, or of those that
+        are named, and others are rigid. Forces that go through a link without a beam stay open.
 
     Raises :class:`.DeclarationError` for what does not fit the mechanism, :class:`.UnknownNameError` for names it does not have,
     and :class:`.ParameterError` where the default parameters make a part impossible.
@@ -215,6 +219,7 @@ class Scene:
     assembly: Mapping[str, float] = field(default_factory=dict)
     drives: Mapping[str, Expression] | Sequence[str] | None = None
     over: Over | None = None
+    elastic: Elastic = False
 
     def __post_init__(self) -> None:
         if not isinstance(self.mechanism, Mechanism):
@@ -243,6 +248,7 @@ class Scene:
                 )
         if self.drives is not None:
             object.__setattr__(self, "drives", MappingProxyType(weighed(self.mechanism, self.drives, self.needs_drives)))
+        object.__setattr__(self, "elastic", giving(self.mechanism, self.elastic))
         refuse_late(self.mechanism)
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)

@@ -1,0 +1,382 @@
+"""Forces that equilibrium leaves open, by least strain energy: against a frame solver, closed forms and published ones."""
+
+import math
+
+import frames
+import numpy as np
+import pytest
+
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate, load, save
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import DeclarationError, UnknownNameError
+from lagrange_casadi.motion import harmonic, polynomial
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+STEEL = beams.material("S235")
+LIGHT = STEEL.but(density=1e-9)
+
+
+def made(shape, material=STEEL):
+    return beams.Beam(shape, material)
+
+
+def sections_of(**links):
+    """Properties, E, G and mass per length of links, by their beams."""
+    found = {}
+    for name, beam in links.items():
+        p = beam.course.cells[0][0].properties()
+        found[name] = (p, beam.material.elasticity, beam.material.shear_modulus, beam.material.density * p.area)
+    return found
+
+
+def agrees(solution, i, reactions, tolerance=1e-8):
+    """Every reaction of a solution is that of a frame, in all components that it has."""
+    size = max(np.abs(row).max() for row in reactions.values())
+    for joint, row in reactions.items():
+        found = solution.reaction(joint)
+        for k, values in enumerate((found.fx, found.fy, found.fz, found.mx, found.my, found.mz)):
+            if values is not None:
+                assert values[i] == pytest.approx(row[k], abs=tolerance * size), (joint, k)
+
+
+def held(**forces):
+    """A beam that is held at both ends, which a force loads beside its middle."""
+    m = Mechanism("held")
+    m.set_gravity(0.0, 0.0)
+    bar = m.link("bar", length=2.0, beam=made(beams.rectangle(0.05, 0.02)))
+    m.weld("A", m.ground, bar)
+    m.weld("B", m.ground.at(2.0, 0), bar.tip)
+    m.force("push", bar.at(0.6), **forces)
+    return Scene(m, {}, t=(0, 0, 1), xi=(0, 1, 5), elastic=True)
+
+
+def test_a_beam_held_at_both_ends():
+    """Timoshenko, Strength of Materials I, art. 42, with the shear of Timoshenko's beam: by the force method, by hand."""
+    solution = evaluate(held(x=500.0, y=-1000.0))
+    p, e, g = beams.rectangle(0.05, 0.02).properties(), STEEL.elasticity, STEEL.shear_modulus
+    a, l, push = 0.6, 2.0, 1000.0
+    # The tip released: its sag and slope under the load, and under a unit force and couple there.
+    ei, ga = e * p.iz, g * p.shear_y
+    flexible = np.array([[l**3 / (3 * ei) + l / ga, l**2 / (2 * ei)], [l**2 / (2 * ei), l / ei]])
+    sagged = -push * np.array([a**3 / (3 * ei) + a**2 / (2 * ei) * (l - a) + a / ga, a**2 / (2 * ei)])
+    force, couple = np.linalg.solve(flexible, -sagged)
+    assert solution.reaction("B").fy[0] == pytest.approx(force, rel=1e-10)
+    assert solution.reaction("B").mz[0] == pytest.approx(couple, rel=1e-10)
+    assert solution.reaction("A").fx[0] == pytest.approx(-500.0 * (l - a) / l, rel=1e-12)
+    # Without shear, as books have it: P b^2 (3a + b)/l^3.
+    assert solution.reaction("A").fy[0] == pytest.approx(push * 1.4**2 * (3 * 0.6 + 1.4) / 8, rel=1e-3)
+    assert solution.certified
+    assert not solution.undetermined
+    assert solution.certificate["elasticity"].max() < 1e-12
+    assert set(map(str, solution.elasticity.told)) >= {"reaction:A:fy", "section:bar:law:m0"}
+
+
+def test_a_bar_on_three_supports():
+    """Two equal spans under their weight: 3/8, 10/8 and 3/8 of a span's weight (Timoshenko, Strength of Materials I, art. 45)."""
+    m = Mechanism("spans")
+    shape = beams.rectangle(0.02, 0.02)
+    bar = m.link("bar", length=2.0, beam=made(shape))
+    m.revolute("A", m.ground, bar)
+    for name, x in (("B", 1.0), ("C", 2.0)):
+        foot = m.point_mass(f"foot{name}", 0.0)
+        m.prismatic(f"slide{name}", m.ground.at(x, 0), foot, axis=(1, 0))
+        m.revolute(name, foot, bar.at(x))
+    solution = evaluate(Scene(m, {}, t=(0, 0, 1), posture={"bar": 0.0}, elastic=True))
+    span, p = 4e-4 * STEEL.density * 9.81, shape.properties()
+    ei, ga = STEEL.elasticity * p.iz, STEEL.shear_modulus * p.shear_y
+    # Of the bar on its ends alone: the sag of its middle by its weight, over that by a unit force there.
+    middle = (5 * 2.0**4 / (384 * ei) + 2.0**2 / (8 * ga)) / (2.0**3 / (48 * ei) + 2.0 / (4 * ga))
+    found = [solution.reaction(name).fy[0] / span for name in "ABC"]
+    assert found == pytest.approx([(2 - middle) / 2, middle, (2 - middle) / 2], rel=1e-9)
+    assert found == pytest.approx([0.375, 1.25, 0.375], rel=1e-3)
+
+
+def truss(angle):
+    m = Mechanism("truss")
+    node, height = m.point_mass("node", 0.0), 1.0
+    for k, x in enumerate((-height * math.tan(angle), 0.0, height * math.tan(angle))):
+        bar = m.link(f"bar{k}", length=math.hypot(x, height), beam=made(beams.round_bar(0.02), LIGHT))
+        m.revolute(f"G{k}", m.ground.at(x, 0), bar)
+        m.revolute(f"N{k}", bar.tip, node)
+    m.force("P", node, y=-1000.0)
+    posture = {f"bar{k}": -math.pi / 2 + (1 - k) * angle for k in range(3)}
+    return Scene(m, {}, t=(0, 0, 1), xi=(0, 1, 5), posture=posture, elastic=True)
+
+
+def test_three_bars_that_meet():
+    """P/(1 + 2 cos^3 a) in the upright bar, cos^2 a of it in the others (Timoshenko, Strength of Materials I, art. 6)."""
+    angle = math.radians(35)
+    solution = evaluate(truss(angle))
+    upright = 1000.0 / (1 + 2 * math.cos(angle) ** 3)
+    found = [solution.section(f"bar{k}").axial[0, 0] for k in range(3)]
+    assert found == pytest.approx([upright * math.cos(angle) ** 2, upright, upright * math.cos(angle) ** 2], rel=1e-7)
+
+
+def portal(mass=None):
+    m = Mechanism("portal")
+    beam = {"mass": mass} if mass else {"beam": made(beams.i_section(0.1, 0.055, 0.0041, 0.0057))}
+    left = m.link("left", length=3.0, beam=made(beams.rectangle(0.1, 0.06)))
+    top, right = m.link("top", length=4.0, **beam), m.link("right", length=2.5, beam=made(beams.round_bar(0.08)))
+    m.weld("A", m.ground, left, angle=math.pi / 2)
+    m.weld("B", left.tip, top, angle=-math.pi / 2)
+    m.weld("C", top.tip, right, angle=-math.pi / 2)
+    m.weld("D", m.ground.at(4.0, 0.5), right.tip, angle=-math.pi / 2)
+    m.force("wind", left.at(1.2), x=2e3)
+    m.force("load", top.at(1.5), y=-5e3)
+    return m
+
+
+def test_a_portal_frame_is_that_of_a_frame_solver():
+    m = portal()
+    solution = evaluate(Scene(m, {}, t=(0, 0, 1), elastic=True))
+    sections = sections_of(**{name: link.beam for name, link in m.links.items()})
+    loads = [("left", 1.2, (2e3, 0, 0), (0, 0, 0)), ("top", 1.5, (0, -5e3, 0), (0, 0, 0))]
+    reactions, _ = frames.of_solution(solution, 0, sections, loads)
+    agrees(solution, 0, reactions)
+    assert len(solution.elasticity.told) == 21
+
+
+def four_bar(axis=(0, 0, 1), third=None):
+    """A planar four-bar of pins in space, loaded aside, with links that are not round."""
+    m = SpatialMechanism("four_bar")
+    parts = {
+        "a": m.link("a", length=0.1, beam=made(beams.rectangle(0.03, 0.012))),
+        "b": m.link("b", length=0.3, beam=made(beams.rectangle(0.02, 0.01))),
+        "c": m.link("c", length=0.25, beam=third or made(beams.tube(0.02, 0.003))),
+    }
+    a, b, c = parts.values()
+    m.revolute("O", m.ground, a, axis=axis)
+    m.revolute("A", a.tip, b, axis=axis)
+    m.revolute("B", b.tip, c.tip, axis=axis)
+    m.revolute("C", m.ground.at(0.3, 0, 0), c, axis=axis)
+    m.force("side", b.at(0.15), x=20.0, z=100.0)
+    return m
+
+
+@pytest.fixture(scope="module")
+def moving():
+    m = four_bar()
+    return m, evaluate(Scene(m, {"O": polynomial(0.2, 30.0, 40.0)}, posture={"A": 0.5, "C": 1.5}, t=(0, 8e-3, 9), elastic=True))
+
+
+def test_a_planar_four_bar_of_spatial_pins_that_moves(moving):
+    """Its inertia by differences of its poses; every component of every reaction is a frame's."""
+    m, solution = moving
+    i, h = 4, solution.t[1]
+    stencil = np.array([-1 / 560, 8 / 315, -1 / 5, 8 / 5, -205 / 72, 8 / 5, -1 / 5, 8 / 315, -1 / 560]) / h**2
+
+    def accelerations(link, x):
+        pose = solution.pose(link)
+        return stencil @ (np.stack([pose.x, pose.y, pose.z], axis=1) + x * pose.axes[:, 0])
+
+    sections = sections_of(**{name: link.beam for name, link in m.links.items()})
+    reactions, _ = frames.of_solution(solution, i, sections, [("b", 0.15, (20.0, 0, 100.0), (0, 0, 0))], accelerations)
+    agrees(solution, i, reactions, 1e-6)
+    assert solution.certified
+    assert not solution.undetermined
+
+
+def test_what_equilibrium_determines_is_what_it_was(moving):
+    m, solution = moving
+    plain = evaluate(Scene(m, {"O": polynomial(0.2, 30.0, 40.0)}, posture={"A": 0.5, "C": 1.5}, t=(0, 8e-3, 9)))
+    for output, values in plain.outputs.items():
+        if output not in plain.left_open:
+            np.testing.assert_array_equal(values, solution.outputs[output])
+    assert plain.left_open == solution.elasticity.told
+    assert all(name in solution.errors for name in plain.undetermined if name.startswith("reaction"))
+
+
+def test_two_hinges_of_one_door():
+    """Alike hinges at both ends of a post, alike beyond them, share thrust and moments alike."""
+    m = SpatialMechanism("door")
+    post, upper, lower = (m.link(name, length=l, beam=made(beams.round_bar(0.03))) for name, l in (("p", 2), ("u", 1), ("l", 1)))
+    up = [("y", "-90 deg")]
+    m.revolute("H1", m.ground, post, axis=(0, 0, 1), turned=up)
+    m.revolute("H2", m.ground.at(0, 0, 2), post.tip, axis=(0, 0, 1), turned=up)
+    for name, x, arm in (("W1", 0.5, lower), ("W2", 1.5, upper)):
+        m.weld(name, post.at(x), arm, turned=[("y", "90 deg")])
+        m.force(f"F{name}", arm.tip, x=3.0, y=-2.0, z=-100.0)
+    solution = evaluate(Scene(m, {"H1": polynomial(0.4)}, t=(0, 0, 1), elastic=True))
+    first, second = solution.reaction("H1"), solution.reaction("H2")
+    assert not solution.undetermined
+    assert first.fz[0] == pytest.approx(second.fz[0], rel=1e-8)
+    sections = sections_of(**{name: link.beam for name, link in m.links.items()})
+    loads = [(name, 1.0, (3.0, -2.0, -100.0), (0, 0, 0)) for name in "ul"]
+    agrees(solution, 0, frames.of_solution(solution, 0, sections, loads)[0])
+
+
+def test_bricards_loop():
+    """Six bars on six pins at right angles, one equation too many, at rest in a posture: all reactions are a frame's."""
+    m, start, length = SpatialMechanism("bricard"), 1.3, 0.5
+    shapes = [beams.rectangle(0.03, 0.01 + 0.002 * k) for k in range(5)]
+    links = [m.link(f"link{k}", length=length, beam=made(shape)) for k, shape in enumerate(shapes)]
+    m.revolute("J0", m.ground, links[0], axis=(0, 0, 1))
+    for k in range(1, 5):
+        right = 1 if k % 2 else -1
+        m.revolute(f"J{k}", links[k - 1].tip, links[k], axis=(0, -right, 0), turned=[("x", f"{90 * right} deg")])
+    m.revolute("J5", m.ground.at(-length, 0, 0), links[4].tip, axis=(0, -1, 0))
+    other = math.acos(-math.cos(start) / (1 + math.cos(start)))
+    posture = {"J1": other, "J2": start, "J3": other, "J4": start, "J5": -other}
+    solution = evaluate(Scene(m, {"J0": polynomial(start)}, posture=posture, t=(0, 0, 1), elastic=True))
+    assert not solution.undetermined
+    assert solution.certified
+    sections = sections_of(**{name: link.beam for name, link in m.links.items()})
+    agrees(solution, 0, frames.of_solution(solution, 0, sections)[0], 1e-7)
+
+
+def three_cranks(beam, bar=None, elastic=True):
+    m = Mechanism("three_cranks")
+    cranks = [m.link(name, length=0.2, beam=beam) for name in "abc"]
+    bar = m.link("bar", length=1.0, **({"beam": bar} if bar else {"mass": 1.0}))
+    for k, link in enumerate(cranks):
+        m.revolute(f"G{k}", m.ground.at(0.5 * k, 0.0), link)
+        m.revolute(f"B{k}", link.tip, (bar.base, bar.at(0.5), bar.tip)[k])
+    posture = {"a": 1.2, "b": 1.2, "c": 1.2, "bar": 0.0}
+    return Scene(m, {"G0": harmonic(1.2, 0.3, 1.0)}, posture=posture, t=(0, 1, 5), elastic=elastic)
+
+
+def test_a_symmetric_machine_has_symmetric_forces():
+    """Upright cranks, driven by their middle one's neighbour: what the outer ones bear upward is alike."""
+    scene = three_cranks(made(beams.round_bar(0.01)), made(beams.rectangle(0.02, 0.01)))
+    upright = Scene(scene.mechanism, {"G0": polynomial(math.pi / 2)}, posture=scene.posture, t=(0, 0, 1), elastic=True)
+    solution = evaluate(upright)
+    left, middle, right = (solution.reaction(f"B{k}").fy[0] for k in range(3))
+    assert left == pytest.approx(right, rel=1e-8)
+    assert middle != pytest.approx(left, rel=1e-2)
+
+
+def test_a_link_without_a_beam_leaves_open_what_goes_through_it_and_is_named():
+    scene = three_cranks(made(beams.round_bar(0.01)))
+    solution, plain = evaluate(scene), evaluate(scene, elastic=False)
+    assert set(solution.undetermined) == set(plain.undetermined)
+    assert np.isnan(solution.reaction("B1").fx).all()
+    assert solution.elasticity.reasons == ("they go through 'bar', which has no beam",)
+    assert "elasticity leaves forces open: they go through 'bar', which has no beam" in solution.notes
+    assert solution.certified
+
+
+def test_links_that_are_named_give_way_and_others_are_rigid():
+    """A rigid bar on three equal elastic struts, its weight in its middle: a third each."""
+    scene = three_cranks(made(beams.round_bar(0.01), LIGHT), elastic=["a", "b", "c"])
+    upright = Scene(scene.mechanism, {"G0": polynomial(math.pi / 2)}, posture=scene.posture, t=(0, 0, 1), elastic=scene.elastic)
+    solution = evaluate(upright)
+    assert not solution.undetermined
+    assert [solution.reaction(f"B{k}").fy[0] for k in range(3)] == pytest.approx([9.81 / 3] * 3, rel=1e-6)
+
+
+def test_two_parts_are_told_apart():
+    """A fixed beam with a cross-section beside one without: the first is told, the second is open."""
+    m = Mechanism("two")
+    for k, made_of in enumerate(({"beam": made(beams.rectangle(0.05, 0.02))}, {"mass": 3.0})):
+        bar = m.link(f"bar{k}", length=2.0, **made_of)
+        m.weld(f"A{k}", m.ground.at(0, k), bar)
+        m.weld(f"B{k}", m.ground.at(2.0, k), bar.tip)
+    solution = evaluate(Scene(m, {}, t=(0, 0, 1), elastic=True))
+    assert solution.determined("reaction:A0:mz")
+    assert {name.split(":")[1] for name in solution.undetermined} == {"A1", "B1", "bar1"}
+    weight = 2.0 * 0.05 * 0.02 * STEEL.density * 9.81
+    assert solution.reaction("A0").mz[0] == pytest.approx(weight * 2.0 / 12, rel=1e-9)
+
+
+def test_what_bends_no_link_stays_open():
+    """Two gears between the same wheels share their couple however stiff the wheels are."""
+    m = Mechanism("wheels")
+    a, b = (m.link(name, length=0.2, beam=made(beams.round_bar(0.02))) for name in "ab")
+    joints = m.revolute("A", m.ground, a), m.revolute("B", m.ground.at(1, 0), b)
+    for name in ("left", "right"):
+        m.gear(name, *joints, ratio=-2.0)
+    solution = evaluate(Scene(m, {"A": polynomial(0.1, 2.0)}, posture={"b": -0.2}, t=(0, 1, 5), elastic=True))
+    assert set(solution.undetermined) == {"multiplier:left", "multiplier:right"}
+    assert solution.elasticity.reasons == ("some bend no link",)
+    assert solution.certified
+
+
+def test_a_tapered_beam_by_fine_sums():
+    """A beam held at both ends that tapers to a third: the force method with sums over a million places."""
+    m = Mechanism("tapered")
+    bar = m.link("bar", length=2.0, beam=made(beams.tapered(beams.rectangle(0.06, 0.02), beams.rectangle(0.02, 0.02))))
+    m.weld("A", m.ground, bar)
+    m.weld("B", m.ground.at(2.0, 0), bar.tip)
+    solution = evaluate(Scene(m, {}, t=(0, 0, 1), xi=(0, 1, 5), elastic=True))
+    n = 400_000
+    s = (np.arange(n) + 0.5) * (2.0 / n)
+    h = 0.06 - 0.02 * s
+    i, area, line = 0.02 * h**3 / 12, 0.02 * h, 0.02 * h * STEEL.density * 9.81
+    beyond = np.cumsum(line[::-1])[::-1] * (2.0 / n) - line * (1.0 / n)
+    moment = -(np.cumsum((beyond)[::-1])[::-1] * (2.0 / n) - beyond * (1.0 / n))
+    stiff = 10 * 1.3 / (12 + 11 * 0.3)
+    e, g = STEEL.elasticity, STEEL.shear_modulus
+    bend, sheared = np.array([2.0 - s, np.ones(n)]), np.array([np.ones(n), np.zeros(n)])
+    flexible = (bend / (e * i)) @ bend.T + (sheared / (g * stiff * area)) @ sheared.T
+    rest = (bend / (e * i)) @ moment + (sheared / (g * stiff * area)) @ -beyond
+    force, couple = np.linalg.solve(flexible, -rest)
+    assert solution.reaction("B").fy[0] == pytest.approx(force, rel=1e-8)
+    assert solution.reaction("B").mz[0] == pytest.approx(couple, rel=1e-8)
+    assert solution.certificate["elasticity"].max() < 1e-12
+
+
+def test_only_what_is_wanted_is_told():
+    scene = held(y=-1000.0)
+    solution, whole = evaluate(scene, wanted=["reaction:A"]), evaluate(scene)
+    assert set(solution.series) == {name for name in whole.series if name.startswith("reaction:A")}
+    np.testing.assert_array_equal(solution.reaction("A").mz, whole.reaction("A").mz)
+    assert set(solution.errors) <= set(solution.series)
+
+
+def test_a_file_keeps_what_elasticity_told(tmp_path):
+    solution = evaluate(held(y=-1000.0))
+    save(solution, tmp_path / "held.h5")
+    back = load(tmp_path / "held.h5")
+    assert back.elasticity == solution.elasticity
+    assert back.notes == solution.notes
+    np.testing.assert_array_equal(back.reaction("A").mz, solution.reaction("A").mz)
+
+
+def test_the_command_line_asks_for_it(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "case.py").write_text(
+        "from lagrange_casadi import Mechanism, Scene, beams\n"
+        "def scene():\n"
+        "    m = Mechanism('held')\n"
+        "    bar = m.link('bar', length=2.0, beam=beams.Beam(beams.rectangle(0.05, 0.02), beams.material('S235')))\n"
+        "    m.weld('A', m.ground, bar)\n"
+        "    m.weld('B', m.ground.at(2.0, 0), bar.tip)\n"
+        "    return Scene(m, {}, t=(0, 0, 1))\n"
+    )
+    assert main(["run", "case.py", "--elastic", "--no-figures", "--backend", "vm"]) == 0
+    said = capsys.readouterr().out
+    assert "note: equilibrium leaves 9 series open that least strain energy tells" in said
+    assert "elasticity" in said
+
+
+@pytest.mark.parametrize(
+    ("elastic", "error", "message"),
+    [
+        ("bar", DeclarationError, "expected True, or a list of the links that give way, got 'bar'"),
+        (["rod"], UnknownNameError, "unknown link in elastic 'rod'"),
+        (["bare"], DeclarationError, "elastic: link 'bare' has no beam, which says what it is made of; links with one: bar, odd"),
+        (["odd"], DeclarationError, "material 'odd' has no elasticity, which elastic link 'odd' needs"),
+    ],
+)
+def test_what_has_no_meaning_is_one_line(elastic, error, message):
+    m = Mechanism("bad")
+    bar = m.link("bar", length=2.0, beam=made(beams.round_bar(0.02)))
+    odd = m.link("odd", length=2.0, beam=made(beams.round_bar(0.02), beams.Material("odd", 1e3)))
+    m.weld("A", m.ground, bar)
+    m.weld("B", bar, odd)
+    m.weld("C", bar, m.link("bare", length=1.0, mass=1.0))
+    with pytest.raises(error, match=message):
+        Scene(m, {}, t=(0, 0, 1), elastic=elastic)
+
+
+def test_a_table_and_friction_are_refused():
+    with pytest.raises(DeclarationError, match="a table has no place for what equilibrium leaves open"):
+        evaluate(held(y=-1.0), table=1e-6)
+    m = Mechanism("guides")
+    bar = m.link("bar", length=1.0, beam=made(beams.round_bar(0.02)))
+    joint = m.prismatic("G1", m.ground, bar, axis=(1, 0))
+    m.prismatic("G2", m.ground.at(1, 0), bar.tip, axis=(1, 0))
+    m.friction("rub", joint, mu=0.1, length=0.1)
+    with pytest.raises(DeclarationError, match="friction 'rub' follows a reaction that equilibrium leaves open"):
+        evaluate(Scene(m, {"G1": polynomial(0.0, 1.0, 0.5)}, t=(0, 1, 3), elastic=True))
