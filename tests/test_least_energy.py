@@ -52,7 +52,7 @@ def held(**forces):
 
 
 def test_a_beam_held_at_both_ends():
-    """Timoshenko, Strength of Materials I, art. 42, with the shear of Timoshenko's beam: by the force method, by hand."""
+    """Timoshenko, Strength of Materials I, with the shear of Timoshenko's beam: by the force method, by hand."""
     solution = evaluate(held(x=500.0, y=-1000.0))
     p, e, g = beams.rectangle(0.05, 0.02).properties(), STEEL.elasticity, STEEL.shear_modulus
     a, l, push = 0.6, 2.0, 1000.0
@@ -73,7 +73,7 @@ def test_a_beam_held_at_both_ends():
 
 
 def test_a_bar_on_three_supports():
-    """Two equal spans under their weight: 3/8, 10/8 and 3/8 of a span's weight (Timoshenko, Strength of Materials I, art. 45)."""
+    """Two equal spans under their weight: 3/8, 10/8 and 3/8 of a span's weight (Timoshenko, Strength of Materials I)."""
     m = Mechanism("spans")
     shape = beams.rectangle(0.02, 0.02)
     bar = m.link("bar", length=2.0, beam=made(shape))
@@ -105,7 +105,7 @@ def truss(angle):
 
 
 def test_three_bars_that_meet():
-    """P/(1 + 2 cos^3 a) in the upright bar, cos^2 a of it in the others (Timoshenko, Strength of Materials I, art. 6)."""
+    """P/(1 + 2 cos^3 a) in the upright bar, cos^2 a of it in the others (Timoshenko, Strength of Materials I)."""
     angle = math.radians(35)
     solution = evaluate(truss(angle))
     upright = 1000.0 / (1 + 2 * math.cos(angle) ** 3)

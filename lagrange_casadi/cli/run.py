@@ -28,6 +28,7 @@ from ..system.publish import check_free, check_writable, filling
 from ..system.room import MOST_THREADS
 from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
+from .elastic_lines import elastic_lines
 from .options import EVEN_POINTS, even_points, parameters, rung, separated, setting
 from .options import over as by_drive
 from .replaced import figures_in, replaced_lines
@@ -132,8 +133,9 @@ def run(
     names = [*forces(solution), *resultants(solution)]
     for line in report_lines(solution, refine(loaded.scene, solution, names) if refine_peaks else ()):
         say(line)
-    for line in strength_lines(solution, loaded.scene.mechanism, want or loaded.scene.wanted):
-        say(line)
+    for lines in (strength_lines, elastic_lines):
+        for line in lines(solution, loaded.scene.mechanism, want or loaded.scene.wanted):
+            say(line)
     told = np.array([[parameter["value"] for parameter in solution.description["parameters"].values()]])
     for note in (*solution.notes, turned.note(loaded.scene, loaded.scene.timing(t, over), told)):
         if note:

@@ -28,7 +28,7 @@ from .stretches import Timetable, timetable
 from .times import Instants, Over, Times, Timing, instants_of, span_of
 
 _KINDS = ("reaction", "multiplier", "load", "friction", "section", "output")
-STRENGTH = ("stress", "safety", "life")
+STRENGTH = ("stress", "safety", "life", "deflection")
 """What is told of links that have a beam: it follows from their sections, which are wanted with it."""
 
 _TURNS = 4.0 * math.pi
@@ -76,7 +76,8 @@ class Wanted:
     @classmethod
     def of(cls, mechanism: Mechanism, names: Sequence[str]) -> Wanted:
         """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``, ``load:NAME``, ``friction:NAME``,
-        ``section:LINK``, ``output:NAME``, ``all``; and of links with a beam ``stress:LINK``, ``safety:LINK``, ``life:LINK``.
+        ``section:LINK``, ``output:NAME``, ``all``; and of links with a beam ``stress:LINK``, ``safety:LINK``, ``life:LINK``,
+        ``deflection:LINK``.
 
         A kind alone, as ``section``, is all that the mechanism has of it. What an output of the user's own is made of is wanted
         with it.
@@ -144,7 +145,7 @@ def _check_material(mechanism: Mechanism, name: str) -> None:
         return
     beam = mechanism.links[link].beam
     assert beam is not None
-    needs = {"safety": ("elasticity", "yield_strength"), "life": ("ultimate", "endurance")}
+    needs = {"safety": ("elasticity", "yield_strength"), "life": ("ultimate", "endurance"), "deflection": ("elasticity",)}
     beam.material.needs(f"output '{name}'", *needs.get(kind, ()))
 
 

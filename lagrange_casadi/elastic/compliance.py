@@ -1,7 +1,7 @@
 """How a link gives way to its section forces: the strains of a straight beam, and its strain energy.
 
 Axial strain N/EA, curvatures by both bendings about any axes, twist T/GIt about the shear centre, and the shear strains V/GAs of
-Timoshenko's beam, each along y and z (Timoshenko, *Strength of Materials*, part I, chapter 11; Cowper, *The Shear Coefficient in
+Timoshenko's beam, each along y and z (Timoshenko, *Strength of Materials*, part I; Cowper, *The Shear Coefficient in
 Timoshenko's Beam Theory*, J. Appl. Mech. 33, 1966). Warping that is held adds nothing. In a planar mechanism bending is in its
 plane.
 """

@@ -1,7 +1,7 @@
 """Forces that equilibrium leaves open, by least strain energy (Menabrea 1858; Castigliano 1879).
 
 All forces are f + S x: those of an equilibrium, and what is open, x. Of all equilibria the true one has the least strain energy,
-where parts fit without strain (Timoshenko, *Strength of Materials*, part I, article 73). Strain energy is the sum of squares of
+where parts fit without strain (Timoshenko, *Strength of Materials*, part I, on least work). Strain energy is the sum of squares of
 section forces, each times a factor of its cross-section, over all links: a problem of least squares at every instant. Section
 forces are polynomials between two marks, so Gauss's nodes sum it exactly.
 

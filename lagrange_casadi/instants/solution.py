@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     import xarray
 
     from ..animation import Film
+    from ..elastic.deflection import Deflection
     from ..report import View
     from ..strength import Life, Safety, Stress
 
@@ -190,6 +191,12 @@ class Solution:
         from ..strength import life
 
         return life(self, link, criterion=criterion)
+
+    def deflection(self, link: str, against: Literal["ends", "base"] | None = None) -> Deflection:
+        """How a link that has a beam bends: see :func:`.elastic.deflection.deflection`."""
+        from ..elastic.deflection import deflection
+
+        return deflection(self, link, against)
 
     @property
     def links_with_sections(self) -> tuple[str, ...]:
