@@ -6,7 +6,19 @@ import frames
 import numpy as np
 import pytest
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate, load, save
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    beams,
+    check,
+    evaluate,
+    export,
+    load,
+    refine,
+    save,
+    sensitivities,
+)
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 from lagrange_casadi.motion import harmonic, polynomial
@@ -328,9 +340,36 @@ def test_a_file_keeps_what_elasticity_told(tmp_path):
     solution = evaluate(held(y=-1000.0))
     save(solution, tmp_path / "held.h5")
     back = load(tmp_path / "held.h5")
+    assert check(tmp_path / "held.h5") == []
     assert back.elasticity == solution.elasticity
     assert back.notes == solution.notes
     np.testing.assert_array_equal(back.reaction("A").mz, solution.reaction("A").mz)
+
+
+def test_what_knows_equilibrium_alone_leaves_it_open(moving, tmp_path):
+    """Peaks between instants and derivatives are of graphs that leave it open; neither takes the one for the other."""
+    _, solution = moving
+    m = four_bar()
+    scene = Scene(m, {"O": polynomial(0.2, 30.0, 40.0)}, posture={"A": 0.5, "C": 1.5}, t=(0, 8e-3, 9), elastic=True)
+    told, known = "reaction:C:mx", "effort:O"
+    assert told in map(str, solution.elasticity.told)
+    peaks = {peak.name: peak for peak in refine(scene, solution, [told, known])}
+    assert peaks[told] == solution.peak(told)
+    assert abs(peaks[known].value) >= abs(solution.peak(known).value)
+    assert not solution.by_equilibrium.determined(told)
+    assert np.isnan(solution.by_equilibrium.reaction("C").mx).all()
+    changes = sensitivities(scene, solution, backend="vm")
+    with pytest.raises(DeclarationError, match="reaction:C:mx"):
+        changes.peak(told)
+
+
+def test_exports_are_of_equilibrium(tmp_path):
+    plain, elastic = three_cranks(made(beams.round_bar(0.01)), elastic=False), three_cranks(made(beams.round_bar(0.01)))
+    for name, scene in (("plain", plain), ("elastic", elastic)):
+        export(scene, tmp_path / name, wanted=["effort", "reaction"])
+    files = sorted(path.name for path in (tmp_path / "plain").iterdir() if path.is_file())
+    for name in files:
+        assert (tmp_path / "plain" / name).read_bytes() == (tmp_path / "elastic" / name).read_bytes(), name
 
 
 def test_the_command_line_asks_for_it(tmp_path, monkeypatch, capsys):

@@ -13,7 +13,7 @@ from ..declare.scene import Wanted
 from ..instants.laws import law_of
 from ..instants.solution import Solution
 from ..quantities import Output
-from ..tables import FORCE
+from ..tables import FORCE, MOMENT
 from .least_energy import Completed
 
 _ALONG = np.linspace(0.0, 1.0, 5)
@@ -29,10 +29,12 @@ def told_errors(
     """
     if not errors:
         return {}
-    forces = [output for output in before if output in errors and output.quantity.unit == FORCE]
-    size = max((_largest(before[output]) for output in forces), default=0.0)
-    worst = max((errors[output] for output in forces), default=0.0)
-    part = done.magnified * max(worst / size if size > 0.0 else 0.0, _ROUNDINGS * ROUNDING["double"])
+    part = _ROUNDINGS * ROUNDING["double"]
+    for unit in (FORCE, MOMENT):
+        own = [output for output in before if output in errors and output.quantity.unit == unit]
+        size, worst = max(map(_largest, (before[o] for o in own)), default=0.0), max((errors[o] for o in own), default=0.0)
+        part = max(part, worst / size if size > 0.0 else 0.0)
+    part *= 2.0 * done.magnified  # the equilibrium is off, and so is what is put to it
     found = dict(errors)
     for output in done.told:
         if output in found:

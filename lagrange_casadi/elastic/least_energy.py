@@ -98,7 +98,7 @@ def complete(
     values = free.values(*given, x).full()
     for k, column in enumerate(free.columns):
         done[graph.columns.index(column), known] = values[k]
-    still = _still_open(graph, free, left_open, found, _sloping(free, given, x))
+    still = _still_open(free, left_open, found, _sloping(free, given, x))
     residual = np.zeros(t.size)
     residual[known] = state.stationarity(beams, done[:, known], found)
     reasons = tuple(_reasons(firm, stiff, found)) if still else ()
@@ -203,11 +203,9 @@ class _State:
     def stationarity(self, beams: Mapping[str, Compliance], done: Array, found: Sequence[_Least]) -> Array:
         """How far the strain energy of completed columns is from its least, by other nodes: the largest cosine (t,)."""
         slope, along, across = 0.0, 0.0, 0.0
-        chosen = [one.chosen for one in found]
-        most = max((part.shape[1] for part in chosen), default=0)
-        if not most:
+        ways = _stacked([one.chosen for one in found])
+        if not ways.size:
             return np.zeros(len(self.t))
-        ways = np.stack([np.pad(part, ((0, 0), (0, most - part.shape[1]))) for part in chosen])
         for link in beams:
             beam = Compliance.of(self.member(link, done), f"elastic link '{link}'")
             at = nodes(beam.member, _FINER)
@@ -290,27 +288,32 @@ def _seen(matrix: Array) -> tuple[Array, Array]:
     return v[:rank].T, v[rank:].T
 
 
-def _still_open(
-    graph: SceneGraph, free: OpenForces, left_open: Sequence[Output], found: Sequence[_Least], slopes: Array
-) -> tuple[Output, ...]:
+def _still_open(free: OpenForces, left_open: Sequence[Output], found: Sequence[_Least], slopes: Array) -> tuple[Output, ...]:
     """Those of the outputs that change with what stays open at some instant, by slopes (columns, t, count)."""
-    rows, still = {column: k for k, column in enumerate(free.columns)}, []
-    for output in left_open:
+    rows = {column: k for k, column in enumerate(free.columns)}
+    ways, scale, unseen = (_stacked([getattr(one, name) for one in found]) for name in ("open", "scale", "unseen"))
+
+    def stays(output: Output) -> bool:
         if output not in rows:
-            still.append(output)
-            continue
-        each = slopes[rows[output]]
-        for ways, against in (("open", "scale"), ("unseen", None)):
-            left = np.array([_norm(row @ getattr(one, ways)) for row, one in zip(each, found, strict=True)])
-            size = max(_norm(row if against is None else row @ getattr(one, against)) for row, one in zip(each, found, strict=True))
-            if np.any(left > _NONE * size):
-                still.append(output)
-                break
-    return tuple(still)
+            return True
+        own = slopes[rows[output]]
+        whole = np.linalg.norm(own, axis=1).max()
+        return bool(
+            np.any(_norms(own, ways) > _NONE * _norms(own, scale).max(initial=0.0)) or np.any(_norms(own, unseen) > _NONE * whole)
+        )
+
+    return tuple(output for output in left_open if stays(output))
 
 
-def _norm(row: Array) -> float:
-    return float(np.sqrt(np.sum(row * row)))
+def _norms(rows: Array, ways: Array) -> Array:
+    """How much rows (t, count) change along ways (t, count, n), (t,)."""
+    return np.asarray(np.linalg.norm(np.einsum("tk,tkn->tn", rows, ways), axis=1))
+
+
+def _stacked(ways: Sequence[Array]) -> Array:
+    """Ways (count, n) of every instant as (t, count, n), with nil ways where there are fewer."""
+    most = max(part.shape[1] for part in ways)
+    return np.stack([np.pad(part, ((0, 0), (0, most - part.shape[1]))) for part in ways])
 
 
 def _reasons(firm: Mapping[str, str], stiff: Mapping[str, Array], found: Sequence[_Least]) -> Iterator[str]:

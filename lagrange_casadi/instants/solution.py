@@ -227,6 +227,13 @@ class Solution:
         over = self.over and replace(self.over, values=self.over.values[instants])
         return replace(self, t=self.t[instants], outputs=outputs, certificate=certificate, over=over)
 
+    @property
+    def by_equilibrium(self) -> Solution:
+        """The same without what elasticity told: it is open, and NaN."""
+        told = self.elasticity.told
+        nothing = {output: np.full_like(self.t, np.nan) for output in told}
+        return replace(self, outputs={**self.outputs, **nothing}, left_open=(*self.left_open, *told), elasticity=Elasticity())
+
     def determined(self, name: str | Output) -> bool:
         """Whether equilibrium determines a quantity, at all instants."""
         output = self._output(name)
