@@ -35,6 +35,7 @@ def natural():
     return closed(strong.STEEL.elasticity * p.iz, strong.STEEL.density * p.area, 1.0, ("pinned", "pinned")) / math.tau
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("part", [0.05, 0.25, 0.31, 0.8, 1.6])
 def test_a_bar_shaken_by_a_sine(part):
     """One harmonic alone: by swinging its bending is off by r^2/(1 - r^2)."""

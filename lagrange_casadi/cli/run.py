@@ -113,7 +113,7 @@ def run(
         flags=flags,
         threads=threads,
         certificate=not no_certificate,
-        elastic=elastic or None,
+        elastic=(loaded.scene.elastic or True) if elastic else None,
     )
     usual = Path(f"{loaded.name}_figures") if out == Path(f"{loaded.name}.h5") else None
     place = folder or usual

@@ -19,7 +19,7 @@ def giving(mechanism: Mechanism, elastic: Elastic) -> Elastic:
     """
     if isinstance(elastic, bool):
         return elastic
-    if isinstance(elastic, str) or not all(isinstance(name, str) for name in elastic):
+    if not isinstance(elastic, (list, tuple)) or not all(isinstance(name, str) for name in elastic):
         raise DeclarationError(f"elastic: expected True, or a list of the links that give way, got {elastic!r}")
     having = [name for name, link in mechanism.links.items() if isinstance(link.mass, Density) and link.beam is not None]
     for name in elastic:

@@ -70,14 +70,13 @@ def first_mode(
     shape = np.stack([1 - 3 * s**2 + 2 * s**3, s - 2 * s**2 + s**3, 3 * s**2 - 2 * s**3, -(s**2) + s**3])
     bent = np.stack([-6 * one + 12 * s, -4 * one + 6 * s, 6 * one - 12 * s, -2 * one + 6 * s]) + zero
     units = np.stack([np.ones_like(h[:, 0]), h[:, 0], np.ones_like(h[:, 0]), h[:, 0]])
-    size = 2 * len(edges)
+    parts, size = len(h), 2 * len(edges)
+    curved = bent[:, None] * units[:, :, None] / h[None] ** 2
+    moved = shape[:, None] * units[:, :, None]
     k, m = np.zeros((size, size)), np.zeros((size, size))
-    for part in range(len(h)):
-        own = slice(2 * part, 2 * part + 4)
-        curved = bent * units[:, part, None] / h[part] ** 2
-        k[own, own] += (curved * (weights[part] * stiffness(u[part]))) @ curved.T
-        n = shape * units[:, part, None]
-        m[own, own] += (n * (weights[part] * mass(u[part]))) @ n.T
+    at = 2 * np.arange(parts)[:, None] + np.arange(4)
+    for into, shapes, factor in ((k, curved, weights * stiffness(u)), (m, moved, weights * mass(u))):
+        np.add.at(into, (at[:, :, None], at[:, None, :]), np.einsum("ipn,pn,jpn->pij", shapes, factor, shapes))
     gone = {"pinned": (0,), "clamped": (0, 1), "free": (), "guided": (1,)}
     fixed = [*gone[ends[0]], *(size - 2 + k for k in gone[ends[1]])]
     kept = [i for i in range(size) if i not in fixed]
@@ -90,7 +89,7 @@ def first_mode(
     rigid = 2 - int(np.linalg.matrix_rank(np.array([[0, 0], *lines[ends[0]], *tip])))
     mode = np.zeros(size)
     mode[kept] = np.linalg.solve(lower.T, vectors[:, rigid])
-    curvature = np.stack([mode[2 * p : 2 * p + 4] @ (bent * units[:, p, None] / h[p] ** 2) for p in range(len(h))])
+    curvature = np.einsum("pi,ipn->pn", mode[at], curved)
     bound = None
     if not rigid:
         flexible = np.sum(weights * mass(u) * _sag(stiffness, length, edges, u, ends))

@@ -8,15 +8,17 @@ latter are the difference of two evaluations, with a force as large as the machi
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, cast
 
+import casadi as ca
 import numpy as np
 
 from ..declare.density import Array
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Body, Force, Link, Point, PointMass
+from ..declare.parts import Body, Force, Link, Parameter, Point, PointMass
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..elastic.compliance import Compliance, nodes
@@ -26,6 +28,7 @@ from ..instants.solution import Solution
 from ..strength.member import Member
 
 _LOAD = "tool deflection"
+_PUSHES = tuple(f"{_LOAD} {axis}" for axis in "xyz")
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,23 +85,23 @@ def tool_deflection(
     if not links:
         raise DeclarationError("tool_deflection: no link has a beam, which says what it is made of; all are rigid")
 
-    def sections(some: Scene) -> Solution:
-        wanted = [f"section:{link}" for link in links]
-        return evaluate(some, parameters=parameters, t=t, over=over, wanted=wanted, certificate=False, elastic=links)
+    pushed = replace(scene, mechanism=_pushed(mechanism, place), assembly=dict(scene.assembly))
+    asked: dict[str, Any] = {"t": t, "over": over, "wanted": [f"section:{link}" for link in links], "elastic": links}
 
-    plain = sections(scene)
+    def sections(forces: Mapping[str, float]) -> Solution:
+        return evaluate(pushed, parameters={**(parameters or {}), **forces}, certificate=False, **asked)
+
+    plain = sections({})
     members = {link: Compliance.of(Member.of(plain, link), f"tool_deflection: link '{link}'") for link in links}
-    push = _size(plain, links)
-    ways = 3 if mechanism.space else 2
-    by_link = {link: np.zeros((plain.t.size, ways)) for link in links}
-    for way in range(ways):
-        unit = sections(replace(scene, mechanism=_pushed(mechanism, place, way, push), assembly=dict(scene.assembly)))
+    push, ways = _size(plain, links), _PUSHES[: 3 if mechanism.space else 2]
+    by_link = {link: np.zeros((plain.t.size, len(ways))) for link in links}
+    for k, way in enumerate(ways):
+        unit = sections({way: push})
         for link, beam in members.items():
             at = nodes(beam.member)
             own = beam.member.at(at.u)
-            pushed = np.stack([unit.section(link).law.at(force, at.u) for force in beam.member.forces])
-            strained = beam.strains(own, at.index, at.u)
-            by_link[link][:, way] = np.sum(strained * (pushed - own) * at.weights, axis=(0, 2)) / push
+            more = np.stack([unit.section(link).law.at(force, at.u) for force in beam.member.forces]) - own
+            by_link[link][:, k] = np.sum(beam.strains(own, at.index, at.u) * more * at.weights, axis=(0, 2)) / push
     return ToolDeflection(plain.t, by_link)
 
 
@@ -109,9 +112,11 @@ def _size(solution: Solution, links: list[str]) -> float:
     return most or 1.0
 
 
-def _pushed(mechanism: Mechanism, place: Point, way: int, push: float) -> Mechanism:
-    """The mechanism with one force more."""
+def _pushed(mechanism: Mechanism, place: Point) -> Mechanism:
+    """The mechanism with one force more, whose components are parameters."""
     found: Any = copy.copy(mechanism)
-    along = [push if k == way else 0.0 for k in range(3)]
-    found.loads = dict(mechanism.loads) | {_LOAD: Force(_LOAD, place, along[0], along[1], False, along[2])}
-    return found  # type: ignore[no-any-return]
+    pushes = {name: Parameter(name, 0.0, "N", -math.inf, math.inf, ca.SX.sym(name)) for name in _PUSHES}
+    found.parameters = dict(mechanism.parameters) | pushes
+    x, y, z = (parameter.symbol for parameter in pushes.values())
+    found.loads = dict(mechanism.loads) | {_LOAD: Force(_LOAD, place, x, y, False, z if mechanism.space else 0.0)}
+    return cast(Mechanism, found)
