@@ -5,6 +5,7 @@ import math
 import frames
 import numpy as np
 import pytest
+from elastic_mechanisms import LIGHT, STEEL, agrees, four_bar, held, made, sections_of, three_cranks
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
@@ -13,56 +14,12 @@ from lagrange_casadi import (
     Scene,
     SpatialMechanism,
     beams,
-    check,
     evaluate,
-    export,
-    load,
-    refine,
-    save,
-    sensitivities,
 )
-from lagrange_casadi.cli import main
-from lagrange_casadi.errors import AssemblyError, DeclarationError, MobilityError, PostureError, UnknownNameError
-from lagrange_casadi.motion import harmonic, polynomial
+from lagrange_casadi.errors import AssemblyError, MobilityError, PostureError
+from lagrange_casadi.motion import polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
-
-STEEL = beams.material("S235")
-LIGHT = STEEL.but(density=1e-9)
-
-
-def made(shape, material=STEEL):
-    return beams.Beam(shape, material)
-
-
-def sections_of(**links):
-    """Properties, E, G and mass per length of links, by their beams."""
-    found = {}
-    for name, beam in links.items():
-        p = beam.course.cells[0][0].properties()
-        found[name] = (p, beam.material.elasticity, beam.material.shear_modulus, beam.material.density * p.area)
-    return found
-
-
-def agrees(solution, i, reactions, tolerance=1e-8):
-    """Every reaction of a solution is that of a frame, in all components that it has."""
-    size = max(np.abs(row).max() for row in reactions.values())
-    for joint, row in reactions.items():
-        found = solution.reaction(joint)
-        for k, values in enumerate((found.fx, found.fy, found.fz, found.mx, found.my, found.mz)):
-            if values is not None:
-                assert values[i] == pytest.approx(row[k], abs=tolerance * size), (joint, k)
-
-
-def held(**forces):
-    """A beam that is held at both ends, which a force loads beside its middle."""
-    m = Mechanism("held")
-    m.set_gravity(0.0, 0.0)
-    bar = m.link("bar", length=2.0, beam=made(beams.rectangle(0.05, 0.02)))
-    m.weld("A", m.ground, bar)
-    m.weld("B", m.ground.at(2.0, 0), bar.tip)
-    m.force("push", bar.at(0.6), **forces)
-    return Scene(m, {}, t=(0, 0, 1), xi=(0, 1, 5), elastic=True)
 
 
 def test_a_beam_held_at_both_ends():
@@ -151,23 +108,6 @@ def test_a_portal_frame_is_that_of_a_frame_solver():
     assert len(solution.elasticity.told) == 21
 
 
-def four_bar(axis=(0, 0, 1), third=None):
-    """A planar four-bar of pins in space, loaded aside, with links that are not round."""
-    m = SpatialMechanism("four_bar")
-    parts = {
-        "a": m.link("a", length=0.1, beam=made(beams.rectangle(0.03, 0.012))),
-        "b": m.link("b", length=0.3, beam=made(beams.rectangle(0.02, 0.01))),
-        "c": m.link("c", length=0.25, beam=third or made(beams.tube(0.02, 0.003))),
-    }
-    a, b, c = parts.values()
-    m.revolute("O", m.ground, a, axis=axis)
-    m.revolute("A", a.tip, b, axis=axis)
-    m.revolute("B", b.tip, c.tip, axis=axis)
-    m.revolute("C", m.ground.at(0.3, 0, 0), c, axis=axis)
-    m.force("side", b.at(0.15), x=20.0, z=100.0)
-    return m
-
-
 @pytest.fixture(scope="module")
 def moving():
     m = four_bar()
@@ -248,16 +188,6 @@ def test_any_chain_between_two_walls(parts, last, forces, odd, space):
     agrees(solution, 0, frames.of_solution(solution, 0, sections, loads)[0], 1e-6)
 
 
-def test_what_equilibrium_determines_is_what_it_was(moving):
-    m, solution = moving
-    plain = evaluate(Scene(m, {"O": polynomial(0.2, 30.0, 40.0)}, posture={"A": 0.5, "C": 1.5}, t=(0, 8e-3, 9)))
-    for output, values in plain.outputs.items():
-        if output not in plain.left_open:
-            np.testing.assert_array_equal(values, solution.outputs[output])
-    assert plain.left_open == solution.elasticity.told
-    assert all(name in solution.errors for name in plain.undetermined if name.startswith("reaction"))
-
-
 def test_two_hinges_of_one_door():
     """Alike hinges at both ends of a post, alike beyond them, share thrust and moments alike."""
     m = SpatialMechanism("door")
@@ -294,17 +224,6 @@ def test_bricards_loop():
     assert solution.certified
     sections = sections_of(**{name: link.beam for name, link in m.links.items()})
     agrees(solution, 0, frames.of_solution(solution, 0, sections)[0], 1e-7)
-
-
-def three_cranks(beam, bar=None, elastic=True):
-    m = Mechanism("three_cranks")
-    cranks = [m.link(name, length=0.2, beam=beam) for name in "abc"]
-    bar = m.link("bar", length=1.0, **({"beam": bar} if bar else {"mass": 1.0}))
-    for k, link in enumerate(cranks):
-        m.revolute(f"G{k}", m.ground.at(0.5 * k, 0.0), link)
-        m.revolute(f"B{k}", link.tip, (bar.base, bar.at(0.5), bar.tip)[k])
-    posture = {"a": 1.2, "b": 1.2, "c": 1.2, "bar": 0.0}
-    return Scene(m, {"G0": harmonic(1.2, 0.3, 1.0)}, posture=posture, t=(0, 1, 5), elastic=elastic)
 
 
 def test_a_symmetric_machine_has_symmetric_forces():
@@ -385,96 +304,3 @@ def test_a_tapered_beam_by_fine_sums():
     assert solution.reaction("B").fy[0] == pytest.approx(force, rel=1e-8)
     assert solution.reaction("B").mz[0] == pytest.approx(couple, rel=1e-8)
     assert solution.certificate["elasticity"].max() < 1e-12
-
-
-def test_only_what_is_wanted_is_told():
-    scene = held(y=-1000.0)
-    solution, whole = evaluate(scene, wanted=["reaction:A"]), evaluate(scene)
-    assert set(solution.series) == {name for name in whole.series if name.startswith("reaction:A")}
-    np.testing.assert_array_equal(solution.reaction("A").mz, whole.reaction("A").mz)
-    assert set(solution.errors) <= set(solution.series)
-
-
-def test_a_file_keeps_what_elasticity_told(tmp_path):
-    solution = evaluate(held(y=-1000.0))
-    save(solution, tmp_path / "held.h5")
-    back = load(tmp_path / "held.h5")
-    assert check(tmp_path / "held.h5") == []
-    assert back.elasticity == solution.elasticity
-    assert back.notes == solution.notes
-    np.testing.assert_array_equal(back.reaction("A").mz, solution.reaction("A").mz)
-
-
-def test_what_knows_equilibrium_alone_leaves_it_open(moving, tmp_path):
-    """Peaks between instants and derivatives are of graphs that leave it open; neither takes the one for the other."""
-    _, solution = moving
-    m = four_bar()
-    scene = Scene(m, {"O": polynomial(0.2, 30.0, 40.0)}, posture={"A": 0.5, "C": 1.5}, t=(0, 8e-3, 9), elastic=True)
-    told, known = "reaction:C:mx", "effort:O"
-    assert told in map(str, solution.elasticity.told)
-    peaks = {peak.name: peak for peak in refine(scene, solution, [told, known])}
-    assert peaks[told] == solution.peak(told)
-    assert abs(peaks[known].value) >= abs(solution.peak(known).value)
-    assert not solution.by_equilibrium.determined(told)
-    assert np.isnan(solution.by_equilibrium.reaction("C").mx).all()
-    changes = sensitivities(scene, solution, backend="vm")
-    with pytest.raises(DeclarationError, match="reaction:C:mx"):
-        changes.peak(told)
-
-
-def test_exports_are_of_equilibrium(tmp_path):
-    plain, elastic = three_cranks(made(beams.round_bar(0.01)), elastic=False), three_cranks(made(beams.round_bar(0.01)))
-    for name, scene in (("plain", plain), ("elastic", elastic)):
-        export(scene, tmp_path / name, wanted=["effort", "reaction"])
-    files = sorted(path.name for path in (tmp_path / "plain").iterdir() if path.is_file())
-    for name in files:
-        assert (tmp_path / "plain" / name).read_bytes() == (tmp_path / "elastic" / name).read_bytes(), name
-
-
-def test_the_command_line_asks_for_it(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "case.py").write_text(
-        "from lagrange_casadi import Mechanism, Scene, beams\n"
-        "def scene():\n"
-        "    m = Mechanism('held')\n"
-        "    bar = m.link('bar', length=2.0, beam=beams.Beam(beams.rectangle(0.05, 0.02), beams.material('S235')))\n"
-        "    m.weld('A', m.ground, bar)\n"
-        "    m.weld('B', m.ground.at(2.0, 0), bar.tip)\n"
-        "    return Scene(m, {}, t=(0, 0, 1))\n"
-    )
-    assert main(["run", "case.py", "--elastic", "--no-figures", "--backend", "vm"]) == 0
-    said = capsys.readouterr().out
-    assert "note: equilibrium leaves 9 series open that least strain energy tells" in said
-    assert "elasticity" in said
-
-
-@pytest.mark.parametrize(
-    ("elastic", "error", "message"),
-    [
-        ("bar", DeclarationError, "expected True, or a list of the links that give way, got 'bar'"),
-        (["rod"], UnknownNameError, "unknown link in elastic 'rod'"),
-        (["bare"], DeclarationError, "elastic: link 'bare' has no beam, which says what it is made of; links with one: bar, odd"),
-        (["odd"], DeclarationError, "material 'odd' has no elasticity, which elastic link 'odd' needs"),
-    ],
-)
-def test_what_has_no_meaning_is_one_line(elastic, error, message):
-    m = Mechanism("bad")
-    bar = m.link("bar", length=2.0, beam=made(beams.round_bar(0.02)))
-    odd = m.link("odd", length=2.0, beam=made(beams.round_bar(0.02), beams.Material("odd", 1e3)))
-    m.weld("A", m.ground, bar)
-    m.weld("B", bar, odd)
-    m.weld("C", bar, m.link("bare", length=1.0, mass=1.0))
-    with pytest.raises(error, match=message):
-        Scene(m, {}, t=(0, 0, 1), elastic=elastic)
-
-
-def test_a_table_and_friction_are_refused():
-    with pytest.raises(DeclarationError, match="a table has no place for what equilibrium leaves open"):
-        evaluate(held(y=-1.0), table=1e-6)
-    m = Mechanism("guides")
-    bar = m.link("bar", length=1.0, beam=made(beams.round_bar(0.02)))
-    joint = m.prismatic("G1", m.ground, bar, axis=(1, 0))
-    m.prismatic("G2", m.ground.at(1, 0), bar.tip, axis=(1, 0))
-    m.friction("rub", joint, mu=0.1, length=0.1)
-    with pytest.raises(DeclarationError, match="friction 'rub' follows a reaction that equilibrium leaves open"):
-        evaluate(Scene(m, {"G1": polynomial(0.0, 1.0, 0.5)}, t=(0, 1, 3), elastic=True))
