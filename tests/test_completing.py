@@ -92,8 +92,10 @@ def test_the_command_line_asks_for_it(tmp_path, monkeypatch, capsys):
         "    bar = m.link('bar', length=2.0, beam=beams.Beam(beams.rectangle(0.05, 0.02), beams.material('S235')))\n"
         "    m.weld('A', m.ground, bar)\n"
         "    m.weld('B', m.ground.at(2.0, 0), bar.tip)\n"
-        "    return Scene(m, {}, t=(0, 0, 1))\n"
+        "    return Scene(m, {}, t=(0, 0, 1), elastic=['bar'])\n"
     )
+    assert main(["info", "case.py"]) == 0
+    assert "elastic: bar" in capsys.readouterr().out
     assert main(["run", "case.py", "--elastic", "--no-figures", "--backend", "vm"]) == 0
     said = capsys.readouterr().out
     assert "note: equilibrium leaves 9 series open that least strain energy tells" in said
