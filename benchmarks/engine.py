@@ -12,9 +12,10 @@ from lagrange_casadi.declare.description import describe
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.equations.scene_graph import SceneGraph
 from lagrange_casadi.instants.backends import rows, run
+from lagrange_casadi.instants.ordering import in_order
 from lagrange_casadi.instants.rung import Backend, Rung
 from lagrange_casadi.instants.section_law import SectionLaw
-from lagrange_casadi.instants.solution import Provenance, Solution, in_order
+from lagrange_casadi.instants.solution import Provenance, Solution
 from lagrange_casadi.quantities import FORCES
 from lagrange_casadi.system.room import cores
 

@@ -14,9 +14,12 @@ from .arithmetic.compensated import Precision
 from .declare.density import Array
 from .declare.ends import BEYOND
 from .declare.even_points import EvenPoints, points
+from .declare.giving import Elastic, felt, giving
 from .declare.motion import ends_function, refuse_kinked
-from .declare.scene import Scene, checked_ratios
+from .declare.scene import Scene, Wanted, checked_ratios
 from .declare.times import Over, Times, Timing, span_of
+from .elastic.completing import told_errors, wanted_alone
+from .elastic.least_energy import complete
 from .equations.checks import Check
 from .equations.derive import assembled, derive
 from .equations.described import described
@@ -25,11 +28,13 @@ from .errors import CertificateWarning, DeclarationError
 from .instants.backends import Evaluated
 from .instants.cost import seconds
 from .instants.determinacy import determinate, undetermined
+from .instants.elasticity import Elasticity
 from .instants.from_table import columns
+from .instants.ordering import in_order
 from .instants.phases import phases
 from .instants.refusal import refuse
 from .instants.rung import Backend, Rung
-from .instants.solution import Solution, in_order
+from .instants.solution import Solution
 from .judge.accuracy import estimate, explained
 from .judge.certificate import certify, failure, tolerance
 from .judge.written import written
@@ -59,6 +64,7 @@ def evaluate(
     flags: str = "",
     threads: int | None = None,
     certificate: bool = True,
+    elastic: Elastic | None = None,
 ) -> Solution:
     """Evaluate a scene, with its own grids and outputs or with others.
 
@@ -80,6 +86,8 @@ def evaluate(
     certificate
         Whether to check the solution by :mod:`.certificate`, as far as the wanted outputs allow, and to estimate its errors by
         :mod:`.accuracy`.
+    elastic
+        Whether least strain energy tells what equilibrium leaves open: see :class:`.Scene`.
 
     Returns the :class:`.Solution`: arrays over the instants (t,), section forces (t, xi), in SI units; :mod:`.quantities` lists
     units and signs. A solution whose certificate fails says so: it is not :attr:`~.Solution.certified`, and
@@ -100,7 +108,13 @@ def evaluate(
     span = checked_span(scene, timing, values)
     checked_laws(scene, span, tuple(values.values()))
     ratios = checked_ratios(scene.xi if xi is None else xi)
-    graph = derive(assembled(scene, values, wanted, iterate=newton is not None), wanted, iterate=newton is not None)
+    gives = scene.elastic if elastic is None else giving(scene.mechanism, elastic)
+    if gives and table is not None:
+        raise DeclarationError("elastic: a table has no place for what equilibrium leaves open; evaluate without a table")
+    names = scene.wanted if wanted is None else wanted
+    asked = [*names, *felt(scene.mechanism)] if gives else wanted
+    how = {"iterate": newton is not None, "elastic": bool(gives)}
+    graph = derive(assembled(scene, values, asked, **how), asked, **how)
     require("the outputs over time", (_CHECKED if certificate else 1, len(graph.columns) + _BESIDE, timing.count))
     _announce(graph, timing.count, rung, threads or cores())
     instants, places = scene.instants(timing, values), points(ratios)
@@ -113,21 +127,30 @@ def evaluate(
     refuse(graph, found, times, p, rung)
     out = np.asarray(found.out, float)
     left_open += undetermined(graph, out, p, rung)
+    description = described(scene, values)
+    done = complete(graph, out, np.asarray(found.iterated, float), times, p, description, left_open, gives) if gives else None
+    if done is not None:
+        before, out, left_open = out, done.out, done.left_open
     within = phases(graph, out, times, p) if certificate else {}
     outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
-    description = described(scene, values)
     ordered = in_order(outputs, description)
     solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open, over=instants.over)
     solution = replace(solution, tolerance=tolerance(solution))
+    if done is not None:
+        solution = replace(solution, elasticity=Elasticity(done.told, done.reasons))
     if not certificate:
-        return solution
+        return wanted_alone(solution, Wanted.of(scene.mechanism, names)) if gives else solution
     residuals = _closed(graph, out, p) | residuals_of(solution, graph, out, p, within)
-    errors = explained(solution, residuals, estimate(graph, found, solution, p))
+    estimated = estimate(graph, found, solution, p)
+    if done is not None and done.told:
+        residuals["elasticity"] = done.residual
+        estimated = told_errors(estimated, solution, {output: before[k] for output, k in graph.outputs.items()}, done)
+    errors = explained(solution, residuals, estimated)
     named = {str(output): error for output, error in errors.items()}
     solution = replace(solution, certificate=residuals | _condition(graph, found), errors=named)
     if solution.failed:
         warnings.warn(f"{failure(solution)}; the solution is not certified", CertificateWarning, stacklevel=2)
-    return solution
+    return wanted_alone(solution, Wanted.of(scene.mechanism, names)) if gives else solution
 
 
 def _announce(graph: SceneGraph, count: int, rung: Rung, threads: int) -> None:

@@ -1,6 +1,7 @@
 """What figures a case may want: the public part of :mod:`.draw.figures`."""
 
 from .draw.figures import (
+    DeflectionPlot,
     MechanismDrawing,
     SectionMaps,
     SpanPlot,
@@ -13,6 +14,7 @@ from .draw.figures import (
 )
 
 __all__ = [
+    "DeflectionPlot",
     "MechanismDrawing",
     "SectionMaps",
     "SpanPlot",

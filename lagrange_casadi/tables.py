@@ -97,6 +97,7 @@ _OTHERS = (
     Quantity("certificate", "closure", ("t",), "1", "gaps of joints, and what users' equations miss, over the length of all links"),
     Quantity("certificate", "friction", ("t",), "1", "frictions and their laws, over the largest friction of the cycle"),
     Quantity("certificate", "ends", ("t",), "1", "sections at the base and what acts there, over the largest force of the cycle"),
+    Quantity("certificate", "elasticity", ("t",), "1", "how far the strain energy is from its least, as a cosine"),
     Quantity("certificate", "condition", ("t",), "1", "how much the loops magnify: 1/sin(transmission angle), or 2/volume"),
     Quantity("section", "axial", ("t", "xi"), FORCE, "axial force", f"tension is positive: {ON_INBOARD}, along the axis"),
 )

@@ -166,3 +166,10 @@ def test_what_buckling_needs():
         evaluate(Scene(m, {"O": polynomial(0.3, 2.0)}, t=(0, 1, 11)), wanted=["safety:arm"])
     with pytest.raises(DeclarationError, match="material 'plain' has no ultimate and no endurance, which output 'life:arm' needs"):
         Scene(m, {"O": polynomial(0.3, 2.0)}, t=(0, 1, 11), wanted=["life:arm"])
+
+
+def test_what_slides_along_a_link_holds_none_of_its_ends():
+    """Its place on the link is told as the base, and is not there."""
+    scene = strong.press(beams.rectangle(0.02, 0.01), sliding=True)
+    told = describe(scene.mechanism, scene.mechanism.values(), ["O", "along"])
+    assert effective_lengths(told, "rod") == (1.0, 0.5)

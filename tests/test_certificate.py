@@ -232,3 +232,12 @@ def test_a_gap_far_from_the_origin_is_judged_by_the_places_that_it_is_between():
     near, away = evaluate(far(0.0)), evaluate(far(1e6))
     np.testing.assert_allclose(away.effort("O"), near.effort("O"), atol=1e-6 * np.max(np.abs(near.effort("O"))))
     assert math.isclose(away.certificate["closure"].max(), 0.0, abs_tol=1e-9)
+
+
+def test_what_has_no_motion_to_tell_is_evaluated_without_it():
+    """A structure of welds alone, of which only a reaction is wanted: no body's place is told, so there is nothing to check."""
+    m = Mechanism("bracket")
+    m.weld("A", m.ground, m.link("arm", length=1.0, mass=1.0))
+    solution = evaluate(Scene(m, {}, t=(0, 0, 1)), wanted=["reaction:A"])
+    assert solution.reaction("A").mz[0] == pytest.approx(9.81 / 2)
+    assert not solution.certificate

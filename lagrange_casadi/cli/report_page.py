@@ -86,7 +86,9 @@ def report(
         check_writable(out)
         wanted = with_motion(want or loaded.scene.wanted)
         engine = Live(loaded.scene, loaded.scene.timing(t, over), wanted, _command(loaded.name)) if live else None
-        solution = evaluate(loaded.scene, parameters=parameters(settings), t=t, over=over, wanted=wanted)
+        # What a page computes anew is what equilibrium tells.
+        told = False if live else None
+        solution = evaluate(loaded.scene, parameters=parameters(settings), t=t, over=over, wanted=wanted, elastic=told)
         write_report(solution, out, engine)
     _tell(solution, out)
 

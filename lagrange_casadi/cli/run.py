@@ -28,6 +28,7 @@ from ..system.publish import check_free, check_writable, filling
 from ..system.room import MOST_THREADS
 from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
+from .elastic_lines import elastic_lines
 from .options import EVEN_POINTS, even_points, parameters, rung, separated, setting
 from .options import over as by_drive
 from .replaced import figures_in, replaced_lines
@@ -58,6 +59,7 @@ from .strength_lines import strength_lines
 @click.option("--no-figures", is_flag=True, help="Draw nothing.")
 @click.option("--csv", type=click.Path(path_type=Path), metavar="FILE.csv", help="Write a row for every instant as CSV too.")
 @click.option("--refine-peaks", is_flag=True, help="Seek the reported peaks between the instants too.")
+@click.option("--elastic", is_flag=True, help="Let the beams of links tell what equilibrium leaves open.")
 @click.option("--no-certificate", is_flag=True, help="Do not check the solution.")
 def run(
     case: Path,
@@ -77,6 +79,7 @@ def run(
     no_figures: bool,
     csv: Path | None,
     refine_peaks: bool,
+    elastic: bool,
     no_certificate: bool,
 ) -> None:
     """Evaluate CASE, a folder with a case.py, a Python file, or one that cases lists, and write an HDF5 file and figures."""
@@ -110,6 +113,7 @@ def run(
         flags=flags,
         threads=threads,
         certificate=not no_certificate,
+        elastic=(loaded.scene.elastic or True) if elastic else None,
     )
     usual = Path(f"{loaded.name}_figures") if out == Path(f"{loaded.name}.h5") else None
     place = folder or usual
@@ -129,8 +133,9 @@ def run(
     names = [*forces(solution), *resultants(solution)]
     for line in report_lines(solution, refine(loaded.scene, solution, names) if refine_peaks else ()):
         say(line)
-    for line in strength_lines(solution, loaded.scene.mechanism, want or loaded.scene.wanted):
-        say(line)
+    for lines in (strength_lines, elastic_lines):
+        for line in lines(solution, loaded.scene.mechanism, want or loaded.scene.wanted):
+            say(line)
     told = np.array([[parameter["value"] for parameter in solution.description["parameters"].values()]])
     for note in (*solution.notes, turned.note(loaded.scene, loaded.scene.timing(t, over), told)):
         if note:

@@ -37,6 +37,8 @@ def scene_lines(scene: Scene) -> Iterator[str]:
     if any(name not in scene.posture for name in reference_posture(mechanism)):
         postures.append(f"{'else ' if postures else ''}that of reference, in which the parts are declared")
     yield f"posture: {', '.join(postures) or 'none'}"
+    if scene.elastic:
+        yield f"elastic: {'links that have a beam' if scene.elastic is True else ', '.join(scene.elastic)}"
     if scene.assembly:
         yield f"assembled first with: {', '.join(f'{name} = {value:g}' for name, value in scene.assembly.items())}"
 

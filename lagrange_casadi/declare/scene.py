@@ -16,6 +16,7 @@ from .angles import angle
 from .density import Density
 from .drives import weighed
 from .even_points import EvenPoints, checked
+from .giving import Elastic, giving
 from .guiding import guided, laws_of
 from .limits import no_sections, told_parameters
 from .mechanism import Mechanism
@@ -27,7 +28,7 @@ from .stretches import Timetable, timetable
 from .times import Instants, Over, Times, Timing, instants_of, span_of
 
 _KINDS = ("reaction", "multiplier", "load", "friction", "section", "output")
-STRENGTH = ("stress", "safety", "life")
+STRENGTH = ("stress", "safety", "life", "deflection")
 """What is told of links that have a beam: it follows from their sections, which are wanted with it."""
 
 _TURNS = 4.0 * math.pi
@@ -75,7 +76,8 @@ class Wanted:
     @classmethod
     def of(cls, mechanism: Mechanism, names: Sequence[str]) -> Wanted:
         """Read names: ``effort``, ``motion``, ``reaction:JOINT``, ``multiplier:NAME``, ``load:NAME``, ``friction:NAME``,
-        ``section:LINK``, ``output:NAME``, ``all``; and of links with a beam ``stress:LINK``, ``safety:LINK``, ``life:LINK``.
+        ``section:LINK``, ``output:NAME``, ``all``; and of links with a beam ``stress:LINK``, ``safety:LINK``, ``life:LINK``,
+        ``deflection:LINK``.
 
         A kind alone, as ``section``, is all that the mechanism has of it. What an output of the user's own is made of is wanted
         with it.
@@ -143,7 +145,7 @@ def _check_material(mechanism: Mechanism, name: str) -> None:
         return
     beam = mechanism.links[link].beam
     assert beam is not None
-    needs = {"safety": ("elasticity", "yield_strength"), "life": ("ultimate", "endurance")}
+    needs = {"safety": ("elasticity", "yield_strength"), "life": ("ultimate", "endurance"), "deflection": ("elasticity",)}
     beam.material.needs(f"output '{name}'", *needs.get(kind, ()))
 
 
@@ -201,6 +203,9 @@ class Scene:
         The joints whose efforts make the motion; by default those whose motion is given. Of more drives than are needed, the
         efforts are those of the least sum of squares, each times its joint's weight: a mapping gives weights by joint, numbers or
         expressions of parameters; a list gives each the weight 1.
+    elastic
+        Whether least strain energy tells the forces that equilibrium leaves open, by the beams of links: of all, or of those that
+        are named, and others are rigid. Forces that go through a link without a beam stay open.
 
     Raises :class:`.DeclarationError` for what does not fit the mechanism, :class:`.UnknownNameError` for names it does not have,
     and :class:`.ParameterError` where the default parameters make a part impossible.
@@ -215,6 +220,7 @@ class Scene:
     assembly: Mapping[str, float] = field(default_factory=dict)
     drives: Mapping[str, Expression] | Sequence[str] | None = None
     over: Over | None = None
+    elastic: Elastic = False
 
     def __post_init__(self) -> None:
         if not isinstance(self.mechanism, Mechanism):
@@ -243,6 +249,7 @@ class Scene:
                 )
         if self.drives is not None:
             object.__setattr__(self, "drives", MappingProxyType(weighed(self.mechanism, self.drives, self.needs_drives)))
+        object.__setattr__(self, "elastic", giving(self.mechanism, self.elastic))
         refuse_late(self.mechanism)
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)

@@ -224,10 +224,29 @@ class UtilisationPlot:
         return draw_utilisation(solution, self.links)
 
 
-Spec = TimePlot | SpanPlot | SectionMaps | MechanismDrawing | StrengthPlot | UtilisationPlot
+@dataclass(frozen=True)
+class DeflectionPlot:
+    """The deflection of a link that has a beam, over time and along it, and the harmonics of its bending."""
+
+    kind: ClassVar[str] = "deflection"
+    name: str
+    link: str
+
+    def needs(self) -> tuple[str, ...]:
+        """Full names of the quantities it draws."""
+        return SectionMaps(self.name, self.link).needs()
+
+    def draw(self, solution: Solution) -> Figure:
+        """The figure."""
+        from .deflection_plot import draw_deflection
+
+        return draw_deflection(solution, self.link, *_along(solution))
+
+
+Spec = TimePlot | SpanPlot | SectionMaps | MechanismDrawing | StrengthPlot | UtilisationPlot | DeflectionPlot
 _FILE = re.compile(r"[A-Za-z0-9_-]+")
 _KINDS: dict[str, type[Spec]] = {
-    spec.kind: spec for spec in (TimePlot, SpanPlot, SectionMaps, MechanismDrawing, StrengthPlot, UtilisationPlot)
+    spec.kind: spec for spec in (TimePlot, SpanPlot, SectionMaps, MechanismDrawing, StrengthPlot, UtilisationPlot, DeflectionPlot)
 }
 
 
@@ -254,6 +273,7 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     specs += [StrengthPlot(f"strength_{link}", link) for link in strong_of(solution)]
     if links := strong_of(solution, "yield_strength", "elasticity"):
         specs.append(UtilisationPlot("utilisation", links))
+    specs += [DeflectionPlot(f"deflection_{link}", link) for link in strong_of(solution, "elasticity")]
     return (*specs, MechanismDrawing())
 
 

@@ -28,6 +28,7 @@ from .fingerprint import fingerprint
 from .kinematics import Start
 from .mobility import internal_forces, needed_reactions
 from .multibody import Coordinate, Multibody, column, own_coordinate
+from .open_forces import open_forces
 from .own import own_outputs
 from .reciprocals import share_reciprocals
 from .scene_graph import SceneGraph
@@ -36,17 +37,18 @@ from .tree import span
 from .turns import count_turns
 
 
-def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool = False) -> SceneGraph:
+def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool = False, elastic: bool = False) -> SceneGraph:
     """Derive the graphs of a scene, for its own wanted outputs or for others: CasADi functions of an instant, and their names.
 
-    With ``iterate`` every loop is left to Newton's method, and none is solved in closed form.
+    With ``iterate`` every loop is left to Newton's method, and none is solved in closed form. With ``elastic`` it tells how forces
+    change with what equilibrium leaves open.
 
     A graph is derived once: it is kept while the process lasts, and in the cache folder by the content of the declaration.
 
     Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the loops cannot be solved.
     """
     try:
-        found = _kept(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted), iterate)
+        found = _kept(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted), iterate, elastic)
     except PostureError as error:
         error.scene = scene
         raise
@@ -55,18 +57,25 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool =
     raise type(found)(str(found))
 
 
-def assembled(scene: Scene, values: Mapping[str, float], wanted: Sequence[str] | None = None, *, iterate: bool = False) -> Scene:
+def assembled(
+    scene: Scene,
+    values: Mapping[str, float],
+    wanted: Sequence[str] | None = None,
+    *,
+    iterate: bool = False,
+    elastic: bool = False,
+) -> Scene:
     """The scene; or where its loops cannot be assembled with its own parameters, the same assembled with ``values`` of all.
 
     Raises what :func:`derive` does, where they can be assembled with neither.
     """
     try:
-        derive(scene, wanted, iterate=iterate)
+        derive(scene, wanted, iterate=iterate, elastic=elastic)
     except (AssemblyError, MobilityError):
         if values == scene.mechanism.values(scene.assembly):
             raise
         scene = _at(scene, tuple(values.items()))
-        derive(scene, wanted, iterate=iterate)
+        derive(scene, wanted, iterate=iterate, elastic=elastic)
     return scene
 
 
@@ -76,15 +85,16 @@ def _at(scene: Scene, values: tuple[tuple[str, float], ...]) -> Scene:
 
 
 @functools.lru_cache(maxsize=32)
-def _kept(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph | AssemblyError | MobilityError:
+def _kept(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGraph | AssemblyError | MobilityError:
     """The graph from the cache, or derived and kept there; or why there is none."""
     key = fingerprint(scene, want)
     key = f"{key}-iterated" if key and iterate else key
+    key = f"{key}-elastic" if key and elastic else key
     text = cache.read(f"{key}.graph") if key else None
     if text is not None:
         return SceneGraph.loads(text, scene, want)
     try:
-        graph = _derive(scene, want, iterate)
+        graph = _derive(scene, want, iterate, elastic)
     except AssemblyError as error:
         return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
     except MobilityError as error:
@@ -94,7 +104,7 @@ def _kept(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph | AssemblyErr
     return graph
 
 
-def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
+def _derive(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGraph:
     mechanism = scene.mechanism
     p = mechanism.symbols
     tree = span(scene.guided, scene.laws)
@@ -139,6 +149,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
     inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, p]
     acting: dict[Column, Any] = {}
     free = ca.SX(0, 1)
+    frictions: Mapping[str, Any] = {}
     if want.forces:
         forces = internal_forces(
             body,
@@ -151,6 +162,7 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
             weights=scene.weights,
         )
         rubbed = forces.rubbed
+        frictions = rubbed.forces
         told = {key: columns.pop(key) for key, value in list(columns.items()) if ca.depends_on(ca.SX(value), rubbed.symbols)}
         placed = ca.substitute(column(told.values()), rubbed.symbols, rubbed.values)
         pressed = dict(zip(told, ca.vertsplit(placed) if told else (), strict=True))
@@ -162,11 +174,12 @@ def _derive(scene: Scene, want: Wanted, iterate: bool) -> SceneGraph:
             at_start = (start.t, *motion(start.t, values), solved.newton.guess if solved.newton else [], values)
             acting[check] = closure(acting[check], float(there(*at_start)))
     acting |= own_outputs(body, solved, columns | acting)
+    opened = open_forces(acting, free, inputs, frictions) if elastic and free.numel() else None
     columns |= _settled(acting, free)
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
-    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), loop_angles)
+    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), loop_angles, opened)
 
 
 def _settled(columns: dict[Column, Any], free: Any) -> dict[Column, Any]:

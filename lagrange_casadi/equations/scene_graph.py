@@ -18,6 +18,7 @@ from .checks import Check, Column, Kind, column_of
 from .gaps import extent
 from .iteration import NewtonLoop
 from .mobility import stations_of
+from .open_forces import OpenForces
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +28,8 @@ class SceneGraph:
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` for
     each of ``columns``, which are outputs and checks; ``newton`` where loops must be iterated. ``loop_angles`` are the angles that
     loops set, and what they are sums and differences of: directions of bodies that are known up to whole turns, and by ``turns``
-    of a joint the whole turns of angles that count them, which are in these columns without them.
+    of a joint the whole turns of angles that count them, which are in these columns without them. ``open_forces`` are there where
+    they were asked for, and equilibrium leaves something open.
     """
 
     scene: Scene
@@ -38,6 +40,7 @@ class SceneGraph:
     newton: NewtonLoop | None
     columns: tuple[Column, ...]
     loop_angles: Mapping[Output, Mapping[Column, int]]
+    open_forces: OpenForces | None = None
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -114,6 +117,8 @@ class SceneGraph:
             }
         loop_angles = {str(angle): {str(part): sign for part, sign in parts.items()} for angle, parts in self.loop_angles.items()}
         kept = {"driven": self.driven, "columns": self.names, "loop_angles": loop_angles}
+        if self.open_forces is not None:
+            kept["open_forces"] = self.open_forces.dumps()
         return json.dumps(kept | {"motion": self.motion.serialize(), "instant": self.instant.serialize(), "newton": newton})
 
     @classmethod
@@ -128,4 +133,5 @@ class SceneGraph:
             newton = NewtonLoop(step, tuple(loop["guess"]), tuple(loop["turning"]), tuple(loop["names"]), loop["joints"])
         columns = tuple(map(column_of, kept["columns"]))
         loop_angles = {Output.of(k): {column_of(part): sign for part, sign in v.items()} for k, v in kept["loop_angles"].items()}
-        return cls(scene, wanted, tuple(kept["driven"]), motion, instant, newton, columns, loop_angles)
+        free = OpenForces.loads(kept["open_forces"]) if "open_forces" in kept else None
+        return cls(scene, wanted, tuple(kept["driven"]), motion, instant, newton, columns, loop_angles, free)

@@ -8,21 +8,23 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
-from ..declare.description import Description, coordinates_of, density_of, in_space, parts_of
+from ..declare.description import Description, coordinates_of, density_of
 from ..declare.limits import no_sections
 from ..declare.notes import notes
 from ..declare.times import DriveAxis
 from ..errors import DeclarationError, UnknownNameError
 from ..quantities import Output
-from ..tables import Table, table_of
+from ..tables import Table
+from .elasticity import Elasticity
 from .frames import dataset, frame
 from .laws import law_of, made_of
+from .ordering import table_of_described
 from .sizes import largest, size_of
 from .statistics import Statistics
 from .views import JointMotion, Pose, Reaction, Section
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
     import xarray
 
     from ..animation import Film
+    from ..elastic.deflection import Deflection
     from ..report import View
     from ..strength import Life, Safety, Stress
 
@@ -66,30 +69,6 @@ class Peak:
     over: float | None = None
 
 
-def table_of_described(description: Description) -> Table:
-    """The table of the quantities of a described mechanism: that of planar ones, or that of spatial ones, whose gravity has a z."""
-    return table_of(in_space(description))
-
-
-def in_order(outputs: Mapping[Output, Array], description: Description) -> dict[Output, Array]:
-    """Outputs in the order in which a solution keeps them: by kind, then by part as declared, then as in the table.
-
-    Raises ``ValueError`` for one of a part that is not declared.
-    """
-    table = table_of_described(description)
-    rows = table.rows
-    groups = list(dict.fromkeys(q.group for q in rows))
-    sections = groups.index("section")
-    parts = parts_of(description)
-
-    def rank(output: Output) -> tuple[int, int, str, str, int, int]:
-        group = sections if output.along else groups.index(output.group)
-        part, _, axis = output.part.partition(":")
-        return group, parts.index(part), axis, output.station, rows.index(output.meant(table)), output.power or 0
-
-    return {output: outputs[output] for output in sorted(outputs, key=rank)}
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution:
     """The outputs of a scene over its instants.
@@ -100,7 +79,7 @@ class Solution:
     by full names. ``certificate`` holds the residuals of :mod:`.certificate`, each (t,), and how near the loops are to a dead
     centre; a residual above ``tolerance`` means that the solution is wrong, not that it is rounded. ``errors`` estimates by
     :mod:`.accuracy` how far each quantity may be off, over all instants, in its unit. ``over`` is the coordinate of the drive by
-    which the instants were asked for, or None.
+    which the instants were asked for, or None. ``elasticity`` says which outputs least strain energy told.
 
     Methods that take a name raise :class:`.UnknownNameError` for one that the solution does not have, and list those it has.
     """
@@ -116,6 +95,7 @@ class Solution:
     errors: Mapping[str, float] = field(default_factory=dict)
     tolerance: float = 0.0
     over: DriveAxis | None = None
+    elasticity: Elasticity = field(default_factory=Elasticity)
 
     @cached_property
     def table(self) -> Table:
@@ -212,6 +192,12 @@ class Solution:
 
         return life(self, link, criterion=criterion)
 
+    def deflection(self, link: str, against: Literal["ends", "base"] | None = None) -> Deflection:
+        """How a link that has a beam bends: see :func:`.elastic.deflection.deflection`."""
+        from ..elastic.deflection import deflection
+
+        return deflection(self, link, against)
+
     @property
     def links_with_sections(self) -> tuple[str, ...]:
         """The links whose sections were wanted."""
@@ -221,7 +207,8 @@ class Solution:
     def notes(self) -> tuple[str, ...]:
         """What is worth a word though all is right: points that slide beyond the end of a link, joints that rub and are at rest."""
         known = {output: values for output, values in self.outputs.items() if output not in self.left_open}
-        return tuple(notes(self.t, known, self.description, self.resting))
+        found = notes(self.t, known, self.description, self.resting)
+        return (*found, *self.elasticity.notes)
 
     @cached_property
     def resting(self) -> npt.NDArray[np.bool_]:
@@ -239,6 +226,13 @@ class Solution:
         certificate = {name: values[instants] for name, values in self.certificate.items()}
         over = self.over and replace(self.over, values=self.over.values[instants])
         return replace(self, t=self.t[instants], outputs=outputs, certificate=certificate, over=over)
+
+    @property
+    def by_equilibrium(self) -> Solution:
+        """The same without what elasticity told: it is open, and NaN."""
+        told = self.elasticity.told
+        nothing = {output: np.full_like(self.t, np.nan) for output in told}
+        return replace(self, outputs={**self.outputs, **nothing}, left_open=(*self.left_open, *told), elasticity=Elasticity())
 
     def determined(self, name: str | Output) -> bool:
         """Whether equilibrium determines a quantity, at all instants."""

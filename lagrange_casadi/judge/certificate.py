@@ -101,6 +101,8 @@ def _residuals(solution: Solution, turned: Solution, equations: Sequence[Written
     joints = description["joints"]
     if any(joint["coordinate"] and Output("motion", name) not in solution.outputs for name, joint in joints.items()):
         return {}
+    if any(Output("pose", name, "x") not in solution.outputs for name in description["bodies"]):
+        return {}
     bodies = place(turned, equations or ())
     if len(bodies) < len(description["bodies"]) + 1:
         return {}

@@ -19,7 +19,7 @@ def scene_report(
     asked = with_motion(wanted or scene.wanted)
     command = f"lagrange-casadi run {shlex.quote(scene.mechanism.name)}"
     engine = Live(scene, scene.timing(), asked, command) if live else None
-    write_report(evaluate(scene, parameters=parameters, wanted=asked), path, engine)
+    write_report(evaluate(scene, parameters=parameters, wanted=asked, elastic=False if live else None), path, engine)
 
 
 def with_motion(wanted: Sequence[str]) -> list[str]:

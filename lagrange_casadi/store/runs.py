@@ -24,7 +24,9 @@ from ..declare.description import Description, motions_of, shape_of
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
 from ..errors import DeclarationError, PathError, StoreError, one_line
-from ..instants.solution import Provenance, Solution, in_order
+from ..instants.elasticity import Elasticity
+from ..instants.ordering import in_order
+from ..instants.solution import Provenance, Solution
 from ..judge.certificate import LOOSE, blur, certify
 from ..quantities import Output
 from ..system.publish import PatientFile, check_writable, is_hdf5, replacing, settled, uninterrupted
@@ -239,6 +241,9 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     file.attrs["certificate_tolerance"] = solution.tolerance
     file.attrs["outputs"] = json.dumps(list(solution.series))
     file.attrs["undetermined"] = json.dumps(solution.undetermined)
+    if solution.elasticity != Elasticity():
+        file.attrs["by_elasticity"] = json.dumps([str(output) for output in solution.elasticity.told])
+        file.attrs["open_because"] = json.dumps(solution.elasticity.reasons)
     file.attrs["versions"] = json.dumps(dict(provenance.versions))
     for key in _PROVENANCE:
         file.attrs[key] = getattr(provenance, key)
@@ -314,11 +319,13 @@ def _read(file: h5py.File) -> Solution:
     words = {key: shown(file.attrs[key]) for key in _PROVENANCE}
     provenance = Provenance(**words, versions=parsed(file.attrs["versions"], {str: str}, "versions"))
     left_open = tuple(map(Output.of, parsed(file.attrs["undetermined"], [str], "undetermined")))
+    told, reasons = (parsed(file.attrs.get(key, "[]"), [str], key) for key in ("by_elasticity", "open_because"))
+    elastic = Elasticity(tuple(map(Output.of, told)), tuple(reasons))
     certificate = {name: _numbers(file["certificate"][name], t.shape) for name in file.get("certificate", ())}
     case = shown(file.attrs["case"])
     ordered, limit = in_order(outputs, description), float(file.attrs["certificate_tolerance"])
     over = _drive_axis(file[_OVER], t.shape, description) if _OVER in file else None
-    solution = Solution(case, t, xi, ordered, description, provenance, left_open, certificate, errors, limit, over)
+    solution = Solution(case, t, xi, ordered, description, provenance, left_open, certificate, errors, limit, over, elastic)
     for link in solution.links_with_sections:
         law = solution.section(link).law
         whole = set(law.coefficients) == set(solution.table.law) and all(spread.sound for spread in law.spreads)

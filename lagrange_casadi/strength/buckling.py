@@ -22,6 +22,7 @@ from .member import Member
 _HALVINGS = 80
 _END = 1e-9
 _LOOKED_AT = 65
+_SLIDING = ("prismatic", "slot", "cylindrical", "planar", "screw")
 
 
 def critical_stress(slenderness: Any, elasticity: float, strength: float) -> Any:
@@ -98,11 +99,16 @@ def effective_lengths(description: Description, link: str) -> tuple[float, float
     of the plane a link that is joined at both ends has 1/2, else 2. In space it has 1, or 2 where an end is free. These are the
     theoretical numbers (Timoshenko and Gere, table of section 2.4).
     """
-    ends = [_holds(description, link, tip) for tip in (False, True)]
+    ends = held_ends(description, link)
     if in_space(description):
         return (1.0, 1.0) if all(ends) else (2.0, 2.0)
     across = 0.5 if all(ends) else 2.0
     return (1.0 if ends[0] == ends[1] and ends[0] else 2.0), across
+
+
+def held_ends(description: Description, link: str) -> tuple[str, str]:
+    """How joints hold the base and the tip of a link: "turns", "held", or "" where nothing does."""
+    return _holds(description, link, False), _holds(description, link, True)
 
 
 def _holds(description: Description, link: str, tip: bool) -> str:
@@ -112,6 +118,8 @@ def _holds(description: Description, link: str, tip: bool) -> str:
         for place, other in ((joint["parent"], joint["child"]), (joint["child"], joint["parent"])):
             if place["body"] != link or abs(place["x"] - (length if tip else 0.0)) > _END * length:
                 continue
+            if place is joint["parent"] and joint["kind"] in _SLIDING:
+                continue  # what slides along it is elsewhere
             lone = description["bodies"].get(other["body"], {"length": 0.0})["length"] is None
             if lone and sum(other["body"] in (j["parent"]["body"], j["child"]["body"]) for j in description["joints"].values()) < 2:
                 continue  # a mass that hangs on nothing else

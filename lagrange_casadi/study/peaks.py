@@ -56,12 +56,12 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
 
     Where the search would take too long, because much may hide between the instants, a peak cannot be told: its value is NaN, and
     ``least`` the largest size that was found. More instants may help. What equilibrium does not determine is NaN too, without a
-    ``least``.
+    ``least``; what elasticity tells of it has the peak of the instants.
 
     Raises :class:`DeclarationError` where the solution is not of this scene, :class:`UnknownNameError` for a name that is none.
     """
     sampled = [solution.peak(name) for name in (solution.names() if names is None else names)]
-    found = _ContinuousSolution.of(scene, solution)
+    found = _ContinuousSolution.of(scene, solution.by_equilibrium)
     peaks = (found if are_even(solution.t) else found.in_equal_steps()).peaks(sampled)
     return peaks if solution.over is None else [found.at_the_drive(peak, solution.over.joint) for peak in peaks]
 
@@ -208,7 +208,14 @@ class _ContinuousSolution:
         told = dict(zip(scene.mechanism.parameters, self.p.tolist(), strict=True))
         wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
         even = (float(t[0]), float(t[-1]), t.size)
-        words: dict[str, Any] = {"parameters": told, "t": even, "wanted": wanted, "backend": "vm", "certificate": False}
+        words: dict[str, Any] = {
+            "parameters": told,
+            "t": even,
+            "wanted": wanted,
+            "backend": "vm",
+            "certificate": False,
+            "elastic": False,
+        }
         return _ContinuousSolution.of(scene, evaluate(scene, **words))
 
     def at_the_drive(self, peak: Peak, joint: str) -> Peak:

@@ -143,11 +143,13 @@ def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto"
         changes.array("effort:O", "l")  # (t,) [N m/m]
         changes.peak("section:rod:bending").slopes["r"]
 
+    What elasticity tells has no derivatives here: it counts as open.
+
     Raises :class:`.DeclarationError` where the solution is not one of this scene.
     """
     if not isinstance(scene, Scene) or not isinstance(solution, Solution):
         raise DeclarationError(f"sensitivities: expected a Scene and a Solution of it, got {scene!r} and {solution!r}")
-    mechanism = scene.mechanism
+    mechanism, solution = scene.mechanism, solution.by_equilibrium
     if mechanism.name != solution.case or mechanism.parameters.keys() != solution.description["parameters"].keys():
         raise _other(scene, solution)
     told = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}

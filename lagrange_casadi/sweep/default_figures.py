@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import DeclarationError, NoDesignError, UnknownNameError
-from ..instants.solution import table_of_described
+from ..instants.ordering import table_of_described
 from ..quantities import Output
 from ..tables import SPACE
 from .axes import DESIGN

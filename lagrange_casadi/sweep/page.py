@@ -136,7 +136,7 @@ def _frame(sweep: Sweep, scene: Scene, front: list[int], command: str) -> str:
     words: dict[str, Any] = {"over": (timing.joint, *_bounds(asked))} if timing.joint else {"t": _bounds(asked)}
     if any(isinstance(bound, str) for bound in asked[:2]):
         words = {}
-    solution = evaluate(scene, parameters=sweep.design(first), wanted=wanted, **words)
+    solution = evaluate(scene, parameters=sweep.design(first), wanted=wanted, elastic=False, **words)
     return page(solution, Live(scene, timing, wanted, command))
 
 

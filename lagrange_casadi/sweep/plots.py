@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from ..declare.density import Array
 from ..errors import NoDesignError
-from ..instants.solution import table_of_described
+from ..instants.ordering import table_of_described
 from .best import best, chosen, size
 from .columns import STATUS
 from .cut import DOTS, LINES, Cut, stays

@@ -1,0 +1,40 @@
+"""Which links give way where elasticity shares out what equilibrium leaves open."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ..errors import DeclarationError, UnknownNameError
+from .density import Density
+from .mechanism import Mechanism
+
+Elastic = bool | Sequence[str]
+
+
+def giving(mechanism: Mechanism, elastic: Elastic) -> Elastic:
+    """What a scene says of elasticity, checked: no, yes, or the links that give way, in their order.
+
+    Raises :class:`.UnknownNameError` for what is no link, and :class:`.DeclarationError` for a link that has no beam, or a material
+    without elasticity.
+    """
+    if isinstance(elastic, bool):
+        return elastic
+    if not isinstance(elastic, (list, tuple)) or not all(isinstance(name, str) for name in elastic):
+        raise DeclarationError(f"elastic: expected True, or a list of the links that give way, got {elastic!r}")
+    having = [name for name, link in mechanism.links.items() if isinstance(link.mass, Density) and link.beam is not None]
+    for name in elastic:
+        if name not in mechanism.links:
+            raise UnknownNameError("link in elastic", name, having)
+        beam = mechanism.links[name].beam
+        if name not in having or beam is None:
+            raise DeclarationError(
+                f"elastic: link '{name}' has no beam, which says what it is made of; links with one: {', '.join(having) or 'none'}"
+            )
+        beam.material.needs(f"elastic link '{name}'", "elasticity")
+    return tuple(name for name in having if name in elastic)
+
+
+def felt(mechanism: Mechanism) -> list[str]:
+    """The names of all outputs by which links are found that what is open loads."""
+    sections = [f"section:{name}" for name, link in mechanism.links.items() if isinstance(link.mass, Density)]
+    return [*(f"reaction:{joint}" for joint in mechanism.joints), *sections]

@@ -1,0 +1,1 @@
+"""Links that give way: forces that equilibrium leaves open, deflections, and natural frequencies."""

@@ -1,0 +1,224 @@
+"""Deflections of links under their section forces: the elastic curve, and how far the ends move against each other.
+
+Strains are those of :mod:`.compliance`: turn' = M/EI, across' = turn + V/GAs, along' = N/EA, twist' = T/GIt (Timoshenko, *Strength
+of Materials*, part I); in space turn_z' = Mz/EIz and across_y' = turn_z + Vy/GAsy, turn_y' = My/EIy and
+across_z' = -turn_y + Vz/GAsz, for any axes of the cross-section. They are integrated as polynomials between two marks: exactly,
+where the cross-section is constant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from ..declare.density import Array
+from ..errors import DeclarationError, UnknownNameError
+from ..instants.solution import Solution
+from ..instants.turning import turns_between
+from ..strength.member import Member
+from ..summits.polynomials import interpolation
+from .compliance import Compliance, sorted_edges
+from .ends import by_joints
+
+Against = Literal["ends", "base"]
+
+MOVES = {False: ("along", "across", "turn"), True: ("along", "across_y", "across_z", "twist", "turn_y", "turn_z")}
+"""What is told of a place of a link, in the plane and in space."""
+
+_TURNS = ("turn", "twist", "turn_y", "turn_z")
+
+
+@dataclass(frozen=True)
+class DeflectionPeak:
+    """The deflection across a link that is largest in size [m], in the plane with its sign; its time [s] and ratio xi/l."""
+
+    value: float
+    t: float
+    xi: float
+
+
+@dataclass(frozen=True, eq=False)
+class Deflection:
+    """How a link bends, stretches and twists, over time and along it.
+
+    ``against`` says from where deflections count. ``ends``: from the straight line between the link's ends as they are. ``base``:
+    from the link's own axes at its base. Stretch and twist count from the base in both. Names are ``along``, ``across`` [m] and
+    ``turn`` [rad], in space ``along``, ``across_y``, ``across_z``, ``twist``, ``turn_y``, ``turn_z``; methods raise
+    :class:`.UnknownNameError` for any other.
+    """
+
+    compliance: Compliance
+    against: Against
+
+    @property
+    def member(self) -> Member:
+        """The link."""
+        return self.compliance.member
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What is told of every place."""
+        return MOVES[self.member.space]
+
+    def __repr__(self) -> str:
+        return f"<Deflection of '{self.member.link}' against its {self.against}: {self.member.t.size} instants>"
+
+    def at(self, name: str, u: Any) -> Array:
+        """What is told by a name, at ratios (t, ...), a row an instant."""
+        if name not in self.names:
+            raise UnknownNameError("deflection", name, self.names)
+        u = np.asarray(u, float)
+        found = self._at(name, u)
+        if self.against == "base" or name in ("along", "twist"):
+            return found
+        length, ends = self.member.law.length, (-1,) + (1,) * (u.ndim - 1)
+        beside = {"turn": ("across", 1.0), "turn_z": ("across_y", 1.0), "turn_y": ("across_z", -1.0)}
+        if name in beside:
+            across, sign = beside[name]
+            return np.asarray(found - sign * (self._tips[across] / length).reshape(ends))
+        return np.asarray(found - u * self._tips[name].reshape(ends))
+
+    def grid(self, name: str, xi: Array | None = None) -> Array:
+        """The same (t, xi) over ratios, by default those of the solution."""
+        u = self.member.xi if xi is None else np.asarray(xi, float)
+        return self.at(name, np.broadcast_to(u, (self.member.t.size, u.size)))
+
+    @property
+    def tip(self) -> Mapping[str, Array]:
+        """What is told of the tip, each (t,): against the base how the ends move against each other."""
+        one = np.ones((self.member.t.size, 1))
+        return {name: self.at(name, one)[:, 0] for name in self.names}
+
+    @property
+    def base(self) -> Mapping[str, Array]:
+        """What is told of the base, each (t,): against the ends, how far it turns."""
+        nil = np.zeros((self.member.t.size, 1))
+        return {name: self.at(name, nil)[:, 0] for name in self.names}
+
+    def size(self, u: Array) -> Array:
+        """The deflection across the link at ratios (t, ...): in the plane with its sign, in space its size."""
+        if not self.member.space:
+            return self.at("across", u)
+        return np.hypot(self.at("across_y", u), self.at("across_z", u))
+
+    def largest(self) -> tuple[Array, Array]:
+        """The deflection across the link that is largest in size at every instant, and its ratio xi/l, both (t,)."""
+        space = self.member.space
+        names = ("across_y", "across_z") if space else ("across",)
+
+        def slope(u: Array) -> Array:
+            rises = [self._rising(name, u) for name in names]
+            if not space:
+                return rises[0]
+            return np.asarray(sum(self.at(name, u) * rise for name, rise in zip(names, rises, strict=True)))
+
+        degree = (2 if space else 1) * (self._degree + 2)
+        turns = turns_between(slope, self._edges[:, :-1], self._edges[:, 1:], (0.0, 1.0), degree, signed=not space)
+        places = np.concatenate([self._edges, turns.places.reshape(len(self._edges), -1)], axis=1)
+        values = self.size(places)
+        best = np.argmax(np.abs(values), axis=1)[:, None]
+        return np.take_along_axis(values, best, 1)[:, 0], np.take_along_axis(places, best, 1)[:, 0]
+
+    def peak(self) -> DeflectionPeak:
+        """The largest of these, over the instants: along the link exactly, where the cross-section is constant."""
+        values, places = self.largest()
+        i = int(np.argmax(np.abs(values)))
+        return DeflectionPeak(float(values[i]), float(self.member.t[i]), float(places[i]))
+
+    @cached_property
+    def _edges(self) -> Array:
+        fixed = [0.0, 1.0, *(cell.high for cell in self.member.cells[:-1])]
+        return sorted_edges(self.member.t, self.member.marks, fixed)
+
+    @property
+    def _degree(self) -> int:
+        changing = max(cell.degree for cell in self.member.cells)
+        return self.member.degree + (changing + 6 if changing else 0)
+
+    @cached_property
+    def _strains(self) -> dict[str, Array]:
+        """Polynomials of strains between two edges, coefficients (t, parts, n) of Chebyshev's: by the names of section forces."""
+        member, degree = self.member, self._degree
+        x, weights = interpolation(degree)
+        low, width = self._edges[:, :-1, None], np.diff(self._edges, axis=1)[:, :, None]
+        u = (low + width * (x + 1.0) / 2.0).reshape(member.t.size, -1)
+        breaks = np.array(member.beam.course.breaks)
+        index = np.clip(np.searchsorted(breaks[1:-1], u, side="right"), 0, len(breaks) - 2)
+        strains = self.compliance.strains(member.at(u), index, u).reshape(len(member.forces), *width.shape[:2], -1)
+        return dict(zip(member.forces, strains @ weights, strict=True))
+
+    @cached_property
+    def _curves(self) -> dict[str, Array]:
+        """Polynomials of all that is told, from the base."""
+        e, turned = self._strains, {}
+        found = {"along": self._sum(e["axial"])}
+        if not self.member.space:
+            found["turn"] = self._sum(e["bending"])
+            return found | {"across": self._sum(_plus(found["turn"], e["shear"]))}
+        turned["turn_y"], turned["turn_z"] = self._sum(e["bending_y"]), self._sum(e["bending_z"])
+        found |= {"twist": self._sum(e["torsion"]), **turned}
+        found["across_y"] = self._sum(_plus(turned["turn_z"], e["shear_y"]))
+        found["across_z"] = self._sum(_plus(-turned["turn_y"], e["shear_z"]))
+        return found
+
+    def _sum(self, coefficients: Array) -> Array:
+        """The integral from the base of polynomials between two edges."""
+        half = self.member.law.length * np.diff(self._edges, axis=1)[:, :, None] / 2.0
+        found: Array = np.asarray(chebyshev.chebint(coefficients, lbnd=-1, axis=-1), float) * half
+        ends = np.cumsum(found.sum(axis=-1), axis=1)
+        found[:, 1:, 0] += ends[:, :-1]
+        return found
+
+    def _at(self, name: str, u: Array) -> Array:
+        return self._valued(self._curves[name], u)
+
+    def _rising(self, name: str, u: Array) -> Array:
+        """How a deflection across rises along the link."""
+        turn, sign, shear = {
+            "across": ("turn", 1.0, "shear"),
+            "across_y": ("turn_z", 1.0, "shear_y"),
+            "across_z": ("turn_y", -1.0, "shear_z"),
+        }[name]
+        return np.asarray(sign * self.at(turn, u) + self._valued(self._strains[shear], u))
+
+    def _valued(self, coefficients: Array, u: Array) -> Array:
+        """Polynomials between two edges at ratios (t, ...)."""
+        places = u.reshape(len(u), -1)
+        index = np.sum(places[:, :, None] >= self._edges[:, None, 1:-1], axis=2)
+        low = np.take_along_axis(self._edges, index, 1)
+        width = np.take_along_axis(self._edges, index + 1, 1) - low
+        x = np.divide(2.0 * (places - low), width, out=np.zeros_like(places), where=width > 0.0) - 1.0
+        chosen = np.take_along_axis(coefficients, index[:, :, None], 1)
+        found: Array = np.asarray(chebyshev.chebval(x, np.moveaxis(chosen, -1, 0), tensor=False), float)
+        return found.reshape(u.shape)
+
+    @cached_property
+    def _tips(self) -> dict[str, Array]:
+        one = np.ones((self.member.t.size, 1))
+        return {name: self._at(name, one)[:, 0] for name in self.names}
+
+
+def deflection(solution: Solution, link: str, against: Against | None = None) -> Deflection:
+    """How a link bends under its section forces, quasi-statically: see :class:`Deflection`.
+
+    By default deflections count from the line between the ends where joints hold both (:mod:`.ends`), else from the link's axes at
+    its base.
+
+    Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, its forces are open, its material
+    has no elasticity, or there is no formula for the torsion of its cross-section.
+    """
+    if against not in (None, "ends", "base"):
+        raise DeclarationError(f"deflection of '{link}': expected against='ends' or 'base', got {against!r}")
+    compliance = Compliance.of(Member.of(solution, link), f"deflection of '{link}'")
+    return Deflection(compliance, against or ("base" if "free" in by_joints(solution.description, link) else "ends"))
+
+
+def _plus(longer: Array, shorter: Array) -> Array:
+    found: Array = longer.copy()
+    found[..., : shorter.shape[-1]] += shorter
+    return found

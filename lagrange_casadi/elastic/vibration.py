@@ -1,0 +1,175 @@
+"""Is rigid inverse dynamics enough for a link: its first bending frequency beside the harmonics of its own bending.
+
+The bending moments of rigid links bend the first mode, over a cycle. Each of its harmonics, of frequency f, swings
+1/(1 - (f/f_1)^2) times as far (Timoshenko, Young and Weaver, *Vibration Problems in Engineering*, forced vibration without
+damping). What this changes is by how much the forces of rigid links are off.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..declare.density import Array
+from ..declare.description import Description, density_of
+from ..errors import DeclarationError
+from ..instants.solution import Solution
+from ..strength.member import Member
+from .bending_modes import Mode, first_mode
+from .compliance import Compliance
+from .ends import ENDS, Ends, by_joints
+
+ENOUGH = 0.1
+"""By how much bending may be off where rigid links are enough."""
+
+_CYCLE = 1e-3
+_UNEVEN = 1e-6
+_SLIGHT = 1e-12
+_FEWEST = 4
+
+
+@dataclass(frozen=True)
+class Vibration:
+    """The first bending frequency of a link [Hz], and what it means for forces that were computed with rigid links.
+
+    The frequency is between ``lower``, None where a link can move as a whole, and ``frequency``; for a link with such ``ends``, at
+    base and tip, alone: what hangs on it lowers the frequency. ``cycle`` is how often a second the span of time is repeated.
+    ``excess`` is the largest difference that swinging makes to bending, over the largest bending; ``harmonic`` the multiple of the
+    cycle that makes most of it. These are None where the span is no cycle, and ``untold`` says why. ``harmonics`` are the
+    amplitudes of bending in the first mode, the mean first, over the largest bending: in space in the plane that swings most.
+    """
+
+    link: str
+    ends: Ends
+    frequency: float
+    lower: float | None
+    cycle: float | None = None
+    harmonic: int | None = None
+    excess: float | None = None
+    untold: str = ""
+    harmonics: tuple[float, ...] = ()
+
+    @property
+    def enough(self) -> bool | None:
+        """Whether rigid links are enough: bending is off by a tenth at most. None where it cannot be told."""
+        return None if self.excess is None else self.excess <= ENOUGH
+
+    @property
+    def words(self) -> str:
+        """The same in a sentence."""
+        told = f"first bending frequency {self.frequency:.5g} Hz, {' and '.join(self.ends)}"
+        if self.cycle is None or self.harmonic is None or self.excess is None:
+            return f"{told}; {self.untold}"
+        told += f", {self.frequency / self.cycle:.4g} times that of the cycle"
+        off = f"{100 * self.excess:.3g} %" if self.excess < 10 else "many times"
+        if self.enough:
+            return f"{told}; by swinging its bending is off by {off} at most"
+        which = f"harmonic {self.harmonic}, {self.harmonic * self.cycle:.5g} Hz"
+        return f"{told}; rigid links are not enough: by {which}, bending is off by {off}"
+
+
+def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibration:
+    """The first bending frequency of a link between its joints, and whether rigid links are enough for it: see :class:`Vibration`.
+
+    ``ends`` says how base and tip are held, each "pinned", "clamped", "free" or "guided", which holds the slope alone. By default
+    joints tell, as for columns: a link that is pinned at both ends is; where one end is held, by a weld, a slide or the drive of a
+    pin, nothing holds the other end sideways. In space it is the softer of the two planes of bending.
+
+    Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, its forces are open, or its material
+    has no elasticity; and for other words than these.
+    """
+    if ends is not None and (len(ends) != 2 or any(end not in ENDS for end in ends)):
+        raise DeclarationError(f"vibration of '{link}': expected how base and tip are held, two of {', '.join(ENDS)}, got {ends!r}")
+    compliance = Compliance.of(Member.of(solution, link), f"vibration of '{link}'")
+    held = ends or by_joints(solution.description, link)
+    body = solution.description["bodies"][link]
+    planes = [_Plane.of(compliance, body, held, k) for k in ((0, 1) if compliance.member.space else (0,))]
+    softest = min(planes, key=lambda plane: plane.mode.upper)
+    lower = None if softest.mode.lower is None else softest.mode.lower / math.tau
+    found = Vibration(link, held, softest.mode.upper / math.tau, lower)
+    forces, t = [plane.force() for plane in planes], solution.t
+    whole = float(np.max(np.abs(forces)))
+    if untold := _no_cycle(t, forces, whole):
+        return replace(found, untold=untold)
+    cycle = 1.0 / float(t[-1] - t[0])
+    pairs = zip(forces, planes, strict=True)
+    swung = [_swung(force[:-1], cycle, plane.mode.upper / math.tau, whole) for force, plane in pairs]
+    excess, harmonic, shares = max(swung, key=lambda one: one[0])
+    return replace(found, cycle=cycle, harmonic=harmonic, excess=excess, harmonics=shares)
+
+
+@dataclass(frozen=True, eq=False)
+class _Plane:
+    """A plane of bending: the first mode in it, and the moments (t, n) at the mode's places."""
+
+    mode: Mode
+    moments: Array
+
+    @classmethod
+    def of(cls, compliance: Compliance, body: Description, ends: Ends, number: int) -> _Plane:
+        member, density = compliance.member, density_of(body)
+        breaks = tuple(sorted({*member.beam.course.breaks, *density.breaks}))
+        axis = np.linalg.eigh(_stiffness(compliance, np.array([0.5]))[..., 0])[1][:, number] if member.space else np.array([1.0])
+
+        def stiffness(u: Array) -> Array:
+            found = _stiffness(compliance, u.ravel())
+            return np.asarray(np.einsum("i,ijn,j->n", axis, found, axis)).reshape(u.shape)
+
+        mode = first_mode(stiffness, lambda u: density.at(u) / body["length"], body["length"], breaks, ends)
+        u = np.broadcast_to(mode.u, (member.t.size, mode.u.size))
+        names = ("bending_y", "bending_z") if member.space else ("bending",)
+        moments = sum(part * member.law.at(name, u) for part, name in zip(axis, names, strict=True))
+        return cls(mode, np.asarray(moments))
+
+    def force(self) -> Array:
+        """What bends the mode, (t,): the sum of M times curvature, as large as moments are."""
+        return np.asarray(self.moments @ (self.mode.weights * self.mode.curvature))
+
+
+def _stiffness(compliance: Compliance, u: Array) -> Array:
+    """Bending stiffness at ratios (n,): in the plane (1, 1, n), in space of the curvatures about y and z, (2, 2, n)."""
+    member = compliance.member
+    breaks = member.beam.course.breaks
+    index = np.clip(np.searchsorted(np.array(breaks[1:-1]), u, side="right"), 0, len(breaks) - 2)
+    found = np.empty((2 if member.space else 1,) * 2 + u.shape)
+    for cell in range(len(breaks) - 1):
+        here = index == cell
+        if here.any():
+            p = member.properties(cell, u[here])
+            each: Any = [[p.iy, -p.iyz], [-p.iyz, p.iz]] if member.space else [[p.iz - p.iyz**2 / p.iy]]
+            for i, row in enumerate(each):
+                for j, value in enumerate(row):
+                    found[i, j, here] = compliance.elasticity * value
+    return found
+
+
+def _no_cycle(t: Array, forces: list[Array], whole: float) -> str:
+    """Why harmonics cannot be told; nothing where they can."""
+    if t.size < _FEWEST:
+        return "of so few instants harmonics cannot be told"
+    steps = np.diff(t)
+    if steps.max() - steps.min() > _UNEVEN * (t[-1] - t[0]):
+        return "instants are not equally far apart, so harmonics cannot be told"
+    if any(abs(force[-1] - force[0]) > _CYCLE * whole for force in forces):
+        return "its bending does not end as it began, so harmonics cannot be told"
+    return ""
+
+
+def _swung(force: Array, cycle: float, frequency: float, whole: float) -> tuple[float, int, tuple[float, ...]]:
+    """The largest difference that swinging makes, over the largest bending; the harmonic that makes most of it; and all of them."""
+    if whole == 0.0:
+        return 0.0, 1, ()
+    harmonics = np.fft.rfft(force) / force.size
+    # What rounding leaves of a harmonic resonates with nothing.
+    harmonics[np.abs(harmonics) <= _SLIGHT * whole] = 0.0
+    ratio = np.arange(harmonics.size) * cycle / frequency
+    with np.errstate(divide="ignore", invalid="ignore"):
+        more = np.where(harmonics == 0.0, 0.0, harmonics * (ratio**2 / (1.0 - ratio**2)))
+    most, shares = int(np.argmax(np.abs(more))), np.abs(harmonics) / whole
+    shares[1:] *= 2.0
+    if not np.isfinite(more).all():
+        return math.inf, most, tuple(shares.tolist())
+    return float(np.abs(np.fft.irfft(more * force.size, force.size)).max() / whole), most, tuple(shares.tolist())

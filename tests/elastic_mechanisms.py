@@ -1,0 +1,77 @@
+"""Mechanisms that are over-constrained, of links that give way."""
+
+import numpy as np
+import pytest
+
+from lagrange_casadi import (
+    Mechanism,
+    Scene,
+    SpatialMechanism,
+    beams,
+)
+from lagrange_casadi.motion import harmonic
+
+STEEL = beams.material("S235")
+LIGHT = STEEL.but(density=1e-9)
+
+
+def made(shape, material=STEEL):
+    return beams.Beam(shape, material)
+
+
+def sections_of(**links):
+    """Properties, E, G and mass per length of links, by their beams."""
+    found = {}
+    for name, beam in links.items():
+        p = beam.course.cells[0][0].properties()
+        found[name] = (p, beam.material.elasticity, beam.material.shear_modulus, beam.material.density * p.area)
+    return found
+
+
+def agrees(solution, i, reactions, tolerance=1e-8):
+    """Every reaction of a solution is that of a frame, in all components that it has."""
+    size = max(np.abs(row).max() for row in reactions.values())
+    for joint, row in reactions.items():
+        found = solution.reaction(joint)
+        for k, values in enumerate((found.fx, found.fy, found.fz, found.mx, found.my, found.mz)):
+            if values is not None:
+                assert values[i] == pytest.approx(row[k], abs=tolerance * size), (joint, k)
+
+
+def held(**forces):
+    """A beam that is held at both ends, which a force loads beside its middle."""
+    m = Mechanism("held")
+    m.set_gravity(0.0, 0.0)
+    bar = m.link("bar", length=2.0, beam=made(beams.rectangle(0.05, 0.02)))
+    m.weld("A", m.ground, bar)
+    m.weld("B", m.ground.at(2.0, 0), bar.tip)
+    m.force("push", bar.at(0.6), **forces)
+    return Scene(m, {}, t=(0, 0, 1), xi=(0, 1, 5), elastic=True)
+
+
+def four_bar(axis=(0, 0, 1), third=None):
+    """A planar four-bar of pins in space, loaded aside, with links that are not round."""
+    m = SpatialMechanism("four_bar")
+    parts = {
+        "a": m.link("a", length=0.1, beam=made(beams.rectangle(0.03, 0.012))),
+        "b": m.link("b", length=0.3, beam=made(beams.rectangle(0.02, 0.01))),
+        "c": m.link("c", length=0.25, beam=third or made(beams.tube(0.02, 0.003))),
+    }
+    a, b, c = parts.values()
+    m.revolute("O", m.ground, a, axis=axis)
+    m.revolute("A", a.tip, b, axis=axis)
+    m.revolute("B", b.tip, c.tip, axis=axis)
+    m.revolute("C", m.ground.at(0.3, 0, 0), c, axis=axis)
+    m.force("side", b.at(0.15), x=20.0, z=100.0)
+    return m
+
+
+def three_cranks(beam, bar=None, elastic=True):
+    m = Mechanism("three_cranks")
+    cranks = [m.link(name, length=0.2, beam=beam) for name in "abc"]
+    bar = m.link("bar", length=1.0, **({"beam": bar} if bar else {"mass": 1.0}))
+    for k, link in enumerate(cranks):
+        m.revolute(f"G{k}", m.ground.at(0.5 * k, 0.0), link)
+        m.revolute(f"B{k}", link.tip, (bar.base, bar.at(0.5), bar.tip)[k])
+    posture = {"a": 1.2, "b": 1.2, "c": 1.2, "bar": 0.0}
+    return Scene(m, {"G0": harmonic(1.2, 0.3, 1.0)}, posture=posture, t=(0, 1, 5), elastic=elastic)

@@ -1,0 +1,62 @@
+"""First bending frequencies: closed forms, published tapers, and bounds from both sides."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lagrange_casadi.elastic.bending_modes import closed, first_mode
+from lagrange_casadi.elastic.ends import ENDS
+
+
+@pytest.mark.parametrize("ends", itertools.product(ENDS, ENDS), ids="-".join)
+def test_a_uniform_beam_has_the_frequency_of_books(ends):
+    mode = first_mode(lambda u: 100.0 + 0 * u, lambda u: 3.0 + 0 * u, 1.7, (0.0, 1.0), ends)
+    exact = closed(100.0, 3.0, 1.7, ends)
+    assert exact <= mode.upper * (1 + 1e-12)
+    assert mode.upper == pytest.approx(exact, rel=1e-6)
+    moves = all(end not in ("pinned", "clamped") for end in ends) or set(ends) == {"pinned", "free"}
+    assert (mode.lower is None) == moves
+    if mode.lower is not None:
+        assert mode.lower <= exact * (1 + 1e-12)
+        assert mode.lower == pytest.approx(exact, rel=1e-4)
+
+
+def test_a_wedge_is_that_of_kirchhoff():
+    """A wedge clamped at its thick end: w = 5.315 sqrt(EI/(m l^4)) of its base (Kirchhoff 1879; Timoshenko, Vibration Problems)."""
+    mode = first_mode(lambda u: 100 * (1 - u) ** 3 + 1e-12, lambda u: 3 * (1 - u) + 1e-12, 1.7, (0.0, 1.0), ("clamped", "free"))
+    assert mode.upper == pytest.approx(5.315 * math.sqrt(100 / (3 * 1.7**4)), rel=1e-3)
+
+
+@settings(max_examples=6)
+@given(
+    st.lists(st.floats(0.2, 5.0), min_size=3, max_size=3),
+    st.lists(st.floats(0.2, 5.0), min_size=2, max_size=2),
+    st.floats(0.2, 0.8),
+    st.sampled_from(
+        [("clamped", "free"), ("pinned", "pinned"), ("clamped", "pinned"), ("clamped", "clamped"), ("guided", "pinned")]
+    ),
+)
+def test_bounds_enclose_and_mirrored_beams_swing_alike(stiff, heavy, step, ends):
+    def stiffness(u):
+        return np.where(u < step, stiff[0], stiff[1] + (stiff[2] - stiff[1]) * u)
+
+    def mass(u):
+        return heavy[0] + (heavy[1] - heavy[0]) * u
+
+    mode = first_mode(stiffness, mass, 1.3, (0.0, step, 1.0), ends)
+    other = first_mode(lambda u: stiffness(1 - u), lambda u: mass(1 - u), 1.3, (0.0, 1 - step, 1.0), ends[::-1])
+    assert mode.lower <= mode.upper
+    assert mode.upper == pytest.approx(mode.lower, rel=2e-3)
+    assert other.upper == pytest.approx(mode.upper, rel=1e-4)
+    assert other.lower <= mode.upper * (1 + 1e-12)
+    assert mode.lower <= other.upper * (1 + 1e-12)
+
+
+def test_the_mode_has_unit_modal_mass():
+    """Strain energy of the mode is half the square of its frequency."""
+    mode = first_mode(lambda u: 2 + u, lambda u: 3 - u, 0.7, (0.0, 1.0), ("clamped", "pinned"))
+    assert np.sum(mode.weights * (2 + mode.u) * mode.curvature**2) == pytest.approx(mode.upper**2, rel=1e-8)

@@ -1,0 +1,205 @@
+"""Deflections of links: against closed forms of Euler and Bernoulli with Timoshenko's shear, fine sums, and a frame solver."""
+
+import math
+
+import frames
+import numpy as np
+import pytest
+import strong
+
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate
+from lagrange_casadi.cli import main
+from lagrange_casadi.errors import DeclarationError, UnknownNameError
+from lagrange_casadi.motion import polynomial
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+STEEL = beams.material("S235")
+E, G = STEEL.elasticity, STEEL.shear_modulus
+LENGTH = 2.0
+SHAPES = [beams.rectangle(0.05, 0.02), beams.i_section(0.1, 0.055, 0.004, 0.006), beams.tube(0.04, 0.003)]
+
+
+def cantilever(shape, material=STEEL, weight=False, **forces):
+    m = Mechanism("cantilever")
+    if not weight:
+        m.set_gravity(0.0, 0.0)
+    arm = m.link("arm", length=LENGTH, beam=beams.Beam(shape, material))
+    m.weld("wall", m.ground, arm)
+    if forces:
+        m.force("push", arm.tip, **forces)
+    return evaluate(Scene(m, {}, t=(0, 0, 1), xi=(0, 1, 9)))
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.kind)
+def test_a_cantilever_with_a_load_at_its_tip(shape):
+    """F l^3/3EI + F l/GAs, F l^2/2EI, and all along F (3 l x^2 - x^3)/6EI + F x/GAs."""
+    found = cantilever(shape, x=3e3, y=-100.0).deflection("arm")
+    p, force = shape.properties(), -100.0
+    ei, ga, x = E * p.iz, G * p.shear_y, LENGTH * np.linspace(0, 1, 9)
+    assert found.against == "base"
+    assert found.tip["across"] == pytest.approx(force * LENGTH**3 / (3 * ei) + force * LENGTH / ga, rel=1e-13)
+    assert found.tip["turn"] == pytest.approx(force * LENGTH**2 / (2 * ei), rel=1e-13)
+    assert found.tip["along"] == pytest.approx(3e3 * LENGTH / (E * p.area), rel=1e-13)
+    curve = force * (3 * LENGTH * x**2 - x**3) / (6 * ei) + force * x / ga
+    np.testing.assert_allclose(found.grid("across")[0], curve, rtol=1e-12, atol=1e-18)
+    assert found.peak().value == pytest.approx(found.tip["across"][0], rel=1e-13)
+    assert found.peak().xi == pytest.approx(1.0)
+
+
+def test_a_cantilever_under_its_weight():
+    """q l^4/8EI + q l^2/2GAs, q l^3/6EI."""
+    shape = SHAPES[0]
+    found, p = cantilever(shape, weight=True).deflection("arm"), shape.properties()
+    q = -STEEL.density * p.area * 9.81
+    assert found.tip["across"] == pytest.approx(q * LENGTH**4 / (8 * E * p.iz) + q * LENGTH**2 / (2 * G * p.shear_y), rel=1e-12)
+    assert found.tip["turn"] == pytest.approx(q * LENGTH**3 / (6 * E * p.iz), rel=1e-12)
+
+
+def bridge(shape, *loads):
+    """A link on a pin and on a slide, with loads (x, force)."""
+    m = Mechanism("bridge")
+    m.set_gravity(0.0, 0.0)
+    bar, foot = m.link("bar", length=LENGTH, beam=beams.Beam(shape, STEEL)), m.point_mass("foot", 0.0)
+    m.revolute("A", m.ground, bar)
+    m.prismatic("slide", m.ground.at(LENGTH, 0), foot, axis=(1, 0))
+    m.revolute("B", bar.tip, foot)
+    for k, (x, y) in enumerate(loads):
+        m.force(f"F{k}", bar.at(x), y=y)
+    return m, Scene(m, {}, posture={"bar": 0.0, "slide": 0.0}, t=(0, 0, 1))
+
+
+def test_a_beam_on_two_supports_with_a_load_in_its_middle():
+    """F l^3/48EI + F l/4GAs in the middle; the ends turn by F l^2/16EI."""
+    shape = SHAPES[0]
+    p, force = shape.properties(), -1e3
+    found = evaluate(bridge(shape, (1.0, force))[1]).deflection("bar")
+    assert found.against == "ends"
+    peak = found.peak()
+    assert peak.value == pytest.approx(force * LENGTH**3 / (48 * E * p.iz) + force * LENGTH / (4 * G * p.shear_y), rel=1e-12)
+    assert peak.xi == pytest.approx(0.5, abs=1e-9)
+    assert found.base["turn"] == pytest.approx(force * LENGTH**2 / (16 * E * p.iz), rel=1e-12)
+    assert found.tip["across"] == pytest.approx(0.0, abs=1e-15)
+
+
+def test_the_deepest_place_beside_the_middle():
+    """A load at a third: the deepest place is where the slope is zero, at sqrt((l^2 - b^2)/3) from the farther end, shear aside."""
+    stiff = beams.rectangle(0.01, 0.02)
+    found = evaluate(bridge(stiff, (LENGTH / 3, -10.0))[1]).deflection("bar")
+    b = LENGTH / 3
+    assert 1.0 - found.peak().xi == pytest.approx(math.sqrt((LENGTH**2 - b**2) / 3) / LENGTH, abs=1e-4)
+    dense = found.grid("across", np.linspace(0, 1, 20001))[0]
+    assert abs(found.peak().value) == pytest.approx(np.abs(dense).max(), rel=1e-9)
+    assert abs(found.peak().value) >= np.abs(dense).max() * (1 - 1e-14)
+
+
+def test_a_tapered_link_by_fine_sums():
+    shape = beams.tapered(beams.rectangle(0.06, 0.02), beams.rectangle(0.02, 0.03))
+    found = cantilever(shape, y=-100.0).deflection("arm")
+    n = 400_000
+    s = (np.arange(n) + 0.5) / n
+    h, w = 0.06 - 0.04 * s, 0.02 + 0.01 * s
+    arm, ds = LENGTH * (1 - s), LENGTH / n
+    bent = np.sum(-100.0 * arm**2 / (E * w * h**3 / 12)) * ds
+    sheared = np.sum(-100.0 / (G * w * h * 10 * 1.3 / (12 + 11 * 0.3))) * ds
+    assert found.tip["across"] == pytest.approx(bent + sheared, rel=1e-9)
+
+
+def test_a_stepped_link():
+    """Half of it twice as high: by moment areas."""
+    shape = beams.stepped([0.5], [beams.rectangle(0.08, 0.02), beams.rectangle(0.04, 0.02)])
+    found = cantilever(shape, y=-100.0).deflection("arm")
+    i1, i2, half = 0.02 * 0.08**3 / 12, 0.02 * 0.04**3 / 12, LENGTH / 2
+    k = 10 * 1.3 / (12 + 11 * 0.3)
+    bent = -100.0 * ((LENGTH**3 - half**3) / (3 * E * i1) + half**3 / (3 * E * i2))
+    sheared = -100.0 * half / (G * k * 0.02) * (1 / 0.08 + 1 / 0.04)
+    assert found.tip["across"] == pytest.approx(bent + sheared, rel=1e-12)
+
+
+@pytest.mark.parametrize("shape", [beams.rectangle(0.03, 0.05), beams.c_section(0.1, 0.05, 0.004, 0.006)], ids=lambda s: s.kind)
+def test_in_space_it_is_a_frame_s(shape):
+    """Bent both ways, pulled and twisted about the shear centre."""
+    m = SpatialMechanism("arm")
+    arm = m.link("arm", length=LENGTH, beam=beams.Beam(shape, STEEL))
+    m.weld("wall", m.ground, arm, turned=[("z", "30 deg"), ("y", "-20 deg")])
+    m.force("push", arm.tip, x=50.0, y=-100.0, z=30.0)
+    m.torque("twist", arm.tip, x=5.0, y=2.0, z=-3.0)
+    solution = evaluate(Scene(m, {}, t=(0, 0, 1)))
+    p, axes = shape.properties(), solution.pose("arm").axes[0]
+    _, moved = frames.of_solution(
+        solution, 0, {"arm": (p, E, G, STEEL.density * p.area)}, [("arm", LENGTH, (50.0, -100.0, 30.0), (5.0, 2.0, -3.0))]
+    )
+    place, turned = axes @ moved["arm", LENGTH][:3], axes @ moved["arm", LENGTH][3:]
+    found = solution.deflection("arm").tip
+    assert found["along"][0] == pytest.approx(place[0], rel=1e-9)
+    assert [found["turn_y"][0], found["turn_z"][0]] == pytest.approx(turned[1:], rel=1e-9)
+    # The frame's beam is twisted about its axis: a shear centre beside it moves the rest by what shear twists.
+    if shape.kind == "rectangle":
+        assert [found["across_y"][0], found["across_z"][0], found["twist"][0]] == pytest.approx([*place[1:], turned[0]], rel=1e-9)
+    else:
+        shear = solution.section("arm").law.at("shear_y", np.zeros((1, 1)))[0, 0]
+        torsion = solution.section("arm").law.at("torsion", np.zeros((1, 1)))[0, 0]
+        weight_twist = (torsion + p.centre_z * shear) * LENGTH / (G * p.torsion)
+        assert found["twist"][0] != pytest.approx(turned[0], rel=1e-2)
+        assert found["twist"][0] == pytest.approx(weight_twist, rel=0.2)
+    largest, _ = solution.deflection("arm").largest()
+    assert largest[0] == pytest.approx(np.hypot(found["across_y"][0], found["across_z"][0]), rel=1e-9)
+
+
+def test_a_rod_that_moves_by_fine_sums():
+    """Stations that slide, a load along it, a taper: the curve from moments on a fine grid, at every instant."""
+    scene = strong.press(beams.tapered(beams.rectangle(0.02, 0.01), beams.rectangle(0.012, 0.01)), sliding=True, t=(0, 0.2, 7))
+    found = evaluate(scene, certificate=False).deflection("rod")
+    n, member = 20_000, found.member
+    s = (np.arange(n) + 0.5) / n
+    u = np.broadcast_to(s, (7, n))
+    h, ds, e = 0.02 - 0.008 * s, 0.4 / n, strong.STEEL.elasticity
+    bent = member.law.at("bending", u) / (e * 0.01 * h**3 / 12)
+    sheared = member.law.at("shear", u) / (strong.STEEL.shear_modulus * 0.01 * h * 10 * 1.3 / (12 + 11 * 0.3))
+    turned = np.cumsum(bent, axis=1) * ds - bent * ds / 2
+    across = np.cumsum(turned + sheared, axis=1) * ds - (turned + sheared) * ds / 2
+    tip = np.sum(turned + sheared, axis=1) * ds
+    expected = across - s * tip[:, None]
+    size = np.abs(expected).max()
+    np.testing.assert_allclose(found.at("across", u), expected, atol=1e-6 * size)
+    values, places = found.largest()
+    np.testing.assert_allclose(np.abs(values), np.abs(found.at("across", u)).max(axis=1), rtol=1e-7)
+    np.testing.assert_allclose(found.at("across", places[:, None])[:, 0], values, rtol=1e-12)
+
+
+def test_the_command_line_tells_it(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    few = ["--over", "main=90deg:810deg:41"]
+    assert (
+        main(["run", "connecting_rod", "--want", "deflection:rod", "--no-figures", "--backend", "vm", "--no-certificate", *few])
+        == 0
+    )
+    said = capsys.readouterr().out
+    assert "deflection:rod" in said
+    assert "from the line between its ends" in said
+    assert "first bending frequency" in said
+
+
+def test_what_has_no_meaning_is_one_line():
+    plain = cantilever(SHAPES[0], y=-1.0)
+    with pytest.raises(UnknownNameError, match="unknown deflection 'bending'"):
+        plain.deflection("arm").grid("bending")
+    with pytest.raises(DeclarationError, match="expected against='ends' or 'base', got 'middle'"):
+        plain.deflection("arm", "middle")
+    soft = cantilever(SHAPES[0], beams.Material("paper", 700.0), y=-1.0)
+    with pytest.raises(DeclarationError, match="material 'paper' has no elasticity and no shear_modulus, which"):
+        soft.deflection("arm")
+    m = SpatialMechanism("odd")
+    arm = m.link("arm", length=1.0, beam=beams.Beam(beams.polygon([(0, 0), (0.02, 0), (0, 0.03)]), STEEL))
+    m.revolute("O", m.ground, arm, axis=(0, 0, 1))
+    scene = Scene(m, {"O": polynomial(0.0)}, t=(0, 0, 1))
+    with pytest.raises(DeclarationError, match="deflection of 'arm': for torsion of a polygon there is no formula"):
+        evaluate(scene).deflection("arm")
+    bare = Mechanism("bare")
+    bare.weld("A", bare.ground, bare.link("bar", length=1.0, mass=1.0))
+    with pytest.raises(DeclarationError, match="output 'deflection:bar': link 'bar' has no beam"):
+        Scene(bare, {}, wanted=["deflection:bar"], t=(0, 0, 1))
+    mute = Mechanism("mute")
+    mute.weld("A", mute.ground, mute.link("bar", length=1.0, beam=beams.Beam(SHAPES[0], beams.Material("paper", 700.0))))
+    with pytest.raises(DeclarationError, match="material 'paper' has no elasticity, which output 'deflection:bar' needs"):
+        Scene(mute, {}, wanted=["deflection:bar"], t=(0, 0, 1))
