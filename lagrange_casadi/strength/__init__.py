@@ -1,6 +1,7 @@
 """Strength of links: stresses, factors of safety against yielding, buckling and fatigue, and lives."""
 
-from .buckling import Column, critical_stress, effective_lengths
+from ..declare.held import effective_lengths
+from .buckling import Column, critical_stress
 from .fatigue import CRITERIA, cycles, factor, reversed_amplitude
 from .rainflow import Swing, rainflow
 from .safety import Life, Safety, Verdict, life, safety, stress

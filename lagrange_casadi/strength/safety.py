@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..declare.description import Description
+from ..declare.held import effective_lengths
 from ..instants.solution import Solution
-from .buckling import Column, column, effective_lengths, load_factor
+from .buckling import Column, column, load_factor
 from .fatigue import Loaded, cycles, factor, reversed_amplitude, strengths, worst
 from .member import Member
 from .stress import Stress
