@@ -61,7 +61,10 @@ def checked_ratios(even: EvenPoints) -> EvenPoints:
 
 @dataclass(frozen=True)
 class Wanted:
-    """Outputs by kind, each in the order of declaration whatever the order of wanting."""
+    """Outputs by kind, each in the order of declaration whatever the order of wanting.
+
+    ``stressed`` are links whose stress is wanted at every instant, ``used`` those whose utilisation is: by name, or as a kind.
+    """
 
     effort: bool
     motion: bool
@@ -71,6 +74,8 @@ class Wanted:
     frictions: tuple[str, ...]
     sections: tuple[str, ...]
     own: tuple[str, ...]
+    stressed: tuple[str, ...] = ()
+    used: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, mechanism: Mechanism, names: Sequence[str]) -> Wanted:
@@ -102,7 +107,9 @@ class Wanted:
             own = (name for name in every if name.startswith(f"{kind}:") and chosen & {kind, name})
             return tuple(name.partition(":")[2] for name in own)
 
-        return cls("effort" in chosen, "motion" in chosen, *map(parts, _KINDS))
+        named = [name for name in names if name != "all"]
+        strength = (tuple(strength_of(mechanism, kind, named)) for kind in ("stress", "safety"))
+        return cls("effort" in chosen, "motion" in chosen, *map(parts, _KINDS), *strength)
 
     @property
     def forces(self) -> bool:
@@ -127,13 +134,11 @@ def strength_of(mechanism: Mechanism, kind: str, names: Sequence[str]) -> list[s
     return [link for link in _made_of_something(mechanism) if {"all", kind, f"{kind}:{link}"} & set(names)]
 
 
-def without_strength(mechanism: Mechanism, names: Sequence[str], what: str) -> tuple[str, ...]:
-    """Wanted names for what tells no strength. Raises :class:`.DeclarationError` where one asks for it."""
+def without_life(names: Sequence[str], what: str) -> None:
+    """Raise :class:`.DeclarationError` where a life is among wanted names of what tells single instants."""
     for name in names if not isinstance(names, str) else ():
-        if isinstance(name, str) and name.partition(":")[0] in STRENGTH:
-            links = ", ".join(f"section:{link}" for link in strength_of(mechanism, name.partition(":")[0], [name]))
-            raise DeclarationError(f"output '{name}': {what} tell no strength; want {links}, and evaluate designs one by one")
-    return tuple(names)
+        if isinstance(name, str) and name.partition(":")[0] == "life":
+            raise DeclarationError(f"output '{name}': {what} tell instants, and a life is that of a whole cycle; evaluate it")
 
 
 def _check_material(mechanism: Mechanism, name: str) -> None:
