@@ -101,6 +101,10 @@ class Loaded:
                     found.append(Part(a, b - a, cell, self._polynomials(a, b)))
         return found
 
+    def force_at(self, name: str, u: Any, middle: Any) -> Any:
+        """A section force at a ratio; at a station on the side on which a ``middle`` is."""
+        return section_force(self.link, name, u, self.columns, self.table, middle)
+
     def _polynomials(self, a: Any, b: Any) -> dict[str, list[Any]]:
         nodes = (1.0 - np.cos(math.pi * np.arange(self.degree + 1) / self.degree)) / 2
         inverse = np.linalg.inv(np.vander(nodes, increasing=True))
@@ -136,18 +140,23 @@ class Loaded:
 
     @cached_property
     def _needed(self) -> list[list[int]]:
-        return [self._differing(cell) for cell in range(len(self.course.cells))]
+        """Of each cell the fibres, those left out that have the normal stress of another one, and no shear."""
+        return [self._differing(cell, lower=True) for cell in range(len(self.course.cells))]
 
-    def _differing(self, cell: int) -> list[int]:
-        """The fibres of a cell, those left out that are like another, or have its normal stress and no shear."""
+    @cached_property
+    def alone(self) -> list[list[int]]:
+        """Of each cell the fibres, those left out that are like another one."""
+        return [self._differing(cell, lower=False) for cell in range(len(self.course.cells))]
+
+    def _differing(self, cell: int, *, lower: bool) -> list[int]:
         first, last = self.course.cells[cell]
         shapes = [first] if first is last else [first, last]
         every = [[_plain(p.rows(f), self.space) for f in p.fibres] for p in (s.properties(space=self.space) for s in shapes)]
-        kept: list[int] = []
-        for k in range(len(every[0])):
-            alike = [all(_same(rows[k], rows[other]) for rows in every) for other in kept]
-            lower = [all(_below(rows[k], rows[other]) for rows in every) for other in range(len(every[0])) if other != k]
-            if not any(alike) and not any(lower):
+        numbers, kept = range(len(every[0])), list[int]()
+        for k in numbers:
+            alike = (all(_same(rows[k], rows[other]) for rows in every) for other in kept)
+            below = (all(_below(rows[k], rows[other]) for rows in every) for other in numbers if lower and other != k)
+            if not any(alike) and not any(below):
                 kept.append(k)
         return kept
 
