@@ -20,9 +20,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ..beams.beam import Notch
-from ..declare.density import Array, Density
+from ..declare.density import Array
+from ..declare.masses import ALL, mass_of
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Link, RigidMass
+from ..declare.parts import Link
 from ..equations.checks import Column
 from ..equations.strength import FORCES, Loaded
 from ..quantities import Output
@@ -35,9 +36,6 @@ from .matter import Matter
 
 LEAST, LIFE, MASS = "least", "life", "mass"
 """Kinds of columns."""
-
-ALL = "all"
-"""The mass of everything that moves is of this part."""
 
 WAYS = ("yield", "buckling", "fatigue")
 _MEANT = {way: f"against {'yielding' if way == 'yield' else way}" for way in WAYS}
@@ -218,16 +216,7 @@ class Kept:
     @cached_property
     def _masses(self) -> Any:
         mechanism = self.mechanism
-
-        def mass(body: Any) -> Any:
-            if isinstance(body, Link):
-                if isinstance(body.mass, Density):
-                    return body.mass.tails(0.0, body.length)[0]
-                return body.mass.mass if isinstance(body.mass, RigidMass) else body.mass
-            return body.mass
-
-        found = [ca.SX(mass(mechanism.links[link])) for link in self.links]
-        found.append(ca.SX(sum(mass(body) for body in mechanism.moving)))
+        found = [mass_of(mechanism, part) for part in (*self.links, ALL)]
         return ca.Function("masses", [mechanism.symbols], [ca.densify(ca.vertcat(*found))])
 
 
