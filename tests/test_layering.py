@@ -41,6 +41,7 @@ ORDER = (
     "animation",
     "actuators",
     "optimise",
+    "bearings",
     "density",
     "motion",
     "figures",

@@ -18,6 +18,7 @@ from ..errors import DeclarationError
 from .constraints import constraint, row
 from .density import Density
 from .expressions import check_line, check_name, typed
+from .fitted import Fitted
 from .friction import friction
 from .joints import Axis, Joint, JointKind
 from .limits import check_connected, parameter_values
@@ -73,6 +74,7 @@ class Mechanism:
     rows: dict[str, Row] = field(default_factory=dict, init=False)
     outputs: dict[str, OwnOutput] = field(default_factory=dict, init=False)
     paths: dict[str, Path] = field(default_factory=dict, init=False)
+    fitted: dict[str, dict[str, Fitted]] = field(default_factory=dict, init=False)
     gravity: Vector = field(default=(0.0, -9.81, 0.0), init=False)
     frozen: bool = field(default=False, init=False)
     time: Any = field(default_factory=lambda: ca.SX.sym("t"), init=False)

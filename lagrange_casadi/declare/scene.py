@@ -98,6 +98,8 @@ class Wanted:
         own = (output for name, output in mechanism.outputs.items() if chosen & {"output", f"output:{name}"})
         chosen |= {asked.wanted for output in own for asked in output.made_of}
         chosen |= {f"section:{link}" for kind in STRENGTH for link in strength_of(mechanism, kind, names)}
+        if fitted := fitted_of(mechanism, names):
+            chosen |= {"motion", *(f"reaction:{joint}" for joint in fitted)}
         loads = (name for name, load in mechanism.loads.items() if isinstance(load, Friction))
         chosen |= {f"friction:{name}" for name in loads if chosen & {"load", f"load:{name}"}}
         if not chosen:
@@ -126,12 +128,25 @@ def outputs(mechanism: Mechanism) -> list[str]:
     sections = [f"section:{name}" for name, link in mechanism.links.items() if isinstance(link.mass, Density)]
     own = [f"output:{name}" for name in mechanism.outputs]
     strength = [f"{kind}:{name}" for kind in STRENGTH for name in _made_of_something(mechanism)]
+    strength += [f"safety:{joint}" for joint in mechanism.fitted]
     return ["all", "effort", "motion", *reactions, *multipliers, *loads, *frictions, *sections, *own, *strength]
 
 
 def strength_of(mechanism: Mechanism, kind: str, names: Sequence[str]) -> list[str]:
     """The links of which a kind of strength is among wanted names."""
     return [link for link in _made_of_something(mechanism) if {"all", kind, f"{kind}:{link}"} & set(names)]
+
+
+def fitted_of(mechanism: Mechanism, names: Sequence[str]) -> list[str]:
+    """The joints of whose pins and bearings the safety is among wanted names."""
+    return [joint for joint in mechanism.fitted if {"all", "safety", f"safety:{joint}"} & set(names)]
+
+
+def without_fitted(mechanism: Mechanism, names: Sequence[str], what: str) -> None:
+    """Raise :class:`.DeclarationError` where the safety of a joint's pin or bearing is among wanted names."""
+    for joint in mechanism.fitted:
+        if f"safety:{joint}" in names:
+            raise DeclarationError(f"output 'safety:{joint}': {what} tell no pins and bearings; want reaction:{joint}")
 
 
 def without_life(names: Sequence[str], what: str) -> None:
@@ -144,7 +159,7 @@ def without_life(names: Sequence[str], what: str) -> None:
 def _check_material(mechanism: Mechanism, name: str) -> None:
     """Raise :class:`.DeclarationError` where a material lacks a number that what is wanted of a link needs."""
     kind, _, link = name.partition(":")
-    if kind not in STRENGTH or not link:
+    if kind not in STRENGTH or link not in mechanism.links:
         return
     beam = mechanism.links[link].beam
     assert beam is not None

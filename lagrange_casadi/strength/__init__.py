@@ -1,6 +1,7 @@
 """Strength of links: stresses, factors of safety against yielding, buckling and fatigue, and lives."""
 
 from ..declare.held import effective_lengths
+from .bearings import joint_safety
 from .buckling import Column, critical_stress
 from .fatigue import CRITERIA, cycles, factor, reversed_amplitude
 from .rainflow import Swing, rainflow
@@ -20,6 +21,7 @@ __all__ = [
     "cycles",
     "effective_lengths",
     "factor",
+    "joint_safety",
     "life",
     "rainflow",
     "reversed_amplitude",

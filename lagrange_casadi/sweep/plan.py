@@ -16,7 +16,7 @@ import numpy as np
 from ..declare.density import Array
 from ..declare.description import Description, shape_of
 from ..declare.even_points import EvenPoints, points
-from ..declare.scene import STRENGTH, Scene, Wanted, checked_ratios, outputs, strength_of
+from ..declare.scene import STRENGTH, Scene, Wanted, checked_ratios, outputs, strength_of, without_fitted
 from ..declare.times import Over, Times, Timing
 from ..designs.engine import DesignEngine
 from ..equations.derive import derive
@@ -260,6 +260,7 @@ def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
     """Output names; ``all`` are all but the motion, whose peaks size nothing, and strength, which is wanted by name."""
     names = tuple(scene.wanted if wanted is None else wanted)
     Wanted.of(scene.mechanism, names)
+    without_fitted(scene.mechanism, names, "sweeps")
     if "all" not in names or "motion" in names:
         return names
     own = (name for name in outputs(scene.mechanism) if name.partition(":")[0] not in STRENGTH)
