@@ -268,7 +268,9 @@ def _looked(value: Callable[[Any], Any], degree: int) -> list[Any]:
         before, here, after = found[k - 1 : k + 2]
         bend = 2.0 * here - before - after
         gain = (after - before) ** 2 / (8.0 * ca.if_else(bend > 0.0, bend, 1.0))
-        best = _ranked(best, ca.if_else(ca.logic_and(here >= before, here >= after), here + gain, -math.inf), places[k])
+        summit = ca.logic_and(here >= before, here >= after)
+        # Beside what is higher there is more than a summit that is lower than both.
+        best = _ranked(best, ca.if_else(summit, here + gain, ca.fmin(before, after)), places[k])
     for _, place in best:
         reach = 1.0 / (2 * (count - 1))
         for _ in range(2):
