@@ -93,14 +93,22 @@ def reversed_amplitude(amplitude: Any, mean: Any, material: Material, criterion:
     return np.where(left > 0.0, np.asarray(amplitude) / np.where(left > 0.0, left, 1.0), np.inf)
 
 
+def line(material: Material) -> tuple[float, float, float]:
+    """The endurance limit, the amplitude that is borne a thousand times [Pa], and the exponent of a material's S-N line.
+
+    Raises :class:`.DeclarationError` for numbers that the material has not.
+    """
+    endurance, ultimate = material.needs("a life", "endurance", "ultimate")
+    start = material.fatigue_share * ultimate
+    return endurance, start, math.log10(material.endurance_cycles / _LEAST) / math.log10(endurance / start)
+
+
 def cycles(amplitude: Any, material: Material) -> Any:
     """How often a fully reversed amplitude is borne: on the material's S-N line, and endlessly below its endurance limit.
 
     Above the line's beginning, at a thousand cycles, it goes straight on, and is a guess; of infinite amplitudes it is none.
     """
-    endurance, ultimate = material.needs("a life", "endurance", "ultimate")
-    start = material.fatigue_share * ultimate
-    slope = math.log10(material.endurance_cycles / _LEAST) / math.log10(endurance / start)
+    endurance, start, slope = line(material)
     size = np.asarray(amplitude, float)
     with np.errstate(divide="ignore", over="ignore"):
         found = _LEAST * (size / start) ** slope
