@@ -4,6 +4,7 @@ from ..declare.held import effective_lengths
 from .bearings import joint_safety
 from .buckling import Column, critical_stress
 from .fatigue import CRITERIA, cycles, factor, reversed_amplitude
+from .parts import safeties
 from .rainflow import Swing, rainflow
 from .safety import Life, Safety, Verdict, life, safety, stress
 from .stress import Stress, StressPeak
@@ -25,6 +26,7 @@ __all__ = [
     "life",
     "rainflow",
     "reversed_amplitude",
+    "safeties",
     "safety",
     "stress",
 ]
