@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from strong import press, robot, slider
 
-from lagrange_casadi import beams, derive, evaluate, load, optimise, prepare, save
+from lagrange_casadi import beams, derive, evaluate, load, optimise, prepare, refine, save
 from lagrange_casadi.errors import DeclarationError, UnknownNameError
 
 I_SECTION = beams.i_section(0.04, 0.03, 0.004, 0.005)
@@ -99,3 +99,19 @@ def test_files_keep_what_was_wanted(tmp_path):
         assert again.unit(name) == ("Pa" if name.startswith("stress") else "1")
         np.testing.assert_array_equal(again.array(name), solution.array(name))
     assert again.life("rod") == solution.life("rod")
+
+
+def test_no_table_holds_what_is_largest_along_a_link():
+    with pytest.raises(DeclarationError, match=r"table: stress:rod:von_mises is no polynomial of the rate; want section:rod"):
+        evaluate(slider(), wanted=["stress:rod"], table=64)
+
+
+def test_peaks_between_instants_are_sought():
+    """A coarse cycle refined, against a fine one."""
+    scene = slider()
+    coarse, fine = (
+        evaluate(scene, t=(0, 0.2094395, n), wanted=["stress:rod"], backend="vm", certificate=False) for n in (33, 8193)
+    )
+    (peak,) = (peak for peak in refine(scene, coarse) if peak.name == "stress:rod:von_mises")
+    assert peak.value == pytest.approx(fine.array("stress:rod:von_mises").max(), rel=1e-7)
+    assert peak.value > coarse.array("stress:rod:von_mises").max()
