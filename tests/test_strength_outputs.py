@@ -18,7 +18,7 @@ LINKS = {
 }
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("name", LINKS)
 def test_series_are_the_largest_along_the_link(name):
     """Against all zeros of slopes along the link, by other code; a cross-section that changes is followed less closely."""

@@ -92,6 +92,7 @@ def test_bounds_leave_out_no_swing():
         assert found == pytest.approx(max(every), rel=1e-12)
 
 
+@pytest.mark.long
 def test_from_the_command_line(tmp_path):
     run = CliRunner().invoke
     file = str(tmp_path / "a.h5")
