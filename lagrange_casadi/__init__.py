@@ -3,7 +3,7 @@
 from .system import interrupts, standard_streams  # noqa: F401 - before all that takes long, or opens a file
 
 # isort: split
-from . import beams, density, figures, motion, strength
+from . import beams, bearings, density, figures, motion, strength
 from .case import Case, load_case
 from .declare.curves import Curve, curve, table
 from .declare.mechanism import Mechanism
@@ -41,6 +41,7 @@ __all__ = [
     "Sweep",
     "__version__",
     "beams",
+    "bearings",
     "best",
     "check",
     "curve",

@@ -33,8 +33,21 @@ def robot(shape, material=STEEL):
     fore = m.link("fore", length=0.4, mass=3.0)
     m.revolute("turn", m.ground, upper, axis=(0.3, 0.5, 1.0))
     m.revolute("elbow", upper.tip, fore, axis=(0.2, 1.0, 0.4))
-    m.force("load", fore.tip, x=120.0, y=-80.0, z=60.0)
+    m.force("load", fore.tip, x=m.parameter("pull", 120.0, "N"), y=-80.0, z=60.0)
     return Scene(m, {"turn": harmonic(0.0, 1.0, 1.0), "elbow": harmonic(0.7, 0.5, 2.0)}, t=(0, 1, 61))
+
+
+def slider(endurance=None):
+    """A slider-crank of rectangular bars, whose height may be chosen."""
+    m = Mechanism("slider")
+    r, l, h = m.parameter("r", 0.1, "m", low=0.0), m.parameter("l", 0.4, "m", low=0.0), m.parameter("h", 0.02, "m", low=0.0)
+    bar = beams.Beam(beams.rectangle(h, 0.012), STEEL.but(endurance=endurance))
+    crank, rod, ram = m.link("crank", length=r, beam=bar), m.link("rod", length=l, beam=bar), m.point_mass("ram", 15.0)
+    m.revolute("O", m.ground, crank)
+    m.revolute("A", crank.tip, rod)
+    m.revolute("B", rod.tip, ram)
+    m.prismatic("guide", m.ground, ram, axis=(0, 1))
+    return Scene(m, {"O": polynomial(0, 30.0)}, t=(0, 0.2094395, 65), posture={"rod": 1.5})
 
 
 BARS = [Profile(f"bar {d}", {"diameter": d / 1000}) for d in (14, 8, 12, 10, 18, 16, 22, 20)]

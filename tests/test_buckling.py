@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate
 from lagrange_casadi.declare.description import describe
+from lagrange_casadi.declare.held import effective_lengths
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.strength.buckling import Column, column, critical_stress, effective_lengths, load_factor
+from lagrange_casadi.strength.buckling import Column, column, critical_stress, load_factor
 from lagrange_casadi.strength.member import Member
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]

@@ -93,7 +93,7 @@ def rows(quantities, *axes):
     yield from axes
     places = {"motion": "/motion/JOINT", "pose": "/pose/BODY/", "effort": "/effort/JOINT", "reaction": "/reaction/JOINT/"}
     places |= {"multiplier": "/multiplier/NAME", "load": "/load/NAME/", "friction": "/friction/NAME/", "output": "/output/NAME"}
-    places |= {"certificate": "/certificate/"}
+    places |= {"certificate": "/certificate/", "stress": "/stress/LINK/", "utilisation": "/utilisation/LINK/"}
     places |= {
         "section": "/section/LINK/",
         "law": "/section/LINK/law/",

@@ -42,6 +42,7 @@ ORDER = (
     "animation",
     "actuators",
     "optimise",
+    "bearings",
     "density",
     "motion",
     "figures",

@@ -47,6 +47,20 @@ class Properties:
     centre_y: Any = 0.0
     centre_z: Any = 0.0
 
+    def rows(self, fibre: Fibre) -> tuple[tuple[Any, ...], ...]:
+        """What a fibre's stresses, normal, along y and along z, take of axial force, two shears, torsion and two bendings.
+
+        Section forces act at the centroid, torsion counts from the shear centre.
+        """
+        whole = self.iz * self.iy - self.iyz**2
+        about_y = (self.iz * fibre.z - self.iyz * fibre.y) / whole
+        about_z = (self.iyz * fibre.z - self.iy * fibre.y) / whole
+        sheared = [
+            (0.0, by_y + self.centre_z * twist, by_z - self.centre_y * twist, twist, 0.0, 0.0)
+            for by_y, by_z, twist in (fibre.along_y, fibre.along_z)
+        ]
+        return ((1.0 / self.area, 0.0, 0.0, 0.0, about_y, about_z), *sheared)
+
     @property
     def wz(self) -> Any:
         """The elastic modulus about z: iz over the largest distance of a fibre along y."""

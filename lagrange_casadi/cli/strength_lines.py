@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 
 from ..declare.mechanism import Mechanism
-from ..declare.scene import strength_of
+from ..declare.scene import fitted_of, strength_of
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..strength.safety import Life, Safety
@@ -23,7 +23,7 @@ def strength_lines(solution: Solution, mechanism: Mechanism, wanted: Sequence[st
         yield "stresses along the links, largest in size:"
         for link in links:
             yield from told(link, lambda name: list(_stresses(solution, name)))
-    if links := strength_of(mechanism, "safety", wanted):
+    if links := [*strength_of(mechanism, "safety", wanted), *fitted_of(mechanism, wanted)]:
         yield "factors of safety, and utilisation, which is one over the least of them:"
         for link in links:
             yield from told(link, lambda name: list(safety_lines(solution.safety(name))))

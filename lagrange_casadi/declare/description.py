@@ -11,6 +11,7 @@ import casadi as ca
 from ..beams.told import told_beam
 from ..geometry.vectors import cross
 from .density import NumericDensity
+from .fitted import told_parts
 from .joints import Joint
 from .mechanism import Mechanism
 from .parts import Friction, Link, Load, Point, PointMass, RigidMass
@@ -211,6 +212,10 @@ def _described(
     def written(density: NumericDensity) -> Description:
         return {"breaks": list(density.breaks), "cells": [list(c) for c in density.cells]}
 
+    def fitted(joint: Joint) -> Description:
+        parts = mechanism.fitted.get(joint.name)
+        return {"fitted": told_parts(parts, number)} if parts else {}
+
     def freedoms(joint: Joint) -> Description:
         if joint.turned is None:
             told: Description = {"coordinate": joint.coordinate, "driven": joint.name in driven}
@@ -239,7 +244,7 @@ def _described(
 
     bodies = {body.name: matter(body) for body in mechanism.moving}
     loads = {name: load_of(load) for name, load in mechanism.loads.items()}
-    joints = {joint.name: {"kind": joint.kind} | freedoms(joint) for joint in mechanism.joints.values()}
+    joints = {joint.name: {"kind": joint.kind} | freedoms(joint) | fitted(joint) for joint in mechanism.joints.values()}
     parameters = {
         name: {"value": values[name], "unit": parameter.unit, "low": parameter.low, "high": parameter.high}
         for name, parameter in mechanism.parameters.items()

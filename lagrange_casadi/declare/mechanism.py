@@ -18,6 +18,7 @@ from ..errors import DeclarationError
 from .constraints import constraint, row
 from .density import Density
 from .expressions import check_line, check_name, typed
+from .fitted import Fitted
 from .friction import friction
 from .joints import Axis, Joint, JointKind
 from .limits import check_connected, parameter_values
@@ -73,6 +74,7 @@ class Mechanism:
     rows: dict[str, Row] = field(default_factory=dict, init=False)
     outputs: dict[str, OwnOutput] = field(default_factory=dict, init=False)
     paths: dict[str, Path] = field(default_factory=dict, init=False)
+    fitted: dict[str, dict[str, Fitted]] = field(default_factory=dict, init=False)
     gravity: Vector = field(default=(0.0, -9.81, 0.0), init=False)
     frozen: bool = field(default=False, init=False)
     time: Any = field(default_factory=lambda: ca.SX.sym("t"), init=False)
@@ -263,9 +265,8 @@ class Mechanism:
     ) -> Spring:
         """Stretch a spring [N/m] of a free length [m], with a damper [N s/m] beside it, between two points: :class:`.Spring`."""
         ends = self._load_point(name, first), self._load_point(name, second)
-        load = Spring(name, *ends, self._load(name, stiffness), self._load(name, length), self._load(name, damping))
-        self.loads[name] = load
-        return load
+        numbers = [self._load(name, value) for value in (stiffness, length, damping)]
+        return cast(Spring, self.loads.setdefault(name, Spring(name, *ends, *numbers)))
 
     def damper(self, name: str, first: Body | Point, second: Body | Point, *, damping: Expression) -> Spring:
         """Put a damper [N s/m] between two points."""

@@ -62,7 +62,10 @@ def checked_ratios(even: EvenPoints) -> EvenPoints:
 
 @dataclass(frozen=True)
 class Wanted:
-    """Outputs by kind, each in the order of declaration whatever the order of wanting."""
+    """Outputs by kind, each in the order of declaration whatever the order of wanting.
+
+    ``stressed`` are links whose stress is wanted at every instant, ``used`` those whose utilisation is: by name, or as a kind.
+    """
 
     effort: bool
     motion: bool
@@ -72,6 +75,8 @@ class Wanted:
     frictions: tuple[str, ...]
     sections: tuple[str, ...]
     own: tuple[str, ...]
+    stressed: tuple[str, ...] = ()
+    used: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, mechanism: Mechanism, names: Sequence[str]) -> Wanted:
@@ -95,6 +100,8 @@ class Wanted:
         own = (output for name, output in mechanism.outputs.items() if chosen & {"output", f"output:{name}"})
         chosen |= {asked.wanted for output in own for asked in output.made_of}
         chosen |= {f"section:{link}" for kind in STRENGTH for link in strength_of(mechanism, kind, names)}
+        if fitted := fitted_of(mechanism, names):
+            chosen |= {"motion", *(f"reaction:{joint}" for joint in fitted)}
         loads = (name for name, load in mechanism.loads.items() if isinstance(load, Friction))
         chosen |= {f"friction:{name}" for name in loads if chosen & {"load", f"load:{name}"}}
         if not chosen:
@@ -104,7 +111,9 @@ class Wanted:
             own = (name for name in every if name.startswith(f"{kind}:") and chosen & {kind, name})
             return tuple(name.partition(":")[2] for name in own)
 
-        return cls("effort" in chosen, "motion" in chosen, *map(parts, _KINDS))
+        named = [name for name in names if name != "all"]
+        strength = (tuple(strength_of(mechanism, kind, named)) for kind in ("stress", "safety"))
+        return cls("effort" in chosen, "motion" in chosen, *map(parts, _KINDS), *strength)
 
     @property
     def forces(self) -> bool:
@@ -121,6 +130,7 @@ def outputs(mechanism: Mechanism) -> list[str]:
     sections = [f"section:{name}" for name, link in mechanism.links.items() if isinstance(link.mass, Density)]
     own = [f"output:{name}" for name in mechanism.outputs]
     strength = [f"{kind}:{name}" for kind in STRENGTH for name in _made_of_something(mechanism)]
+    strength += [f"safety:{joint}" for joint in mechanism.fitted]
     return ["all", "effort", "motion", *reactions, *multipliers, *loads, *frictions, *sections, *own, *strength]
 
 
@@ -129,19 +139,29 @@ def strength_of(mechanism: Mechanism, kind: str, names: Sequence[str]) -> list[s
     return [link for link in _made_of_something(mechanism) if {"all", kind, f"{kind}:{link}"} & set(names)]
 
 
-def without_strength(mechanism: Mechanism, names: Sequence[str], what: str) -> tuple[str, ...]:
-    """Wanted names for what tells no strength. Raises :class:`.DeclarationError` where one asks for it."""
+def fitted_of(mechanism: Mechanism, names: Sequence[str]) -> list[str]:
+    """The joints of whose pins and bearings the safety is among wanted names."""
+    return [joint for joint in mechanism.fitted if {"all", "safety", f"safety:{joint}"} & set(names)]
+
+
+def without_fitted(mechanism: Mechanism, names: Sequence[str], what: str) -> None:
+    """Raise :class:`.DeclarationError` where the safety of a joint's pin or bearing is among wanted names."""
+    for joint in mechanism.fitted:
+        if f"safety:{joint}" in names:
+            raise DeclarationError(f"output 'safety:{joint}': {what} tell no pins and bearings; want reaction:{joint}")
+
+
+def without_life(names: Sequence[str], what: str) -> None:
+    """Raise :class:`.DeclarationError` where a life is among wanted names of what tells single instants."""
     for name in names if not isinstance(names, str) else ():
-        if isinstance(name, str) and name.partition(":")[0] in STRENGTH:
-            links = ", ".join(f"section:{link}" for link in strength_of(mechanism, name.partition(":")[0], [name]))
-            raise DeclarationError(f"output '{name}': {what} tell no strength; want {links}, and evaluate designs one by one")
-    return tuple(names)
+        if isinstance(name, str) and name.partition(":")[0] == "life":
+            raise DeclarationError(f"output '{name}': {what} tell instants, and a life is that of a whole cycle; evaluate it")
 
 
 def _check_material(mechanism: Mechanism, name: str) -> None:
     """Raise :class:`.DeclarationError` where a material lacks a number that what is wanted of a link needs."""
     kind, _, link = name.partition(":")
-    if kind not in STRENGTH or not link:
+    if kind not in STRENGTH or link not in mechanism.links:
         return
     beam = mechanism.links[link].beam
     assert beam is not None

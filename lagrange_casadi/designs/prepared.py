@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from ..arithmetic.compensated import Precision
 from ..declare.density import Array
-from ..declare.scene import Scene, without_strength
+from ..declare.scene import Scene, without_fitted, without_life
 from ..declare.times import Over, Times
 from ..errors import AssemblyError, DeclarationError, UnknownNameError
 from ..evaluate import evaluate
@@ -245,7 +245,8 @@ def prepare(
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"prepare: expected a Scene, got {scene!r}")
-    without_strength(scene.mechanism, wanted or (), "prepared scenes")
+    without_life(wanted or (), "prepared scenes")
+    without_fitted(scene.mechanism, wanted or (), "prepared scenes")
     engine = DesignEngine.of(scene, wanted, rung=Rung(backend, precision, newton, None, flags), timing=scene.timing(t, over))
     asked: dict[str, Any] = {"t": t, "over": over, "wanted": wanted, "backend": backend, "precision": precision, "newton": newton}
     return Prepared(engine, lambda values: evaluate(scene, parameters=values, **asked, flags=flags, certificate=False))

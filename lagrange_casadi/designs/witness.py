@@ -27,6 +27,9 @@ from ..judge.certificate import LOOSE, tolerance
 from ..quantities import Output
 
 INSTANTS = 5
+_WANTED = {"stress": "stress", "utilisation": "safety"}
+"""What is to be wanted for what ``all`` does not have."""
+
 _ROUNDINGS = 10.0
 _AGREES = 1e-6
 """Of the largest value of a unit, what two ways to evaluate the same graph may differ by; in single precision more."""
@@ -37,7 +40,8 @@ def failures(scene: Scene, p: Array, t: Array, rung: Rung, outputs: Sequence[Out
 
     ``out`` (outputs, t) are the outputs that were made of it, over its instants ``t``.
     """
-    graph = derive(scene, ["all"], iterate=rung.newton is not None)
+    strength = (f"{_WANTED[output.group]}:{output.part}" for output in outputs if output.group in _WANTED)
+    graph = derive(scene, ["all", *strength], iterate=rung.newton is not None)
     some = np.unique(np.linspace(0, t.size - 1, min(t.size, INSTANTS)).astype(int))
     followed = t if graph.newton is not None else t[some]
     table, provenance = run(graph, followed, p, Rung("vm", newton=rung.newton))

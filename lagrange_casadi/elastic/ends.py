@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from ..declare.description import Description, in_space
-from ..strength.buckling import held_ends
+from ..declare.held import held_ends
 
 End = Literal["pinned", "clamped", "free", "guided"]
 Ends = tuple[End, End]

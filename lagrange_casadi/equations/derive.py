@@ -10,7 +10,9 @@ from typing import Any
 
 import casadi as ca
 
+from ..declare.description import describe
 from ..declare.ends import beyond_ends
+from ..declare.held import effective_lengths
 from ..declare.limits import told_parameters
 from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
@@ -33,6 +35,7 @@ from .own import own_outputs
 from .reciprocals import share_reciprocals
 from .scene_graph import SceneGraph
 from .stations import gathered
+from .strength import stresses, utilisation
 from .tree import span
 from .turns import count_turns
 
@@ -175,11 +178,26 @@ def _derive(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGr
             acting[check] = closure(acting[check], float(there(*at_start)))
     acting |= own_outputs(body, solved, columns | acting)
     opened = open_forces(acting, free, inputs, frictions) if elastic and free.numel() else None
+    acting |= _strength(scene, want, columns | acting)
     columns |= _settled(acting, free)
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
     return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), loop_angles, opened)
+
+
+def _strength(scene: Scene, want: Wanted, columns: Mapping[Column, Any]) -> dict[Column, Any]:
+    """Stresses and utilisation of the links of which they are wanted."""
+    found: dict[Column, Any] = {}
+    for name in want.stressed:
+        found |= stresses(scene.mechanism, name, columns)
+    if want.used:
+        told = describe(scene.mechanism, scene.mechanism.values(scene.assembly), scene.laws)
+        for name in want.used:
+            beam = scene.mechanism.links[name].beam
+            assert beam is not None
+            found |= utilisation(scene.mechanism, name, columns, beam.columns or effective_lengths(told, name))
+    return found
 
 
 def _settled(columns: dict[Column, Any], free: Any) -> dict[Column, Any]:

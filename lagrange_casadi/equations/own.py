@@ -35,7 +35,7 @@ def own_outputs(body: Multibody, solved: Kinematics, found: Mapping[Column, Any]
 
 def _value(links: Mapping[str, Link], asked: Asked, found: Mapping[Column, Any], table: Table) -> Any:
     if asked.output.group == "section":
-        return _section(links[asked.output.part], asked.output.member, asked.ratio, found, table)
+        return section_force(links[asked.output.part], asked.output.member, asked.ratio, found, table)
     if asked.output not in found:
         drives = ", ".join(str(key.part) for key in found if isinstance(key, Output) and key.group == "effort")
         raise DeclarationError(
@@ -44,8 +44,8 @@ def _value(links: Mapping[str, Link], asked: Asked, found: Mapping[Column, Any],
     return found[asked.output]
 
 
-def _section(link: Link, force: str, ratio: Any, found: Mapping[Column, Any], table: Table) -> Any:
-    """A force of a link's law (:mod:`.mobility`) at a ratio; at a station, on its tip's side."""
+def section_force(link: Link, force: str, ratio: Any, found: Mapping[Column, Any], table: Table, middle: Any | None = None) -> Any:
+    """A force of a link's law (:mod:`.mobility`) at a ratio; at a station, on its tip's side, or on that of a ``middle``."""
     assert isinstance(link.mass, Density)
     t0, t1, t2 = link.mass.tails(ratio, link.length)
     l = link.length
@@ -66,6 +66,7 @@ def _section(link: Link, force: str, ratio: Any, found: Mapping[Column, Any], ta
         if terms.shear:
             across = found[Output("station", link.name, table.sections[terms.shear].acting, name)]
             load = load + across * (terms.arm * (l * (place - ratio)))
-        seen = ca.logic_or(ca.SX(ratio) < place, ca.logic_and(ca.SX(ratio) >= 1, place >= 1))
+        at = ca.SX(ratio if middle is None else middle)
+        seen = ca.logic_or(at < place, ca.logic_and(at >= 1, place >= 1) if middle is None else place >= 1)
         total += ca.SX(load) if seen.is_one() else ca.SX(0) if seen.is_zero() else ca.if_else(seen, load, 0)
     return sum(felt_along(found, link, terms, ratio), total)

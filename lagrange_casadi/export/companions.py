@@ -8,6 +8,7 @@ import numpy as np
 
 from ..tables import Table
 from .contract import REST, Contract, Member
+from .fatigue import counting
 from .golden import RATIOS
 from .matlab import matlab
 from .program import literal
@@ -32,38 +33,42 @@ def companions(source: Source) -> dict[str, str]:
     (start, stop), count = source.program.graph.scene.span, source.program.graph.scene.timing().count
     steps = max(1, round((count - 1) / _ROWS)) if source.iterated else 1
     number = literal(c.precision)
-    return {
-        "CMakeLists.txt": template("CMakeLists.txt", **words),
-        f"{c.prefix}Config.cmake.in": template("Config.cmake.in", **words),
-        "example.c": template(
-            "example.c",
-            **words,
-            null=null,
-            rest=rest,
-            start=number(start),
-            step=number((stop - start) / (_ROWS * steps)),
-            skip=f"    if (k%{steps} != 0) continue; /* the loops are followed in small steps */\n" if steps > 1 else "",
-            count=_ROWS * steps,
-            coordinate=drive.name,
-            coordinate_unit=quoted(drive.unit),
-            output=effort.name,
-            output_unit=quoted(effort.unit),
-            declared=f"  {c.prefix}_forces forces;\n" if link else "",
-            section=mid,
-            heading=f'"   {link.name}, bending at 0.5 [N m]' + '"' if link else '""',
-        ),
-        "selftest.c": _selftest(source, words),
-        "README.md": template(
-            "README.md",
-            **words | {"name": markdown(c.name)},
-            story=source.story,
-            inputs=_table(c.inputs),
-            outputs=_table(c.outputs),
-            parameters=_settings(c),
-            links=", ".join(f"`{k.constant}`" for k in c.links) or "none",
-            mapped=_mapped(c),
-        ),
-    } | matlab(source, drive, effort)
+    return (
+        {
+            "CMakeLists.txt": template("CMakeLists.txt", **words),
+            f"{c.prefix}Config.cmake.in": template("Config.cmake.in", **words),
+            "example.c": template(
+                "example.c",
+                **words,
+                null=null,
+                rest=rest,
+                start=number(start),
+                step=number((stop - start) / (_ROWS * steps)),
+                skip=f"    if (k%{steps} != 0) continue; /* the loops are followed in small steps */\n" if steps > 1 else "",
+                count=_ROWS * steps,
+                coordinate=drive.name,
+                coordinate_unit=quoted(drive.unit),
+                output=effort.name,
+                output_unit=quoted(effort.unit),
+                declared=f"  {c.prefix}_forces forces;\n" if link else "",
+                section=mid,
+                heading=f'"   {link.name}, bending at 0.5 [N m]' + '"' if link else '""',
+            ),
+            "selftest.c": _selftest(source, words),
+            "README.md": template(
+                "README.md",
+                **words | {"name": markdown(c.name)},
+                story=source.story,
+                inputs=_table(c.inputs),
+                outputs=_table(c.outputs),
+                parameters=_settings(c),
+                links=", ".join(f"`{k.constant}`" for k in c.links) or "none",
+                mapped=_mapped(c),
+            ),
+        }
+        | matlab(source, drive, effort)
+        | counting(source)
+    )
 
 
 def _example_section(c: Contract) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..declare.scene import Scene, without_strength
+from ..declare.scene import Scene, without_fitted, without_life
 from ..equations.derive import assembled, derive
 from ..equations.fingerprint import declaration
 from ..equations.scene_graph import SceneGraph
@@ -36,7 +36,8 @@ def sourced(
     Raises :class:`SizeError` for a table that is too large, :class:`CertificateError` where the scene's own cycle fails its
     certificate, and what :func:`.evaluate` raises.
     """
-    without_strength(scene.mechanism, wanted or (), "exports")
+    without_life(wanted or (), "exports")
+    without_fitted(scene.mechanism, wanted or (), "exports")
     precision, newton, table = rung.precision, rung.newton, rung.table
     values = scene.mechanism.values(parameters)
     p = np.array(list(values.values()))

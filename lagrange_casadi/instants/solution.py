@@ -181,9 +181,11 @@ class Solution:
         return stress(self, link)
 
     def safety(self, link: str, *, criterion: str = "goodman", yielding: str = "von_mises") -> Safety:
-        """The factors of safety of a link that has a beam: see :func:`.strength.safety`."""
-        from ..strength import safety
+        """The factors of safety of a link that has a beam, or of what is fitted to a joint: see :func:`.strength.safety`."""
+        from ..strength import joint_safety, safety
 
+        if link in self.description["joints"]:
+            return joint_safety(self, link)
         return safety(self, link, criterion=criterion, yielding=yielding)
 
     def life(self, link: str, *, criterion: str = "goodman") -> Life:

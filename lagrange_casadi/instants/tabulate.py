@@ -15,6 +15,7 @@ from ..equations.checks import FRACTIONS
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
 from ..quantities import Output
+from ..tables import LARGEST as LARGEST_ALONG
 from .cycle import Cycle, cycle_of
 from .cycle_table import LEAST, CycleTable, arranged, splines, weights
 
@@ -46,6 +47,11 @@ def tabulate(graph: SceneGraph, p: Array, table: int | float, rates: tuple[float
     reached, and for mistakes in the arguments.
     """
     accuracy, nodes = _asked(table)
+    for output in graph.outputs:
+        if output.group in LARGEST_ALONG:
+            raise DeclarationError(
+                f"table: {output} is no polynomial of the rate; want section:{output.part}, and tell its strength"
+            )
     largest = _largest(rates)
     cycle = cycle_of(graph, p, largest)
     values, best = cycle.values(nodes), None

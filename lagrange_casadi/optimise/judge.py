@@ -83,8 +83,8 @@ class Judge:
                     k = engine.quantities.index(term.name)
                     own = [*told(own, look, float(found.value[0, k]), float(found.t[0, k]), float(found.xi[0, k])), *own]
             points.append(tuple(own))
-            if term.kind == "parameter":
-                values.append(float(p[list(engine.parameters).index(term.name)]))
+            if term.output is None:
+                values.append(float(term.of_parameters(engine.scene.mechanism)(p)))
             elif term.kind == "peak":
                 values.append(abs(float(found.value[0, engine.quantities.index(term.name)])))
             elif term.averaged:

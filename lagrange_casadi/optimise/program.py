@@ -213,7 +213,7 @@ class Program:
                 averages.append((number, term.term))
                 hold(ca.MX(0, 1))
             elif term.term.output is None:
-                value = p[list(self.values.graph.scene.mechanism.parameters).index(term.term.name)]
+                value = term.term.of_parameters(self.values.graph.scene.mechanism)(p)
                 if number == 0:
                     best = value / term.scale
                     hold(ca.MX(0, 1))

@@ -19,7 +19,8 @@ from .descent import Descent
 from .judge import HOLDS, Judge, Judged, scale_of
 from .optimum import Limit, Optimum, Start
 from .program import Box, Found, Program
-from .terms import Constraint, Term
+from .strength_limits import constraints_of
+from .terms import Term
 from .values import PointValues
 
 _SCREENED = 256
@@ -82,7 +83,7 @@ def optimise(
     objective = Term.parse(minimise, declared)
     if objective.kind == "min":
         raise DeclarationError(f"minimise: a smallest value has no least one that could be told; use max:{objective.name}")
-    constraints = tuple(Constraint.parse(text, declared) for text in subject_to)
+    constraints = tuple(found for text in subject_to for found in constraints_of(text, scene.mechanism))
     box = _box(scene, over, parameters)
     if not (0.0 < transmission < 1.0):
         raise DeclarationError(f"transmission: expected a sine between 0 and 1, got {transmission!r}")
@@ -92,6 +93,8 @@ def optimise(
     if not engine.times.common:
         raise DeclarationError("optimise: the instants must be the same for all designs; give t in numbers")
     for term in (objective, *(c.term for c in constraints)):
+        if term.output is None:
+            term.of_parameters(scene.mechanism)
         there = engine.efforts if term.averaged else engine.quantities
         if term.output is not None and term.name not in there:
             raise UnknownNameError(f"quantity with a {term.kind}", term.name, there)
@@ -227,12 +230,10 @@ def _optimum(
         bounds = dict(zip(box.names, np.where(at_bound, by_unit, 0.0).tolist(), strict=True))
     everything = dict(zip(search.judge.engine.parameters, judged.p.tolist(), strict=True))
     scene = search.judge.engine.scene
-    output = search.judge.program.objective.output
-    unit = scene.mechanism.parameters[search.judge.program.objective.name].unit if output is None else output.unit(scene.mechanism)
     return Optimum(
         case=scene.mechanism.name,
         minimised=search.judge.program.objective,
-        unit=unit,
+        unit=search.judge.program.objective.unit(scene.mechanism),
         values={name: everything[name] for name in box.names},
         parameters=everything,
         objective=float(judged.values[0]),

@@ -6,13 +6,17 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
+import casadi as ca
+
+from ..declare.masses import mass_of
+from ..declare.mechanism import Mechanism
 from ..errors import DeclarationError
 from ..quantities import Output
 from ..system.numerals import real
 
-Kind: TypeAlias = Literal["peak", "max", "min", "mean", "rms", "parameter"]
+Kind: TypeAlias = Literal["peak", "max", "min", "mean", "rms", "mass", "parameter"]
 
 KINDS = {
     "peak": "the largest size of a quantity over the motion",
@@ -21,6 +25,9 @@ KINDS = {
     "mean": "the mean of an effort or an output",
     "rms": "the root of its mean square",
 }
+MASS: Literal["mass"] = "mass"
+"""The mass of a part."""
+
 """What a term may begin with."""
 
 _UPPER: tuple[Kind, ...] = ("peak", "max", "rms")
@@ -49,6 +56,8 @@ class Term:
                     break
         if text.strip() in parameters:
             return cls("parameter", text.strip())
+        if kind == MASS and name:
+            return cls(MASS, name)
         raise DeclarationError(
             f"'{text}' is neither a parameter nor {', '.join(f'{kind}:QUANTITY' for kind in KINDS)}; an example is peak:effort:O"
         )
@@ -60,8 +69,21 @@ class Term:
 
     @property
     def output(self) -> Output | None:
-        """The quantity, None of a parameter."""
-        return None if self.kind == "parameter" else Output.of(self.name)
+        """The quantity, None of a parameter and of a mass."""
+        return None if self.kind in ("parameter", MASS) else Output.of(self.name)
+
+    def of_parameters(self, mechanism: Mechanism) -> Any:
+        """A parameter or a mass as a function of all parameters. Raises :class:`.UnknownNameError` for what is none."""
+        found = (
+            mass_of(mechanism, self.name) if self.kind == MASS else mechanism.symbols[list(mechanism.parameters).index(self.name)]
+        )
+        return ca.Function("of_parameters", [mechanism.symbols], [found])
+
+    def unit(self, mechanism: Mechanism) -> str:
+        """Its unit."""
+        if self.kind == MASS:
+            return "kg"
+        return mechanism.parameters[self.name].unit if self.output is None else self.output.unit(mechanism)
 
     def __str__(self) -> str:
         return self.name if self.kind == "parameter" else f"{self.kind}:{self.name}"

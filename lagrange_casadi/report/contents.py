@@ -19,6 +19,7 @@ from ..instants.statistics import Extreme
 from ..instants.told import error_of, told
 from ..judge.certificate import failure, summary
 from ..quantities import Output
+from ..strength import safeties
 from .arrays import Arrays, finite
 from .instants import shown_instants
 from .live import Live
@@ -29,7 +30,7 @@ from .words import GROUPS, what
 VERSION = 1
 """Of what a page holds."""
 
-_CHARTED = ("effort", "reaction", "output", "motion", "load", "friction", "multiplier", "pose")
+_CHARTED = ("effort", "reaction", "stress", "utilisation", "output", "motion", "load", "friction", "multiplier", "pose")
 
 
 @dataclass(frozen=True)
@@ -100,6 +101,7 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Any]:
         "sections": list(section_entries(solution, chosen, arrays)),
         "groups": GROUPS,
         "rows": [asdict(row) for row in _rows(solution)],
+        "strength": list(_strength(solution)),
         "parameters": list(_parameters(description)),
         "certificate": _certificate(solution),
         "notes": list(solution.notes),
@@ -187,6 +189,15 @@ def _rows(solution: Solution) -> Iterator[Row]:
         peak, smallest, largest = (mark(extreme) for extreme in (own.peak, own.smallest, own.largest))
         means = (None if mean is None else finite(mean) for mean in (own.mean, own.rms))
         yield Row(*words, False, peak, error_of(solution, output), smallest, largest, *means)
+
+
+def _strength(solution: Solution) -> Iterator[dict[str, Any]]:
+    """How far links and joints are used against each way to fail, and whether that governs; factors beyond all numbers are none."""
+    for found in safeties(solution):
+        for verdict in found.verdicts:
+            told_of = {"part": found.link, "against": verdict.against, "where": verdict.where}
+            used = 1.0 / verdict.factor if verdict.factor else None
+            yield told_of | {"factor": finite(verdict.factor), "used": used, "governs": verdict is found.governs}
 
 
 def _parameters(description: Description) -> Iterator[dict[str, Any]]:

@@ -17,6 +17,8 @@ GROUPS = {
     "effort": "Efforts",
     "reaction": "Reactions",
     "section": "Section forces",
+    "stress": "Stresses",
+    "utilisation": "Utilisation",
     "output": "Own outputs",
     "motion": "Motion of joints",
     "load": "Loads",

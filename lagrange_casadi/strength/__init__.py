@@ -1,7 +1,10 @@
 """Strength of links: stresses, factors of safety against yielding, buckling and fatigue, and lives."""
 
-from .buckling import Column, critical_stress, effective_lengths
+from ..declare.held import effective_lengths
+from .bearings import joint_safety
+from .buckling import Column, critical_stress
 from .fatigue import CRITERIA, cycles, factor, reversed_amplitude
+from .parts import safeties
 from .rainflow import Swing, rainflow
 from .safety import Life, Safety, Verdict, life, safety, stress
 from .stress import Stress, StressPeak
@@ -19,9 +22,11 @@ __all__ = [
     "cycles",
     "effective_lengths",
     "factor",
+    "joint_safety",
     "life",
     "rainflow",
     "reversed_amplitude",
+    "safeties",
     "safety",
     "stress",
 ]

@@ -24,8 +24,11 @@ from ..instants.section_law import Side
 from .rainflow import rainflow
 from .stress import Stress
 
-_FEW, _ROUNDS, _ZOOM = 65, 3, 9
-"""Ratios that are looked at first, and how often and how finely the place that is worst is looked at again."""
+FEW = 65
+"""Ratios that are looked at first."""
+
+_ROUNDS, _ZOOM = 3, 9
+"""How often and how finely the place that is worst is looked at again."""
 
 _LEAST = 1e3
 """Cycles from which on S-N lines hold."""
@@ -90,14 +93,22 @@ def reversed_amplitude(amplitude: Any, mean: Any, material: Material, criterion:
     return np.where(left > 0.0, np.asarray(amplitude) / np.where(left > 0.0, left, 1.0), np.inf)
 
 
+def line(material: Material) -> tuple[float, float, float]:
+    """The endurance limit, the amplitude that is borne a thousand times [Pa], and the exponent of a material's S-N line.
+
+    Raises :class:`.DeclarationError` for numbers that the material has not.
+    """
+    endurance, ultimate = material.needs("a life", "endurance", "ultimate")
+    start = material.fatigue_share * ultimate
+    return endurance, start, math.log10(material.endurance_cycles / _LEAST) / math.log10(endurance / start)
+
+
 def cycles(amplitude: Any, material: Material) -> Any:
     """How often a fully reversed amplitude is borne: on the material's S-N line, and endlessly below its endurance limit.
 
     Above the line's beginning, at a thousand cycles, it goes straight on, and is a guess; of infinite amplitudes it is none.
     """
-    endurance, ultimate = material.needs("a life", "endurance", "ultimate")
-    start = material.fatigue_share * ultimate
-    slope = math.log10(material.endurance_cycles / _LEAST) / math.log10(endurance / start)
+    endurance, start, slope = line(material)
     size = np.asarray(amplitude, float)
     with np.errstate(divide="ignore", over="ignore"):
         found = _LEAST * (size / start) ** slope
@@ -170,6 +181,24 @@ Score = Callable[[Loaded], tuple[float, ...]]
 """What is smallest where it is worst; of equals the second number tells."""
 
 
+def factor_score(material: Material, criterion: str) -> Score:
+    """The factor of safety against fatigue. Raises what :func:`strengths` does."""
+    strengths(material, criterion)
+    return lambda swings: (float(np.min(factor(swings.amplitude, swings.mean, material, criterion))),)
+
+
+def damage_score(material: Material, criterion: str) -> Score:
+    """The damage by Miner's sum, and where there is none the largest amplitude; times -1. Raises what :func:`strengths` does."""
+    strengths(material, criterion)
+
+    def score(swings: Loaded) -> tuple[float, float]:
+        sizes = reversed_amplitude(swings.amplitude, swings.mean, material, criterion)
+        with np.errstate(divide="ignore"):
+            return -float(np.sum(swings.times / cycles(sizes, material))), -float(np.max(sizes))
+
+    return score
+
+
 def worst(stress: Stress, score: Score) -> tuple[tuple[float, ...], Place, str, Loaded]:
     """Where along a link and at which fibre a score is smallest: its value, the place, the fibre, and the swings there.
 
@@ -177,7 +206,7 @@ def worst(stress: Stress, score: Score) -> tuple[tuple[float, ...], Place, str, 
     """
     found = [_at(stress, place, score) for place in _places(stress)]
     best = min(found, key=lambda one: one[0])
-    step = 1.0 / (_FEW - 1)
+    step = 1.0 / (FEW - 1)
     for _ in range(_ROUNDS):
         around = np.linspace(best[1].xi - step, best[1].xi + step, _ZOOM)
         again = [_at(stress, Place(float(x), "tip", None), score) for x in around if 0.0 <= x <= 1.0 and best[1].notch is None]
@@ -190,12 +219,12 @@ def _places(stress: Stress) -> Iterator[Place]:
     member = stress.member
     still = [float(mark[0]) for mark in member.marks if np.ptp(mark) == 0.0]
     steps = {*still, *(cell.low for cell in member.cells), *(cell.high for cell in member.cells)}
-    yield from (Place(x, "tip", None) for x in np.linspace(0.0, 1.0, _FEW).tolist())
+    yield from (Place(x, "tip", None) for x in np.linspace(0.0, 1.0, FEW).tolist())
     yield from (Place(x, side, None) for x, side in itertools.product(sorted(steps), _SIDES))
-    yield from (Place(float(notch.at), side, _felt(notch)) for notch, side in itertools.product(member.beam.notches, _SIDES))
+    yield from (Place(float(notch.at), side, felt(notch)) for notch, side in itertools.product(member.beam.notches, _SIDES))
 
 
-def _felt(notch: Notch) -> Notch:
+def felt(notch: Notch) -> Notch:
     """What fatigue feels of a notch: K_f = 1 + q (K_t - 1) (Shigley, eq. 6-32)."""
     q = notch.sensitivity
     return Notch(notch.at, *(1.0 + q * (k - 1.0) for k in (notch.axial, notch.bending, notch.shear)))

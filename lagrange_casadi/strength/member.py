@@ -98,16 +98,10 @@ class Member:
         """What stresses take of section forces between two breaks, at ratios ``u``: (3, fibres, forces, u...)."""
         p = self.properties(index, u)
         found = np.zeros((3, len(p.fibres), 6, *np.shape(u)))
-        whole = p.iz * p.iy - p.iyz**2
         for k, fibre in enumerate(p.fibres):
-            found[0, k, 0] = 1.0 / p.area
-            found[0, k, 4] = (p.iz * fibre.z - p.iyz * fibre.y) / whole
-            found[0, k, 5] = (p.iyz * fibre.z - p.iy * fibre.y) / whole
-            for row, (by_y, by_z, twist) in ((1, fibre.along_y), (2, fibre.along_z)):
-                # Section forces act at the centroid, torsion counts from the shear centre.
-                found[row, k, 1] = by_y + p.centre_z * twist
-                found[row, k, 2] = by_z - p.centre_y * twist
-                found[row, k, 3] = twist
+            for row, numbers in enumerate(p.rows(fibre)):
+                for force, number in enumerate(numbers):
+                    found[row, k, force] = number
         return found if self.space else found[:, :, [0, 1, 5]]
 
     def at(self, u: Array, side: Side = "tip", scale: Array | None = None) -> Array:

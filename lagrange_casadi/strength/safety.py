@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..declare.description import Description
+from ..declare.held import effective_lengths
 from ..instants.solution import Solution
-from .buckling import Column, column, effective_lengths, load_factor
-from .fatigue import Loaded, cycles, factor, reversed_amplitude, strengths, worst
+from .buckling import Column, column, load_factor
+from .fatigue import damage_score, factor, factor_score, worst
 from .member import Member
 from .stress import Stress
 
@@ -99,12 +100,7 @@ def judged(member: Member, of: Column, *, criterion: str = "goodman", yielding: 
         return Safety(link, tuple(verdicts))
     if material.endurance is None:
         return Safety(link, tuple(verdicts), (f"fatigue: material '{material.name}' has no endurance",))
-    strengths(material, criterion)
-
-    def score(swings: Loaded) -> tuple[float]:
-        return (float(np.min(factor(swings.amplitude, swings.mean, material, criterion))),)
-
-    (value,), place, fibre, swings = worst(found, score)
+    (value, *_), place, fibre, swings = worst(found, factor_score(material, criterion))
     k = int(np.argmin(factor(swings.amplitude, swings.mean, material, criterion)))
     told = f"{swings.mean[k] / 1e6:.4g} +- {swings.amplitude[k] / 1e6:.4g} MPa by {criterion}"
     verdicts.append(Verdict("fatigue", value, f"{told} at xi/l = {place.xi:.4f}, {fibre}{', notch' if place.notch else ''}"))
@@ -144,14 +140,7 @@ def life(solution: Solution, link: str, *, criterion: str = "goodman") -> Life:
     member = Member.of(solution, link)
     material = member.beam.material
     material.needs("a life", "endurance", "ultimate")
-    strengths(material, criterion)
-
-    def score(swings: Loaded) -> tuple[float, float]:
-        sizes = reversed_amplitude(swings.amplitude, swings.mean, material, criterion)
-        with np.errstate(divide="ignore"):
-            return -float(np.sum(swings.times / cycles(sizes, material))), -float(np.max(sizes))
-
-    (most, _), place, fibre, _ = worst(Stress(member), score)
+    (most, *_), place, fibre, _ = worst(Stress(member), damage_score(material, criterion))
     many = math.inf if most == 0.0 else -1.0 / most
     span = float(solution.t[-1] - solution.t[0])
     return Life(link, 0.0 - most, many, many * span / 3600.0, place.xi, fibre)

@@ -22,6 +22,7 @@ from ..arithmetic.lookups import is_entry
 from ..declare.density import Array
 from ..equations.checks import Check
 from ..equations.scene_graph import SceneGraph
+from ..tables import LARGEST
 
 
 class Kind(enum.IntEnum):
@@ -69,7 +70,13 @@ class Sharpness:
 
     @classmethod
     def of(cls, graph: SceneGraph, columns: Sequence[int]) -> Sharpness:
-        """Of what some columns of a scene's graph are made of."""
+        """Of what some columns of a scene's graph are made of.
+
+        What is largest along a link is compared with much, and not looked into: it is as sharp as the link's law, and no sharper.
+        """
+        largest = {k for output, k in graph.outputs.items() if output.group in LARGEST}
+        laws = {k for output, k in graph.outputs.items() if output.along} if largest & {*columns} else set()
+        columns = sorted({*columns, *laws} - largest)
         inputs = graph.instant.sx_in()
         names = [graph.instant.name_in(i) for i in range(len(inputs))]
         found = _Found(inputs)

@@ -7,27 +7,26 @@ as everywhere; the same with slashes is its place in the file.
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
-import casadi as ca
 import numpy as np
 
-from ..declare.density import Array, Density
+from ..declare.density import Array
 from ..declare.mechanism import Mechanism
 from ..designs.engine import Outcome
 from ..errors import DeclarationError, UnknownNameError
-from ..instants.laws import law_of
 from ..instants.refusal import Status
-from ..instants.section_law import SectionLaw
 from ..quantities import Output
 from ..tables import Table, table_of
 from .chunks import encoded
+from .column import Column
 from .engine import STATUSES, Engine
 from .instant_axis import InstantAxis
+from .matter import Matter
+from .strength import LEAST, LIFE, MASS, Kept
 
 Keep = Literal["peaks", "laws", "histories"]
 KEEPS: tuple[Keep, ...] = ("peaks", "laws", "histories")
@@ -38,7 +37,7 @@ STATUS = "status"
 TIMES = "history:t"
 """The times of a design's instants, where these are over anything else."""
 
-KINDS = (STATUS, "peak", "peak_t", "peak_over", "peak_xi", "mean", "rms", "peak_at", "history")
+KINDS = (STATUS, "peak", "peak_t", "peak_over", "peak_xi", "mean", "rms", "peak_at", "history", LEAST, LIFE, MASS)
 """What columns are of, in the order in which they are listed."""
 
 MISSING = "NaN for designs of which equilibrium leaves it open"
@@ -50,28 +49,6 @@ _GRID_COST = 5e-10
 """Seconds of a section force at an instant and a ratio."""
 
 
-@dataclass(frozen=True)
-class Column:
-    """One dataset: its full name, the axes beyond those of the designs, their lengths, unit, type, and what a file says of it."""
-
-    name: str
-    unit: str
-    attributes: Mapping[str, str]
-    axes: tuple[str, ...] = ()
-    lengths: tuple[int, ...] = ()
-    dtype: str = "<f8"
-
-    @property
-    def place(self) -> str:
-        """The dataset's path in the file."""
-        return self.name.replace(":", "/")
-
-    @property
-    def width(self) -> int:
-        """Bytes a design."""
-        return np.dtype(self.dtype).itemsize * math.prod(self.lengths)
-
-
 def check_keep(keep: str) -> None:
     """Raise :class:`UnknownNameError` for what cannot be kept."""
     if keep not in KEEPS:
@@ -80,13 +57,18 @@ def check_keep(keep: str) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Harvest:
-    """An engine, and what is kept of its outcomes: ``axis`` is that of the instants, ``xi`` the ratios kept, none where empty."""
+    """An engine, and what is kept of its outcomes: ``axis`` is that of the instants, ``xi`` the ratios kept, none where empty.
+
+    ``safety`` and ``life`` are the links of which these are kept.
+    """
 
     engine: Engine
     mechanism: Mechanism
     keep: Keep
     axis: InstantAxis
     xi: Array
+    safety: tuple[str, ...] = ()
+    life: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         check_keep(self.keep)
@@ -126,7 +108,7 @@ class Harvest:
                 for link in self._links
                 for force in self._table.forces
             ]
-        return tuple(found)
+        return (*found, *self.strength.columns)
 
     @property
     def block(self) -> int:
@@ -178,6 +160,10 @@ class Harvest:
         if self._own_times:
             assert outcome.times is not None
             found.append(np.where((outcome.status == Status.OK)[:, None], outcome.times, np.nan))
+        if self.strength.columns:
+            times = outcome.times if outcome.times is not None else self.axis.values[None]
+            found_there = (outcome.status, outcome.value, outcome.series, times, p)
+            return found + whole + self.strength.evaluate(*found_there)
         return found + whole
 
     @property
@@ -185,10 +171,15 @@ class Harvest:
         """What its quantities mean."""
         return table_of(self.mechanism.space)
 
+    @cached_property
+    def strength(self) -> Kept:
+        """What is kept of the strength of links."""
+        return Kept(self.mechanism, self.safety, self.life, self.engine.quantities, self.engine.columns)
+
     @property
     def _histories(self) -> bool:
         """Whether whole histories must be evaluated."""
-        return self.keep != "peaks" or bool(self.xi.size)
+        return self.keep != "peaks" or bool(self.xi.size) or self.strength.histories
 
     @property
     def _piece(self) -> int:
@@ -260,7 +251,7 @@ class Harvest:
         assert series is not None
         largest, whole = [], []
         for link in self._links:
-            matter = _Matter.of(self.mechanism, link)
+            matter = Matter.of(self.mechanism, link)
             every = enumerate(map(Output.of, self.engine.columns))
             rows = {output: k for k, output in every if output.along and output.part == link}
             with np.errstate(all="ignore"):  # of designs that have no result
@@ -276,29 +267,3 @@ class Harvest:
                         law.on_grid(force, basis, grid[i], threads=1)
                 whole += list(grids)
         return largest, whole
-
-
-@dataclass(frozen=True, eq=False)
-class _Matter:
-    """A link's length and density over the parameters, without deriving either anew for each design."""
-
-    link: str
-    density: Density
-    numbers: Any
-
-    @classmethod
-    def of(cls, mechanism: Mechanism, name: str) -> _Matter:
-        link = mechanism.links[name]
-        assert isinstance(link.mass, Density)
-        cells = [c for cell in link.mass.cells for c in cell]
-        return cls(name, link.mass, ca.Function("matter", [mechanism.symbols], [ca.vertcat(ca.SX(0, 1), link.length, *cells)]))
-
-    def law(self, members: Mapping[Output, Array], p: Array) -> SectionLaw:
-        """The law from its coefficients and loads, (t,), of a design (parameters,).
-
-        Or the laws of n designs: members are (n, t), length and density (n, 1).
-        """
-        length, *cells = self.numbers(p.T).full()[..., None] if p.ndim > 1 else self.numbers(p).full().ravel().tolist()
-        rest = iter(cells)
-        density = self.density.at(lambda _: next(rest), length)
-        return law_of(self.link, members, length, density)

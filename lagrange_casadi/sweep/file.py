@@ -22,24 +22,30 @@ from ..tables import CF, table_of
 from .axes import DESIGN, Designs, Grid
 from .blocks import chunk_of, slabs
 from .chunks import FILTERS
-from .columns import KINDS, Column
+from .column import Column
+from .columns import KINDS
 from .instant_axis import InstantAxis
 from .plan import SCHEMA, Plan
+from .strength import LEAST, LIFE, MASS
 
 WORDS = ("versions", "mechanism", "wanted", "t", "xi", "grid")
 """Attributes that are JSON; the others of a plan's identity are as they stand."""
 
 _CHUNK = 1 << 15
+_SOME = ("peak_over", LEAST, LIFE, MASS)
+"""Kinds of columns that not every file has."""
+
 _XI = ("1", "place along a link, ratio xi/l")
-_TAKEN = ("grid", *(kind for kind in KINDS if kind != "peak_over"), DESIGN, "t", "xi")
+_TAKEN = ("grid", *(kind for kind in KINDS if kind not in _SOME), DESIGN, "t", "xi")
 
 
-def check_names(designs: Designs, axis: InstantAxis) -> None:
+def check_names(designs: Designs, axis: InstantAxis, columns: Sequence[Column] = ()) -> None:
     """Raise :class:`DeclarationError` for a parameter whose dimension would bear a name that the file keeps for its own.
 
-    ``axis`` is that of the instants.
+    ``axis`` is that of the instants, ``columns`` are what is kept.
     """
-    taken = (*_TAKEN, axis.name, *(("peak_over",) if axis.joint else ()))
+    kinds = {column.name.partition(":")[0] for column in columns}
+    taken = (*_TAKEN, axis.name, *(("peak_over",) if axis.joint else ()), *(kind for kind in _SOME if kind in kinds))
     for name in designs.dimensions:
         if name in taken and isinstance(designs, Grid):
             raise DeclarationError(

@@ -20,7 +20,7 @@ from typing import Any, BinaryIO
 from ..errors import BusyError, PathError, StoreError, one_line
 from ..store.untrusted import parsed
 from ..system.publish import flush, put, settled, telling
-from .columns import Column
+from .column import Column
 from .plan import IDENTITY
 
 try:

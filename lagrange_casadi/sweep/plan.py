@@ -16,7 +16,7 @@ import numpy as np
 from ..declare.density import Array
 from ..declare.description import Description, shape_of
 from ..declare.even_points import EvenPoints, points
-from ..declare.scene import STRENGTH, Scene, Wanted, checked_ratios, outputs, without_strength
+from ..declare.scene import STRENGTH, Scene, Wanted, checked_ratios, outputs, strength_of, without_fitted
 from ..declare.times import Over, Times, Timing
 from ..designs.engine import DesignEngine
 from ..equations.derive import derive
@@ -28,7 +28,8 @@ from ..instants.solution import Provenance
 from ..system.room import in_words, require
 from .axes import Designs, check_designs, counted
 from .blocks import Slab, chunk_of, slabs
-from .columns import Column, Harvest, Keep, check_keep
+from .column import Column
+from .columns import Harvest, Keep, check_keep
 from .engine import Engine
 from .instant_axis import InstantAxis
 
@@ -94,7 +95,9 @@ class Task:
         """The scene compiled, and what is kept of its outcomes."""
         xi = np.zeros(0) if self.xi is None else points(self.xi)
         engine = compiled(scene, self.wanted, self.timing, self.rung)
-        return Harvest(engine, scene.mechanism, self.keep, InstantAxis.of(scene, self.timing), xi)
+        named = [name for name in self.wanted if name != "all"]
+        safety, life = (tuple(strength_of(scene.mechanism, kind, named)) for kind in ("safety", "life"))
+        return Harvest(engine, scene.mechanism, self.keep, InstantAxis.of(scene, self.timing), xi, safety, life)
 
 
 def compiled(scene: Scene, wanted: Sequence[str], timing: Timing, rung: Rung) -> Engine:
@@ -254,11 +257,10 @@ def _assembly(
 
 
 def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
-    """Output names; ``all`` are all but the motion, whose peaks size nothing."""
+    """Output names; ``all`` are all but the motion, whose peaks size nothing, and strength, which is wanted by name."""
     names = tuple(scene.wanted if wanted is None else wanted)
     Wanted.of(scene.mechanism, names)
-    if wanted is not None:
-        without_strength(scene.mechanism, names, "sweeps")
+    without_fitted(scene.mechanism, names, "sweeps")
     if "all" not in names or "motion" in names:
         return names
     own = (name for name in outputs(scene.mechanism) if name.partition(":")[0] not in STRENGTH)

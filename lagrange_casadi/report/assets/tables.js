@@ -81,6 +81,25 @@ function factSections() {
       }).body,
     );
   }
+  if (contents.strength.length) {
+    const used = (row) => row.used ?? Infinity;
+    const words = (row) => (row.used === null ? "∞" : format(row.used, 4));
+    const factor = (row) => (row.factor === null ? (row.used === 0 ? "∞" : "0") : format(row.factor, 4));
+    found.push(
+      sortedTable(
+        "Strength",
+        [
+          ["part", (row) => row.part],
+          ["against", (row) => row.against],
+          ["factor of safety", factor, (row) => 1 / used(row)],
+          ["utilisation", (row) => `${words(row)}${used(row) > 1 ? ", FAILS" : row.governs ? ", governs" : ""}`, used],
+          ["where", (row) => row.where],
+        ],
+        () => contents.strength,
+        { plain: [["part", (row) => row.part], ["against", (row) => row.against], ["factor", (row) => row.factor], ["utilisation", (row) => row.used], ["where", (row) => row.where]] },
+      ).body,
+    );
+  }
   const length = (body) => (body.length === null ? "point mass" : shown(body.length, "m", 6));
   found.push(
     sortedTable("Bodies", [["name", (row) => row.name], ["length", length, (row) => row.length ?? -1], ["mass", (row) => shown(row.mass, "kg", 6), (row) => row.mass]], () => contents.bodies).body,

@@ -1,0 +1,133 @@
+"""What a joint is made of: pins, plain bearings and rolling bearings, by their numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+from ..beams.material import Material
+from ..errors import DeclarationError
+from .parts import Expression
+
+if TYPE_CHECKING:
+    from .joints import Joint
+    from .mechanism import Mechanism
+
+
+@dataclass(frozen=True, eq=False)
+class Pin:
+    """A pin through an eye between two cheeks of a fork [m].
+
+    ``eye`` is the width of the eye, ``cheek`` that of each cheek, ``gap`` that between eye and cheek; ``pressure`` is what the
+    softer of them bears [Pa]. The pin fits loosely in both.
+    """
+
+    diameter: Expression
+    eye: Expression
+    cheek: Expression
+    material: Material
+    pressure: float | None = None
+    gap: Expression = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Plain:
+    """A plain bearing by its bore and its width [m], and what its material bears.
+
+    ``pressure`` is the largest load over bore times width [Pa], ``speed`` the largest speed of sliding [m/s], and ``heating`` the
+    largest mean of the product of both over time [W/m^2]. What is None is not looked at.
+    """
+
+    bore: Expression
+    width: Expression
+    pressure: float | None = None
+    speed: float | None = None
+    heating: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Rolling:
+    """A rolling bearing by its ratings, and the hours that nine of ten must run.
+
+    ``dynamic`` and ``static`` are its basic load ratings C and C0 [N]; ``exponent`` is 3 of ball bearings and 10/3 of roller
+    bearings. The equivalent load is ``radial`` times the force across the pin's axis, and ``axial`` times that along it (ISO 281).
+    """
+
+    dynamic: float
+    hours: float
+    static: float | None = None
+    exponent: float = 3.0
+    radial: float = 1.0
+    axial: float = 0.0
+
+
+Fitted = Pin | Plain | Rolling
+KINDS: Mapping[str, type[Pin] | type[Plain] | type[Rolling]] = {"pin": Pin, "plain": Plain, "rolling": Rolling}
+_MAY_BE_ZERO = ("gap", "axial", "radial")
+
+
+def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
+    """Say what a pin joint of a mechanism is made of: of each kind one part at most, for ``safety:JOINT``.
+
+    Raises :class:`.DeclarationError` for a joint of another mechanism or one that is no pin, for what is no such part, and for
+    numbers that are not positive.
+    """
+    mechanism.own.joint(joint)
+    what = f"joint '{joint.name}'"
+    mechanism.own.open(f"fit {what}")
+    if joint.kind not in ("revolute", "cylindrical"):
+        raise DeclarationError(f"{what}: pins and bearings are fitted to revolute and cylindrical joints, and it is {joint.kind}")
+    found: dict[str, Fitted] = dict(mechanism.fitted.get(joint.name, {}))
+    for part in parts:
+        kind = next((name for name, known in KINDS.items() if isinstance(part, known)), None)
+        if kind is None:
+            raise DeclarationError(f"{what}: expected a Pin, Plain or Rolling of lagrange_casadi.bearings, got {part!r}")
+        if kind in found:
+            raise DeclarationError(f"{what}: it has a {kind} part already")
+        found[kind] = type(part)(**{name: _checked(mechanism, f"{what}: {kind}", name, value) for name, value in _numbers(part)})
+    mechanism.fitted[joint.name] = found
+
+
+def _numbers(part: Fitted) -> list[tuple[str, Any]]:
+    return [(entry.name, getattr(part, entry.name)) for entry in fields(part)]
+
+
+def _checked(mechanism: Mechanism, what: str, name: str, value: Any) -> Any:
+    if name == "material":
+        if not isinstance(value, Material):
+            raise DeclarationError(f"{what}: expected a material of lagrange_casadi.beams, got {value!r}")
+        value.needs(what, "yield_strength")
+        return value
+    if value is None and name in ("pressure", "speed", "heating", "static"):
+        return None
+    number = mechanism.own.expression(f"{what}: {name}", value)
+    if isinstance(number, float) and not positive(name, number):
+        raise DeclarationError(f"{what}: {name} must be positive, got {number:g}")
+    return number
+
+
+def positive(name: str, number: float) -> bool:
+    """Whether a number of a part may be what it is."""
+    return 0.0 <= number < math.inf if name in _MAY_BE_ZERO else 0.0 < number < math.inf
+
+
+def told_parts(parts: Mapping[str, Fitted], number: Callable[[Any], float]) -> dict[str, Any]:
+    """Parts in plain numbers, as a file keeps them."""
+
+    def plain(name: str, value: Any) -> Any:
+        return asdict(value) if name == "material" else None if value is None else number(value)
+
+    return {kind: {name: plain(name, value) for name, value in _numbers(part)} for kind, part in parts.items()}
+
+
+def parts_told(told: Mapping[str, Any]) -> dict[str, Fitted]:
+    """The parts of such numbers. Raises ``LookupError`` or ``TypeError`` for what are none, as in a forged file."""
+    found: dict[str, Fitted] = {}
+    for kind, numbers in told.items():
+        words = dict(numbers)
+        if "material" in words:
+            words["material"] = Material(**words["material"])
+        found[kind] = KINDS[kind](**words)
+    return found

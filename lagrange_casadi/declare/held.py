@@ -1,0 +1,45 @@
+"""How joints hold the ends of a link, and what that makes of it as a column."""
+
+from __future__ import annotations
+
+from .description import Description, in_space
+
+_END = 1e-9
+_SLIDING = ("prismatic", "slot", "cylindrical", "planar", "screw")
+
+
+def effective_lengths(description: Description, link: str) -> tuple[float, float]:
+    """The effective lengths of a link as a column over its own, where it bends along y and along z, by the joints at its ends.
+
+    In a plane a pin lets the end turn and holds it out of the plane; a weld, a slide, or the drive of a pin holds it. A link that
+    is pinned at both ends has 1, one of which an end is held 2, for nothing holds its other end sideways, and held at both 1. Out
+    of the plane a link that is joined at both ends has 1/2, else 2. In space it has 1, or 2 where an end is free. These are the
+    theoretical numbers (Timoshenko and Gere, table of section 2.4).
+    """
+    ends = held_ends(description, link)
+    if in_space(description):
+        return (1.0, 1.0) if all(ends) else (2.0, 2.0)
+    across = 0.5 if all(ends) else 2.0
+    return (1.0 if ends[0] == ends[1] and ends[0] else 2.0), across
+
+
+def held_ends(description: Description, link: str) -> tuple[str, str]:
+    """How joints hold the base and the tip of a link: "turns", "held", or "" where nothing does."""
+    return _holds(description, link, False), _holds(description, link, True)
+
+
+def _holds(description: Description, link: str, tip: bool) -> str:
+    """How an end is held: "turns", "held", or not at all."""
+    length, found = description["bodies"][link]["length"], ""
+    for joint in description["joints"].values():
+        for place, other in ((joint["parent"], joint["child"]), (joint["child"], joint["parent"])):
+            if place["body"] != link or abs(place["x"] - (length if tip else 0.0)) > _END * length:
+                continue
+            if place is joint["parent"] and joint["kind"] in _SLIDING:
+                continue  # what slides along it is elsewhere
+            lone = description["bodies"].get(other["body"], {"length": 0.0})["length"] is None
+            if lone and sum(other["body"] in (j["parent"]["body"], j["child"]["body"]) for j in description["joints"].values()) < 2:
+                continue  # a mass that hangs on nothing else
+            held = joint["kind"] in ("weld", "prismatic") or bool(joint["driven"])
+            found = "held" if held and not lone else found or "turns"
+    return found

@@ -1,0 +1,163 @@
+"""Pins and bearings: shear, bending and pressure of a pin, pressure and heating of a plain bearing, life of a rolling one.
+
+A pin that fits loosely in its eye and its fork is a beam: the eye's load is even over its width, and each cheek bears in the middle
+of its own (Wittel, Jannasch, Voßiek and Spura, *Roloff/Matek Maschinenelemente*, chapter 9, case 1). Shear stress is largest in
+the middle of its cross-section, 4/3 of the mean (Shigley, *Mechanical Engineering Design*, 9th edition, table 3-2). Rolling
+bearings are those of ISO 281: P = X F_r + Y F_a, L_10 = (C/P)^p million turns, with the mean of P^p over the turns where load and
+speed change.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..declare.density import Array
+from ..declare.fitted import Fitted, Pin, Plain, Rolling, parts_told, positive
+from ..errors import DeclarationError
+from ..instants.solution import Solution
+from ..quantities import Output
+from .safety import Safety, Verdict
+
+
+def bending_of_pin(force: Any, eye: Any, cheek: Any, gap: Any = 0.0) -> Any:
+    """The bending moment in the middle of a pin [N m]: F (eye + 2 cheek + 4 gap)/8."""
+    return force * (eye + 2.0 * cheek + 4.0 * gap) / 8.0
+
+
+def equivalent_load(load: Sequence[float] | Array, turned: Sequence[float] | Array, exponent: float = 3.0) -> float:
+    """The even load that wears a rolling bearing as loads (n,) do that last for turns, or anything else, ``turned`` (n,)."""
+    loads, shares = np.asarray(load, float), np.asarray(turned, float)
+    total, most = float(shares.sum()), float(np.max(loads, initial=0.0))
+    if total == 0.0 or most == 0.0:
+        return 0.0
+    mean = float((shares * (loads / most) ** exponent).sum()) / total
+    return float(most * mean ** (1.0 / exponent))
+
+
+def rated_hours(dynamic: float, load: float, rpm: float, exponent: float = 3.0) -> float:
+    """The hours that nine of ten bearings run: (C/P)^p million turns."""
+    if load == 0.0 or rpm == 0.0:
+        return math.inf
+    return float((dynamic / load) ** exponent * 1e6 / (60.0 * rpm))
+
+
+def joint_safety(solution: Solution, joint: str) -> Safety:
+    """The factors of safety of what is fitted to a joint, over all instants: by how much its reaction may grow.
+
+    Of speed and heating it is by how much these may. ``is_open`` says what could not be looked at. Raises
+    :class:`.DeclarationError` where nothing is fitted, its reaction was not wanted, equilibrium leaves it open, or a number that
+    depends on parameters is not positive.
+    """
+    told = solution.description["joints"].get(joint, {}).get("fitted", {})
+    if not told:
+        having = ", ".join(name for name, other in solution.description["joints"].items() if "fitted" in other)
+        raise DeclarationError(f"nothing is fitted to joint '{joint}'; joints with a pin or a bearing: {having or 'none'}")
+    members = [o for o in solution.outputs if o.group == "reaction" and o.part == joint]
+    if not members:
+        raise DeclarationError(f"the reaction of joint '{joint}' was not wanted; want reaction:{joint} too")
+    if any(not solution.determined(member) for member in members):
+        raise DeclarationError(f"equilibrium leaves the reaction of joint '{joint}' open, so its strength is open")
+    across, along = _forces(solution, joint)
+    rate = solution.outputs.get(Output("motion", _coordinate(solution, joint), "rate"))
+    verdicts: list[Verdict] = []
+    left: list[str] = []
+    for kind, part in parts_told(told).items():
+        _check(joint, kind, part)
+        if isinstance(part, Pin):
+            verdicts += _pin(part, across, solution.t)
+        elif isinstance(part, Plain):
+            found, missing = _plain(part, across, rate, solution.t)
+            verdicts += found
+            left += missing
+        elif rate is None:
+            left.append(f"rolling bearing: the motion of joint '{joint}' was not wanted, or is not told")
+        else:
+            verdicts += _rolling(part, across, along, rate, solution.t)
+    return Safety(joint, tuple(verdicts), tuple(left))
+
+
+def _check(joint: str, kind: str, part: Fitted) -> None:
+    for name, value in vars(part).items():
+        if isinstance(value, float) and not positive(name, value):
+            raise DeclarationError(f"joint '{joint}': {kind}: {name} must be positive, got {value:g}")
+
+
+def _coordinate(solution: Solution, joint: str) -> str:
+    """The coordinate by which a joint turns."""
+    told = solution.description["joints"][joint]
+    kinds = told.get("coordinates") or {told["coordinate"] and joint: "angle"}
+    return next((name for name, kind in kinds.items() if kind == "angle" and name), joint)
+
+
+def _forces(solution: Solution, joint: str) -> tuple[Array, Array]:
+    """The sizes of a reaction across the pin's axis, and along it."""
+    if "coordinates" not in solution.description["joints"][joint]:
+        found = solution.reaction(joint)
+        return np.hypot(found.fx, found.fy), np.zeros_like(found.fx)
+    # In space reactions are told on the joint's own axes too, of which the first is the one it turns about.
+    nothing = np.zeros_like(solution.t)
+    u, v, w = (solution.outputs.get(Output("reaction", joint, f"f{axis}"), nothing) for axis in "uvw")
+    return np.hypot(v, w), np.abs(u)
+
+
+def _verdict(against: str, bears: float, size: Array, t: Array, told: str, unit: str, scale: float = 1.0) -> Verdict:
+    k = int(np.argmax(size))
+    most = float(size[k])
+    return Verdict(against, bears / most if most else math.inf, f"{told} {most / scale:.4g} {unit} at t = {t[k]:.5g} s")
+
+
+def _pin(pin: Pin, force: Array, t: Array) -> Iterator[Verdict]:
+    (strength,) = pin.material.needs("the strength of a pin", "yield_strength")
+    d = float(pin.diameter)
+    bending = bending_of_pin(force, pin.eye, pin.cheek, pin.gap) / (math.pi * d**3 / 32)
+    shear = 4 / 3 * force / 2 / (math.pi * d**2 / 4)
+    yield _verdict("bending of pin", strength, bending, t, "bending stress", "MPa", 1e6)
+    yield _verdict("shear of pin", strength / math.sqrt(3.0), shear, t, "shear stress", "MPa", 1e6)
+    if pin.pressure is not None:
+        for name, width in (("eye", float(pin.eye)), ("fork", 2 * float(pin.cheek))):
+            yield _verdict(f"pressure in {name}", pin.pressure, force / (d * width), t, "pressure", "MPa", 1e6)
+
+
+def _plain(bearing: Plain, force: Array, rate: Array | None, t: Array) -> tuple[list[Verdict], list[str]]:
+    d = float(bearing.bore)
+    pressure = force / (d * float(bearing.width))
+    found: list[Verdict] = []
+    if bearing.pressure is not None:
+        found.append(_verdict("pressure", bearing.pressure, pressure, t, "pressure", "MPa", 1e6))
+    if bearing.speed is None and bearing.heating is None:
+        return found, []
+    if rate is None:
+        return found, ["plain bearing: its joint's motion was not wanted, or is not told"]
+    speed = np.abs(rate) * d / 2
+    if bearing.speed is not None:
+        found.append(_verdict("speed", bearing.speed, speed, t, "speed of sliding", "m/s"))
+    if bearing.heating is not None:
+        weights = _weights(t)
+        mean = float(pressure * speed @ weights / weights.sum())
+        factor = bearing.heating / mean if mean else math.inf
+        found.append(Verdict("heating", factor, f"p v {mean / 1e6:.4g} MPa m/s in the mean"))
+    return found, []
+
+
+def _rolling(bearing: Rolling, across: Array, along: Array, rate: Array, t: Array) -> Iterator[Verdict]:
+    load = bearing.radial * across + bearing.axial * along
+    weights = _weights(t)
+    shares = np.abs(rate) * weights
+    rpm = float(shares.sum() / weights.sum()) * 60 / math.tau
+    even = equivalent_load(load, shares, bearing.exponent)
+    hours = rated_hours(bearing.dynamic, even, rpm, bearing.exponent)
+    factor = math.inf if math.isinf(hours) else (hours / bearing.hours) ** (1.0 / bearing.exponent)
+    told = f"P {even:.4g} N, {rpm:.4g} 1/min, L10 {hours:.4g} h of {bearing.hours:.4g} h"
+    yield Verdict("life of bearing", factor, told)
+    if bearing.static is not None:
+        yield _verdict("static load", bearing.static, load, t, "load", "N")
+
+
+def _weights(t: Array) -> Array:
+    """How long each instant counts, by trapezia [s]; a single one counts as a second."""
+    steps = np.diff(t) / 2
+    return np.append(steps, 0.0) + np.append(0.0, steps) if t.size > 1 else np.ones(1)

@@ -1,0 +1,274 @@
+"""What a sweep keeps of the strength of links: least factors of safety, lives, and masses.
+
+Utilisation against yielding and buckling comes from the engine. Fatigue follows from whole histories. Where stations stand still,
+the stresses of fibres at fixed ratios are a matrix times what the section law is made of. Of a history of normal stress alone the
+swing from its smallest to its largest value is the worst by Goodman's rule; of one with shear stress that is bounded, and what may
+be worse than all that is known is counted, as :mod:`..strength.fatigue` does it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from ..beams.beam import Notch
+from ..declare.density import Array
+from ..declare.masses import ALL, mass_of
+from ..declare.mechanism import Mechanism
+from ..declare.parts import Link
+from ..equations.checks import Column
+from ..equations.strength import FORCES, Loaded
+from ..quantities import Output
+from ..strength.fatigue import FEW, damage_score, factor, factor_score, felt, loaded, strengths
+from ..strength.fatigue import worst as search
+from ..strength.member import Member
+from ..strength.stress import Stress
+from .column import Column as Dataset
+from .matter import Matter
+
+LEAST, LIFE, MASS = "least", "life", "mass"
+"""Kinds of columns."""
+
+WAYS = ("yield", "buckling", "fatigue")
+_MEANT = {way: f"against {'yielding' if way == 'yield' else way}" for way in WAYS}
+_MOVING = "NaN for designs of which it is not known"
+_NEAR = 1e-9
+_FEW = 8
+"""Designs whose stresses are at hand at once."""
+
+_EVENLY = 33
+"""Ratios that are looked at: half as many as of one solution."""
+
+_CRITERION = "goodman"
+_ROOT = math.sqrt(3.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Fatigue:
+    """The stresses of a link's fibres as a function of what its law is made of.
+
+    ``rows(members, p)`` is their matrix: the normal stresses of all places and fibres, then the shear stresses along y and along z
+    of those that are ``sheared``; ``still`` are the members that it depends on.
+    """
+
+    members: tuple[Output, ...]
+    still: npt.NDArray[np.intp]
+    rows: Any
+    sheared: npt.NDArray[np.intp]
+
+    @classmethod
+    def of(cls, mechanism: Mechanism, link: Link, members: Sequence[Output]) -> Fatigue:
+        """That of a link whose law is made of ``members``."""
+        symbols = ca.SX.sym("members", len(members))
+        columns: dict[Column, Any] = dict(zip(members, ca.vertsplit(symbols), strict=True))
+        body = Loaded(mechanism, link, columns)
+        normal, shears = list[Any](), list[list[Any]]()
+        for cell, u, middle, notch in _places(body, link):
+            forces = {place: body.force_at(name, u, middle) * _scale(notch, name) for name, place in FORCES[body.space].items()}
+            p = body.properties(cell, u)
+            for fibre in body.alone[cell]:
+                values = [
+                    ca.SX(sum(number * forces[k] for k, number in enumerate(row) if k in forces)) for row in p.rows(p.fibres[fibre])
+                ]
+                normal.append(values[0])
+                shears.append(values[1:])
+        sheared = [k for k, pair in enumerate(shears) if not (pair[0].is_zero() and pair[1].is_zero())]
+        every = ca.vertcat(*normal, *(shears[k][axis] for axis in (0, 1) for k in sheared))
+        slopes = ca.jacobian(every, symbols)
+        still = [k for k in range(len(members)) if ca.depends_on(slopes, symbols[k])]
+        # Rows of the matrix one after another, as numbers lie in memory.
+        found = ca.Function("rows", [symbols, mechanism.symbols], [ca.vec(ca.densify(slopes.T))], {"cse": True})
+        return cls(tuple(members), np.array(still, np.intp), found, np.array(sheared, np.intp))
+
+    def stands(self, members: Array) -> npt.NDArray[np.bool_]:
+        """Of which designs, whose members are (n, members, t), the matrix is the same at all instants."""
+        return np.asarray((np.ptp(members[:, self.still], axis=2) <= _NEAR).all(axis=1))
+
+    def stresses(self, members: Array, p: Array) -> tuple[Array, Array]:
+        """Of designs whose members are (n, members, t): normal stresses (n, places, t), and shear stresses (n, 2, sheared, t)."""
+        n, k, t = members.shape
+        numbers = self.rows(members[:, :, 0].T, p.T)
+        matrix = np.array(numbers.nonzeros()).reshape(n, -1, k)
+        found = np.matmul(matrix, np.ascontiguousarray(members))
+        first = found.shape[1] - 2 * self.sheared.size
+        return found[:, :first], found[:, first:].reshape(n, 2, -1, t)
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """What is kept of the strength of links: those whose ``safety`` is wanted, and those whose ``life`` is."""
+
+    mechanism: Mechanism
+    safety: tuple[str, ...]
+    life: tuple[str, ...]
+    quantities: tuple[str, ...]
+    series: tuple[str, ...]
+
+    @property
+    def histories(self) -> bool:
+        """Whether whole histories must be evaluated."""
+        return any(self._tires(link) for link in self.safety) or bool(self.life)
+
+    @cached_property
+    def links(self) -> tuple[str, ...]:
+        """The links of which something is kept, in the order of declaration."""
+        return tuple(name for name in self.mechanism.links if name in (*self.safety, *self.life))
+
+    @cached_property
+    def columns(self) -> tuple[Dataset, ...]:
+        """The columns, in the order of :meth:`evaluate`."""
+        found = []
+        for link in self.safety:
+            ways = self._ways(link)
+            words = {"long_name": f"least factor of safety, the smallest of those {', '.join(_MEANT[way] for way in ways)}"}
+            found.append(Dataset(f"{LEAST}:safety:{link}", "1", words))
+            for way in ways:
+                found.append(Dataset(f"{LEAST}:{way}:{link}", "1", {"long_name": f"least factor of safety {_MEANT[way]}"}))
+        for link in self.life:
+            found.append(Dataset(f"{LIFE}:{link}", "1", {"long_name": "life in cycles, each the whole span"}))
+        for link in self.links:
+            found.append(Dataset(f"{MASS}:{link}", "kg", {"long_name": "mass of the link"}))
+        if self.links:
+            found.append(Dataset(f"{MASS}:{ALL}", "kg", {"long_name": "mass of all links and point masses"}))
+        return tuple(found)
+
+    def evaluate(self, status: npt.NDArray[np.int8], value: Array, series: Array | None, times: Array, p: Array) -> list[Array]:
+        """The columns of designs ``p``: ``value`` (n, quantities) are peaks, ``series`` (n, outputs, t), ``times`` (n, t)."""
+        there = np.flatnonzero(status == 0)
+        tired = {link: self._tired(link, there, series, times, p) for link in self.links if self._tires(link)}
+        found: list[Array] = []
+        for link in self.safety:
+            kept = [f"utilisation:{link}:{way}" for way in self._ways(link) if way != "fatigue"]
+            shares = [np.abs(value[:, self.quantities.index(name)]) for name in kept]
+            shares += [tired[link][0]] if link in tired else []
+            with np.errstate(divide="ignore"):
+                found.append(1.0 / np.max(shares, axis=0))
+                found += [1.0 / share for share in shares]
+        found += [tired[link][1] for link in self.life]
+        masses = np.atleast_2d(self._masses(p.T).full())
+        return found + [np.where(status == 0, row, np.nan) for row in masses]
+
+    def _ways(self, link: str) -> list[str]:
+        known = [way for way in WAYS[:2] if f"utilisation:{link}:{way}" in self.quantities]
+        return known + (["fatigue"] if self._tires(link) else [])
+
+    def _tires(self, link: str) -> bool:
+        beam = self.mechanism.links[link].beam
+        return beam is not None and beam.material.endurance is not None and beam.material.ultimate is not None
+
+    def _tired(self, link: str, there: Any, series: Array | None, times: Array, p: Array) -> tuple[Array, Array]:
+        """Utilisation against fatigue, and the life in cycles, of every design."""
+        share, lives = np.full(len(p), np.nan), np.full(len(p), np.nan)
+        assert series is not None
+        if not there.size:
+            return share, lives
+        fatigue, beam = self._fatigue[link], self.mechanism.links[link].beam
+        assert beam is not None
+        names = {name: k for k, name in enumerate(self.series)}
+        chosen = [names[str(member)] for member in fatigue.members]
+        members = series[there][:, chosen]
+        stands = fatigue.stands(members)
+        some, standing = there[stands], members[stands]
+        for start in range(0, some.size, _FEW):
+            few = slice(start, start + _FEW)
+            share[some[few]] = worst(*fatigue.stresses(standing[few], p[some[few]]), fatigue.sheared, beam.material)
+        for i in there.tolist():
+            endless = share[i] <= 1.0 and beam.material.endless
+            if np.isnan(share[i]) or (link in self.life and not endless):
+                found, cycles = self._slowly(link, series[i], times[min(i, len(times) - 1)], p[i], names)
+                share[i] = found if np.isnan(share[i]) else share[i]
+                lives[i] = cycles
+            else:
+                lives[i] = math.inf
+        return share, lives
+
+    def _slowly(self, link: str, series: Array, t: Array, p: Array, names: Mapping[str, int]) -> tuple[float, float]:
+        """The same of one design, as of a solution."""
+        mechanism, own = self.mechanism, self.mechanism.links[link]
+        values = dict(zip(mechanism.parameters, p.tolist(), strict=True))
+        members = {member: series[names[str(member)]] for member in self._fatigue[link].members}
+        assert own.beam is not None
+        beam = own.beam.mapped(lambda _, x: mechanism.number(x, values))
+        member = Member(link, beam, Matter.of(mechanism, link).law(members, p), t, np.linspace(0.0, 1.0, FEW), mechanism.space)
+        stress, material = Stress(member), beam.material
+        (least, *_), *_ = search(stress, factor_score(material, _CRITERION))
+        if link not in self.life or (least >= 1.0 and material.endless):
+            return 1.0 / least if least else math.inf, math.inf
+        (damage, *_), *_ = search(stress, damage_score(material, _CRITERION))
+        return 1.0 / least if least else math.inf, -1.0 / damage if damage else math.inf
+
+    @cached_property
+    def _fatigue(self) -> dict[str, Fatigue]:
+        found = {}
+        for name in self.links:
+            members = [output for output in map(Output.of, self.series) if output.along and output.part == name]
+            found[name] = Fatigue.of(self.mechanism, self.mechanism.links[name], members)
+        return found
+
+    @cached_property
+    def _masses(self) -> Any:
+        mechanism = self.mechanism
+        found = [mass_of(mechanism, part) for part in (*self.links, ALL)]
+        return ca.Function("masses", [mechanism.symbols], [ca.densify(ca.vertcat(*found))])
+
+
+def worst(normal: Array, shears: Array, sheared: npt.NDArray[np.intp], material: Any) -> Array:
+    """Utilisation against fatigue of designs (n,), one over the least factor by Goodman: see :meth:`Fatigue.stresses`."""
+    endurance, strength = strengths(material, _CRITERION)
+    high, low = normal.max(axis=2), normal.min(axis=2)
+    bound = (high - low) / (2 * endurance) + np.maximum((high + low) / 2, 0.0) / strength
+    known = bound.copy()
+    known[:, sheared] = 0.0
+    if sheared.size:
+        square = 3.0 * np.sum(np.ptp(shears, axis=3) ** 2, axis=1)
+        size = 3.0 * np.max(np.sum(shears**2, axis=1), axis=2)
+        high, low = high[:, sheared], low[:, sheared]
+        swing, middle = (high - low) ** 2, np.maximum((high + low) / 2, 0.0)
+        whole = np.sqrt(swing + square) / (2 * endurance) + np.sqrt(middle**2 + size) / strength
+        # A smaller swing has a larger mean. Where shear is most of it, or means count for much, no more is known than this.
+        wide = 2.0 * square if strength >= math.sqrt(2.0) * endurance else swing + square
+        other = np.sqrt(wide) / (2 * endurance) + np.sqrt(np.maximum(high, 0.0) ** 2 + size) / strength
+        bound[:, sheared] = np.maximum(whole, other)
+    best = known.max(axis=1)
+    columns = {int(k): number for number, k in enumerate(sheared)}
+    for i in np.flatnonzero(bound.max(axis=1) > best):
+        for k in np.argsort(-bound[i], kind="stable").tolist():
+            if bound[i, k] <= best[i]:
+                break
+            if k in columns:
+                swings = loaded(np.vstack([normal[i, k], shears[i, :, columns[k]]]))
+                best[i] = max(best[i], float(np.max(1.0 / factor(swings.amplitude, swings.mean, material, _CRITERION))))
+    return np.asarray(best)
+
+
+def _places(body: Loaded, link: Link) -> Iterator[tuple[int, Any, Any, Notch | None]]:
+    """Cells of the cross-section, ratios and the sides of them that are meant, and notches: those of :mod:`..strength.fatigue`."""
+    breaks = body.course.breaks
+
+    def cell_of(u: float, side: int) -> int:
+        inside = [k for k, (a, b) in enumerate(itertools.pairwise(breaks)) if a <= u <= b]
+        return inside[-1] if side > 0 else inside[0]
+
+    for u in np.linspace(0.0, 1.0, _EVENLY).tolist():
+        yield cell_of(u, 1), u, None, None
+    for u, side in itertools.product(breaks, (-1, 1)):
+        yield cell_of(u, side), u, u + side * _NEAR, None
+    for mark, side, cell in itertools.product(body.marks, (-1, 1), range(len(breaks) - 1)):
+        u = ca.fmin(ca.fmax(ca.SX(mark), breaks[cell]), breaks[cell + 1])
+        yield cell, u, u + side * _NEAR, None
+    for notch, side in itertools.product(link.beam.notches if link.beam else (), (-1, 1)):
+        yield cell_of(notch.at, side), notch.at, notch.at + side * _NEAR, felt(notch)
+
+
+def _scale(notch: Notch | None, force: str) -> float:
+    if notch is None:
+        return 1.0
+    return notch.axial if force == "axial" else notch.bending if force.startswith("bending") else notch.shear

@@ -1,0 +1,112 @@
+"""Least factors of safety, lives and masses of many designs, against those of one solution after another."""
+
+import math
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from strong import STEEL, press, robot, slider
+
+from lagrange_casadi import Mechanism, Scene, beams, best, evaluate, sweep
+from lagrange_casadi.cli import program
+from lagrange_casadi.motion import harmonic
+from lagrange_casadi.sweep import strength
+
+
+@pytest.fixture(scope="module")
+def swept():
+    return sweep(slider(200e6), {"l": [0.3, 0.4], "h": [0.006, 0.02]}, wanted=["safety", "life"])
+
+
+def compared(scene, link, found, values, rel=1e-3):
+    """The columns of one design against its solution: yielding and buckling between instants too, fatigue at fewer places."""
+    start, stop, count = scene.t
+    fine = (start, stop, 16 * (count - 1) + 1)
+    told = {}
+    for ways, t in ((("yield", "buckling"), fine), (("fatigue",), scene.t)):
+        wanted = [f"section:{link}"]
+        safety = evaluate(scene, parameters=values, t=t, wanted=wanted, certificate=False, backend="vm").safety(link)
+        told |= {way: safety.against(way) for way in ways}
+    columns = {way: float(np.squeeze(found[f"least:{way}:{link}"])) for way in told}
+    assert columns == pytest.approx(told, rel=rel)
+    assert float(np.squeeze(found[f"least:safety:{link}"])) == min(columns.values())
+
+
+def test_least_factors_are_those_of_a_solution(swept):
+    for l, h, link in ((0.3, 0.006, "rod"), (0.4, 0.02, "crank")):
+        compared(slider(200e6), link, swept.select(l=l, h=h), {"l": l, "h": h})
+
+
+def test_lives_are_those_of_a_solution(swept):
+    assert np.isinf(swept.select(h=0.02)["life:rod"]).all()
+    scene = slider(5e6)
+    found = sweep(scene, {"h": [0.006, 0.05]}, wanted=["life:crank"])
+    worn = evaluate(scene, parameters={"h": 0.006}, wanted=["life:crank"], certificate=False, backend="vm").life("crank")
+    assert found["life:crank"][0] == pytest.approx(worn.cycles, rel=1e-9)
+    assert worn.cycles < math.inf
+
+
+def test_masses(swept):
+    l, h = swept["l"][:, None], swept["h"][None]
+    np.testing.assert_allclose(swept["mass:rod"], 7850.0 * 0.012 * h * l)
+    np.testing.assert_allclose(swept["mass:all"], 15.0 + 7850.0 * 0.012 * h * (l + 0.1))
+
+
+def test_the_lightest_that_is_safe_is_chosen(swept):
+    rows = [(swept["mass:all"][i, j], i, j) for i in range(2) for j in range(2) if swept["least:safety:crank"][i, j] >= 2.0]
+    (chosen,) = best(swept, minimise="mass:all", where="least:safety:crank>=2")
+    assert chosen.number == 2 * min(rows)[1] + min(rows)[2]
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("name", ["sliding", "notched", "space"])
+def test_links_of_every_kind(name):
+    """Loads that travel are looked at one design after another; in space most fibres are sheared.
+
+    Buckling has a jump where compression begins, which finer instants come near to.
+    """
+    notches = [beams.Notch(0.6, bending=2.5, sensitivity=0.8)]
+    scene, link = {
+        "sliding": lambda: (press(beams.rectangle(0.03, 0.012), sliding=True, t=(0, 0.2094395, 41)), "rod"),
+        "notched": lambda: (press(beams.i_section(0.04, 0.03, 0.004, 0.005), notches, t=(0, 0.2094395, 41)), "rod"),
+        "space": lambda: (robot(beams.rectangle(0.03, 0.02)), "upper"),
+    }[name]()
+    (name, value), *_ = scene.mechanism.values().items()
+    compared(scene, link, sweep(scene, {name: [value]}, wanted=[f"safety:{link}"]), {}, rel=4e-3)
+
+
+def test_bounds_leave_out_no_swing():
+    """The worst of random histories, bounded and counted, against every fibre counted."""
+    rng = np.random.default_rng(5)
+    for trial in range(20):
+        normal = rng.normal(size=(1, 6, 30)).cumsum(axis=2) * 1e7
+        sheared = np.array([1, 3, 4])
+        shears = rng.normal(size=(1, 2, 3, 30)) * 10.0 ** rng.uniform(5, 8)
+        material = STEEL.but(endurance=200e6 if trial % 2 else 600e6)
+        found = strength.worst(normal, shears, sheared, material)[0]
+        every = []
+        for k in range(6):
+            own = shears[0, :, list(sheared).index(k)] if k in sheared else np.zeros((2, 30))
+            swings = strength.loaded(np.vstack([normal[0, k], own]))
+            every.append(np.max(1.0 / strength.factor(swings.amplitude, swings.mean, material, "goodman")))
+        assert found == pytest.approx(max(every), rel=1e-12)
+
+
+@pytest.mark.long
+def test_from_the_command_line(tmp_path):
+    run = CliRunner().invoke
+    file = str(tmp_path / "a.h5")
+    grid = ["--grid", "height=0.03:0.04:3", "--t", "0:0.07:41"]
+    done = run(program, ["sweep", "connecting_rod", *grid, "--want", "safety:rod", "--out", file, "--quiet"])
+    assert done.exit_code == 0, done.output
+    done = run(program, ["best", file, "--minimise", "mass:rod", "--where", "least:safety:rod>=4.6"])
+    assert done.exit_code == 0, done.output
+    assert "mass:rod" in done.output
+
+
+def test_a_parameter_may_be_called_as_a_column_is_where_there_is_none():
+    m = Mechanism("arm")
+    mass = m.parameter("mass", 1.0, "kg", low=0.0)
+    m.revolute("O", m.ground, m.link("arm", length=0.4, mass=mass))
+    found = sweep(Scene(m, {"O": harmonic(0.0, 0.6, 2.0)}, t=(0, 0.5, 21)), {"mass": [1.0, 2.0]}, wanted=["effort"])
+    assert found["mass"].tolist() == [1.0, 2.0]
