@@ -5,6 +5,7 @@ import io
 import re
 from dataclasses import replace
 
+import alive
 import browser
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from reports import HOSTILE, hostile, press, solved
 
 from lagrange_casadi.quantities import Output
 
-pytestmark = pytest.mark.skipif(browser.found() is None, reason="there is no Chromium here")
+pytestmark = alive.NEEDS_BROWSER
 
 
 @pytest.fixture(scope="module")

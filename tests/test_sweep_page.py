@@ -14,7 +14,7 @@ from reports import CASES, held
 from lagrange_casadi.cli import main
 from lagrange_casadi.sweep import Sweep, best, chosen
 
-pytestmark = pytest.mark.skipif(browser.found() is None, reason="there is no Chromium here")
+pytestmark = alive.NEEDS_BROWSER
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +88,7 @@ def test_conditions_are_those_of_the_command_line(page, file):
         assert one.run("document.querySelectorAll('.best').length") == len(front)
 
 
-@pytest.mark.skipif(not alive.THERE, reason="ziglang is not installed")
+@alive.NEEDS_ENGINE
 def test_a_design_that_is_pressed_moves(page, file):
     one, sweep = page(), Sweep.open(file)
     front = best(sweep, minimise=("peak:effort:O", "peak:section:rod:bending"))
