@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ..draw.places import drawn_spots
+from ..draw.shapes import shapes
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..report.contents import require_poses
-from ..report.places import drawn_spots
-from ..report.shapes import shapes
 from ..system.publish import replacing, writing
 from .body_lines import mechanism, rim
 from .drawn import Picture

@@ -10,10 +10,10 @@ import numpy as np
 
 from ..declare.density import Array
 from ..declare.description import in_space
+from ..draw.shapes import Spot, joint_shapes, load_shapes
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.solution import Solution
 from ..quantities import Output
-from ..report.shapes import Spot, joint_shapes, load_shapes
 from .drawn import Line, Thing, Words, across, along
 from .motion import Motion
 from .stage import Stage

@@ -17,12 +17,12 @@ import numpy.typing as npt
 
 from ..declare.density import Array
 from ..declare.description import in_space
+from ..draw.places import drawn_spots, placed
+from ..draw.shapes import JointShape, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
 from ..draw.solid import COLOURS, PATH
 from ..draw.views import upright
 from ..errors import DeclarationError
 from ..instants.solution import Solution
-from ..report.places import drawn_spots, placed
-from ..report.shapes import JointShape, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
 from ..version import __version__
 from .solids import Mesh, ball, block, cylinder, frame_along, prism, together
 
