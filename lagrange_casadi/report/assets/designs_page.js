@@ -109,6 +109,7 @@ function designTable() {
     ["result", (row) => (status[row.at] ? contents.statuses[status[row.at]] : "ok")]];
   const plain = [["design", (row) => designs.numbers[row.at]], ...columns.map((one) => [`${one.name} [${one.unit}]`, (row) => one.values[row.at]]), ["status", (row) => status[row.at]]];
   const table = sortedTable("Designs", heads, () => picked.met.map((at) => ({ at, name: `design ${designs.numbers[at]}` })), { chosen: (row) => pick(row.at), told: "Look at this design", plain, most: MOST_ROWS });
+  table.body.classList.add("designs");
   let met = picked.met;
   picked.watchers.add(() => {
     if (met !== picked.met) table.fill();
