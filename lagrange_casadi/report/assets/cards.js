@@ -72,6 +72,7 @@ class Card {
         const drop = this.drop && signButton("✕", `Leave ${curve.title} out`, () => this.drop(k), { class: "sign tiny" });
         return element("li", {}, swatch, element("span", {}, curve.title), value, drop);
       }),
+      ...(this.plot?.told?.() ?? []),
     );
   }
 }

@@ -42,6 +42,15 @@ class Heat {
     this.mark(player.instant);
   }
 
+  /** Where and when the force is largest, as a button that shows it. */
+  told() {
+    const { section, force } = this;
+    const row = rowByName.get(`section:${section.link}:${force.name}`);
+    if (!row || row.open || !Number.isFinite(row.peak.value)) return [];
+    const words = `largest: ${shown(row.peak.value, row.unit)} at ξ/l = ${format(row.peak.xi, 3)}, ${whenOf(row.peak.t, row.peak.over)}`;
+    return [element("li", {}, element("button", { type: "button", class: "told-peak", title: "Show when and where", click: () => showRow(row) }, words))];
+  }
+
   peakMark(peak, scale) {
     const [x, y] = [this.across.at(over ? peak.over : peak.t), this.up.at(peak.xi)];
     const right = x < (this.across.from + this.across.to) / 2;

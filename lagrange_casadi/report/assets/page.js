@@ -8,8 +8,8 @@ function buildPage() {
   const frame = element("div", { class: "frame" }, canvas);
   const left = element("div", { class: "left" }, frame);
   root.append(
-    headOf(), glanceOf(), element("div", { class: "desk" }, left, element("div", { class: "right" }, deck.list, addingBar())),
-    element("div", { class: "tables" }, resultTables(showRow)), element("div", { class: "facts" }, factSections()), tip, said,
+    element("a", { class: "skip", href: "#tables" }, "Skip to the tables"), headOf(), glanceOf(), element("div", { class: "desk" }, left, element("div", { class: "right" }, deck.list, addingBar())),
+    element("div", { class: "tables", id: "tables" }, resultTables(showRow)), element("div", { class: "facts" }, factSections()), tip, said,
   );
   const stage = new Stage(canvas);
   deck.stage = stage;
