@@ -81,10 +81,10 @@ def write_animation(solution: Solution, path: str | os.PathLike[str], film: Film
     check_ending(target)
     ending = target.suffix.lower()
     if ending == ".glb":
-        if film.forces or film.section:
-            raise DeclarationError(f"animation {target}: a .glb shows the mechanism alone; forces are in {', '.join(ENDINGS[:-1])}")
+        if film.section:
+            raise DeclarationError(f"animation {target}: a .glb has no section forces; they are in {', '.join(ENDINGS[:-1])}")
         require_poses(solution, "an animation")
-        solid = glb(solution, max(2, round(film.rate * film.seconds)), film.seconds)
+        solid = glb(solution, max(2, round(film.rate * film.seconds)), film.seconds, forces=film.forces)
         with writing(target) as (file,):
             file.write(solid)
         return
