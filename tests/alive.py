@@ -6,13 +6,27 @@ import re
 import time
 from pathlib import Path
 
+import browser
+import pytest
+
 from lagrange_casadi import Mechanism, Scene, density
 from lagrange_casadi.motion import polynomial
 
 THERE = importlib.util.find_spec("ziglang") is not None
 
+NEEDS_BROWSER = pytest.mark.skipif(browser.found() is None, reason="there is no Chromium here")
+NEEDS_ENGINE = pytest.mark.skipif(not THERE, reason="ziglang is not installed")
+
 # A session's own cache would have ziglang build its C library anew, in half a minute; it is no part of what is tested.
 os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(Path.home() / ".cache" / "zig"))
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    """A browser whose user wants neither motion nor darkness."""
+    with browser.Browser() as one:
+        one.prefer(prefers_reduced_motion="reduce", prefers_color_scheme="light")
+        yield one
 
 
 def opened(one, path, text):

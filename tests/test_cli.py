@@ -27,9 +27,11 @@ CASE = Path(__file__).parent.parent / "cases" / "slider_crank"
 def test_run_writes_the_file_and_the_figures(here, capsys):
     assert main(["run", str(CASE)]) == 0
     assert sorted(path.name for path in here.iterdir()) == ["slider_crank.h5", "slider_crank_figures"]
-    figures = sorted(path.stem for path in (here / "slider_crank_figures").iterdir())
+    figures = sorted(path.stem for path in (here / "slider_crank_figures").glob("*.png"))
     assert [name[:5] for name in figures[:9]] == [f"fig{n:02}" for n in range(6, 15)]
     assert figures[9:] == ["mechanism", "rod_maps"]
+    index = (here / "slider_crank_figures" / "index.html").read_text()
+    assert sorted(re.findall(r'<img src="(\w+)\.png"', index)) == figures
     out = capsys.readouterr().out
     assert "wrote slider_crank.h5 and the figures in slider_crank_figures/" in out
     assert re.search(r"section:rod:bending              0\.941724 \+- \de-1[56] N m  at t = 0\.0692 s, xi/l = 0\.4527", out)

@@ -2,12 +2,15 @@
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.text import Text
 from reports import solved
 
 from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.draw import figures
 from lagrange_casadi.draw.drawing import draw_mechanism
 from lagrange_casadi.draw.figures import MechanismDrawing, SectionMaps, SpanPlot, TimePlot
+from lagrange_casadi.draw.solid import PATH
 from lagrange_casadi.errors import DeclarationError, StoreError, UnknownNameError
 from lagrange_casadi.motion import polynomial
 
@@ -38,7 +41,7 @@ def test_each_unit_has_axes_of_its_own(solution):
     """A torque and forces share no scale: two panels over one time, each named by its own quantities."""
     names = ("effort:O", "reaction:guide:fy", "reaction:guide:resultant", "motion:O")
     figure = TimePlot("both", names, "both", note="a note").draw(solution)
-    assert [axes.get_ylabel() for axes in figure.axes] == [
+    assert [axes.get_ylabel().replace("\n", " ") for axes in figure.axes] == [
         "effort of the drive [N m]",
         "reaction of the joint, resultant of the joint's reaction [N]",
         "coordinate of the joint [rad]",
@@ -100,7 +103,8 @@ def test_names_of_a_drawing_hide_neither_each_other_nor_leave_it():
     figure = draw_mechanism(solved("excavator"), 4)
     figure.draw_without_rendering()
     for axes in figure.axes:
-        frame, boxes = axes.get_window_extent(), [text.get_window_extent() for text in axes.texts]
+        # A name alone: the extent of an annotation has its line too, all around it.
+        frame, boxes = axes.get_window_extent(), [Text.get_window_extent(text) for text in axes.texts]
         told = {name for text in axes.texts for name in text.get_text().split(", ")}
         assert told == {*described["joints"], *described["paths"]}
         for k, box in enumerate(boxes):
@@ -108,6 +112,73 @@ def test_names_of_a_drawing_hide_neither_each_other_nor_leave_it():
             assert frame.y0 <= box.y0 <= box.y1 <= frame.y1
             assert not [other for other in boxes[:k] if box.overlaps(other)]
     assert len({handle.get_color() for handle in figure.axes[0].get_legend_handles_labels()[0]}) == 10
+
+
+def strong(axes, label):
+    return next(line for line in axes.get_lines() if line.get_label() == label)
+
+
+def test_postures_of_two_turns_are_drawn_once_and_one_over_the_other():
+    """Two turns of an engine: the second one is the first again. The first posture is strong, the others are faint."""
+    solution = solved("engine", 81)
+    figure = draw_mechanism(solution, 4)
+    angles = [np.arctan2(*strong(axes, "crank").get_xydata()[1][::-1]) for axes in figure.axes]
+    np.testing.assert_allclose(np.exp(1j * np.array(angles)), [1j, -1, -1j, 1], atol=1e-9)
+    (axes,) = draw_mechanism(solution, 8, overlay=True).axes
+    cranks = [line for line in axes.get_lines() if line.get_color() == strong(axes, "crank").get_color()]
+    assert len(cranks) == 8
+    ends = [line.get_xydata()[1] for line in cranks]
+    assert min(np.hypot(*(a - b)) for k, a in enumerate(ends) for b in ends[:k]) > 0.02
+    assert sorted(line.get_alpha() for line in cranks)[-2:] == [pytest.approx(0.2), 1.0]
+    assert axes.get_title().startswith("8 postures from t = 0 s")
+
+
+def test_bodies_with_three_joints_are_plates_and_rotors_are_discs():
+    axes = draw_mechanism(solved("excavator"), 1).axes[0]
+    bucket = next(patch for patch in axes.patches if patch.get_facecolor()[:3] == to_rgb(strong(axes, "bucket").get_color()))
+    assert len(bucket.get_xy()) - 1 == 4  # the teeth are a corner too
+    cam = draw_mechanism(solved("roller_cam"), 1).axes[0]
+    rim = strong(cam, "cam").get_xydata()
+    np.testing.assert_allclose(np.hypot(*rim.T), np.hypot(*rim[0]), rtol=1e-9)
+
+
+def test_only_declared_points_leave_their_ways():
+    solution = solved("scara")
+    (axes,) = draw_mechanism(solution, 1).axes
+    ways = [line for line in axes.get_lines() if len(line.get_xdata()) == solution.t.size]
+    assert [line.get_color() for line in ways] == [PATH]
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("name", ["connecting_rod", "engine"])
+def test_titles_are_whole(name, count):
+    figure = draw_mechanism(solved(name), count)
+    figure.draw_without_rendering()
+    boxes = [axes.title.get_window_extent() for axes in figure.axes]
+    for k, box in enumerate(boxes):
+        assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
+        assert box.y1 <= figure.bbox.y1
+        assert not any(box.overlaps(other) for other in boxes[:k])
+
+
+def test_axes_have_units_that_people_read_and_si_where_asked():
+    """Of the same curve: only the numbers beside it change."""
+    solution = solved("excavator")
+    spec = TimePlot("effort", ("effort:boom_cylinder",))
+    (axes,), (plain,) = spec.draw(solution).axes, spec.draw(solution, si=True).axes
+    assert axes.get_ylabel().endswith("[kN]")
+    assert plain.get_ylabel().endswith("[N]")
+    np.testing.assert_array_equal(axes.get_lines()[0].get_ydata(), plain.get_lines()[0].get_ydata())
+    tick = axes.get_yticks()[2]
+    assert float(axes.yaxis.get_major_formatter()(tick, 2)) == pytest.approx(1e-3 * tick)
+    maps = SectionMaps("maps", "boom")
+    peak = solution.peak("section:boom:bending")
+    assert f"peak {peak.value / 1e3:.4g} kN m" in maps.draw(solution).axes[2].get_title()
+    assert f"peak {peak.value:.4g} N m" in maps.draw(solution, si=True).axes[2].get_title()
+    small = MechanismDrawing(count=1)
+    assert small.draw(solved("engine")).axes[0].get_xlabel() == "x [mm]"
+    assert small.draw(solved("engine"), si=True).axes[0].get_xlabel() == "x [m]"
+    assert small.draw(solution).axes[0].get_xlabel() == "x [m]"
 
 
 def test_springs_are_whole_on_a_drawing():

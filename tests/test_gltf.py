@@ -10,12 +10,12 @@ from reports import hostile, press, solved
 
 from lagrange_casadi import save
 from lagrange_casadi.animation import Film, write_animation
-from lagrange_casadi.animation.solids import ball, block, cylinder, prism
+from lagrange_casadi.animation.solids import ball, block, cone, cylinder, prism
 from lagrange_casadi.cli import main
+from lagrange_casadi.draw.places import placed
+from lagrange_casadi.draw.shapes import Spot, joint_shapes, load_shapes, shapes
 from lagrange_casadi.draw.views import upright
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.report.places import placed
-from lagrange_casadi.report.shapes import Spot, joint_shapes, load_shapes, shapes
 
 WIDE = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
 
@@ -109,10 +109,48 @@ def test_bodies_are_where_the_solution_has_them(tmp_path, what):
             assert (np.sum(turns[1:] * turns[:-1], axis=1) > 0.0).all()
 
 
+@pytest.mark.parametrize("name", ["excavator", "rssr"])
+def test_arrows_are_forces_at_their_places_to_the_scale_that_is_told(tmp_path, name):
+    """Reactions begin at their joint's point on the child, loads end at theirs; a moment's arrow is along its axis."""
+    solution = solved(name)
+    solution.animate(tmp_path / "a.glb", Film(rate=25, seconds=2.0, forces=True))
+    told, array = read(tmp_path / "a.glb")
+    keys = array(told["animations"][0]["samplers"][0]["input"])[:, 0]
+    chosen = np.abs(solution.t[:, None] - (solution.t[0] + keys / 2.0 * np.ptp(solution.t))).argmin(axis=0)
+    extras = {node["name"]: node["extras"] for node in told["nodes"] if "extras" in node}
+    size = max(moved(told, array, one)((1, 0, 0)).max() for one in extras)
+
+    def vector(kind, part):
+        members = ("fx", "fy", "fz") if solution.pose(next(iter(solution.description["bodies"]))).z is not None else ("fx", "fy")
+        found = [solution.array(f"{kind}:{part}:{member}")[chosen] for member in members]
+        return np.column_stack([*found, *[0 * found[0]] * (3 - len(found))])
+
+    expected = {
+        f"reaction {joint.name}": (joint.child, vector("reaction", joint.name), 0.0) for joint in joint_shapes(solution.description)
+    }
+    for load in load_shapes(solution.description):
+        expected[f"load {load.name}"] = (load.spots[0], vector("load", load.name), 1.0)
+    assert {one for one in extras if not one.startswith("effort ")} == set(expected)
+    for one, (spot, force, share) in expected.items():
+        assert extras[one]["unit"] == "N"
+        assert extras[one]["largest"] == pytest.approx(np.linalg.norm(force, axis=1).max(), rel=1e-12)
+        tail, tip = (moved(told, array, one)(place) for place in ((0, 0, 0), (1, 0, 0)))
+        np.testing.assert_allclose(tip - tail, extras[one]["metres_per_unit"] * force, rtol=0, atol=1e-5 * size)
+        np.testing.assert_allclose(tail + share * (tip - tail), placed(solution, spot)[chosen], rtol=0, atol=1e-5 * size)
+    efforts = [one for one in extras if one.startswith("effort ")]
+    assert len(efforts) == len([name for name in solution.outputs if name.group == "effort"])
+    for one in efforts:
+        tail, tip = (moved(told, array, one)(place) for place in ((0, 0, 0), (1, 0, 0)))
+        found = np.linalg.norm(tip - tail, axis=1) / extras[one]["metres_per_unit"]
+        exact = np.abs(solution.effort(one.removeprefix("effort "))[chosen])
+        np.testing.assert_allclose(found, exact, rtol=0, atol=1e-4 * exact.max())
+
+
 @pytest.mark.parametrize(
     ("mesh", "volume"),
     [
         (cylinder(np.array([1.0, 2.0, 3.0]), np.array([1.0, 5.0, 7.0]), 0.5), 12 * np.sin(np.pi / 12) * 0.25 * 5.0),
+        (cone(np.array([1.0, 2.0, 3.0]), np.array([1.0, 5.0, 7.0]), 0.5), 12 * np.sin(np.pi / 12) * 0.25 * 5.0 / 3),
         (ball(np.array([1.0, 0.0, 2.0]), 2.0), None),
         (block(np.array([1.0, 0.0, 2.0]), np.eye(3)[[1, 2, 0]], [1.0, 2.0, 3.0]), 6.0),
         (block(np.array([1.0, 0.0, 2.0]), np.diag([1.0, 1.0, -1.0]), [1.0, 2.0, 3.0]), 6.0),
@@ -141,9 +179,8 @@ def test_the_command_writes_it_twice_alike_and_says_what_it_cannot_show(tmp_path
         assert main(["animate", str(tmp_path / "press.h5"), "--out", str(tmp_path / f"{name}.glb")]) == 0
     assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
     capsys.readouterr()
-    for more in (["--forces"], ["--section", "bending"]):
-        assert main(["animate", str(tmp_path / "press.h5"), "--out", str(tmp_path / "c.glb"), *more]) == 2
-        assert "a .glb shows the mechanism alone; forces are in .gif, .mp4, .svg" in capsys.readouterr().err
+    assert main(["animate", str(tmp_path / "press.h5"), "--out", str(tmp_path / "c.glb"), "--section", "bending"]) == 2
+    assert "a .glb has no section forces; they are in .gif, .mp4, .svg" in capsys.readouterr().err
     assert not (tmp_path / "c.glb").exists()
     with pytest.raises(DeclarationError, match="there is 1 instant; ask for more"):
         press(t=(0.1, 0.1, 1)).animate(tmp_path / "c.glb")

@@ -5,6 +5,7 @@ import io
 import re
 from dataclasses import replace
 
+import alive
 import browser
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from reports import HOSTILE, hostile, press, solved
 
 from lagrange_casadi.quantities import Output
 
-pytestmark = pytest.mark.skipif(browser.found() is None, reason="there is no Chromium here")
+pytestmark = alive.NEEDS_BROWSER
 
 
 @pytest.fixture(scope="module")
@@ -246,6 +247,36 @@ def test_a_largest_moment_is_found_at_a_glance_and_its_section_shown(page):
     readout = one.run("document.querySelector('.readout').textContent.replaceAll('\\u00a0', ' ')")
     assert readout == f"t = {to_digits(1e3 * peak.t, 5):g} ms"
     assert f"ξ/l = {peak.xi:.3g}" in one.run("document.querySelector('.ratio').textContent")
+    quiet(one)
+
+
+@pytest.mark.parametrize(("width", "height", "scheme"), [(1400, 900, "light"), (1000, 700, "dark")])
+def test_the_largest_moment_in_the_rod_is_found_by_keyboard_alone(page, width, height, scheme):
+    """By its words, and by the list of links of the map: value, instant and section are told, and shown."""
+    solution = solved("slider_crank")
+    peak = solution.peak("section:rod:bending")
+    one = page(solution)
+    one.size(width, height)
+    one.prefer(prefers_reduced_motion="reduce", prefers_color_scheme=scheme)
+    one.press("/", "/")
+    for letter in "rod bending":
+        one.press(letter, letter)
+    _, rows = shown(one, "Peaks")
+    assert [row[:2] for row in rows] == [["rod", "bending moment"]]
+    assert (number(rows[0][2]), rows[0][4]) == (to_digits(peak.value, 6), f"{to_digits(1e3 * peak.t, 5):g} ms")
+    one.press("Enter", "\r")
+    when = f"t = {to_digits(1e3 * peak.t, 5):g} ms"
+    assert one.run("document.querySelector('.readout').textContent.replaceAll('\\u00a0', ' ')") == when
+    # The nearest of the ratios that the link is evaluated at.
+    near = solution.xi[np.abs(solution.xi - peak.xi).argmin()]
+    assert f"ξ/l = {near:.3g}" in one.run("document.querySelector('.ratio').textContent")
+    one.run(
+        "{ const list = document.querySelector('.map').closest('.card').querySelector('select');"
+        " list.value = 'rod'; list.dispatchEvent(new Event('change')); }"
+    )
+    told = one.run("document.querySelector('.told-peak').textContent").translate({0x2212: "-", 0xA0: " "})
+    assert told == f"largest: {to_digits(peak.value, 5)} N·m at ξ/l = {peak.xi:.3g}, {when}"
+    one.prefer(prefers_reduced_motion="reduce", prefers_color_scheme="light")
     quiet(one)
 
 

@@ -6,7 +6,6 @@ import json
 import re
 
 import alive
-import browser
 import numpy as np
 import pytest
 from reports import CASES, held
@@ -18,17 +17,9 @@ from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
 from lagrange_casadi.report import Live, page
 
-pytestmark = [
-    pytest.mark.skipif(browser.found() is None, reason="there is no Chromium here"),
-    pytest.mark.skipif(not alive.THERE, reason="ziglang is not installed"),
-]
+pytestmark = [alive.NEEDS_BROWSER, alive.NEEDS_ENGINE]
 
-
-@pytest.fixture(scope="module")
-def chromium():
-    with browser.Browser() as one:
-        one.prefer(prefers_reduced_motion="reduce", prefers_color_scheme="light")
-        yield one
+chromium = alive.chromium
 
 
 def case(name, count=31):
@@ -82,6 +73,7 @@ def test_another_design_is_what_the_package_makes_of_it(chromium, tmp_path, what
     rng = np.random.default_rng(len(what))
     given = scene.mechanism.parameters.values()
     values = {one.name: one.default * (1 + 0.05 * rng.uniform(-1, 1)) for one in given}
+    moving = {name: value * (1 + 0.01 * rng.uniform(-1, 1)) for name, value in values.items()}
     text = page(evaluate(scene, wanted=wanted, backend="vm", **asked), Live(scene, scene.timing(**asked), wanted, "run"))
     alive.opened(chromium, tmp_path / "live.html", text)
     found = chromium.run(INNER % json.dumps(list(values.values())))
@@ -132,6 +124,11 @@ def test_another_design_is_what_the_package_makes_of_it(chromium, tmp_path, what
                 alike(one[key], other[key], (other["name"], key))
             for plate, exact in zip(one.get("plates", ()), other.get("plates", ()), strict=True):
                 alike(sorted(plate), sorted(exact), other["name"])
+    # While a slider moves, not all is looked for: every end of the cycle is the same, to the last bit.
+    rows_of = "(() => {{ window.page.live.engine.show({}, {}); return window.page.contents.rows; }})()"
+    quick, whole = (chromium.run(rows_of.format(json.dumps(list(moving.values())), asked)) for asked in ("false", "true"))
+    assert quick == whole
+    assert quick != found["rows"]
     assert chromium.complaints == []
 
 
@@ -197,6 +194,40 @@ def test_sliders_change_all_that_is_read_and_back_again(crank):
     assert peaks(one) == file
     assert one.complaints == []
     assert all(address.startswith(("file://", "data:")) for address in one.asked)
+
+
+DRAG = """(async () => {
+  const add = document.querySelector('.card .curves');
+  add.value = 'section:rod:bending';
+  add.dispatchEvent(new Event('change'));
+  const field = document.querySelector('.sliders [type=range]');
+  const pictures = () => [...document.querySelectorAll('canvas')].map((one) => one.toDataURL());
+  const shown = () => [document.querySelector('.cards').innerHTML, ...pictures()];
+  const seen = [];
+  for (const way of [[0.06, 0.075, 0.09, 0.08, 0.085], [0.085]]) {
+    for (const value of way) {
+      field.value = value;
+      field.dispatchEvent(new Event('input'));
+      await new Promise((done) => requestAnimationFrame(done));
+    }
+    await new Promise((done) => setTimeout(done, 400));
+    field.dispatchEvent(new Event('change'));
+    await new Promise((done) => setTimeout(done, 100));
+    seen.push(shown());
+    field.value = 0.1;
+    field.dispatchEvent(new Event('input'));
+    await new Promise((done) => setTimeout(done, 400));
+  }
+  return [...seen, shown()];
+})()"""
+
+
+def test_a_slider_that_rests_leaves_all_of_its_design(crank):
+    """Charts, maps and the picture follow in turn while it moves; at rest none is left behind, whatever the way was."""
+    slow, at_once, other = crank().run(DRAG)
+    assert slow == at_once
+    assert len(slow) == len(other) > 2
+    assert [one != changed for one, changed in zip(slow, other, strict=True)] == [True] * len(slow)
 
 
 def test_a_design_that_cannot_be_assembled_says_so_in_place_of_numbers(crank):

@@ -101,9 +101,10 @@ def test_the_page_says_what_it_shows():
 def test_numbers_on_an_axis_that_runs_backward_are_those_of_its_coordinate():
     """Where y is up, z runs to the left as seen from the right."""
     axes = drawn(moved("rssr"))[0].axes[3]
-    assert axes.get_xlabel() == "z [m]"
+    assert axes.get_xlabel() == "z [mm]"
     for tick in axes.get_xticks():
-        assert float(axes.xaxis.get_major_formatter()(tick, 0)) == pytest.approx(-tick, abs=1e-12)
+        told = axes.xaxis.get_major_formatter()(tick, 0).replace("\N{MINUS SIGN}", "-")
+        assert float(told) == pytest.approx(-1e3 * tick, abs=1e-9)
 
 
 @pytest.mark.parametrize(("count", "faint"), [(1, 0), (2, 1), (4, 3)])

@@ -177,7 +177,7 @@ def test_figures_show_six_maps_and_two_resultants(solution):
     assert SectionMaps("section_beam", "beam") in specs
     assert any(isinstance(spec, MechanismDrawing) for spec in specs)
     drawn = {spec.name: spec.quantities for spec in specs if spec.name.startswith("reaction_")}
-    assert drawn["reaction_A"] == ("reaction:A:fx", "reaction:A:fy", "reaction:A:fz")
+    assert drawn["reaction_A"] == tuple(f"reaction:A:{member}" for member in ("fx", "fy", "fz", "mx", "my", "mz"))
     # On the joint's own axes only where what is open is not along the ground's.
     assert "reaction_own_A" not in drawn
     figure = SectionMaps("section_taper", "taper").draw(solution)

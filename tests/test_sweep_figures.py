@@ -149,7 +149,7 @@ def test_the_command_writes_figures_or_nothing(swept, tmp_path, capsys):
     found = rewritten(swept, EFFORT, lambda values: np.where(np.isnan(values), np.nan, 3.0))
     file, out = str(found.path), tmp_path / "figures"
     assert main(["plot", file, "--over", "l", "--at", "m1=0.2", "--out", str(out)]) == 0
-    names = sorted(path.stem for path in out.iterdir())
+    names = sorted(path.stem for path in out.glob("*.png"))
     front = f"front_{EFFORT}_{BENDING}".replace(":", "-")
     assert names == ["along_rod", front, "peak_reactions", "peak_section_rod"]
     err = capsys.readouterr().err

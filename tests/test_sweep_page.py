@@ -14,7 +14,7 @@ from reports import CASES, held
 from lagrange_casadi.cli import main
 from lagrange_casadi.sweep import Sweep, best, chosen
 
-pytestmark = pytest.mark.skipif(browser.found() is None, reason="there is no Chromium here")
+pytestmark = alive.NEEDS_BROWSER
 
 
 @pytest.fixture(scope="module")
@@ -74,6 +74,24 @@ def test_the_table_is_the_files_to_the_last_digit(page, file):
     assert all(address.startswith(("file://", "data:", "about:")) for address in one.asked)
 
 
+def test_on_paper_it_is_light_and_no_wider_than_the_sheet(page):
+    """Whoever reads it in the dark."""
+    one = page()
+    one.prefer(prefers_reduced_motion="reduce", prefers_color_scheme="dark")
+    dark = "getComputedStyle(document.documentElement).getPropertyValue('--sheet')"
+    assert one.run(dark) != "#ffffff"
+    one.size(688, 1000)
+    one.call("Emulation.setEmulatedMedia", media="print", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+    assert one.run(dark) == "#ffffff"
+    wide = "[...document.querySelectorAll('table, .card, .looked-at')].map((one) => one.getBoundingClientRect().right)"
+    settled = "new Promise((done) => setTimeout(() => done(0), 100))"
+    one.run(settled)
+    assert max(one.run(wide)) <= 688.5
+    one.call("Emulation.setEmulatedMedia", media="")
+    one.prefer(prefers_reduced_motion="reduce", prefers_color_scheme="light")
+    one.size(1500, 1000)
+
+
 def test_conditions_are_those_of_the_command_line(page, file):
     one, sweep = page(), Sweep.open(file)
     assert only(one, "status=0")[1] == "unknown column status"
@@ -88,7 +106,7 @@ def test_conditions_are_those_of_the_command_line(page, file):
         assert one.run("document.querySelectorAll('.best').length") == len(front)
 
 
-@pytest.mark.skipif(not alive.THERE, reason="ziglang is not installed")
+@alive.NEEDS_ENGINE
 def test_a_design_that_is_pressed_moves(page, file):
     one, sweep = page(), Sweep.open(file)
     front = best(sweep, minimise=("peak:effort:O", "peak:section:rod:bending"))

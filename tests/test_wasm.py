@@ -5,7 +5,6 @@ import json
 import re
 
 import alive
-import browser
 import numpy as np
 import pytest
 from reports import CASES
@@ -14,16 +13,9 @@ from lagrange_casadi import evaluate, export
 from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
 
-pytestmark = [
-    pytest.mark.skipif(browser.found() is None, reason="there is no Chromium here"),
-    pytest.mark.skipif(not alive.THERE, reason="ziglang is not installed"),
-]
+pytestmark = [alive.NEEDS_BROWSER, alive.NEEDS_ENGINE]
 
-
-@pytest.fixture(scope="module")
-def chromium():
-    with browser.Browser() as one:
-        yield one
+chromium = alive.chromium
 
 
 def loaded(one, folder, prefix):

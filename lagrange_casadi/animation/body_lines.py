@@ -8,9 +8,9 @@ import numpy as np
 
 from ..declare.density import Array
 from ..declare.description import in_space
+from ..draw.places import placed
+from ..draw.shapes import JointShape, Place, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
 from ..draw.solid import COLOURS, PATH
-from ..report.places import placed
-from ..report.shapes import JointShape, Place, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
 from .drawn import INK, Dot, Line, Thing, Words, across, along
 from .motion import Motion
 from .stage import Stage

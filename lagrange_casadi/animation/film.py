@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ..draw.places import drawn_spots
+from ..draw.shapes import shapes
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..report.contents import require_poses
-from ..report.places import drawn_spots
-from ..report.shapes import shapes
 from ..system.publish import replacing, writing
 from .body_lines import mechanism, rim
 from .drawn import Picture
@@ -81,10 +81,10 @@ def write_animation(solution: Solution, path: str | os.PathLike[str], film: Film
     check_ending(target)
     ending = target.suffix.lower()
     if ending == ".glb":
-        if film.forces or film.section:
-            raise DeclarationError(f"animation {target}: a .glb shows the mechanism alone; forces are in {', '.join(ENDINGS[:-1])}")
+        if film.section:
+            raise DeclarationError(f"animation {target}: a .glb has no section forces; they are in {', '.join(ENDINGS[:-1])}")
         require_poses(solution, "an animation")
-        solid = glb(solution, max(2, round(film.rate * film.seconds)), film.seconds)
+        solid = glb(solution, max(2, round(film.rate * film.seconds)), film.seconds, forces=film.forces)
         with writing(target) as (file,):
             file.write(solid)
         return

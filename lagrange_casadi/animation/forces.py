@@ -10,23 +10,47 @@ import numpy as np
 
 from ..declare.density import Array
 from ..declare.description import in_space
+from ..draw.shapes import Spot, joint_shapes, load_shapes
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.solution import Solution
 from ..quantities import Output
-from ..report.shapes import Spot, joint_shapes, load_shapes
 from .drawn import Line, Thing, Words, across, along
 from .motion import Motion
 from .stage import Stage
 
-_COLOURS = {"reaction": "#c2304a", "effort": "#6d3fc0", "load": "#1e7f55"}
+ACTION_COLOURS = {"reaction": "#c2304a", "effort": "#6d3fc0", "load": "#1e7f55"}
 _POSITIVE, _NEGATIVE = "#d9622b", "#2267b0"
 
-_LONGEST, _WIDEST = 0.3, 0.2
+LONGEST, _WIDEST = 0.3, 0.2
 """The longest arrow and the widest ribbon, over the mechanism's size."""
 
 _RATIOS = 41
 _FULL = 1.5 * np.pi
 """What the arc of the largest moment spans."""
+
+
+@dataclass(frozen=True, eq=False)
+class Action:
+    """What acts at a place (frames, 3): a force [N], or a moment [N m], (frames, 3) in ground axes.
+
+    ``kind`` is "reaction", "effort" or "load", ``of`` the joint, the coordinate or the load; a load pushes at its place.
+    """
+
+    kind: str
+    of: str
+    place: Array
+    vector: Array
+    moment: bool = False
+
+    @property
+    def colour(self) -> str:
+        """The colour of its arrow."""
+        return ACTION_COLOURS[self.kind]
+
+    @property
+    def tail(self) -> bool:
+        """Whether its arrow begins at its place, and does not end there."""
+        return self.kind != "load"
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,28 +102,27 @@ def forces_of(motion: Motion, size: float, *, arrows: bool, section: str) -> For
 
     Raises :class:`.DeclarationError` where the solution does not have them.
     """
-    motion = _moving(motion)
     found: list[Arrow] = []
     arcs: list[Arc] = []
     words: list[str] = []
     if arrows:
-        pushes, turns = list(_pushes(motion)), list(_turns(motion))
-        if not pushes and not turns:
-            raise DeclarationError(f"{motion.solution.case}: there is no reaction, effort or load to be shown; want reaction too")
-        largest = _largest([way for _, way, _, _ in pushes])
-        for place, way, kind, at_tip in pushes:
-            length = way * (_LONGEST * size / (largest or 1.0))
-            found.append(Arrow(place - length, place, kind) if at_tip else Arrow(place, place + length, kind))
+        pushes, turns = actions_of(motion)
+        largest = largest_of(pushes)
+        for one in pushes:
+            length = one.vector * (LONGEST * size / (largest or 1.0))
+            tail, tip = (one.place, one.place + length) if one.tail else (one.place - length, one.place)
+            found.append(Arrow(tail, tip, one.colour))
         words += [f"arrows: up to {_said(largest, 'N')}"] if pushes else []
-        largest = _largest([way for _, way, _ in turns])
-        for place, way, kind in turns:
+        largest = largest_of(turns)
+        for one in turns:
             if in_space(motion.solution.description):
-                found.append(Arrow(place, place + way * (_LONGEST * size / (largest or 1.0)), kind))
+                found.append(Arrow(one.place, one.place + one.vector * (LONGEST * size / (largest or 1.0)), one.colour))
             else:
-                arcs.append(Arc(place, way[:, 2] / (largest or 1.0), kind))
+                arcs.append(Arc(one.place, one.vector[:, 2] / (largest or 1.0), one.colour))
         words += [f"drives' moments: up to {_said(largest, 'N m')}"] if turns else []
     ribbons: list[Ribbon] = []
     if section:
+        motion = _moving(motion)
         laws = _laws(motion.solution, section)
         peaks = [motion.solution.peak(Output("section", link, section)) for link in laws]
         largest = max(abs(peak.value) for peak in peaks)
@@ -107,6 +130,23 @@ def forces_of(motion: Motion, size: float, *, arrows: bool, section: str) -> For
         ribbons = [_ribbon(motion, link, section, scale) for link in laws]
         words.append(f"{section.replace('_', ' ')}: up to {_said(largest, peaks[0].unit)}")
     return Forces(tuple(found), tuple(arcs), tuple(ribbons), " · ".join(words))
+
+
+def actions_of(motion: Motion) -> tuple[list[Action], list[Action]]:
+    """Reactions, efforts and loads: forces, and the moments of drives.
+
+    Raises :class:`.DeclarationError` where the solution has none of them.
+    """
+    motion = _moving(motion)
+    pushes, turns = list(_pushes(motion)), list(_turns(motion))
+    if not pushes and not turns:
+        raise DeclarationError(f"{motion.solution.case}: there is no reaction, effort or load to be shown; want reaction too")
+    return pushes, turns
+
+
+def largest_of(actions: Sequence[Action]) -> float:
+    """The largest size of any, over all frames; 0 of none."""
+    return max((float(np.max(np.linalg.norm(one.vector, axis=1))) for one in actions), default=0.0)
 
 
 def _moving(motion: Motion) -> Motion:
@@ -155,32 +195,28 @@ def _headed(points: Array, length: Array, ahead: Array, colour: str, unit: float
     yield Line(np.stack([tip, back + side, back - side], axis=1), colour, 0.8 * unit, closed=True, fill=colour)
 
 
-def _pushes(motion: Motion) -> Iterator[tuple[Array, Array, str, bool]]:
-    """Forces: where, how large in ground axes (frames, 3) [N], their colour, and whether they push at their place."""
+def _pushes(motion: Motion) -> Iterator[Action]:
+    """Forces: reactions, efforts along axes, and loads."""
     solution = motion.solution
     for joint in joint_shapes(solution.description):
         if (way := _vector(motion, "reaction", joint.name)) is not None:
-            yield motion.place(joint.child), way, _COLOURS["reaction"], False
+            yield Action("reaction", joint.name, motion.place(joint.child), way)
         for (name, kind), axis in zip(joint.coordinates, joint.axes, strict=False):
             if kind == "slide" and (effort := _effort(motion, name)) is not None:
-                yield (
-                    motion.place(joint.child),
-                    effort * motion.way(joint.parent.body, axis, joint.parent.at),
-                    _COLOURS["effort"],
-                    False,
-                )
+                along_axis = motion.way(joint.parent.body, axis, joint.parent.at)
+                yield Action("effort", name, motion.place(joint.child), effort * along_axis)
     for load in load_shapes(solution.description):
         if (way := _vector(motion, "load", load.name)) is not None:
-            yield motion.place(load.spots[0]), way, _COLOURS["load"], True
+            yield Action("load", load.name, motion.place(load.spots[0]), way)
 
 
-def _turns(motion: Motion) -> Iterator[tuple[Array, Array, str]]:
-    """Efforts about axes: where, how large in ground axes (frames, 3) [N m], and their colour."""
+def _turns(motion: Motion) -> Iterator[Action]:
+    """Efforts about axes."""
     for joint in joint_shapes(motion.solution.description):
         for (name, kind), axis in zip(joint.coordinates, joint.axes, strict=False):
             if kind != "slide" and (effort := _effort(motion, name)) is not None:
                 way = np.array([axis]) if not in_space(motion.solution.description) else motion.way(joint.parent.body, axis)
-                yield motion.place(joint.child), effort * way, _COLOURS["effort"]
+                yield Action("effort", name, motion.place(joint.child), effort * way, moment=True)
 
 
 def _vector(motion: Motion, group: str, name: str) -> Array | None:
@@ -218,10 +254,6 @@ def _ribbon(motion: Motion, link: str, force: str, scale: float) -> Ribbon:
     side = motion.way(link, (0.0, 0.0, 1.0) if force in ("shear_z", "bending_y") else (0.0, 1.0, 0.0))[:, None]
     values = scale * motion.at(law.on_grid(force, xi))[..., None]
     return Ribbon(axis, axis + np.maximum(values, 0.0) * side, axis + np.minimum(values, 0.0) * side)
-
-
-def _largest(vectors: Sequence[Array]) -> float:
-    return max((float(np.max(np.linalg.norm(vector, axis=1))) for vector in vectors), default=0.0)
 
 
 def _said(value: float, unit: str) -> str:

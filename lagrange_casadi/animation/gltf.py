@@ -17,14 +17,16 @@ import numpy.typing as npt
 
 from ..declare.density import Array
 from ..declare.description import in_space
+from ..draw.places import drawn_spots, placed
+from ..draw.shapes import JointShape, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
 from ..draw.solid import COLOURS, PATH
 from ..draw.views import upright
 from ..errors import DeclarationError
 from ..instants.solution import Solution
-from ..report.places import drawn_spots, placed
-from ..report.shapes import JointShape, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
 from ..version import __version__
-from .solids import Mesh, ball, block, cylinder, frame_along, prism, together
+from .forces import LONGEST, actions_of, largest_of
+from .motion import Motion
+from .solids import Mesh, arrow, ball, block, cylinder, frame_along, prism, together
 
 _KEPT = ("nodes", "meshes", "materials", "accessors", "bufferViews")
 """Lists of a file, in the order in which they stand there."""
@@ -32,19 +34,23 @@ _KEPT = ("nodes", "meshes", "materials", "accessors", "bufferViews")
 _GIRTH = 0.013
 """Half the width of a link, over the mechanism's size."""
 
+_NOTHING, _LEAST = 1e-9, 1e-6
+"""Over the largest: a force that is none. Over the mechanism's size: the least length of an arrow, for none has a length of 0."""
+
 _METAL, _STILL, _SPRING = "#c3cad3", "#8a929c", "#6a7078"
 _FLOAT, _WHOLE, _POINTS, _CORNERS, _LINE, _TRIANGLES = 5126, 5125, 34962, 34963, 3, 4
 
 
-def glb(solution: Solution, frames: int, seconds: float) -> bytes:
+def glb(solution: Solution, frames: int, seconds: float, *, forces: bool = False) -> bytes:
     """The file: one cycle in so many ``seconds``, with at most ``frames`` keys and one more.
 
-    Raises :class:`.DeclarationError` where there are not two instants.
+    With ``forces`` it has arrows of reactions, efforts and loads. Raises :class:`.DeclarationError` where there are not two
+    instants, and where none of the forces that are asked for is known.
     """
     if solution.t.size < 2:
         raise DeclarationError(f"{solution.case}: an animation shows a motion, and there is 1 instant; ask for more")
     chosen = np.unique(np.linspace(0, solution.t.size - 1, min(solution.t.size, frames + 1)).round().astype(int))
-    return _Scene(solution, chosen, seconds).made()
+    return _Scene(solution, chosen, seconds, forces).made()
 
 
 @dataclass(eq=False)
@@ -54,6 +60,7 @@ class _Scene:
     solution: Solution
     chosen: npt.NDArray[np.intp]
     seconds: float
+    forces: bool
     told: dict[str, list[Any]] = field(default_factory=lambda: {key: [] for key in _KEPT})
     channels: list[Any] = field(default_factory=list)
     samplers: list[Any] = field(default_factory=list)
@@ -64,8 +71,9 @@ class _Scene:
         t = self.solution.t[self.chosen]
         self.keys = self._array((t - t[0]) / (t[-1] - t[0]) * self.seconds, ends=True)
         cloud = np.concatenate([placed(self.solution, spot) for spot in drawn_spots(self.solution.description)])
-        self.girth = _GIRTH * (float(np.max(np.ptp(cloud, axis=0))) or 1.0)
-        parts = [*self._bodies(), *self._springs(), *self._still()]
+        self.size = float(np.max(np.ptp(cloud, axis=0))) or 1.0
+        self.girth = _GIRTH * self.size
+        parts = [*self._bodies(), *self._springs(), *self._still(), *(self._actions() if self.forces else ())]
         root: dict[str, Any] = {"name": self.solution.case, "children": parts}
         if in_space(self.solution.description):
             right, away, up = upright(self.solution.description["gravity"])
@@ -120,6 +128,29 @@ class _Scene:
             self._moves(number, "rotation", _quaternions(axes.transpose(0, 2, 1)))
             self._moves(number, "scale", np.stack([lengths, np.ones_like(lengths), np.ones_like(lengths)], 1))
             yield number
+
+    def _actions(self) -> Iterator[int]:
+        """Reactions, efforts and loads as arrows of length 1, which are placed, turned and made as long as they are large."""
+        before = np.minimum(self.chosen, self.solution.t.size - 2)
+        pushes, turns = actions_of(Motion(self.solution, before, (self.chosen - before).astype(float), closed=False))
+        for actions, unit, heads in ((pushes, "N", 1), (turns, "N m", 2)):
+            largest = largest_of(actions)
+            if not largest:
+                continue
+            scale = LONGEST * self.size / largest
+            meshes = {colour: self._mesh("arrow", arrow(heads), colour) for colour in dict.fromkeys(one.colour for one in actions)}
+            for one in actions:
+                sizes = np.linalg.norm(one.vector, axis=1)
+                # What is nothing has no direction; it keeps the one before.
+                known = np.maximum.accumulate(np.where(sizes > _NOTHING * largest, np.arange(sizes.size), 0))
+                ways = np.where(sizes[known, None] > 0.0, one.vector[known], np.eye(3)[0])
+                axes = np.stack([frame_along(way) for way in ways])
+                extras = {"unit": unit, "metres_per_unit": scale, "largest": float(sizes.max())}
+                number = self._node({"name": f"{one.kind} {one.of}", "mesh": meshes[one.colour], "extras": extras})
+                self._moves(number, "translation", one.place if one.tail else one.place - scale * one.vector)
+                self._moves(number, "rotation", _quaternions(axes.transpose(0, 2, 1)))
+                self._moves(number, "scale", np.tile(np.maximum(scale * sizes, _LEAST * self.size)[:, None], 3))
+                yield number
 
     def _still(self) -> Iterator[int]:
         """What stands still: blocks under joints on the ground, and the ways of declared points."""

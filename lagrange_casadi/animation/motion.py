@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
+from ..draw.places import drawn_spots, placed
+from ..draw.shapes import Place, Spot
 from ..errors import DeclarationError
 from ..instants.solution import Solution
-from ..report.places import drawn_spots, placed
-from ..report.shapes import Place, Spot
 
 _SAME = 1e-3
 """Over the mechanism's size: a motion whose ends are no farther apart is a cycle, and its last instant is the first again."""

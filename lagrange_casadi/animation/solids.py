@@ -55,6 +55,30 @@ def cylinder(start: Array, stop: Array, radius: float) -> Mesh:
     return together([_outward(side), plate(rims[0][::-1], -x), plate(rims[1], x)])
 
 
+def cone(start: Array, tip: Array, radius: float) -> Mesh:
+    """A cone from the middle of its base to its tip."""
+    start, tip = np.asarray(start, float), np.asarray(tip, float)
+    x, y, z = frame_along(tip - start)
+    height = float(np.linalg.norm(tip - start))
+
+    k = np.arange(_ROUND)
+    angles = 2.0 * np.pi * np.concatenate([k, k + 0.5])[:, None] / _ROUND
+    rim, between = np.split(np.cos(angles) * y + np.sin(angles) * z, 2)
+    # The tip is there once for each side, for each has a direction of its own.
+    normals = np.concatenate([height * rim + radius * x, height * between + radius * x]) / np.hypot(height, radius)
+    places = np.concatenate([start + radius * rim, np.tile(tip, (_ROUND, 1))])
+    side = Mesh(places, normals, np.stack([k, (k + 1) % _ROUND, k + _ROUND], 1))
+    return together([_outward(side), plate((start + radius * rim)[::-1], -x)])
+
+
+def arrow(heads: int) -> Mesh:
+    """An arrow along x from 0 to 1: of a force with one head, of a moment with two."""
+    ahead = np.eye(3)[0]
+    ends = [1.0 - 0.16 * k for k in range(heads)]
+    shaft = cylinder(np.zeros(3), (ends[-1] - 0.16) * ahead, 0.018)
+    return together([shaft, *(cone((end - 0.16) * ahead, end * ahead, 0.05) for end in ends)])
+
+
 def ball(centre: Array, radius: float) -> Mesh:
     """A ball."""
     up, around = np.meshgrid(np.linspace(0.0, np.pi, _RINGS + 1), 2.0 * np.pi * np.arange(_ROUND) / _ROUND, indexing="ij")

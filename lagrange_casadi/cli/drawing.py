@@ -12,19 +12,21 @@ from tqdm import tqdm
 
 from ..declare.scene import Scene
 from ..draw.figures import Spec, default_figures, draw
+from ..draw.index import write_index
 from ..draw.postures import draw_postures
 from ..errors import LagrangeCasadiError, PostureError
 from ..instants.solution import Solution
 from ..system.publish import writing
 
 
-def draw_with_progress(solution: Solution, specs: Sequence[Spec], folder: Path) -> None:
-    """Draw into a folder; what the solution lacks is said, the bar shows on a terminal only."""
+def draw_with_progress(solution: Solution, specs: Sequence[Spec], folder: Path, si: bool = False) -> None:
+    """Draw into a folder, with a page that shows all; what the solution lacks is said, the bar shows on a terminal only."""
     chosen = specs or default_figures(solution)
-    skipped = []
-    for spec, path in tqdm(draw(solution, chosen, folder), total=len(chosen), desc="figures", leave=False, disable=None):
-        if path is None:
-            skipped.append(spec.name)
+    skipped: list[str] = []
+    drawn: list[str] = []
+    for spec, path in tqdm(draw(solution, chosen, folder, si), total=len(chosen), desc="figures", leave=False, disable=None):
+        (drawn if path else skipped).append(spec.name)
+    write_index(solution.case, drawn, folder)
     if skipped:
         click.echo(f"note: not drawn, for want of their outputs: {', '.join(skipped)}", err=True)
 

@@ -10,6 +10,7 @@ from tqdm import tqdm
 
 from ..declare.angles import angle
 from ..draw.figures import parse_specs
+from ..draw.index import NAME, write_index
 from ..errors import NoDesignError
 from ..store.runs import figure_specs, load
 from ..store.untrusted import told_as
@@ -39,12 +40,15 @@ _UNDRAWN = "cannot be drawn"
 @click.option(
     "--against", nargs=2, multiple=True, metavar="COLUMN COLUMN", help="Of a sweep: the front of these two columns or parameters."
 )
+@click.option("--si", is_flag=True, help="Axes in SI without prefixes, in place of units that people read, as kN and mm.")
 def plot(
-    file: Path, out: Path, over: Sequence[str], at: Sequence[tuple[str, float | str]], against: Sequence[tuple[str, str]]
+    file: Path, out: Path, over: Sequence[str], at: Sequence[tuple[str, float | str]], against: Sequence[tuple[str, str]], si: bool
 ) -> None:
     """Draw the figures of FILE.h5, as its case wants them, or peaks over parameters where it is a sweep."""
     check_writable(out, folder=True)
     if is_sweep(file):
+        if si:
+            raise click.UsageError("--si goes with the file of a run; figures of a sweep are in SI")
         stays = dict(at)
         if len(stays) < len(at):
             raise click.UsageError("--at: a parameter stays at one value, got two for " + _twice(at))
@@ -56,19 +60,22 @@ def plot(
     else:
         solution, drawn = load(file), parse_specs(figure_specs(file))
         with told_as(_UNDRAWN, file), filling(out) as draft:
-            draw_with_progress(solution, drawn, draft)
-    click.echo(f"wrote the figures in {out}/")
+            draw_with_progress(solution, drawn, draft, si)
+    click.echo(f"wrote the figures in {out}/; {out}/{NAME} shows all of them")
 
 
 def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
     """Draw a sweep; what shows nothing is said. Raises :class:`NoDesignError` where no figure shows anything."""
-    skipped = []
+    skipped, drawn = [], []
     with told_as(_UNDRAWN, sweep.path), filling(out) as draft:
         for path, why in tqdm(draw_sweep(sweep, specs, draft), total=len(specs), desc="figures", leave=False, disable=None):
             if why:
                 skipped.append(f"{path.name}: {why}")
+            else:
+                drawn.append(path.stem)
         if len(skipped) == len(specs):
             raise NoDesignError(f"there is nothing to draw: {'; '.join(dict.fromkeys(skipped))}")
+        write_index(sweep.case, drawn, draft)
     for line in skipped:
         click.echo(f"note: not drawn: {line}", err=True)
 

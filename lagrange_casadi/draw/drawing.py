@@ -2,125 +2,230 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..declare.density import Array
 from ..instants.solution import Solution
-from .labels import apart, placed
+from .labels import apart
+from .labels import placed as labelled
+from .places import drawn_spots, placed
+from .readable import scale_for
+from .shapes import JointShape, Shape, Spot, joint_shapes, load_shapes, path_spots, shapes
 from .solid import COLOURS, PATH
+from .stills import stills
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _POINTS = 8.0
-"""The size of names."""
+"""The size of names [pt]."""
+
+_TALL, _LARGE, _PAGE = 4.4, 6.4, 9.0
+"""How large one of several drawings may be, one alone, and all together [inch]."""
+
+_SQUARE = 5.5 * np.array([(x, y) for x in (-1.0, 0.0, 1.0) for y in (-1.0, 0.0, 1.0)])
+"""Points of a point mass's mark, against its middle [pt]."""
+
+_FAINT = 0.2
+_AXIS = 0.06
+"""How far the line on which something slides goes beyond where it ever is, over the mechanism's size."""
+
+Box = tuple[float, float, float, float]
 
 
-def draw_mechanism(solution: Solution, count: int) -> Figure:
-    """The mechanism at ``count`` instants, with the paths that its joints and declared points take over the whole time."""
+def draw_mechanism(solution: Solution, count: int, overlay: bool = False, si: bool = False) -> Figure:
+    """The mechanism at ``count`` instants, with the ways of its declared points over the whole time.
+
+    One beside the other, or with ``overlay`` all in one picture: the first strong, the others faint. Postures that are the same
+    are drawn once.
+    """
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    paths, box, size = _extent(solution)
-    columns = min(count, 2)
-    rows = -(-count // columns)
-    aspect = (box[3] - box[2]) / (box[1] - box[0])
-    figure = Figure(figsize=(4.4 * columns, min(9.0, rows * (4.4 * aspect + 0.5))), layout="constrained")
+    box, size = _extent(solution)
+    chosen = stills(solution, count)
+    titles = [_when(solution, i) for i in chosen]
+    wide, high = box[1] - box[0], box[3] - box[2]
+    if overlay:
+        first, last = titles[0], titles[-1]
+        words = f"{len(chosen)} postures from {first.replace(chr(10), ', ')} (strong)\nto {last.replace(chr(10), ', ')}"
+        titles = [words if len(chosen) > 1 else first]
+    columns = 1 if overlay else min(len(chosen), 2 if wide > 0.7 * high else 4)
+    rows = 1 if overlay else -(-len(chosen) // columns)
+    room = _LARGE if rows * columns == 1 else _TALL
+    scale = min(room / wide, room / high, (_PAGE - 0.6 * rows) / (rows * high))
+    broad = max(scale * wide + 0.25, 0.1 + max(_extent_of(line, 10.0) for title in titles for line in title.split("\n")) / 72.0)
+    lines = 1 + max(title.count("\n") for title in titles)
+    names = [shape.name for shape in shapes(solution.description)]
+    page = columns * broad + 0.75
+    across = max(1, min(len(names), int(page / (0.55 + max(_extent_of(name, 9.0) for name in names) / 72.0))))
+    legend = 0.2 + 0.2 * -(-len(names) // across)
+    tall = rows * (scale * high + 0.15 + 0.17 * lines) + 0.6 + legend
+    figure = Figure(figsize=(page, tall), layout=ConstrainedLayoutEngine(h_pad=0.09))
     axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    chosen = np.linspace(0, solution.t.size - 1, count + 1).astype(int)[:-1] if count > 1 else [0]
-    for place, i in zip(axes.flat, chosen, strict=False):
-        _draw_instant(place, solution, int(i), paths, size)
-        place.set(xlim=box[:2], ylim=box[2:], aspect="equal")
-        over = f", {solution.over.shown(solution.over.values[i])}" if solution.over else ""
-        place.set_title(f"t = {solution.t[i]:.4g} s{over}", fontsize=10)
-        place.grid(True, color="0.93")
-    for place in axes.flat[len(chosen) :]:
-        place.set_axis_off()
+    for k, place in enumerate(axes.flat):
+        if k >= len(titles):
+            place.set_axis_off()
+            continue
+        for i in reversed(chosen[1:] if overlay else []):
+            _draw_instant(place, solution, i, size, strong=False)
+        _draw_instant(place, solution, chosen[k], size)
+        _frame(place, box, si)
+        place.set_title(titles[k], fontsize=10)
     for place in axes[-1]:
-        place.set_xlabel("x [m]")
+        place.set_xlabel(f"x [{scale_for('m', size, si).unit}]")
     for place in axes[:, 0]:
-        place.set_ylabel("y [m]")
-    names = axes[0, 0].get_legend_handles_labels()
-    figure.legend(*names, loc="outside lower center", ncols=min(6, max(1, len(names[1]))), frameon=False, fontsize=9)
+        place.set_ylabel(f"y [{scale_for('m', size, si).unit}]")
+    handles = dict(zip(*reversed(axes[0, 0].get_legend_handles_labels()), strict=True))
+    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=across, frameon=False, fontsize=9)
     # Where everything is on the page is known when it is laid out.
     figure.draw_without_rendering()
-    for place, i in zip(axes.flat, chosen, strict=False):
-        _name(place, solution, int(i), paths, size)
+    for place, i in zip(axes.flat, chosen[:1] if overlay else chosen, strict=False):
+        _name(place, solution, i, size)
     return figure
 
 
 def draw_into(axes: Any, solution: Solution) -> None:
     """The mechanism at its first instant, into axes of a figure."""
-    paths, box, size = _extent(solution)
-    _draw_instant(axes, solution, 0, paths, size)
-    axes.set(xlim=box[:2], ylim=box[2:], aspect="equal", xlabel="x [m]", ylabel="y [m]")
-    axes.grid(True, color="0.93")
+    box, size = _extent(solution)
+    _draw_instant(axes, solution, 0, size)
+    _frame(axes, box, False)
+    axes.set(xlabel=f"x [{scale_for('m', size).unit}]", ylabel=f"y [{scale_for('m', size).unit}]")
     axes.legend(frameon=False, fontsize=8)
     axes.figure.draw_without_rendering()
-    _name(axes, solution, 0, paths, size)
+    _name(axes, solution, 0, size)
 
 
-def _extent(solution: Solution) -> tuple[dict[str, tuple[Array, Array]], tuple[float, float, float, float], float]:
-    """The paths of joints and of declared points by name, the box that holds all, and its larger side [m]."""
-    paths = {name: _place(solution, joint["child"]) for name, joint in solution.description["joints"].items()}
-    paths |= {name: _place(solution, point) for name, point in solution.description.get("paths", {}).items()}
-    ends = {name: _ends(solution, name) for name, body in solution.description["bodies"].items() if body["length"]}
-    springs = [load["points"] for load in solution.description["loads"].values() if load["kind"] == "spring"]
-    places = [*paths.values(), *(_place(solution, point) for points in springs for point in points)]
-    for name, outline in solution.description.get("outlines", {}).items():
-        places += [_place(solution, {"body": name, "x": x, "y": y}) for x, y in outline]
-    x = np.concatenate([p[0] for p in places] + [e[k] for e in ends.values() for k in (0, 2)])
-    y = np.concatenate([p[1] for p in places] + [e[k] for e in ends.values() for k in (1, 3)])
-    size = max(float(np.ptp(x)), float(np.ptp(y))) or 1.0
-    box = (x.min() - 0.12 * size, x.max() + 0.12 * size, y.min() - 0.12 * size, y.max() + 0.12 * size)
-    return paths, box, size
+def _when(solution: Solution, i: int) -> str:
+    """An instant in words, the drive's coordinate in a line of its own."""
+    over = f"\n{solution.over.shown(solution.over.values[i])}" if solution.over else ""
+    return f"t = {solution.t[i]:.4g} s{over}"
 
 
-def _draw_instant(axes: Any, solution: Solution, i: int, paths: Any, size: float) -> None:
-    description = solution.description
-    for number, (name, body) in enumerate(description["bodies"].items()):
-        colour = COLOURS[number % len(COLOURS)]
-        if body["length"]:
-            _draw_body(axes, solution, name, i, colour)
-        elif body["length"] is None:
-            pose = solution.pose(name)
-            axes.plot(pose.x[i], pose.y[i], "s", color=colour, markersize=11, label=name, zorder=3)
-    for load in description["loads"].values():
-        if load["kind"] == "spring":
-            (ax, ay), (bx, by) = (_place(solution, point) for point in load["points"])
-            axes.plot([ax[i], bx[i]], [ay[i], by[i]], color="0.4", linewidth=1.4, linestyle=":", zorder=2)
-    for name, joint in description["joints"].items():
-        x, y = paths[name]
-        axes.plot(x, y, color="0.75", linewidth=0.9, zorder=1)
-        if joint["kind"] in ("prismatic", "slot"):
-            _draw_axis(axes, solution, joint, i, size)
-        if joint["kind"] in ("revolute", "slot"):
-            grounded = "ground" in (joint["parent"]["body"], joint["child"]["body"])
-            axes.plot(x[i], y[i], "o", markersize=7, markerfacecolor="white", markeredgecolor="black", zorder=4)
-            if grounded:
-                axes.plot(x[i], y[i] - 0.035 * size, "^", markersize=12, color="0.55", zorder=2)
-    for name in description.get("paths", {}):
-        x, y = paths[name]
-        axes.plot(x, y, color=PATH, linewidth=1.4, zorder=2)
-        axes.plot(x[i], y[i], "D", markersize=5, color=PATH, zorder=5)
-
-
-def _name(axes: Any, solution: Solution, i: int, paths: Any, size: float) -> None:
-    """Write the names beside their points, where they hide neither each other nor more of the bodies than they must."""
+def _extent_of(words: str, points: float) -> float:
+    """How wide words are [pt]."""
     from matplotlib.textpath import TextPath
 
+    return float(TextPath((0, 0), words, size=points).get_extents().width)
+
+
+def _extent(solution: Solution) -> tuple[Box, float]:
+    """The box that holds all at every instant, and its larger side [m]."""
+    description = solution.description
+    places = [placed(solution, spot) for spot in drawn_spots(description)]
+    places += [placed(solution, spot) for load in load_shapes(description) if load.kind == "spring" for spot in load.spots]
+    for shape in shapes(description):
+        if shape.disc and shape.centre:
+            middle = placed(solution, Spot(shape.name, shape.centre))
+            places += [middle - shape.disc, middle + shape.disc]
+    x, y, _ = np.concatenate(places).T
+    size = max(float(np.ptp(x)), float(np.ptp(y))) or 1.0
+    return (x.min() - 0.12 * size, x.max() + 0.12 * size, y.min() - 0.12 * size, y.max() + 0.12 * size), size
+
+
+def _frame(axes: Any, box: Box, si: bool) -> None:
+    scale = scale_for("m", max(box[1] - box[0], box[3] - box[2]) / 1.24, si)
+    axes.set(xlim=box[:2], ylim=box[2:], aspect="equal")
+    axes.grid(True, color="0.93")
+    axes.set_axisbelow(True)
+    scale.put(axes.xaxis)
+    scale.put(axes.yaxis)
+
+
+def _draw_instant(axes: Any, solution: Solution, i: int, size: float, *, strong: bool = True) -> None:
+    """An instant; where it is not the ``strong`` one without the ground, and so that one sees through it."""
+    now = solution.during(slice(i, i + 1))
+    description = solution.description
+    look = {"alpha": 1.0 if strong else _FAINT, "zorder": 3 if strong else 2}
+
+    def at(spot: Spot) -> Array:
+        place: Array = placed(now, spot)[0, :2]
+        return place
+
+    for number, shape in enumerate(shapes(description)):
+        _draw_body(axes, shape, at, COLOURS[number % len(COLOURS)], look, label=shape.name if strong else "_")
+    for load in load_shapes(description):
+        if load.kind == "spring":
+            x, y = np.transpose([at(spot) for spot in load.spots])
+            axes.plot(x, y, **look | {"color": "0.4", "linewidth": 1.4, "linestyle": ":", "label": "_"})
+    for joint in joint_shapes(description):
+        x, y = at(joint.child)
+        slides = joint.kind in ("prismatic", "slot")
+        if strong and slides:
+            _draw_axis(axes, solution, now, joint, size)
+        if joint.kind != "prismatic":
+            mark, width, fill = ("s", 4, "black") if joint.kind == "weld" else ("o", 7, "white")
+            own = {"markersize": width, "markerfacecolor": fill, "markeredgecolor": "black", "zorder": look["zorder"] + 1}
+            axes.plot(x, y, mark, **look | own)
+        if strong and not slides and "ground" in (joint.parent.body, joint.child.body):
+            axes.plot(x, y - 0.035 * size, "^", markersize=12, color="0.55", zorder=2)
+    for spot in path_spots(description).values():
+        if strong:
+            axes.plot(*placed(solution, spot)[:, :2].T, color=PATH, linewidth=1.4, zorder=2)
+        axes.plot(*at(spot), "D", markersize=5, color=PATH, **look | {"zorder": look["zorder"] + 2})
+
+
+def _draw_body(axes: Any, shape: Shape, at: Any, colour: str, look: Mapping[str, Any], label: str) -> None:
+    """A link's axis, plates, and arms to what is beside it; of a rotor its disc, with a spoke by which one sees it turn."""
+
+    def line(ends: Sequence[Any], width: float, label: str) -> None:
+        x, y = np.transpose([at(Spot(shape.name, end)) for end in ends])
+        axes.plot(x, y, color=colour, linewidth=width, solid_capstyle="round", label=label, **look)
+
+    if shape.kind == "point":
+        axes.plot(*at(Spot(shape.name, (0.0, 0.0, 0.0))), "s", color=colour, markersize=11, label=label, **look)
+        return
+    for ends in ((shape.axis, 4.0), *((arm, 3.0 if shape.kind == "rigid" else 1.6) for arm in shape.arms)):
+        if ends[0]:
+            line(ends[0], ends[1] if not shape.plates else 3.2, label)
+            label = "_"
+    for points in (*shape.plates, *([tuple(_circle(shape))] if shape.disc else ())):
+        corners = np.array([at(Spot(shape.name, point)) for point in points])
+        face = {"facecolor": colour, "linewidth": 0.0, **look, "alpha": 0.25 * look["alpha"]}
+        axes.fill(*corners.T, **face)
+        axes.plot(*np.vstack([corners, corners[:1]]).T, color=colour, linewidth=1.2, solid_joinstyle="round", label=label, **look)
+        label = "_"
+    if shape.spoke and shape.centre:
+        line((shape.centre, shape.spoke), 2.0, "_")
+
+
+def _circle(shape: Shape) -> Iterator[tuple[float, float, float]]:
+    assert shape.centre is not None
+    x, y, z = shape.centre
+    for angle in np.linspace(0.0, 2.0 * np.pi, 61)[:-1].tolist():
+        yield x + shape.disc * float(np.cos(angle)), y + shape.disc * float(np.sin(angle)), z
+
+
+def _draw_axis(axes: Any, solution: Solution, now: Solution, joint: JointShape, size: float) -> None:
+    """The line on which something slides, as far as it ever does."""
+    parent = placed(now, joint.parent)[0, :2]
+    (x, y, z), (dx, dy, _) = joint.parent.at, joint.axes[0]
+    ahead = Spot(joint.parent.body, (x + dx, y + dy, z))
+    way = placed(now, ahead)[0, :2] - parent
+    along = placed(solution, joint.child) - placed(solution, joint.parent)
+    ways = placed(solution, ahead) - placed(solution, joint.parent)
+    reach = np.concatenate([np.sum(along * ways, axis=1), [0.0] if joint.kind == "slot" else []])
+    ends = parent + np.array([reach.min() - _AXIS * size, reach.max() + _AXIS * size])[:, None] * way
+    axes.plot(*ends.T, color="0.55", linewidth=1.0, linestyle=(0, (6, 4)), zorder=1, label="_")
+
+
+def _name(axes: Any, solution: Solution, i: int, size: float) -> None:
+    """Write the names beside their points, where they hide neither each other nor more of the bodies than they must."""
     points = 72.0 / axes.figure.dpi
-    named = _labels(paths, i, size)
+    now = solution.during(slice(i, i + 1))
+    named = _labels(now, size)
     words = [", ".join(names) for names in named.values()]
-    sizes = np.array([(TextPath((0, 0), word, size=_POINTS).get_extents().width + 1.0, 1.2 * _POINTS) for word in words])
+    sizes = np.array([(_extent_of(word, _POINTS) + 1.0, 1.2 * _POINTS) for word in words])
     anchors = axes.transData.transform(np.array(list(named))) * points
-    ends = [_ends(solution, name) for name, body in solution.description["bodies"].items() if body["length"]]
-    share = np.linspace(0.0, 1.0, 40)[:, None]
-    bodies = [np.array([x[i], y[i]]) + share * np.array([u[i] - x[i], v[i] - y[i]]) for x, y, u, v in ends]
-    things = axes.transData.transform(np.concatenate([*bodies, np.array(list(named))])) * points
+    things = axes.transData.transform(np.concatenate([*_lines(now), np.array(list(named))])) * points
+    blocks = [placed(now, Spot(shape.name, (0.0, 0.0, 0.0)))[:, :2] for shape in shapes(now.description) if shape.kind == "point"]
+    things = np.concatenate([things, *(axes.transData.transform(block) * points + _SQUARE for block in blocks)])
     (left, bottom), (right, top) = axes.transAxes.transform([(0.0, 0.0), (1.0, 1.0)]) * points
-    corners = placed(anchors, sizes, things, (left, bottom, right, top))
+    corners = labelled(anchors, sizes, things, (left, bottom, right, top))
     for word, spot, anchor, low, wide in zip(words, named, anchors, corners, sizes, strict=True):
         own = apart(low, wide, anchor)
         far = own > 10.0 or sum(apart(low, wide, other) < 2.0 * own for other in anchors) > 1
@@ -129,77 +234,23 @@ def _name(axes: Any, solution: Solution, i: int, paths: Any, size: float) -> Non
         axes.annotate(word, spot, **words_at, **line).set_in_layout(False)
 
 
-def _draw_body(axes: Any, solution: Solution, name: str, i: int, colour: str) -> None:
-    """A link's axis, and arms to joints and declared points beside it; a body known by its centre of mass as arms from there."""
-    body = solution.description["bodies"][name]
-    points = [end for joint in solution.description["joints"].values() for end in (joint["parent"], joint["child"])]
-    points += solution.description.get("paths", {}).values()
-    own = [(point["x"], point["y"]) for point in points if point["body"] == name]
-    outline = solution.description.get("outlines", {}).get(name)
-    if outline:
-        corners = [_at(solution, name, i, *corner) for corner in outline]
-        axes.fill(*zip(*corners, strict=True), facecolor=colour, alpha=0.25, edgecolor=colour, linewidth=2.0, label=name, zorder=3)
-        return
-    if "centre" in body:
-        centre = (body["centre"]["x"], body["centre"]["y"])
-        lines, width = [(centre, point) for point in own], 3.0
-    else:
-        lines, width = [((min(max(x, 0.0), body["length"]), 0.0), (x, y)) for x, y in own], 1.6
-        (x0, y0), (x1, y1) = (_at(solution, name, i, *place) for place in ((0.0, 0.0), (body["length"], 0.0)))
-        axes.plot([x0, x1], [y0, y1], color=colour, linewidth=4, solid_capstyle="round", label=name, zorder=3)
-    for k, (start, stop) in enumerate(lines):
-        (x0, y0), (x1, y1) = _at(solution, name, i, *start), _at(solution, name, i, *stop)
-        label = name if "centre" in body and k == 0 else None
-        axes.plot([x0, x1], [y0, y1], color=colour, linewidth=width, solid_capstyle="round", label=label, zorder=3)
+def _lines(now: Solution) -> Iterator[Array]:
+    """Points (n, 2) along everything that a name might hide [m]."""
+    share = np.linspace(0.0, 1.0, 40)[:, None]
+    for shape in shapes(now.description):
+        edges = [(plate[k - 1], plate[k]) for plate in shape.plates for k in range(len(plate))]
+        rim = list(_circle(shape)) if shape.disc else []
+        for start, stop in (*([shape.axis] if shape.axis else []), *shape.arms, *edges, *pairwise(rim)):
+            a, b = (placed(now, Spot(shape.name, end))[0, :2] for end in (start, stop))
+            yield a + share * (b - a)
 
 
-def _at(solution: Solution, body: str, i: int, x: float, y: float) -> tuple[float, float]:
-    place = _place(solution, {"body": body, "x": x, "y": y})
-    return float(place[0][i]), float(place[1][i])
-
-
-def _labels(paths: Any, i: int, size: float) -> dict[tuple[float, float], list[str]]:
-    """The joints' names by place, those at one place together."""
+def _labels(now: Solution, size: float) -> dict[tuple[float, float], list[str]]:
+    """The joints' and declared points' names by place, those at one place together."""
     found: dict[tuple[float, float], list[str]] = {}
-    for name, (x, y) in paths.items():
-        near = next((at for at in found if max(abs(at[0] - x[i]), abs(at[1] - y[i])) < 1e-3 * size), (float(x[i]), float(y[i])))
+    spots = {joint.name: joint.child for joint in joint_shapes(now.description)} | path_spots(now.description)
+    for name, spot in spots.items():
+        x, y = placed(now, spot)[0, :2].tolist()
+        near = next((at for at in found if max(abs(at[0] - x), abs(at[1] - y)) < 1e-3 * size), (x, y))
         found.setdefault(near, []).append(name)
     return found
-
-
-def _draw_axis(axes: Any, solution: Solution, joint: Any, i: int, size: float) -> None:
-    """The line of a prismatic joint, through its parent's point."""
-    parent = joint["parent"]
-    c, s = _direction(solution, parent["body"])
-    ax = c[i] * joint["axis"][0] - s[i] * joint["axis"][1]
-    ay = s[i] * joint["axis"][0] + c[i] * joint["axis"][1]
-    x, y = (values[i] for values in _place(solution, parent))
-    axes.plot(
-        [x - 4 * size * ax, x + 4 * size * ax],
-        [y - 4 * size * ay, y + 4 * size * ay],
-        color="0.55",
-        linewidth=1.0,
-        linestyle=(0, (6, 4)),
-        zorder=1,
-    )
-
-
-def _direction(solution: Solution, body: str) -> tuple[Array, Array]:
-    angle = None if body == "ground" else solution.pose(body).angle
-    return (np.ones_like(solution.t), np.zeros_like(solution.t)) if angle is None else (np.cos(angle), np.sin(angle))
-
-
-def _place(solution: Solution, point: Any) -> tuple[Array, Array]:
-    """The path of a point of a body."""
-    c, s = _direction(solution, point["body"])
-    x, y = point["x"], point["y"]
-    if point["body"] == "ground":
-        return x * c, y * c
-    pose = solution.pose(point["body"])
-    return pose.x + c * x - s * y, pose.y + s * x + c * y
-
-
-def _ends(solution: Solution, body: str) -> tuple[Array, Array, Array, Array]:
-    length = solution.description["bodies"][body]["length"]
-    base = _place(solution, {"body": body, "x": 0.0, "y": 0.0})
-    return (*base, *_place(solution, {"body": body, "x": length, "y": 0.0}))

@@ -8,6 +8,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import re
+import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,12 +23,13 @@ from ..instants.solution import Peak, Solution
 from ..quantities import Output
 from ..store.untrusted import parsed
 from ..tables import PLANE, SPACE
+from .readable import scale_for
 from .views import AZIMUTH, ELEVATION
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_PIXELS = 1600
+_PIXELS, _LABEL = 1600, 40
 
 
 @dataclass(frozen=True)
@@ -49,7 +51,7 @@ class TimePlot:
         """Full names of the quantities it draws."""
         return self.quantities
 
-    def draw(self, solution: Solution) -> Figure:
+    def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         units: dict[str, list[str]] = {}
         for name in self.quantities:
@@ -60,7 +62,7 @@ class TimePlot:
                 self._draw(axes, solution, name)
             first, last = axes is panels[0], axes is panels[-1]
             title = (self.title or self.quantities[0]) if first else ""
-            _finish(figure, axes, solution, names, title, self.note if last else "", _along(solution)[1] if last else "")
+            _finish(figure, axes, solution, names, title, self.note if last else "", _along(solution)[1] if last else "", si)
         return figure
 
     def _draw(self, axes: Any, solution: Solution, name: str) -> None:
@@ -91,7 +93,7 @@ class SpanPlot:
         """Full names of the quantities it draws."""
         return (self.quantity,)
 
-    def draw(self, solution: Solution) -> Figure:
+    def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         figure, (axes,) = _figure()
         i = int(np.argmin(np.abs(solution.t - self.t)))
@@ -100,7 +102,7 @@ class SpanPlot:
         axes.plot(solution.xi, self.factor * values[0])
         at = f"t = {solution.t[i]:.4g} s" + (f", {solution.over.shown(solution.over.values[i])}" if solution.over else "")
         title = f"{self.title}, {at}" if self.title else at
-        _finish(figure, axes, solution, [self.quantity], title, self.note, r"$\xi/l$")
+        _finish(figure, axes, solution, [self.quantity], title, self.note, r"$\xi/l$", si)
         return figure
 
 
@@ -119,7 +121,7 @@ class SectionMaps:
         """Full names of the quantities it draws."""
         return tuple(str(Output("section", self.link, force)) for force in PLANE.forces)
 
-    def draw(self, solution: Solution) -> Figure:
+    def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         from matplotlib.figure import Figure
 
@@ -140,15 +142,17 @@ class SectionMaps:
             picture = axes.pcolormesh(
                 places[instants], xi, values.T, cmap=colours, vmin=least, vmax=bound, shading="nearest", rasterized=True
             )
+            scale = scale_for(peak.unit, abs(peak.value), si)
             x, at = _place_of(peak, solution)
             axes.plot(x, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
             axes.set_title(
-                f"{name.meant(solution.table).long_name}: peak {peak.value:.4g} {peak.unit} at {at}, "
+                f"{name.meant(solution.table).long_name}: peak {scale.said(peak.value)} at {at}, "
                 rf"$\xi/l$ = {peak.xi:.3f}",
                 fontsize=10,
             )
             axes.set_ylabel(r"$\xi/l$")
-            figure.colorbar(picture, ax=axes, label=f"{name.meant(solution.table).long_name} [{peak.unit}]")
+            bar = figure.colorbar(picture, ax=axes, label=f"{name.meant(solution.table).long_name} [{scale.unit}]")
+            scale.put(bar.ax.yaxis)
         for axes in plots[-across:]:
             axes.set_xlabel(along)
         for axes in plots[len(names) :]:
@@ -159,11 +163,11 @@ class SectionMaps:
 
 @dataclass(frozen=True)
 class MechanismDrawing:
-    """The mechanism at ``count`` instants, evenly spread over the time of the solution.
+    """The mechanism at ``count`` instants, evenly spread over the motion until it repeats itself; postures that are the same once.
 
-    One in space is drawn from above, from the front, from the right, and from ``azimuth`` and ``elevation`` [deg]: the angle about
-    the upward axis, and that above the level, of the direction from which it is looked at. The upward axis is the ground's axis
-    that is most against gravity.
+    With ``overlay`` they are in one picture, the first strong and the others faint. One in space is always drawn so: from above,
+    from the front, from the right, and from ``azimuth`` and ``elevation`` [deg], the angle about the upward axis, and that above
+    the level, of the direction from which it is looked at. The upward axis is the ground's axis that is most against gravity.
     """
 
     kind: ClassVar[str] = "drawing"
@@ -171,19 +175,20 @@ class MechanismDrawing:
     count: int = 4
     azimuth: float = AZIMUTH
     elevation: float = ELEVATION
+    overlay: bool = False
 
     def needs(self) -> tuple[str, ...]:
         """Full names of the quantities it draws; the poses of all bodies besides."""
         return ()
 
-    def draw(self, solution: Solution) -> Figure:
+    def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         from .drawing import draw_mechanism
         from .space_drawing import draw_in_space
 
         if solution.table is SPACE:
-            return draw_in_space(solution, self.count, self.azimuth, self.elevation)
-        return draw_mechanism(solution, self.count)
+            return draw_in_space(solution, self.count, self.azimuth, self.elevation, si)
+        return draw_mechanism(solution, self.count, self.overlay, si)
 
 
 @dataclass(frozen=True)
@@ -198,11 +203,11 @@ class StrengthPlot:
         """Full names of the quantities it draws."""
         return SectionMaps(self.name, self.link).needs()
 
-    def draw(self, solution: Solution) -> Figure:
+    def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         from .strength_plot import draw_strength
 
-        return draw_strength(solution, self.link, *_along(solution))
+        return draw_strength(solution, self.link, *_along(solution), si)
 
 
 @dataclass(frozen=True)
@@ -217,7 +222,7 @@ class UtilisationPlot:
         """Full names of the quantities it draws."""
         return tuple(name for link in self.links for name in SectionMaps(self.name, link).needs())
 
-    def draw(self, solution: Solution) -> Figure:
+    def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         from .strength_plot import draw_utilisation
 
@@ -262,8 +267,10 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
             own = "_own" if output.member.endswith(("u", "v", "w")) else ""
             if own and all(solution.determined(other) for other in _in_ground_axes(output)):
                 continue
-            kind = f"{output.group}{own}{'_moment' if output.member.startswith('m') else ''}"
-            groups.setdefault((kind, output.part), []).append(str(output))
+            # Force and moment of a joint are one picture, and so is all of a declared point: its place, speed and acceleration.
+            point = output.part.rpartition("_")[0]
+            part = point if output.group == "output" and point in solution.description.get("paths", {}) else output.part
+            groups.setdefault((f"{output.group}{own}", part), []).append(str(output))
     for (group, part), names in groups.items():
         what = part if group == "output" else f"{group.replace('_', ' ')} of {part}"
         specs.append(TimePlot(f"{group}_{part.replace(':', '-')}", tuple(names), f"{solution.case}: {what}"))
@@ -274,7 +281,8 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     if links := strong_of(solution, "yield_strength", "elasticity"):
         specs.append(UtilisationPlot("utilisation", links))
     specs += [DeflectionPlot(f"deflection_{link}", link) for link in strong_of(solution, "elasticity")]
-    return (*specs, MechanismDrawing())
+    overlay = () if solution.table is SPACE else (MechanismDrawing("postures", count=8, overlay=True),)
+    return (*specs, *overlay, MechanismDrawing())
 
 
 def strong_of(solution: Solution, *numbers: str) -> tuple[str, ...]:
@@ -310,9 +318,10 @@ def _parse(entry: dict[str, Any]) -> Spec:
     return _KINDS[entry["kind"]](**fields)
 
 
-def draw(solution: Solution, specs: Sequence[Spec], folder: Path) -> Iterator[tuple[Spec, Path | None]]:
+def draw(solution: Solution, specs: Sequence[Spec], folder: Path, si: bool = False) -> Iterator[tuple[Spec, Path | None]]:
     """Draw specs, or the usual ones where there are none, into an existing folder as PNG, one by one.
 
+    Axes have the units that people read, as kN and mm where numbers call for them; with ``si`` those of SI, without prefixes.
     The path is None where the solution lacks what a spec draws. Raises :class:`DeclarationError` for what is no spec.
     """
     chosen = specs or default_figures(solution)
@@ -328,7 +337,7 @@ def draw(solution: Solution, specs: Sequence[Spec], folder: Path) -> Iterator[tu
             continue
         path = folder / f"{spec.name}.png"
         # No program's name and no clock, so that the same solution gives the same bytes.
-        spec.draw(solution).savefig(path, dpi=120, metadata={"Software": None})
+        spec.draw(solution, si).savefig(path, dpi=120, metadata={"Software": None})
         yield spec, path
 
 
@@ -370,13 +379,19 @@ def _figure(panels: int = 1) -> tuple[Figure, list[Any]]:
     return figure, list(figure.subplots(panels, 1, sharex=True, squeeze=False).flat)
 
 
-def _finish(figure: Figure, axes: Any, solution: Solution, names: Sequence[str], title: str, note: str, along: str) -> None:
+def _finish(
+    figure: Figure, axes: Any, solution: Solution, names: Sequence[str], title: str, note: str, along: str, si: bool
+) -> None:
     axes.set_xlabel(along)
     shown = map(Output.of, names)
     words = [o.part if o.group == "output" else o.meant(solution.table).long_name.partition(":")[0] for o in shown]
-    if len(axes.get_lines()) > 1:
+    curves = axes.get_lines()
+    if len(curves) > 1:
         words = list(dict.fromkeys(word.partition(",")[0] for word in words))
-    axes.set_ylabel(f"{', '.join(words)} [{solution.unit(names[0])}]")
+    sizes = [np.abs(curve.get_ydata()) for curve in curves]
+    scale = scale_for(solution.unit(names[0]), max((float(np.nanmax(s, initial=0.0)) for s in sizes), default=0.0), si)
+    scale.put(axes.yaxis)
+    axes.set_ylabel("\n".join(textwrap.wrap(f"{', '.join(words)} [{scale.unit}]", _LABEL)))
     axes.set_title(title, fontsize=11)
     axes.axhline(0.0, color="0.6", linewidth=0.8, zorder=0)
     axes.grid(True, color="0.9")

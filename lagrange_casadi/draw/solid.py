@@ -10,6 +10,7 @@ import numpy as np
 
 from ..declare.density import Array
 from ..instants.solution import Solution
+from .shapes import Place, shapes
 
 COLOURS = (
     *("#1f4e79", "#b3541e", "#2e7d4f", "#7a3b8f", "#8a6d1a", "#3c6e71", "#9c2f4a", "#555555"),
@@ -170,28 +171,27 @@ def colour_of(solution: Solution, body: str) -> str:
     return COLOURS[list(solution.description["bodies"]).index(body) % len(COLOURS)]
 
 
-def _segments(solution: Solution) -> Iterator[tuple[str, Any, Any]]:
-    """The lines of all bodies as the described points that they join, and of springs.
+def plates_of(solution: Solution) -> Iterator[tuple[str, Array]]:
+    """The plates of bodies at a solution's first instant: the body, and the corners (n, 3) in ground axes [m]."""
+    for shape in shapes(solution.description):
+        for plate in shape.plates:
+            yield shape.name, np.array([place_of(solution, _point(shape.name, corner))[0] for corner in plate])
 
-    A link is its axis, with arms to joints and declared points beside it. A rigid body is arms from its centre.
-    """
-    description = solution.description
-    points = [end for joint in description["joints"].values() for end in (joint["parent"], joint["child"])]
-    points += description.get("paths", {}).values()
-    for name, body in description["bodies"].items():
-        own = [point for point in points if point["body"] == name]
-        if body["length"] is None:
-            continue
-        if "centre" in body:
-            starts = [{"body": name, **body["centre"]}] * len(own)
-        else:
-            axis = {"body": name, "x": 0.0, "y": 0.0, "z": 0.0, "arm": False}
-            yield name, axis, axis | {"x": body["length"]}
-            starts = [axis | {"x": min(max(point["x"], 0.0), body["length"])} for point in own]
-        for start, point in zip(starts, own, strict=True):
-            if any(start[component] != point[component] for component in "xyz"):
-                yield name, start | {"arm": True}, point
-    for load in description["loads"].values():
+
+def _segments(solution: Solution) -> Iterator[tuple[str, Any, Any]]:
+    """The lines of all bodies as the described points that they join, and of springs: axes, arms, and edges of plates."""
+    for shape in shapes(solution.description):
+        if shape.axis:
+            start, stop = (_point(shape.name, place) for place in shape.axis)
+            yield shape.name, start | {"arm": False}, stop
+        edges = [(plate[k - 1], plate[k]) for plate in shape.plates for k in range(len(plate))]
+        for first, last in (*shape.arms, *edges):
+            yield shape.name, _point(shape.name, first) | {"arm": True}, _point(shape.name, last)
+    for load in solution.description["loads"].values():
         if load["kind"] == "spring":
             first, second = load["points"]
             yield "", first, second
+
+
+def _point(body: str, place: Place) -> dict[str, Any]:
+    return {"body": body, **dict(zip("xyz", place, strict=True))}

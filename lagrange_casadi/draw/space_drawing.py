@@ -11,7 +11,24 @@ import numpy as np
 from ..declare.density import Array
 from ..instants.solution import Solution
 from .labels import apart, placed
-from .solid import BLOCK, MARKS, PATH, SPRING, Line, axes_of, cloud_of, colour_of, grounds_of, lines_of, marks_of, paths_of
+from .readable import Scale, scale_for
+from .solid import (
+    BLOCK,
+    MARKS,
+    PATH,
+    SPRING,
+    Line,
+    axes_of,
+    cloud_of,
+    colour_of,
+    grounds_of,
+    lines_of,
+    marks_of,
+    paths_of,
+    place_of,
+    plates_of,
+)
+from .stills import stills
 from .views import AZIMUTH, ELEVATION, View, page, upright, view, views
 
 if TYPE_CHECKING:
@@ -37,16 +54,15 @@ Box = tuple[float, float, float, float]
 """What a picture shows: left, right, bottom and top [m]."""
 
 
-def draw_in_space(solution: Solution, count: int, azimuth: float, elevation: float) -> Figure:
-    """The mechanism at ``count`` instants, the first strong and the others faint, from four sides, with the paths of its joints.
+def draw_in_space(solution: Solution, count: int, azimuth: float, elevation: float, si: bool = False) -> Figure:
+    """The mechanism at ``count`` instants, the first strong and the others faint, from four sides, with declared points' ways.
 
     The views from above, from the front and from the right are in third-angle projection; that at the upper right is from
     ``azimuth`` and ``elevation`` [deg], as :func:`.view` counts them, and names the joints.
     """
     from matplotlib.figure import Figure
 
-    spread = np.linspace(0, solution.t.size - 1, count + 1).astype(int)[:-1] if count > 1 else np.array([0])
-    chosen: list[int] = list(dict.fromkeys(spread.tolist()))
+    chosen = stills(solution, count)
     thin = solution.during(slice(None, None, 1 + solution.t.size // _THINNED))
     four = views(solution.description["gravity"], azimuth, elevation)
     cloud = cloud_of(thin)
@@ -61,7 +77,7 @@ def draw_in_space(solution: Solution, count: int, azimuth: float, elevation: flo
     for one, place, box in zip(four, sheet.places, sheet.boxes, strict=True):
         left, bottom, wide, high = (value / sheet.size[k % 2] for k, value in enumerate(place))
         axes = figure.add_axes((left, bottom, wide, high))
-        _frame(axes, one, box, place[2:])
+        _frame(axes, one, box, place[2:], scale_for("m", size, si))
         for k in reversed(chosen):
             _draw_instant(axes, one, solution.during(slice(k, k + 1)), thin, size, strong=k == chosen[0])
         _draw_paths(axes, one, thin)
@@ -80,7 +96,7 @@ def draw_into(axes: Any, solution: Solution, azimuth: float = AZIMUTH, elevation
     size, flat = _size(cloud), one.on_page(cloud)
     low, high = flat.min(axis=0) - 0.14 * size, flat.max(axis=0) + 0.14 * size
     box = (low[0], high[0], low[1], high[1])
-    _frame(axes, one, box, (4.6, 3.4))
+    _frame(axes, one, box, (4.6, 3.4), scale_for("m", size))
     axes.set_aspect("equal")
     axes.set_xlabel(one.title, fontsize=8)
     _draw_instant(axes, one, now, solution, size, strong=True)
@@ -102,7 +118,7 @@ def _instants(solution: Solution, chosen: list[int]) -> str:
     return f"t = {told[0]}" + (f", and faint {', '.join(told[1:])}" if told[1:] else "")
 
 
-def _frame(axes: Any, one: View, box: Box, size: Sequence[float]) -> None:
+def _frame(axes: Any, one: View, box: Box, size: Sequence[float], scale: Scale) -> None:
     """What a picture shows, and its scales, which have as many numbers as there is room for on its ``size`` [inch]."""
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
@@ -115,9 +131,11 @@ def _frame(axes: Any, one: View, box: Box, size: Sequence[float]) -> None:
     axes.grid(True, color="0.93")
     for axis, name, most in zip((axes.xaxis, axes.yaxis), one.coordinates, (size[0] / 0.7, size[1] / 0.4), strict=True):
         axis.set_major_locator(MaxNLocator(max(1, min(6, int(most)))))
-        axis.set_label_text(f"{name[-1]} [m]")
+        axis.set_label_text(f"{name[-1]} [{scale.unit}]")
         if name.startswith("-"):
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{0.0 - value:g}"))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: scale.tell(0.0 - value)))
+        else:
+            scale.put(axis)
     axes.tick_params(labelsize=8)
 
 
@@ -126,6 +144,9 @@ def _draw_instant(axes: Any, one: View, now: Solution, thin: Solution, size: flo
     from matplotlib.markers import CARETUP
 
     alpha, behind = (1.0, 0) if strong else (_FAINT, -6)
+    for body, corners in plates_of(now):
+        x, y = one.on_page(corners).T
+        axes.fill(x, y, facecolor=colour_of(now, body), alpha=0.25 * alpha, linewidth=0.0, zorder=12 + behind)
     lines: list[Line] = [*lines_of(now), *(axes_of(now, thin, size) if strong else ())]
     for line in lines:
         x, y = one.on_page(line.points).T
@@ -161,11 +182,9 @@ def _draw_instant(axes: Any, one: View, now: Solution, thin: Solution, size: flo
 
 
 def _draw_paths(axes: Any, one: View, thin: Solution) -> None:
-    own = thin.description.get("paths", {})
-    for name, places in paths_of(thin).items():
-        x, y = one.on_page(places).T
-        colour, width = (PATH, 1.4) if name in own else ("0.72", 0.8)
-        axes.plot(x, y, color=colour, linewidth=width, zorder=2, label="_")
+    for point in thin.description.get("paths", {}).values():
+        x, y = one.on_page(place_of(thin, point)).T
+        axes.plot(x, y, color=PATH, linewidth=1.4, zorder=2, label="_")
 
 
 def _tell(axes: Any, one: View, now: Solution, thin: Solution, size: float, box: Box, scale: float) -> None:

@@ -11,6 +11,7 @@ from ..declare.density import Array
 from ..instants.solution import Solution
 from ..strength.fatigue import factor, loaded
 from ..strength.stress import Stress
+from .readable import Scale
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 _MEGA, _PIXELS, _PLACES = 1e6, 1600, 33
 
 
-def draw_strength(solution: Solution, link: str, along: Array, label: str) -> Figure:
+def draw_strength(solution: Solution, link: str, along: Array, label: str, si: bool = False) -> Figure:
     """Von Mises' stress of a link as a map, and where its material has an endurance limit its swings in Goodman's diagram."""
     from matplotlib.figure import Figure
 
@@ -26,9 +27,11 @@ def draw_strength(solution: Solution, link: str, along: Array, label: str) -> Fi
     fatigue = stress.member.beam.material.endurance is not None and stress.member.beam.material.ultimate is not None
     figure = Figure(figsize=(8.0, 7.6 if fatigue else 3.8), layout="constrained")
     panels = list(figure.subplots(2 if fatigue else 1, 1, squeeze=False).flat)
-    _map(figure, panels[0], stress, along, label)
+    # What is drawn is in MPa.
+    unit = Scale(_MEGA, "Pa") if si else Scale(1.0, "MPa")
+    _map(figure, panels[0], stress, along, label, unit)
     if fatigue:
-        _goodman(panels[1], stress)
+        _goodman(panels[1], stress, unit)
     figure.suptitle(f"{solution.case}: strength of {link}, {stress.member.beam.material.name}", fontsize=11)
     return figure
 
@@ -53,20 +56,20 @@ def draw_utilisation(solution: Solution, links: Sequence[str]) -> Figure:
     return figure
 
 
-def _map(figure: Figure, axes: Any, stress: Stress, along: Array, label: str) -> None:
+def _map(figure: Figure, axes: Any, stress: Stress, along: Array, label: str, unit: Scale) -> None:
     instants, ratios = (slice(None, None, 1 + size // _PIXELS) for size in (stress.member.t.size, stress.member.xi.size))
     xi, peak = stress.member.xi[ratios], stress.peak("von_mises")
     values = Stress(stress.member.during(instants)).grid("von_mises", xi) / _MEGA
     picture = axes.pcolormesh(along[instants], xi, values.T, cmap="viridis", vmin=0.0, shading="nearest", rasterized=True)
     place = float(along[int(np.argmin(np.abs(stress.member.t - peak.t)))])
     axes.plot(place, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
-    axes.set_title(f"von Mises: peak {peak.value / _MEGA:.4g} MPa at {peak.fibre}, " + rf"$\xi/l$ = {peak.xi:.3f}", fontsize=10)
+    axes.set_title(f"von Mises: peak {unit.said(peak.value / _MEGA)} at {peak.fibre}, " + rf"$\xi/l$ = {peak.xi:.3f}", fontsize=10)
     axes.set_xlabel(label)
     axes.set_ylabel(r"$\xi/l$")
-    figure.colorbar(picture, ax=axes, label="von Mises [MPa]")
+    unit.put(figure.colorbar(picture, ax=axes, label=f"von Mises [{unit.unit}]").ax.yaxis)
 
 
-def _goodman(axes: Any, stress: Stress) -> None:
+def _goodman(axes: Any, stress: Stress, unit: Scale) -> None:
     material = stress.member.beam.material
     endurance, ultimate = (strength / _MEGA for strength in material.needs("Goodman's diagram", "endurance", "ultimate"))
     means, amplitudes = [], []
@@ -85,7 +88,9 @@ def _goodman(axes: Any, stress: Stress) -> None:
     axes.plot(means[k], amplitudes[k], "k+", markersize=13, markeredgewidth=1.8)
     axes.set_xlim(left=0.0)
     axes.set_ylim(0.0, 1.05 * max(endurance, *amplitudes))
-    axes.set_xlabel("mean [MPa]")
-    axes.set_ylabel("amplitude [MPa]")
+    axes.set_xlabel(f"mean [{unit.unit}]")
+    axes.set_ylabel(f"amplitude [{unit.unit}]")
+    unit.put(axes.xaxis)
+    unit.put(axes.yaxis)
     axes.set_title("without the factors of notches", fontsize=10)
     axes.legend(frameon=False, fontsize=9)

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ..declare.density import Array
 from ..declare.description import Description
+from ..draw.shapes import joint_shapes, load_shapes, path_spots, shapes
 from ..draw.solid import COLOURS
 from ..draw.views import upright
 from ..errors import DeclarationError
@@ -24,7 +25,6 @@ from .arrays import Arrays, finite
 from .instants import shown_instants
 from .live import Live
 from .sections import section_entries
-from .shapes import joint_shapes, load_shapes, path_spots, shapes
 from .words import GROUPS, what
 
 VERSION = 1

@@ -20,6 +20,7 @@ from ..codegen.plain import plain
 from ..declare.density import Density
 from ..declare.description import Description, numbered
 from ..declare.mechanism import Mechanism
+from ..declare.parts import Link, PointMass, RigidMass
 from ..declare.scene import Scene
 from ..declare.times import Timing
 from ..errors import DeclarationError
@@ -107,14 +108,16 @@ def _entry(live: Live, solution: Solution, chosen: npt.NDArray[np.intp], arrays:
 
 def _masses(mechanism: Mechanism) -> dict[str, Any]:
     """The masses of the bodies, as expressions."""
-    found: dict[str, Any] = {}
-    for body in mechanism.moving:
-        mass: Any = body.mass
-        if isinstance(mass, Density):
-            base, tip, _ = mass.ends(body.length)  # type: ignore[union-attr]
-            mass = base + tip
-        found[body.name] = getattr(mass, "mass", mass)
-    return found
+    return {body.name: _mass(body) for body in mechanism.moving}
+
+
+def _mass(body: Link | PointMass) -> Any:
+    if not isinstance(body, Link):
+        return body.mass
+    if isinstance(body.mass, RigidMass):
+        return body.mass.mass
+    base, tip, _ = body.mass.ends(body.length)
+    return base + tip
 
 
 def _pose(body: str, solution: Solution, known: Mapping[str, int]) -> list[int]:

@@ -9,11 +9,11 @@ import numpy as np
 
 from ..declare.density import Array
 from ..declare.description import in_space
+from ..draw.places import drawn_spots, placed
+from ..draw.shapes import Spot, joint_shapes, load_shapes, path_spots, shapes
 from ..draw.solid import COLOURS, PATH
 from ..draw.views import AZIMUTH, ELEVATION, upright, view
 from ..instants.solution import Solution
-from .places import drawn_spots, placed
-from .shapes import Spot, joint_shapes, load_shapes, path_spots, shapes
 
 _WIDE, _HIGH, _MARGIN = 460.0, 300.0, 34.0
 _TRACED = 120

@@ -54,8 +54,9 @@ class Alive {
     return this.values.every((value, k) => value === this.file.values[k]);
   }
 
-  /** Show a design. What it is without, as where it cannot be assembled, is then said by `why`. */
-  show(values) {
+  /** Show a design. What it is without, as where it cannot be assembled, is then said by `why`. Unless `whole`, series of what is
+   *  largest along a link are left as they are, which is quicker; all peaks are the same. */
+  show(values, whole = true) {
     this.values = Float64Array.from(values);
     contents.parameters.forEach((one, k) => (one.value = this.values[k]));
     this.why = null;
@@ -67,7 +68,7 @@ class Alive {
       return;
     }
     try {
-      this.evaluate();
+      this.evaluate(whole);
     } catch (error) {
       if (!(error instanceof NoResult)) throw error;
       this.why = error.message;
@@ -76,7 +77,7 @@ class Alive {
     }
   }
 
-  evaluate() {
+  evaluate(whole) {
     const { engine, told } = this;
     this.check(engine.prepare(this.values), null);
     const numbers = this.place();
@@ -87,13 +88,13 @@ class Alive {
     this.tallies = new Map(tallies);
     const weights = weightsOf(times);
     this.turns = told.wrapped.map(() => null);
-    for (let from = 0; from < times.length; from += BLOCK) this.block(times, weights, from, Math.min(BLOCK, times.length - from));
+    for (let from = 0; from < times.length; from += BLOCK) this.block(times, weights, from, Math.min(BLOCK, times.length - from), whole);
     for (const [name, tally] of this.tallies) Object.assign(rowByName.get(name), tally.told(times, this.coordinates));
     for (const bar of this.bars) complete(bar);
     for (const values of this.unknown) values.fill(NaN);
   }
 
-  block(times, weights, from, count) {
+  block(times, weights, from, count, whole) {
     const { engine, told, position } = this;
     engine.fit(count);
     for (let i = 0; i < count; i += 1) this.check(engine.motion(times[from + i], i), times[from + i]);
@@ -109,9 +110,10 @@ class Alive {
     for (const { array: into, sources, row } of this.targets) {
       const readers = sources.map(reader);
       const tally = row && this.tallies.get(row.name);
+      const [[view, stride, start], ...others] = readers;
       for (let i = 0; i < count; i += 1) {
-        let value = readers[0][0][i * readers[0][1] + readers[0][2]];
-        for (let k = 1; k < readers.length; k += 1) value = Math.hypot(value, readers[k][0][i * readers[k][1] + readers[k][2]]);
+        let value = view[i * stride + start];
+        for (const [other, step, first] of others) value = Math.hypot(value, other[i * step + first]);
         const place = at(i);
         if (place >= 0) into[place] = value;
         tally?.add(value, from + i, weights[from + i]);
@@ -127,20 +129,24 @@ class Alive {
       if (place >= 0) instants.t[place] = times[from + i];
       if (over && place >= 0) array(over.values)[place] = this.coordinates[from + i];
     }
-    for (const curve of this.curves) this.along(curve, views[1], many[1], from, count, at);
+    for (const curve of this.curves) this.along(curve, views[1], many[1], from, count, at, whole);
   }
 
-  along(curve, outputs, many, from, count, at) {
+  along(curve, outputs, many, from, count, at, whole) {
     if (from === 0) curve.prepare(this.lengths[curve.entry.link], outputs);
-    const tallies = curve.entry.forces.map((force) => this.tallies.get(`section:${curve.entry.link}:${force.name}`));
+    const rows = curve.entry.forces.map((force, number) => [number, this.tallies.get(`section:${curve.entry.link}:${force.name}`), whole && curve.series.get(number)]).filter((row) => row[1] || row[2]);
     for (let i = 0; i < count; i += 1) {
       const place = at(i);
-      curve.reach((output) => outputs[i * many + output]).forEach((ends, number) => {
-        if (Number.isNaN(ends[0])) return;
-        const series = curve.series.get(number);
-        if (series && place >= 0) [series[0].array[place], series[1].array[place]] = [ends[4], ends[5]];
-        tallies[number]?.reach(ends, from + i);
-      });
+      const found = curve.reach(outputs, i * many, whole);
+      for (const [number, tally, series] of rows) {
+        const ends = found[number];
+        if (Number.isNaN(ends[0])) continue;
+        if (series && place >= 0) {
+          series[0].array[place] = ends[4];
+          series[1].array[place] = ends[5];
+        }
+        tally?.reach(ends, from + i);
+      }
     }
   }
 

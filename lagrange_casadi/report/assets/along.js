@@ -4,20 +4,21 @@
 class Along {
   constructor(entry, told, engine, sourceOf) {
     Object.assign(this, { entry, told, engine, sourceOf });
+    this.many = told.degree + 1;
     this.spreads = told.spreads.map((ends) => ends.map((source) => source - engine.layout.inputs));
     this.plain = entry.forces.filter((force) => !force.parts.length);
     const place = new Map(this.plain.map((force, k) => [force.name, k]));
     this.sources = [...new Set(this.plain.flatMap((force) => force.terms.map(([coefficient]) => sourceOf(coefficient))))];
     this.terms = this.plain.map((force) => [...new Set(force.terms.map(([coefficient]) => this.sources.indexOf(sourceOf(coefficient))))]);
-    this.loadSources = entry.loads.map(({ name, ...members }) => Object.fromEntries(Object.entries(members).map(([member, number]) => [member, sourceOf(number)])));
-    this.members = Object.keys(this.loadSources[0] ?? {});
-    this.loads = this.loadSources.map((members) => ({ ...members }));
-    this.values = new Float64Array(this.sources.length);
-    this.scratch = this.plain.map(() => new Float64Array(told.degree + 1));
+    this.stations = entry.loads.map((load) => sourceOf(load.station));
+    this.acting = this.plain.map((force) => entry.loads.map((load) => sourceOf(load[force.acting])));
+    this.across = this.plain.map((force) => (force.arm ? entry.loads.map((load) => sourceOf(load[force.across])) : null));
+    this.scratch = this.plain.map(() => new Float64Array(this.many));
+    this.factor = new Float64Array(this.many);
     this.tallies = entry.forces.map(() => new Float64Array(6).fill(NaN));
     this.asked = entry.forces.flatMap((force, k) => {
       const parts = (force.parts.length ? force.parts : [force.name]).map((name) => this.scratch[place.get(name)]);
-      return force.open ? [] : [{ parts, tally: this.tallies[k] }];
+      return force.open ? [] : [{ parts, tally: this.tallies[k], slope: new Float64Array(2 * this.many), known: new Float64Array(2) }];
     });
     this.needed = this.scratch.map((c) => this.asked.some((one) => one.parts.includes(c)));
     this.series = new Map();
@@ -27,17 +28,18 @@ class Along {
   prepare(length, first) {
     const { told, engine, entry } = this;
     this.length = length;
+    for (const { known } of this.asked) [known[0], known[1]] = [Infinity, -Infinity];
     const constants = this.spreads.flat().map((source) => [source, first[source]]);
     const marks = this.spreads.flatMap(([width, end]) => [first[end] - first[width], first[end]]).filter((u) => u > 0 && u < 1);
     const cuts = [...new Set([...told.breaks, ...marks])].sort((a, b) => a - b);
-    const nodes = Array.from({ length: told.degree + 1 }, (_, j) => Math.cos((Math.PI * j) / told.degree));
+    const nodes = Array.from({ length: this.many }, (_, j) => Math.cos((Math.PI * j) / told.degree));
+    engine.fit(1);
+    const outputs = engine.outputs;
     const unit = (source) => {
-      const outputs = engine.outputs;
       outputs.fill(0);
       for (const [place, value] of constants) outputs[place] = value;
       outputs[source] = 1;
     };
-    engine.fit(1);
     this.pieces = cuts.slice(1).map((high, k) => ({ low: cuts[k], high, middle: (cuts[k] + high) / 2, half: (high - cuts[k]) / 2 }));
     for (const piece of this.pieces) piece.rows = this.plain.map(() => []);
     const names = contents.live.forces;
@@ -54,6 +56,7 @@ class Along {
         this.plain.forEach((_, k) => (piece.rows[k][number] = chebyshevOf(values.map((row) => row[k]))));
       }
       const rows = this.plain.flatMap((force, k) => force.terms.filter(([coefficient]) => this.sourceOf(coefficient) === source).map(([, row, sign]) => [array(row), sign, columns[k]]));
+      if (!rows.length) return;
       for (let j = 0; j < xi.length; j += 1) {
         const forces = this.forcesAt(xi[j]);
         for (const [row, sign, column] of rows) row[j] = forces[column] / sign;
@@ -67,75 +70,107 @@ class Along {
     return found;
   }
 
-  /** What each determined force is at an instant, of which `read` gives the outputs: smallest, where, largest, where, largest in size,
-   *  where. The numbers hold until the next call. */
-  reach(read) {
-    const { values, loads, tallies } = this;
-    for (let k = 0; k < values.length; k += 1) values[k] = read(this.sources[k]);
-    for (let k = 0; k < loads.length; k += 1) for (const member of this.members) loads[k][member] = read(this.loadSources[k][member]);
+  /** What each determined force is at the instant whose outputs begin at a place of `outputs`: smallest, where, largest, where,
+   *  largest in size, where. The numbers hold until the next call. Unless `whole`, what cannot be beyond all that was found since the
+   *  design was taken is not looked for within pieces: the ends of the cycle are the same. */
+  reach(outputs, place, whole) {
+    const { tallies, stations } = this;
     for (const tally of tallies) tally[0] = NaN;
-    const stations = loads.map((load) => load.station).filter((u) => u > 0 && u < 1).sort((a, b) => a - b);
+    const cuts = stations.length ? stations.map((source) => outputs[place + source]) : stations;
+    const inner = cuts.length ? cuts.filter((u) => u > 0 && u < 1).sort((a, b) => a - b) : cuts;
     for (const piece of this.pieces) {
       let low = piece.low;
-      for (const u of stations) {
+      for (const u of inner) {
         if (u <= low || u >= piece.high) continue;
-        this.look(piece, low, u, (low + u) / 2);
+        this.look(piece, low, u, (low + u) / 2, outputs, place, whole);
         low = u;
       }
-      this.look(piece, low, piece.high, (low + piece.high) / 2);
+      this.look(piece, low, piece.high, (low + piece.high) / 2, outputs, place, whole);
     }
     // What acts at the very base is seen by the section there from its base side alone.
-    if (loads.some((load) => load.station === 0)) this.look(this.pieces[0], 0, 0, -1);
+    if (cuts.includes(0)) this.look(this.pieces[0], 0, 0, -1, outputs, place, whole);
     return tallies;
   }
 
   /** Look for smallest and largest values in a part of a piece; what acts beyond its `middle` is seen there. */
-  look(piece, low, high, middle) {
-    for (let k = 0; k < this.plain.length; k += 1) if (this.needed[k]) this.sum(k, piece, middle);
+  look(piece, low, high, middle, outputs, place, whole) {
+    for (let k = 0; k < this.plain.length; k += 1) if (this.needed[k]) this.sum(k, piece, middle, outputs, place);
     const [a, b] = [(low - piece.middle) / piece.half, (high - piece.middle) / piece.half];
-    for (const { parts, tally } of this.asked) {
-      put(tally, sizeAt(parts, a), low);
+    for (const { parts, tally, slope, known } of this.asked) {
+      put(tally, known, sizeAt(parts, a), low);
       if (b <= a) continue;
-      put(tally, sizeAt(parts, b), high);
-      for (const v of zerosOf(parts.length > 1 ? squaredSlope(parts) : slopeOf(parts[0]), a, b)) put(tally, sizeAt(parts, v), piece.middle + piece.half * v);
+      put(tally, known, sizeAt(parts, b), high);
+      if (!whole && isWithin(parts, known)) continue;
+      const count = parts.length > 1 ? squaredSlope(parts, slope, this.factor) : slopeInto(slope, parts[0], this.many);
+      const zeros = zerosOf(slope, count, a, b);
+      for (let z = 0; z < zeros.count; z += 1) put(tally, known, sizeAt(parts, zeros.at[z]), piece.middle + piece.half * zeros.at[z]);
     }
   }
 
   /** A force in a piece, with what acts at the stations that are seen. */
-  sum(k, piece, middle) {
-    const [force, c, rows] = [this.plain[k], this.scratch[k].fill(0), piece.rows[k]];
+  sum(k, piece, middle, outputs, place) {
+    const [c, rows, { many }] = [this.scratch[k].fill(0), piece.rows[k], this];
     for (const number of this.terms[k]) {
-      const [row, value] = [rows[number], this.values[number]];
-      for (let j = 0; j < c.length; j += 1) c[j] += value * row[j];
+      const [row, value] = [rows[number], outputs[place + this.sources[number]]];
+      for (let j = 0; j < many; j += 1) c[j] += value * row[j];
     }
-    for (const load of this.loads) {
-      if (!(middle < load.station)) continue;
-      c[0] += load[force.acting];
-      if (!force.arm) continue;
-      const slope = force.arm * this.length * load[force.across];
-      c[0] += slope * (load.station - piece.middle);
+    const [stations, acting, across] = [this.stations, this.acting[k], this.across[k]];
+    for (let l = 0; l < stations.length; l += 1) {
+      const station = outputs[place + stations[l]];
+      if (!(middle < station)) continue;
+      c[0] += outputs[place + acting[l]];
+      if (!across) continue;
+      const slope = this.plain[k].arm * this.length * outputs[place + across[l]];
+      c[0] += slope * (station - piece.middle);
       c[1] -= slope * piece.half;
     }
   }
 }
 
 function sizeAt(parts, v) {
-  if (parts.length === 1) return chebyshevAt(parts[0], v);
+  if (parts.length === 1) return chebyshevAt(parts[0], v, parts[0].length);
   let size = 0;
-  for (const c of parts) size = Math.hypot(size, chebyshevAt(c, v));
+  for (const c of parts) size = Math.hypot(size, chebyshevAt(c, v, c.length));
   return size;
 }
 
-function put(tally, value, u) {
-  const first = Number.isNaN(tally[0]);
-  if (first || value < tally[0]) [tally[0], tally[1]] = [value, u];
-  if (first || value > tally[2]) [tally[2], tally[3]] = [value, u];
-  if (first || Math.abs(value) > Math.abs(tally[4])) [tally[4], tally[5]] = [value, u];
+/** Whether a sum, or the size of several, can nowhere on -1 to 1 be beyond what is known: no polynomial of Chebyshev's is above 1. */
+function isWithin(parts, known) {
+  let [low, high] = [0, 0];
+  for (const c of parts) {
+    let reach = 0;
+    for (let k = 1; k < c.length; k += 1) reach += Math.abs(c[k]);
+    reach += ROUNDED * (Math.abs(c[0]) + reach);
+    if (parts.length === 1) [low, high] = [c[0] - reach, c[0] + reach];
+    else [low, high] = [Math.hypot(low, Math.max(0, Math.abs(c[0]) - reach)), Math.hypot(high, Math.abs(c[0]) + reach)];
+  }
+  return high <= known[1] && low >= known[0];
 }
 
-/** The slope of a sum of squares, halved. */
-function squaredSlope(parts) {
-  const found = new Float64Array(2 * parts[0].length - 2);
-  for (const c of parts) addProduct(found, c, slopeOf(c));
-  return found;
+const ROUNDED = 1e-12; // Over a value: more than rounding can hide.
+
+function put(tally, known, value, u) {
+  const first = Number.isNaN(tally[0]);
+  if (first || value < tally[0]) {
+    tally[0] = value;
+    tally[1] = u;
+    if (value < known[0]) known[0] = value;
+  }
+  if (first || value > tally[2]) {
+    tally[2] = value;
+    tally[3] = u;
+    if (value > known[1]) known[1] = value;
+  }
+  if (first || Math.abs(value) > Math.abs(tally[4])) {
+    tally[4] = value;
+    tally[5] = u;
+  }
+}
+
+/** Half the slope of a sum of squares, into `found`; returns how many coefficients it has. `slope` has room for the slope of a part. */
+function squaredSlope(parts, found, slope) {
+  const many = parts[0].length;
+  found.fill(0);
+  for (const c of parts) addProduct(found, c, many, slope, slopeInto(slope, c, many));
+  return 2 * many - 2;
 }

@@ -29,8 +29,7 @@ class Card {
   }
 
   renew() {
-    this.stale = live.moving && !this.seen;
-    if (this.stale) return;
+    this.stale = false;
     showTip(null);
     const without = designState() === "none";
     this.plot = without ? null : this.make(this);
@@ -38,6 +37,12 @@ class Card {
     this.field.replaceChildren(this.plot ? this.plot.sheet.body : element("p", { class: "none" }, words));
     this.drawLegend();
     this.draw();
+  }
+
+  /** Take what the arrays hold now: at once, or while a slider moves in its turn. */
+  follow() {
+    this.stale = live.moving;
+    if (!this.stale) this.renew();
   }
 
   draw() {
@@ -67,6 +72,7 @@ class Card {
         const drop = this.drop && signButton("✕", `Leave ${curve.title} out`, () => this.drop(k), { class: "sign tiny" });
         return element("li", {}, swatch, element("span", {}, curve.title), value, drop);
       }),
+      ...(this.plot?.told?.() ?? []),
     );
   }
 }

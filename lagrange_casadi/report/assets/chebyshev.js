@@ -1,4 +1,5 @@
-// Polynomials on -1 to 1 as sums of Chebyshev's: values, slopes and zeros.
+// Polynomials on -1 to 1 as sums of Chebyshev's: values, slopes and zeros. They are asked for at every instant of every link while a
+// slider moves, so nothing is made anew: a sum is an array and how many of its numbers count.
 
 /** The coefficients of the polynomial that has values at the extrema of Chebyshev's polynomial, the first at 1, the last at -1. */
 function chebyshevOf(values) {
@@ -11,25 +12,29 @@ function chebyshevOf(values) {
 }
 
 /** A sum at a place (Clenshaw's way). */
-function chebyshevAt(c, v) {
+function chebyshevAt(c, v, many) {
   let [one, two] = [0, 0];
-  for (let k = c.length - 1; k > 0; k -= 1) [one, two] = [c[k] + 2 * v * one - two, one];
+  for (let k = many - 1; k > 0; k -= 1) {
+    const next = c[k] + 2 * v * one - two;
+    two = one;
+    one = next;
+  }
   return c[0] + v * one - two;
 }
 
-/** The slope of a sum, as another one. */
-function slopeOf(c) {
-  const n = c.length - 1;
-  const found = new Float64Array(Math.max(1, n));
+/** The slope of a sum, into `found`; returns how many numbers it has. */
+function slopeInto(found, c, many) {
+  const n = many - 1;
+  found[0] = 0;
   for (let k = n; k > 0; k -= 1) found[k - 1] = (k + 1 < n ? found[k + 1] : 0) + 2 * k * c[k];
   found[0] /= 2;
-  return found;
+  return Math.max(1, n);
 }
 
 /** Add the product of two sums to a third. */
-function addProduct(found, a, b) {
-  for (let i = 0; i < a.length; i += 1) {
-    for (let j = 0; j < b.length; j += 1) {
+function addProduct(found, a, many, b, others) {
+  for (let i = 0; i < many; i += 1) {
+    for (let j = 0; j < others; j += 1) {
       const half = (a[i] * b[j]) / 2;
       found[i + j] += half;
       found[Math.abs(i - j)] += half;
@@ -39,47 +44,66 @@ function addProduct(found, a, b) {
 
 const NOTHING = 4e-16; // Over the largest coefficient: what is smaller is rounding, and no degree.
 
-/** The zeros of a sum between two places, in order. */
-function zerosOf(c, low, high) {
-  let n = c.length - 1;
+/** Room for the work on sums of each degree: the slope, and the zeros. */
+const rooms = [];
+
+function roomFor(n) {
+  while (rooms.length <= n) rooms.push({ slope: new Float64Array(rooms.length + 1), at: new Float64Array(rooms.length + 1), count: 0 });
+  return rooms[n];
+}
+
+/** The zeros of a sum between two places, in order: `at`, so many as `count`. They hold until the next call. */
+function zerosOf(c, many, low, high) {
+  let n = many - 1;
   let most = 0;
-  for (let k = 0; k <= n; k += 1) most = Math.max(most, Math.abs(c[k]));
+  for (let k = 0; k <= n; k += 1) {
+    const size = Math.abs(c[k]);
+    if (size > most) most = size;
+  }
   while (n > 0 && Math.abs(c[n]) <= NOTHING * most) n -= 1;
-  if (n === 0) return [];
-  if (n === 1) return within([-c[0] / c[1]], low, high);
+  const found = roomFor(n);
+  found.count = 0;
+  const take = (place) => {
+    if (place > low && place < high) found.at[found.count++] = place;
+  };
+  if (n === 0) return found;
+  if (n === 1) {
+    take(-c[0] / c[1]);
+    return found;
+  }
   if (n === 2) {
     const [a, b, constant] = [2 * c[2], c[1], c[0] - c[2]];
     const root = b * b - 4 * a * constant;
-    if (!(root >= 0)) return [];
+    if (!(root >= 0)) return found;
     const q = -(b + (b < 0 ? -1 : 1) * Math.sqrt(root)) / 2;
-    return within(q ? [q / a, constant / q].sort((x, y) => x - y) : [0], low, high);
+    const [one, other] = q ? [q / a, constant / q] : [0, 0];
+    take(Math.min(one, other));
+    if (q) take(Math.max(one, other));
+    return found;
   }
   // It is monotonic between two zeros of its slope.
-  const cut = c.subarray(0, n + 1);
-  const ends = [low, ...zerosOf(slopeOf(cut), low, high), high];
-  const found = [];
-  for (let k = 1; k < ends.length; k += 1) {
-    const zero = zeroBetween(cut, ends[k - 1], ends[k]);
-    if (zero !== null) found.push(zero);
+  const count = slopeInto(found.slope, c, n + 1);
+  const turns = zerosOf(found.slope, count, low, high);
+  let from = low;
+  for (let k = 0; k <= turns.count; k += 1) {
+    const to = k < turns.count ? turns.at[k] : high;
+    const zero = zeroBetween(c, found.slope, n, from, to);
+    if (!Number.isNaN(zero)) found.at[found.count++] = zero;
+    from = to;
   }
   return found;
 }
 
-function within(places, low, high) {
-  return places.filter((place) => place > low && place < high);
-}
-
-/** The zero of what is monotonic between two places, by Newton's method held between them; null where it has none. */
-function zeroBetween(c, a, b) {
-  const rises = chebyshevAt(c, a) <= 0;
-  if (rises === chebyshevAt(c, b) <= 0) return null;
-  const slope = slopeOf(c);
+/** The zero of what is monotonic between two places, of a degree n and with a slope, by Newton's method held between them; NaN where it has none. */
+function zeroBetween(c, slope, n, a, b) {
+  const rises = chebyshevAt(c, a, n + 1) <= 0;
+  if (rises === chebyshevAt(c, b, n + 1) <= 0) return NaN;
   let v = (a + b) / 2;
   for (let k = 0; k < 80; k += 1) {
-    const value = chebyshevAt(c, v);
+    const value = chebyshevAt(c, v, n + 1);
     if (value <= 0 === rises) a = v;
     else b = v;
-    let ahead = v - value / chebyshevAt(slope, v);
+    let ahead = v - value / chebyshevAt(slope, v, n);
     if (!(ahead > a && ahead < b)) ahead = (a + b) / 2;
     const moved = Math.abs(ahead - v);
     v = ahead;

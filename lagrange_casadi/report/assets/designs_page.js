@@ -105,10 +105,12 @@ function designTable() {
   const first = [...contents.parameters.map((one) => one.name), ...contents.pair.filter((name) => !contents.parameters.some((one) => one.name === name))];
   const chosen = [...new Set([...first, ...contents.columns.map((one) => one.name)])].slice(0, 9).map((name) => columnOf.get(name));
   const heads = [["design", (row) => String(designs.numbers[row.at]), (row) => designs.numbers[row.at]],
-    ...chosen.map((one) => [one.title, (row) => (status[row.at] ? "–" : columnWords(one, row.at)), (row) => costOf(one, row.at)]),
+    // A long name may go on in the next line, behind a colon.
+    ...chosen.map((one) => [one.title.replaceAll(":", ":\u200b"), (row) => (status[row.at] ? "–" : columnWords(one, row.at)), (row) => costOf(one, row.at)]),
     ["result", (row) => (status[row.at] ? contents.statuses[status[row.at]] : "ok")]];
   const plain = [["design", (row) => designs.numbers[row.at]], ...columns.map((one) => [`${one.name} [${one.unit}]`, (row) => one.values[row.at]]), ["status", (row) => status[row.at]]];
   const table = sortedTable("Designs", heads, () => picked.met.map((at) => ({ at, name: `design ${designs.numbers[at]}` })), { chosen: (row) => pick(row.at), told: "Look at this design", plain, most: MOST_ROWS });
+  table.body.classList.add("designs");
   let met = picked.met;
   picked.watchers.add(() => {
     if (met !== picked.met) table.fill();

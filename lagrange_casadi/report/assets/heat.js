@@ -5,6 +5,7 @@ class Heat {
     this.section = section;
     this.force = force;
     this.x = curveOf(alongInstants);
+    this.values = new Float64Array(section.xi.length);
     this.sheet = new Sheet("map", `${section.link}: ${force.what} over the cycle and along the link`, {
       hover: (event) => this.hover(event),
       press: (event) => {
@@ -13,6 +14,8 @@ class Heat {
         if (at) this.pin?.({ section, ratio: at.ratio });
       },
     });
+    this.canvas = element("canvas", { class: "heat", "aria-hidden": "true" });
+    this.sheet.body.prepend(this.canvas);
   }
 
   draw(width) {
@@ -24,10 +27,12 @@ class Heat {
     this.most = Math.abs(peak?.value ?? 0) || 1;
     const scale = scaleFor(force.unit, this.most);
     const field = { x: across.from, y: up.to, width: across.to - across.from, height: up.from - up.to };
-    const picture = this.picture(Math.max(2, Math.round(field.width)), Math.round(field.height));
+    // On the sheet it keeps its place at every size, as the drawing around it does.
+    const parts = { left: field.x / width, top: field.y / height, width: field.width / width, height: field.height / height };
+    for (const [side, part] of Object.entries(parts)) this.canvas.style[side] = `${100 * part}%`;
+    this.paint(Math.max(2, Math.round(field.width)));
     this.sheet.fill(
       width, height,
-      drawn("image", { ...field, href: picture, preserveAspectRatio: "none" }),
       axesOf(across, up),
       drawn("text", { x: 14, y: (up.from + up.to) / 2, class: "label", transform: `rotate(-90 14 ${(up.from + up.to) / 2})` }, "ξ/l, base to tip"),
       drawn("text", { x: (across.from + across.to) / 2, y: height - 6, class: "label" }, across.label),
@@ -35,6 +40,15 @@ class Heat {
       ...(peak ? this.peakMark(peak, scale) : []),
     );
     this.mark(player.instant);
+  }
+
+  /** Where and when the force is largest, as a button that shows it. */
+  told() {
+    const { section, force } = this;
+    const row = rowByName.get(`section:${section.link}:${force.name}`);
+    if (!row || row.open || !Number.isFinite(row.peak.value)) return [];
+    const words = `largest: ${shown(row.peak.value, row.unit)} at ξ/l = ${format(row.peak.xi, 3)}, ${whenOf(row.peak.t, row.peak.over)}`;
+    return [element("li", {}, element("button", { type: "button", class: "told-peak", title: "Show when and where", click: () => showRow(row) }, words))];
   }
 
   peakMark(peak, scale) {
@@ -51,60 +65,41 @@ class Heat {
   /** The bar of colours with its ends. */
   key(scale, x, up) {
     const least = signed(this.force) ? -this.most : 0;
-    const canvas = element("canvas", { width: 12, height: 120 });
-    const context = canvas.getContext("2d");
-    const image = context.createImageData(12, 120);
-    const { colours } = this;
-    for (let row = 0; row < 120; row += 1) {
-      const value = this.most + (row / 119) * (least - this.most);
-      for (let column = 0; column < 12; column += 1) paintPoint(image, column, row, value, this.most, colours);
-    }
-    context.putImageData(image, 0, 0);
     const text = (value, y) => drawn("text", { x: x + 6, y, class: "key" }, `${format(value * scale.factor, 3)}`);
     return [
-      drawn("image", { x, y: up.to + 16, width: 12, height: up.from - up.to - 46, href: canvas.toDataURL(), preserveAspectRatio: "none" }),
+      drawn("image", { x, y: up.to + 16, width: 12, height: up.from - up.to - 46, href: barOf(this.colours, signed(this.force)), preserveAspectRatio: "none" }),
       text(this.most, up.to + 9), text(least, up.from - 18), drawn("text", { x: x + 6, y: up.from - 2, class: "key" }, scale.unit),
     ];
   }
 
   /** The colours that the page has now; the stage reads all of them at once. */
   get colours() {
-    const rgb = (text) => [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16));
-    const { inks } = deck.stage.paper;
-    return { positive: rgb(inks["map-positive"]), negative: rgb(inks["map-negative"]), none: rgb(inks["map-none"]) };
+    return coloursOf(deck.stage.paper.inks);
   }
 
-  picture(width, height) {
-    const { section, force } = this;
-    const columns = Math.min(width, Math.max(instants.count, 2), live.moving ? 160 : 700);
+  /** Paint the map; a coarse one while a slider moves. */
+  paint(width) {
+    const { section, force, canvas, values } = this;
     const rows = section.xi.length;
+    const columns = Math.min(width, Math.max(instants.count, 2), live.moving ? 160 : 700);
     const wide = columns < 240 && !live.moving ? 2 * columns : columns;
     const high = live.moving ? 51 : 2 * rows;
-    const canvas = element("canvas", { width: wide, height: high });
+    if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
     const context = canvas.getContext("2d");
     const image = context.createImageData(wide, high);
+    const pixels = new Uint32Array(image.data.buffer);
     const { colours } = this;
+    const places = Array.from({ length: high }, (_, row) => Math.round(((high - 1 - row) / (high - 1)) * (rows - 1)));
     let seen = 0;
-    const values = new Float64Array(rows);
     let known = -1;
     for (let column = 0; column < wide; column += 1) {
       const x = this.across.back(this.across.from + ((column + 0.5) / wide) * (this.across.to - this.across.from));
-      if (over) seen = nearest(this.x.values, x, seen);
-      else seen = instantAt(x);
-      if (seen !== known) {
-        for (let row = 0; row < high; row += 1) {
-          const at = Math.round((row / (high - 1)) * (rows - 1));
-          values[at] = sectionForce(section, force.name, seen, at);
-        }
-        known = seen;
-      }
-      for (let row = 0; row < high; row += 1) {
-        const at = Math.round(((high - 1 - row) / (high - 1)) * (rows - 1));
-        paintPoint(image, column, row, values[at], this.most, colours);
-      }
+      seen = over ? nearest(this.x.values, x, seen) : instantAt(x);
+      if (seen !== known) sectionForces(section, force.name, seen, values);
+      known = seen;
+      for (let row = 0; row < high; row += 1) pixels[row * wide + column] = pixelOf(values[places[row]] / this.most, column + row, colours);
     }
     context.putImageData(image, 0, 0);
-    return canvas.toDataURL();
   }
 
   mark(instant) {
@@ -142,12 +137,49 @@ function nearest(values, value, from) {
   return best;
 }
 
-/** A point of a map: from nothing to positive or negative; what is negative has slanted darker lines. */
-function paintPoint(image, column, row, value, most, { positive, negative, none }) {
-  const part = Math.min(1, Math.abs(value) / most) ** 0.85;
-  const to = value < 0 ? negative : positive;
-  const lined = value < 0 && part > 0.04 && (column + row) % 8 < 1 ? 0.78 : 1;
-  const at = 4 * (row * image.width + column);
-  for (let k = 0; k < 3; k += 1) image.data[at + k] = (none[k] + part * (to[k] - none[k])) * lined;
-  image.data[at + 3] = Number.isFinite(value) ? 255 : 0;
+const LEVELS = 255;
+
+const palettes = new Map();
+
+/** The points of a map in the colours of the page: `plain` and `lined` have one for each level, from all negative to all positive. */
+function coloursOf(inks) {
+  const names = ["map-positive", "map-negative", "map-none"].map((name) => inks[name]);
+  const key = names.join();
+  if (!palettes.has(key)) {
+    const [positive, negative, none] = names.map((text) => [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16)));
+    const point = (level, dark) => {
+      const share = Math.abs(level) / LEVELS;
+      const part = share ** 0.85;
+      const to = level < 0 ? negative : positive;
+      const light = dark && level < 0 && part > 0.04 ? 0.78 : 1;
+      const [r, g, b] = [0, 1, 2].map((k) => Math.round((none[k] + part * (to[k] - none[k])) * light));
+      return ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
+    };
+    const all = (dark) => Uint32Array.from({ length: 2 * LEVELS + 1 }, (_, k) => point(k - LEVELS, dark));
+    palettes.set(key, { plain: all(false), lined: all(true), bars: new Map() });
+  }
+  return palettes.get(key);
+}
+
+/** A point of a map, by its part of the largest value: from nothing to positive or negative; what is negative has slanted darker lines. */
+function pixelOf(part, slant, { plain, lined }) {
+  if (!Number.isFinite(part)) return 0;
+  const level = LEVELS + Math.round(LEVELS * Math.max(-1, Math.min(1, part)));
+  return (slant % 8 ? plain : lined)[level];
+}
+
+/** The bar of colours beside a map, from the largest value to its negative or to nothing, as the address of a picture. */
+function barOf(colours, both) {
+  if (!colours.bars.has(both)) {
+    const canvas = element("canvas", { width: 12, height: 120 });
+    const context = canvas.getContext("2d");
+    const image = context.createImageData(12, 120);
+    const pixels = new Uint32Array(image.data.buffer);
+    for (let row = 0; row < 120; row += 1) {
+      for (let column = 0; column < 12; column += 1) pixels[12 * row + column] = pixelOf(1 - ((both ? 2 : 1) * row) / 119, column + row, colours);
+    }
+    context.putImageData(image, 0, 0);
+    colours.bars.set(both, canvas.toDataURL());
+  }
+  return colours.bars.get(both);
 }

@@ -42,6 +42,27 @@ function forceAt(section, force, instant, xi, along, side) {
   return sum;
 }
 
+/** A force at an instant at all ratios of a link, on the tip's side of stations, into `found`; returns that. */
+function sectionForces(section, name, instant, found) {
+  const force = section.forces.get(name);
+  const { xi } = section;
+  found.fill(0);
+  if (force.parts.length) {
+    for (const part of force.parts) sectionForces(section, part, instant, new Float64Array(xi.length)).forEach((value, k) => (found[k] = Math.hypot(found[k], value)));
+    return found;
+  }
+  for (const [coefficient, row, sign] of force.terms) {
+    const [factor, along] = [sign * array(coefficient)[instant], array(row)];
+    for (let k = 0; k < found.length; k += 1) found[k] += factor * along[k];
+  }
+  for (const load of section.loads) {
+    const [station, acts] = [load.station[instant], load[force.acting][instant]];
+    const lever = force.arm ? force.arm * section.length * load[force.across][instant] : 0;
+    for (let k = 0; k < found.length; k += 1) if (xi[k] < station || (xi[k] >= 1 && station >= 1)) found[k] += acts + lever * (station - xi[k]);
+  }
+  return found;
+}
+
 /** A force along a link at an instant: ratios and values, twice at each station. */
 function forceAlong(section, name, instant, step = 2) {
   const ratios = [];

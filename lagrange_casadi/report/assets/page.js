@@ -8,8 +8,8 @@ function buildPage() {
   const frame = element("div", { class: "frame" }, canvas);
   const left = element("div", { class: "left" }, frame);
   root.append(
-    headOf(), glanceOf(), element("div", { class: "desk" }, left, element("div", { class: "right" }, deck.list, addingBar())),
-    element("div", { class: "tables" }, resultTables(showRow)), element("div", { class: "facts" }, factSections()), tip, said,
+    element("a", { class: "skip", href: "#tables" }, "Skip to the tables"), headOf(), glanceOf(), element("div", { class: "desk" }, left, element("div", { class: "right" }, deck.list, addingBar())),
+    element("div", { class: "tables", id: "tables" }, resultTables(showRow)), element("div", { class: "facts" }, factSections()), tip, said,
   );
   const stage = new Stage(canvas);
   deck.stage = stage;
@@ -136,7 +136,7 @@ function showBar(stage) {
   } });
   const signs = element("span", { class: "signs" }, element("i", { class: "positive" }), " + ", element("i", { class: "negative" }), " −");
   return element("div", { class: "shows", role: "group", "aria-label": "Shown on the mechanism" },
-    ribbons, ribbons && signs, kinds.map(([kind, words]) => box(kind, words)), box("values", "values"), box("names", "names"), box("traces", "paths"),
+    ribbons, ribbons && signs, kinds.map(([kind, words]) => box(kind, words)), box("values", "values"), box("names", "names"), contents.paths.length > 0 && box("traces", "paths"), box("ways", "joints' paths"),
     (kinds.length || ribbons) && element("label", { class: "scale" }, "scale ", size));
 }
 
@@ -157,8 +157,8 @@ function watch(stage, canvas) {
     }
   });
   reading.watchers.add(() => {
-    for (const card of deck.cards) card.renew();
     stage.draw();
+    for (const card of deck.cards) card.follow();
   });
   let width = 0;
   const watcher = new ResizeObserver(() => {

@@ -125,6 +125,7 @@ function listenToKeys(stage) {
       ArrowRight: () => player.step(event.shiftKey ? 10 : 1),
       Home: () => player.step(-player.instant),
       End: () => player.step(instants.count - 1 - player.instant),
+      "/": () => document.querySelector(".find").focus(),
       f: () => stage.fit(),
       F: () => stage.fit(),
       ...Object.fromEntries(VIEWS.map(([key, , angles]) => [key, () => stage.view(...angles)])),

@@ -16,9 +16,11 @@ async function comeAlive(panel) {
   }
 }
 
-const live = { engine: null, alarm: null, asked: null, moving: false, late: 0, fields: [] };
+const live = { engine: null, alarm: null, asked: null, moving: false, late: 0, fields: [], turn: 0 };
 
 const LATE = 150; // After so many milliseconds without a change, what is slow follows: tables, fine maps, what is out of sight.
+
+const BUDGET = 9; // So many milliseconds of a picture of the screen are for this script while a slider moves; the rest is the browser's.
 
 /** What the page is about now: the file's own design, another one, or one that has no result. */
 function designState() {
@@ -105,17 +107,39 @@ function ask(values) {
 }
 
 function answer() {
+  const end = performance.now() + BUDGET;
   const values = live.asked;
   live.asked = null;
-  live.engine.show(values);
   live.moving = true;
+  live.engine.show(values, chartsPlaces());
   renewAll();
+  follow(end);
   clearTimeout(live.late);
-  live.late = setTimeout(() => {
-    live.moving = false;
-    for (const fill of reading.tables) fill();
-    for (const card of deck.cards) if (card.stale || card.plot instanceof Heat) card.renew();
-  }, LATE);
+  live.late = setTimeout(arrive, LATE);
+}
+
+/** Whether a chart shows what is largest along a link at each instant, which is more than peaks need. */
+function chartsPlaces() {
+  return deck.cards.some(({ plot }) => plot instanceof Chart && [plot.x, ...plot.curves].some((curve) => curve.places));
+}
+
+/** While a slider moves: have cards in sight show the design, one after another, as many as there is time for; the others have their turn
+ *  at the next picture of the screen. */
+function follow(end) {
+  const cards = deck.cards.filter((card) => card.stale && card.seen);
+  for (let k = 0; k < cards.length && (k === 0 || performance.now() < end); k += 1) {
+    const card = cards.find((one) => deck.cards.indexOf(one) >= live.turn && one.stale) ?? cards.find((one) => one.stale);
+    live.turn = deck.cards.indexOf(card) + 1;
+    card.renew();
+  }
+}
+
+/** When a slider rests: everything, in full. */
+function arrive() {
+  live.moving = false;
+  live.engine.show(live.engine.values);
+  renewAll();
+  for (const fill of reading.tables) fill();
 }
 
 /** Have all that is shown show what the arrays hold now. */
@@ -123,7 +147,7 @@ function renewAll() {
   const { why } = live.engine;
   largest = new WeakMap();
   framesOf = -1;
-  traces = tracesNow();
+  deck.stage.trace();
   player.renew();
   live.alarm.hidden = !why;
   live.alarm.textContent = why ? `There is no such design: ${why}.` : "";

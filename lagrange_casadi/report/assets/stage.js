@@ -7,13 +7,14 @@ class Stage {
     this.paper = new Paper(canvas);
     this.instant = 0;
     const bending = ribbonForces.find((force) => force.name === "bending") ?? ribbonForces[0];
-    this.shows = { reaction: true, effort: true, load: true, ribbon: bending?.name ?? "", names: true, traces: true, values: false };
+    this.shows = { reaction: true, effort: true, load: true, ribbon: bending?.name ?? "", names: true, traces: true, ways: false, values: false };
     this.size = 1;
     this.pinned = null;
     this.pointed = null;
     this.touched = false;
     this.measure();
     this.ends = arrowEnds(this.shows, this.scale);
+    this.trace();
   }
 
   /** Find the scales anew, for what is shown now. */
@@ -27,6 +28,11 @@ class Stage {
       moment: moment ? (contents.space ? full : Math.min(1, this.size)) / moment : 0,
       ribbon: most ? full / most : 0,
     };
+  }
+
+  /** Follow the points whose ways are shown, for the motion that there is now. */
+  trace() {
+    this.traces = tracesNow(this.shows);
   }
 
   layOut() {
@@ -59,6 +65,7 @@ class Stage {
   show(what, value) {
     this.shows[what] = value;
     this.measure();
+    this.trace();
     this.draw();
   }
 
@@ -71,7 +78,7 @@ class Stage {
       paper.end();
       return;
     }
-    if (shows.traces) drawTraces(paper);
+    drawTraces(paper, this.traces);
     if (shows.ribbon && this.scale.ribbon) drawRibbons(paper, instant, shows.ribbon, this.scale.ribbon);
     for (const body of bodies.values()) drawBody(paper, body, instant);
     for (const load of contents.loads) {
@@ -135,20 +142,19 @@ function roundDistance(rough) {
   return power * [1, 2, 5, 10].find((part) => part * power >= rough * 0.999);
 }
 
-let traces = tracesNow();
-
-function tracesNow() {
-  const step = Math.max(1, Math.ceil(instants.count / 240));
+/** The ways of declared points, and of joints, as far as they are shown and they move. */
+function tracesNow(shows) {
+  const step = Math.max(1, Math.ceil(instants.count / (live.moving ? 80 : 240)));
   const numbers = Array.from({ length: Math.ceil(instants.count / step) }, (_, k) => k * step);
   if (numbers.at(-1) !== instants.count - 1) numbers.push(instants.count - 1);
   const of = (spot) => numbers.map((i) => spotOf(spot, i));
   const moved = (points) => points.some((point) => sizeOf(less(point, points[0])) > 1e-6 * extent.size);
-  const joints = contents.joints.map((joint) => ({ own: false, points: of(joint.child) }));
-  const paths = contents.paths.map((path) => ({ own: true, points: of(path) }));
+  const joints = shows.ways ? contents.joints.map((joint) => ({ own: false, points: of(joint.child) })) : [];
+  const paths = shows.traces ? contents.paths.map((path) => ({ own: true, points: of(path) })) : [];
   return [...joints, ...paths].filter((trace) => moved(trace.points));
 }
 
-function drawTraces(paper) {
+function drawTraces(paper, traces) {
   for (const { own, points } of traces) {
     const line = points.map((point) => paper.on(point));
     paper.put(ORDER.traces, Number(own), (context) => {

@@ -10,15 +10,18 @@ const KIND_WORDS = { effort: "effort", reaction: "joint", section: "link", outpu
 
 /** The two large tables: peaks, and what quantities are over the cycle. */
 function resultTables(show) {
-  const state = { all: false, text: "" };
+  const state = { all: false, words: [] };
   const nothing = contents.rows.filter(isNothing).length;
   const rows = () =>
-    contents.rows.filter((row) => !row.open && (state.all || !isNothing(row)) && `${row.name} ${row.what}`.toLowerCase().includes(state.text));
+    contents.rows.filter((row) => !row.open && (state.all || !isNothing(row)) && state.words.every((word) => `${row.name} ${row.what}`.toLowerCase().includes(word)));
   const tables = [];
   const renew = () => tables.forEach((table) => table.fill());
-  const find = element("input", { type: "search", placeholder: "find a part or quantity", "aria-label": "Find", input: () => {
-    state.text = find.value.toLowerCase();
+  const find = element("input", { type: "search", placeholder: "find, as: rod bending", "aria-label": "Find a part or quantity", class: "find", title: "Find (/); Enter shows the first that is found", input: () => {
+    state.words = find.value.toLowerCase().split(/\s+/).filter(Boolean);
     renew();
+  }, keydown: (event) => {
+    const [first] = rows();
+    if (event.key === "Enter" && first) show(first);
   } });
   const also = nothing > 0 && element("label", {}, element("input", { type: "checkbox", change: (event) => {
     state.all = event.target.checked;

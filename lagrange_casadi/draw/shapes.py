@@ -46,6 +46,13 @@ class Shape:
     centre: Place | None
     disc: float
 
+    @property
+    def spoke(self) -> Place | None:
+        """The end of the spoke of a disc; nothing where there is none."""
+        if not self.disc or self.centre is None:
+            return None
+        return self.centre[0] + self.disc, *self.centre[1:]
+
 
 @dataclass(frozen=True)
 class JointShape:

@@ -22,6 +22,11 @@ def drawn_spots(description: Description) -> Iterator[Spot]:
     yield from path_spots(description).values()
 
 
+def spokes(description: Description) -> Iterator[Spot]:
+    """The ends of the spokes of discs, by which one sees them turn."""
+    yield from (Spot(shape.name, shape.spoke) for shape in shapes(description) if shape.spoke)
+
+
 def placed(solution: Solution, spot: Spot) -> Array:
     """A place over the instants (t, 3) in ground axes [m]."""
     local = np.array(spot.at)
