@@ -40,7 +40,6 @@ ORDER = (
     "report",
     "animation",
     "actuators",
-    "optimise",
     "density",
     "motion",
     "figures",
@@ -49,6 +48,7 @@ ORDER = (
     "case_modules",
     "case",
     "sweep",
+    "optimise",
     "cli",
 )
 

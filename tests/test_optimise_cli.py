@@ -65,13 +65,13 @@ def test_limits_that_hold_nowhere_end_with_a_status(here, capfd):
 def test_an_interrupt_leaves_the_best_so_far(here, capfd, monkeypatch):
     count = iter(range(100))
 
-    def note(self, start, judged, own=Descent.note):
-        own(self, start, judged)
+    def note(self, judged, own=Descent._note):
+        own(self, judged)
         if next(count) == 1:
             os.kill(os.getpid(), signal.SIGINT)
             time.sleep(0.1)
 
-    monkeypatch.setattr(Descent, "note", note)
+    monkeypatch.setattr(Descent, "_note", note)
     assert main([*ASKED, "--out", "a.h5"]) == 1
     out, err = capfd.readouterr()
     assert err == ""
