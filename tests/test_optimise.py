@@ -168,6 +168,11 @@ def test_limits_that_hold_nowhere_are_told():
         ({"minimise": "mean:reaction:O:fx"}, UnknownNameError, "quantity with a mean"),
         ({"minimise": "min:effort:O"}, DeclarationError, "use max:effort:O"),
         ({"over": {"k": (0.1, 0.2)}}, UnknownNameError, "parameter"),
+        (
+            {"over": {"l": (0.2, 0.3), "m2": (0.1, 0.2)}, "minimise": "max:pose:slider:x"},
+            DeclarationError,
+            "nothing .* depends on 'm2'",
+        ),
         ({"over": {}}, DeclarationError, "expected bounds by parameter"),
         ({"over": {"l": 0.3}}, DeclarationError, "expected \\(least, largest\\) for 'l'"),
         ({"over": {"l": (0.4, 0.3)}}, DeclarationError, "must be below the largest"),

@@ -27,9 +27,9 @@ DOWN = -1e-6
 class Conditions:
     """How good a solution is.
 
-    ``residual`` is what is left of the first-order conditions, over the largest of their terms. ``curvature`` is the least second
-    derivative of the Lagrangian along what limits with a multiplier leave free: infinite where that is nothing, NaN where it has
-    none. ``least`` is the same along what all active limits leave free: below zero at what is no minimum.
+    ``residual`` is what is left of the first-order conditions, over the largest of their terms, or the objective. ``curvature`` is
+    the least second derivative of the Lagrangian along what limits with a multiplier leave free: infinite where that is nothing,
+    NaN where it has none. ``least`` is the same along what all active limits leave free: below zero at what is no minimum.
     """
 
     residual: float
@@ -42,14 +42,18 @@ class Conditions:
         return self.least < DOWN
 
 
-def conditions(slopes: Any, at: Array, by_g: Array, by_x: Array, given: Array, chosen: int, *, formed: bool) -> Conditions:
+def conditions(
+    slopes: Any, at: Array, objective: float, by_g: Array, by_x: Array, given: Array, chosen: int, *, formed: bool
+) -> Conditions:
     """Those of a program's solution ``at``, with the multipliers of its rows, and of bounds, of which ``chosen`` has some.
+
+    Where nothing is active all terms of the first-order conditions are nearly zero: then the ``objective`` is what is large.
 
     ``slopes(at, by_g, given)`` has the Lagrangian's gradient without bounds, its parts, the rows and their Jacobian, and the
     Lagrangian's second derivatives where these are ``formed``; elsewhere they are differences of the gradient.
     """
     slope, parts, rows, jacobian, hessian = (part.full() for part in slopes(at, by_g, given))
-    size = max(float(np.abs(parts).max()), float(np.abs(by_x).max(initial=0.0)), np.finfo(float).tiny)
+    size = max(float(np.abs(parts).max()), float(np.abs(by_x).max(initial=0.0)), abs(objective), np.finfo(float).tiny)
     residual = float(np.abs(slope.ravel() + by_x).max()) / size
     if not formed:
         hessian = _differences(lambda x: slopes(x, by_g, given)[0].full().ravel(), at, chosen)

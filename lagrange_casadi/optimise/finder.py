@@ -9,6 +9,7 @@ import numpy as np
 
 from ..declare.scene import Scene
 from ..designs.engine import DesignEngine
+from ..errors import DeclarationError
 from .descent import Descent, Told
 from .judge import Judge
 from .problem import Problem, Question
@@ -43,7 +44,21 @@ class Finder:
         judge = Judge(engine, PointValues(engine.graph, engine.times), question.terms, question.transmission**2)
         finder = cls(scene, question, engine, judge)
         finder.program(Problem(question.objectives[0], question.constraints))  # what cannot be differentiated is told at once
+        if idle := [name for name in question.box.names if not finder._matters(name)]:
+            named = ", ".join(f"'{name}'" for name in idle)
+            raise DeclarationError(f"over: nothing that is minimised or limited depends on {named}: leave out what does not matter")
         return finder
+
+    def _matters(self, name: str) -> bool:
+        """Whether a term depends on a parameter."""
+        place = self.engine.parameters.index(name)
+        for term in self.question.terms:
+            if term.output is None:
+                if term.name == name:
+                    return True
+            elif self.judge.values.of(term.output).depends[place]:
+                return True
+        return False
 
     def program(self, problem: Problem) -> Program:
         """That of a problem, whatever its limits are."""

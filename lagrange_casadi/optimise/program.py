@@ -125,7 +125,7 @@ class Program:
             float(np.sum(by_g[rows])) * scale / term.scale for rows, term in zip(built.rows[1:], held[1:], strict=True)
         )
         shares = np.clip(at[:n], 0.0, 1.0)
-        told = conditions(built.slopes, at, by_g, by_x, given, n, formed=not self.large)
+        told = conditions(built.slopes, at, float(found["f"]), by_g, by_x, given, n, formed=not self.large)
         return Found(shares, float(found["f"]) * scale, multipliers, by_x[:n] * scale, told, status)
 
     @property

@@ -43,6 +43,12 @@ class Followed:
     moved: Any
     size: int
 
+    @cached_property
+    def depends(self) -> list[bool]:
+        """Whether it depends on each parameter."""
+        found = self.value.jac_sparsity(0, 2)
+        return [bool(found.colind(k + 1) > found.colind(k)) for k in range(found.size2())]
+
     @classmethod
     def of(cls, value: Any, size: int) -> Followed:
         """That of a function."""
