@@ -23,18 +23,20 @@ DOWN = -1e-6
 """Of the objective, over the square of the bounds: a curvature that is negative, and not for rounding."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Conditions:
     """How good a solution is.
 
     ``residual`` is what is left of the first-order conditions, over the largest of their terms, or the objective. ``curvature`` is
     the least second derivative of the Lagrangian along what limits with a multiplier leave free: infinite where that is nothing,
-    NaN where it has none. ``least`` is the same along what all active limits leave free: below zero at what is no minimum.
+    NaN where it has none. ``least`` is the same along what all active limits leave free: below zero at what is no minimum, which
+    is left along ``way``.
     """
 
     residual: float
     curvature: float
     least: float
+    way: Array
 
     @property
     def turns_down(self) -> bool:
@@ -58,7 +60,7 @@ def conditions(
     if not formed:
         hessian = _differences(lambda x: slopes(x, by_g, given)[0].full().ravel(), at, chosen)
     if not (np.isfinite(hessian).all() and np.isfinite(jacobian).all()):
-        return Conditions(residual, math.nan, math.nan)
+        return Conditions(residual, math.nan, math.nan, np.zeros(chosen))
     largest = max(float(np.abs(by_g).max(initial=0.0)), float(np.abs(by_x).max(initial=0.0)), np.finfo(float).tiny)
     bounded = np.zeros(at.size, bool)
     bounded[:chosen] = np.minimum(at[:chosen], 1.0 - at[:chosen]) <= _ACTIVE
@@ -68,16 +70,20 @@ def conditions(
         ((rows.ravel() > -_ACTIVE) | (np.abs(by_g) > _COUNTS * largest), bounded | (np.abs(by_x) > _COUNTS * largest)),
     ):
         found.append(_least(hessian, np.vstack([jacobian[active], np.eye(at.size)[bound]])))
-    return Conditions(residual, *found)
+    (curvature, _), (least, way) = found
+    return Conditions(residual, curvature, least, way[:chosen])
 
 
-def _least(hessian: Array, active: Array) -> float:
-    """The least eigenvalue along what leaves active limits as they are."""
+def _least(hessian: Array, active: Array) -> tuple[float, Array]:
+    """The least eigenvalue along what leaves active limits as they are, and its direction."""
     free = np.eye(len(hessian))
     if len(active):
         _, sizes, rows = np.linalg.svd(active)
         free = rows[int(np.sum(sizes > 1e-9 * sizes.max())) :].T
-    return float(np.linalg.eigvalsh(free.T @ hessian @ free).min()) if free.size else math.inf
+    if not free.size:
+        return math.inf, np.zeros(len(hessian))
+    values, vectors = np.linalg.eigh(free.T @ hessian @ free)
+    return float(values[0]), free @ vectors[:, 0]
 
 
 def _differences(slope: Any, at: Array, chosen: int) -> Array:

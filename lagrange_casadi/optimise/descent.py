@@ -34,6 +34,9 @@ _LITTLE = 0.02
 _CLOSED = 12
 """Instants at which a program watches how its loops close, from the beginning."""
 
+_STEPS = (0.1, 0.03, 0.01, 0.003)
+"""Of the bounds: how far from what seems to be no minimum a better design is looked for."""
+
 _SAME = 1e-6
 """Of a step between instants: how near two points are that are one."""
 
@@ -119,9 +122,8 @@ class Descent:
         closures = [look.instant(k) for k in numbers]
         self._learn(held, closures, first, everything=True)
         current, tried = first, 0
-        averages = look
         for _ in range(_ROUNDS):
-            every = [averages.instant(k) for k in range(averages.t.size)] if self.program.averaged else []
+            every = current.look.instants if self.program.averaged and current.look is not None else []
             found = self.program.solve(box.share(current.p), held, closures, every)
             x = found.x
             if not np.isfinite(x).all():
@@ -141,16 +143,32 @@ class Descent:
             added = self._learn(held, closures, following, everything=back > 0)
             done = not back and self._settled(found, following)
             moved = float(np.abs(box.share(following.p) - box.share(current.p)).max())
-            if done and found.conditions.turns_down:
-                self._better(following, found, "the first-order conditions hold, but the objective turns down: it is no minimum")
-                return
+            if done and found.conditions.turns_down and (lower := self._lower(found, following)):
+                self._note(lower)
+                self._better(lower, None, "beyond a saddle")
+                self._learn(held, closures, lower, everything=True)
+                current = lower
+                continue
             self._better(following, found if not back else None, CONVERGED if done else f"IPOPT: {found.status}")
             if done and found.status == "Solve_Succeeded":
                 return
             tried = tried + 1 if moved <= 1e-9 and not added else 0
-            current, averages = following, following.look
+            current = following
             if tried >= 2:
                 return
+
+    def _lower(self, found: Found, judged: Judged) -> Judged | None:
+        """A better design beside one that seems to be no minimum, along the way that it is left; None where it is one after all.
+
+        A program holds some peaks where they are, so that its second derivatives may be less than those of the peaks.
+        """
+        way = found.conditions.way / (np.abs(found.conditions.way).max() or 1.0)
+        excess, objective = self._merit(judged)
+        for step in (share * sign for share in _STEPS for sign in (1.0, -1.0)):
+            tried = self.judge.look(self.box.all(np.clip(found.x + step * way, 0.0, 1.0)))
+            if self._merit(tried) < (excess, objective):
+                return tried
+        return None
 
     def _settled(self, found: Found, judged: Judged) -> bool:
         """Whether a program's solution is what it says, with all peaks that it did not know."""

@@ -197,10 +197,9 @@ class _Fronts:
         return _Found(optimum, judged, np.array([judged.value(term) for term in self.terms]))
 
     def _told(self, one: _Found) -> FrontPoint:
-        gains = {limit.constraint.term: limit.multiplier for limit in one.optimum.limits}
-        first = one.optimum.minimised == self.terms[0]
         # Where the first objective is the limit it is at its least: nothing is gained any more.
-        trades = [gains.get(term, 0.0) if first else 0.0 for term in self.terms[1:]]
+        limits = one.optimum.limits if one.optimum.minimised == self.terms[0] else ()
+        trades = [sum(limit.multiplier for limit in limits if limit.constraint.term == term) for term in self.terms[1:]]
         return FrontPoint(tuple(one.values.tolist()), tuple(trades), one.optimum)
 
 

@@ -74,22 +74,24 @@ def kept(target: Path | None, identity: Mapping[str, Any], *, resume: bool, forc
     path = journal_of(target)
     if path.exists() and not (resume or force):
         raise PathError(f"{path} is of an unfinished search: go on with resume=True, or start anew with force=True")
-    with telling(path), path.open("a+b") as file:
-        if fcntl is not None:
-            try:
-                fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                raise BusyError(f"another search is writing {target}: wait for it, or write another file") from None
-        journal = Journal(target, file)
-        if force or not _read(journal, path, identity):
-            file.truncate(0)
-            file.write(_line({"identity": identity}))
-            file.flush()
-        try:
+    journal, own = Journal(target), False
+    try:
+        with telling(path), path.open("a+b") as file:
+            if fcntl is not None:
+                try:
+                    fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
+                except BlockingIOError:
+                    raise BusyError(f"another search is writing {target}: wait for it, or write another file") from None
+            journal.file = file
+            if force or not _read(journal, path, identity):
+                file.truncate(0)
+                file.write(_line({"identity": identity}))
+                file.flush()
+            own = True
             yield journal
-        finally:
-            if not journal.known:
-                path.unlink(missing_ok=True)
+    finally:
+        if own and not journal.known:
+            path.unlink(missing_ok=True)
 
 
 def _read(journal: Journal, path: Path, identity: Mapping[str, Any]) -> bool:

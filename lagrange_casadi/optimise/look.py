@@ -91,6 +91,11 @@ class Look:
         rows = [row * np.abs(row) if self.graph.iterates(name) else row for name, row in zip(names, rows, strict=True)]
         return np.array(rows).reshape(len(rows), self.t.size)
 
+    @property
+    def instants(self) -> list[Point]:
+        """All of them, as points."""
+        return [self.instant(k) for k in range(self.t.size)]
+
     def instant(self, k: int) -> Point:
         """An instant by its number, as a point."""
         return self._point(k, 0.0, 0, 0.0)

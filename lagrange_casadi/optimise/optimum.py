@@ -136,7 +136,7 @@ def optimum_of(finder: Finder, problem: Problem, trails: Sequence[Trail], judged
         stopped=any(trail.ending == STOPPED for trail in trails),
         residual=best.residual,
         curvature=best.curvature,
-        history=np.array([[k, *row] for k, trail in enumerate(trails) for row in trail.history]),
+        history=np.array([[k, *row] for k, trail in enumerate(trails) for row in trail.history]).reshape(-1, 4 + len(box.names)),
         evaluations=evaluations,
         notes=tuple(_notes(finder, problem, judged)),
     )
