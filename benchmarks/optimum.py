@@ -37,7 +37,7 @@ def report(rounds: int) -> str:
         return found.objective, found.values
 
     def ours_of_a_thousand() -> tuple[float, Mapping[str, float]]:
-        found = optimise(scene, **asked, starts=1, screened=1000)
+        found = optimise(scene, **asked, starts=1, screen=1000)
         return found.objective, found.values
 
     def by_hand() -> tuple[float, Mapping[str, float]]:

@@ -185,7 +185,7 @@ def test_limits_that_hold_nowhere_are_told():
         ({"starts": [{"r": 0.1}]}, UnknownNameError, "parameter that is chosen"),
         ({"starts": [{"l": 0.7}]}, DeclarationError, "l = 0.7 is not within its bounds"),
         ({"starts": 2.0}, DeclarationError, "starts: expected a whole number above 0"),
-        ({"screened": 0}, DeclarationError, "screened: expected a whole number from 1"),
+        ({"screen": 0}, DeclarationError, "screen: expected a whole number from 1"),
         ({"points": 1}, DeclarationError, "points: expected a whole number above 1"),
         ({"minimise": []}, DeclarationError, "minimise: expected a text"),
         ({"minimise": ["r", "r"]}, DeclarationError, "a term is there twice: r, r"),

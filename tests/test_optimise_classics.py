@@ -53,7 +53,7 @@ def test_the_straightest_path_of_a_four_bar(degrees, ground, side, percent, leng
     assert 100 * off / long == pytest.approx(percent, abs=5e-4)
     assert long == pytest.approx(length, abs=1e-3)
     over = {"ground": (1.9, 2.9), "side": (2.5, 3.9), "level": (4.0, 7.0)}
-    found = optimise(hoeken(half), minimise="peak:output:off", over=over, starts=2)
+    found = optimise(hoeken(half), minimise="peak:output:off", over=over, starts=2, screen=8)
     assert found.converged
     best, _ = straightness(found.values["ground"], found.values["side"], half)
     assert 2 * found.objective == pytest.approx(best, rel=1e-6)
@@ -72,7 +72,7 @@ def test_a_spring_balances_an_arm():
     m.revolute("O", m.ground, arm)
     m.spring("balance", m.ground.at(0.0, 0.3), arm.at(0.4), stiffness=stiffness, length=0.0)
     scene = Scene(m, {"O": harmonic(0.3, 0.9, 0.01)}, t=(0.0, 100.0, 65), wanted=["effort"])
-    found = optimise(scene, minimise="rms:effort:O", over={"k": (0.0, 200.0)}, starts=2)
+    found = optimise(scene, minimise="rms:effort:O", over={"k": (0.0, 200.0)}, starts=2, screen=8)
     assert found.values["k"] == pytest.approx(2.0 * 9.81 * 0.4 / (0.3 * 0.4), rel=1e-4)
     assert found.objective <= 1e-2
 
@@ -85,7 +85,7 @@ def test_a_torsion_spring_takes_the_torque_of_an_oscillation():
     joint = m.revolute("O", m.ground, m.link("arm", length=0.6, mass=1.5))
     m.torsion_spring("hair", joint, stiffness=stiffness)
     scene = Scene(m, {"O": harmonic(0.0, 0.7, 2.0)}, t=(0.0, 0.5, 41), wanted=["effort"])
-    found = optimise(scene, minimise="peak:effort:O", over={"k": (0.0, 100.0)}, starts=2)
+    found = optimise(scene, minimise="peak:effort:O", over={"k": (0.0, 100.0)}, starts=2, screen=8)
     assert found.values["k"] == pytest.approx(1.5 * 0.6**2 / 3 * (4 * math.pi) ** 2, rel=1e-6)
     assert found.objective <= 1e-6
 
@@ -102,7 +102,7 @@ def test_the_motion_of_least_rms_torque_is_the_cubic():
         return 1.2 * (3 * s**2 - 2 * s**3 + s**2 * (1 - s) ** 2 * (c[0] + c[1] * (s - 0.5)))
 
     scene = Scene(m, {"O": expression(law)}, t=(0.0, 0.4, 401), wanted=["effort"])
-    found = optimise(scene, minimise="rms:effort:O", over={"c0": (-8.0, 8.0), "c1": (-8.0, 8.0)}, starts=2)
+    found = optimise(scene, minimise="rms:effort:O", over={"c0": (-8.0, 8.0), "c1": (-8.0, 8.0)}, starts=2, screen=8)
     assert found.converged
     assert found.curvature > 0.0
     assert found.objective == pytest.approx(math.sqrt(12) * 1.5 * 0.36 / 3 * 1.2 / 0.4**2, rel=1e-5)
@@ -150,7 +150,7 @@ def test_masses_of_an_arm_of_six_joints_are_those_of_least_squares():
     weights = np.sqrt(np.r_[0.5, np.ones(39), 0.5])
     best, *_ = np.linalg.lstsq(np.array(columns).T * weights[:, None], -none * weights, rcond=None)
     over = {"behind_shoulder": (0.0, 60.0), "behind_elbow": (0.0, 60.0)}
-    found = optimise(scene, minimise="rms:effort:shoulder", over=over, starts=2, screened=16)
+    found = optimise(scene, minimise="rms:effort:shoulder", over=over, starts=2, screen=16)
     # A mass cannot be negative.
     least = np.maximum(best, 0.0)
     if (best < 0.0).any():

@@ -36,6 +36,10 @@ def test_it_writes_a_file_and_a_picture(here, capfd):
     assert out.endswith("wrote a.h5 and a.svg\n")
     assert (here / "a.svg").read_text().lstrip().startswith("<?xml")
     verify("a.h5")
+    assert main(["check", "a.h5"]) == 0
+    assert capfd.readouterr().out == "a.h5: whole and consistent\n"
+    assert main(["info", "a.h5"]) == 1
+    assert "but that of a search for designs, which the command check reads" in capfd.readouterr().err
     assert kind_of("a.h5") == "lagrange-casadi-optimum"
     with h5py.File("a.h5") as file:
         assert file.attrs["feasible"]

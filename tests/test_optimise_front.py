@@ -13,6 +13,7 @@ from lagrange_casadi.motion import expression, polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
+ONE, TWO = {"starts": 1, "screen": 8}, {"starts": 2, "screen": 8}
 INERTIA = 1.0 * 0.3**2 / 3
 
 
@@ -32,7 +33,7 @@ def dominated(values):
 
 def test_two_objectives_give_the_curve_of_a_closed_form():
     """Torque against time: every time has its own least torque, and a second more gains what the derivative says."""
-    front = optimise(turning(), minimise=["peak:effort:O", "T"], over={"T": (0.5, 2.0)}, points=7, starts=2)
+    front = optimise(turning(), minimise=["peak:effort:O", "T"], over={"T": (0.5, 2.0)}, points=7, **TWO)
     assert isinstance(front, Front)
     assert front.converged
     assert front.feasible
@@ -49,7 +50,7 @@ def test_two_objectives_give_the_curve_of_a_closed_form():
 
 
 def test_three_objectives():
-    front = optimise(turning(), minimise=["peak:effort:O", "T", "c"], over={"T": (0.5, 2.0), "c": (0.0, 1.0)}, points=9, starts=2)
+    front = optimise(turning(), minimise=["peak:effort:O", "T", "c"], over={"T": (0.5, 2.0), "c": (0.0, 1.0)}, points=9, **TWO)
     torque, duration, less = front.objectives.T
     assert torque == pytest.approx(6 * INERTIA * (math.pi - less) / duration**2, rel=1e-7)
     assert len(front.points) >= 9
@@ -58,7 +59,7 @@ def test_three_objectives():
 
 
 def test_objectives_that_agree_have_no_front():
-    front = optimise(turning(), minimise=["peak:effort:O", "rms:effort:O"], over={"T": (0.5, 2.0)}, starts=2)
+    front = optimise(turning(), minimise=["peak:effort:O", "rms:effort:O"], over={"T": (0.5, 2.0)}, **TWO)
     (point,) = front.points
     assert point.optimum.values["T"] == pytest.approx(2.0, rel=1e-6)
     assert "one design is the best in all objectives" in front.notes[0]
@@ -66,14 +67,14 @@ def test_objectives_that_agree_have_no_front():
 
 def test_of_many_designs_with_the_least_of_one_the_best_of_the_other_is_the_end():
     """The least turn, c at its largest, may take any time: the front ends where the torque is least."""
-    front = optimise(turning(), minimise=["peak:effort:O", "c"], over={"T": (0.5, 2.0), "c": (0.0, 1.0)}, points=3, starts=2)
+    front = optimise(turning(), minimise=["peak:effort:O", "c"], over={"T": (0.5, 2.0), "c": (0.0, 1.0)}, points=3, **TWO)
     assert front.objectives[:, 0] == pytest.approx(6 * INERTIA * (math.pi - front.objectives[:, 1]) / 4, rel=1e-6)
     assert all(point.optimum.values["T"] == pytest.approx(2.0, rel=1e-6) for point in front.points)
 
 
 def test_a_limit_that_holds_nowhere_is_told():
     words = {"minimise": ["peak:effort:O", "c"], "over": {"T": (0.5, 2.0), "c": (0.0, 1.0)}}
-    front = optimise(turning(), **words, subject_to=["T >= 3"], starts=1)
+    front = optimise(turning(), **words, subject_to=["T >= 3"], **ONE)
     assert not front.feasible
     assert front.points[0].optimum.limits[0].value == pytest.approx(2.0, rel=1e-5)
 
@@ -86,7 +87,7 @@ def test_a_stop_leaves_the_front_so_far():
         if start == 6:
             raise KeyboardInterrupt
 
-    front = optimise(turning(), minimise=["peak:effort:O", "T"], over={"T": (0.5, 2.0)}, points=9, starts=1, progress=stop)
+    front = optimise(turning(), minimise=["peak:effort:O", "T"], over={"T": (0.5, 2.0)}, points=9, **ONE, progress=stop)
     assert front.stopped
     assert 2 <= len(front.points) < 9
     assert dominated(front.objectives) == []
@@ -95,7 +96,7 @@ def test_a_stop_leaves_the_front_so_far():
 @pytest.mark.parametrize(("shift", "term"), [(0.0, "peak"), (0.7, "peak"), (0.0, "rms")])
 def test_instants_go_with_what_is_chosen(shift, term):
     """The least time for a torque, where the last instant, and here the first one, is a peak."""
-    found = optimise(turning(shift=shift), minimise="T", over={"T": (0.1, 5.0)}, subject_to=[f"{term}:effort:O <= 2"], starts=2)
+    found = optimise(turning(shift=shift), minimise="T", over={"T": (0.1, 5.0)}, subject_to=[f"{term}:effort:O <= 2"], **TWO)
     assert found.converged
     factor = 6.0 if term == "peak" else math.sqrt(np.trapezoid((6 - 12 * np.linspace(0, 1, 41)) ** 2, dx=1 / 40))
     assert found.values["T"] == pytest.approx(math.sqrt(factor * INERTIA * math.pi / 2), rel=1e-8)
@@ -112,9 +113,9 @@ def test_instants_that_a_steady_drive_gives_go_with_its_speed():
     joint = m.revolute("O", m.ground, arm)
     m.torque("drag", arm, -0.5 * m.rate(joint))
     scene = Scene(m, {"O": polynomial(0.3, rate)}, over=("O", 0.3, 0.3 + 2 * math.pi, 73), wanted=["effort"])
-    found = optimise(scene, minimise="rate", over={"rate": (0.5, 9.0)}, subject_to=["peak:effort:O <= 3", "rate >= 1"], starts=1)
+    found = optimise(scene, minimise="rate", over={"rate": (0.5, 9.0)}, subject_to=["peak:effort:O <= 3", "rate >= 1"], **ONE)
     assert found.values["rate"] == pytest.approx(1.0, rel=1e-6)
-    most = optimise(scene, minimise="mean:effort:O", over={"rate": (0.5, 9.0)}, subject_to=["rate >= 2"], starts=1)
+    most = optimise(scene, minimise="mean:effort:O", over={"rate": (0.5, 9.0)}, subject_to=["rate >= 2"], **ONE)
     assert most.objective == pytest.approx(0.5 * 2.0, rel=1e-9)
 
 

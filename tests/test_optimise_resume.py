@@ -60,7 +60,7 @@ def lines(path):
     return path.read_bytes().count(b"\n") if path.exists() else 0
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGKILL, marks=pytest.mark.long)])
 def test_a_search_that_is_stopped_goes_on(number, here, whole, capfd):
     target = here / "x.h5"
     journal = journal_of(target)
@@ -74,6 +74,8 @@ def test_a_search_that_is_stopped_goes_on(number, here, whole, capfd):
     if number == signal.SIGINT:
         assert status == 1
         verify("x.h5")
+        assert main(["check", "x.h5"]) == 1
+        assert "x.h5: the search was stopped before its end" in capfd.readouterr().err
         with h5py.File("x.h5") as file:
             assert file.attrs["stopped"]
             assert 2 <= len(file["front/objectives"]) < 8
@@ -96,7 +98,7 @@ def test_a_search_that_is_stopped_goes_on(number, here, whole, capfd):
 
 
 def asked(**words):
-    scene = {"minimise": "peak:effort:O", "over": {"T": (0.5, 2.0), "c": (0.0, 1.0)}, "backend": "vm", "starts": 3, "screened": 8}
+    scene = {"minimise": "peak:effort:O", "over": {"T": (0.5, 2.0), "c": (0.0, 1.0)}, "backend": "vm", "starts": 3, "screen": 8}
     return optimise(load_case("turning.py"), **scene | words)
 
 

@@ -100,7 +100,7 @@ SPACE = {
 
 def test_searches_for_a_design_give_the_same_bytes(slider_crank, two_workers, tmp_path):
     words = {"minimise": "peak:effort:O", "over": {"l": (0.12, 0.8), "r": (0.05, 0.1)}, "subject_to": ["r >= 0.07"], "starts": 3}
-    words |= {"t": (0, 0.08, 41), "screened": 16}
+    words |= {"t": (0, 0.08, 41), "screen": 16}
     here, there = tmp_path / "here.h5", tmp_path / "there.h5"
     found = optimise(slider_crank, **words, out=here)
     assert found.converged

@@ -112,7 +112,7 @@ def optimise(
         options: dict[str, Any] = {
             "subject_to": limits,
             "starts": starts,
-            "screened": screen,
+            "screen": screen,
             "points": points,
             "transmission": transmission,
             "t": t,

@@ -25,7 +25,8 @@ def optimum_lines(found: Optimum) -> Iterator[str]:
     angle = "" if math.isnan(found.transmission) else f", least sine of transmission angles {found.transmission:.4g}"
     ends = f"{sum(one.ending == 'converged' for one in found.starts)} of {len(found.starts)} starts converged"
     yield f"  {ends}, {found.evaluations} designs{angle}"
-    yield f"  first-order conditions to {found.residual:.1e}{_second(found)}"
+    if found.feasible:
+        yield f"  first-order conditions to {found.residual:.1e}{_second(found)}"
     if len(found.optima) > 1:
         yield f"  {len(found.optima)} local optima:"
         for one in found.optima:

@@ -8,6 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from ..store.opening import opened_file, schema_of
 from ..system.publish import replacing
 from ..system.seal import seal
 from .front import Front
@@ -30,6 +31,27 @@ def save(found: Optimum | Front, path: str | os.PathLike[str]) -> None:
                 _write_front(file, found)
             file.attrs["complete"] = True
         seal(draft, SCHEMA)
+
+
+def is_optimum(path: str | os.PathLike[str]) -> bool:
+    """Whether a path is that of a search's file, whole or not."""
+    return schema_of(path) == SCHEMA
+
+
+def check_optimum(path: str | os.PathLike[str]) -> list[str]:
+    """What is wrong with a search's file, one line each; nothing where it is whole, and what it holds is known to be an optimum.
+
+    Raises :class:`.StoreError` for what is not a whole file of a search, :class:`.PathError` for none.
+    """
+    found = []
+    with opened_file(path, SCHEMA, VERSION, "the file of a search") as file:
+        if file.attrs["stopped"]:
+            found.append("the search was stopped before its end")
+        if not file.attrs["feasible"]:
+            found.append("a limit does not hold")
+        if not file.attrs["converged"]:
+            found.append("it is not known to be an optimum")
+    return found
 
 
 def _write_front(file: h5py.File, front: Front) -> None:

@@ -34,7 +34,7 @@ def optimise(
     over: Over,
     subject_to: Sequence[str] = ...,
     starts: Starts = ...,
-    screened: int = ...,
+    screen: int = ...,
     points: int = ...,
     transmission: float = ...,
     t: Times | None = ...,
@@ -56,7 +56,7 @@ def optimise(
     over: Over,
     subject_to: Sequence[str] = ...,
     starts: Starts = ...,
-    screened: int = ...,
+    screen: int = ...,
     points: int = ...,
     transmission: float = ...,
     t: Times | None = ...,
@@ -77,7 +77,7 @@ def optimise(
     over: Over,
     subject_to: Sequence[str] = (),
     starts: Starts = 4,
-    screened: int = 256,
+    screen: int = 256,
     points: int = POINTS,
     transmission: float = 0.05,
     t: Times | None = None,
@@ -107,7 +107,7 @@ def optimise(
     starts
         How many designs the search starts from: the best of designs spread evenly over the bounds, with the parameters' own values
         among them. Or values of parameters for each start.
-    screened
+    screen
         Among how many designs the starts are chosen.
     points
         How many points a front has at most.
@@ -137,7 +137,7 @@ def optimise(
     if not isinstance(own, Scene):
         raise DeclarationError(f"optimise: expected a Scene or a Case, got {scene!r}")
     question = Question.of(own, minimise, over, subject_to, transmission=transmission, t=t, parameters=parameters, backend=backend)
-    checked(starts, screened)
+    checked(starts, screen)
     if type(points) is not int or points < 2:
         raise DeclarationError(f"points: expected a whole number above 1, got {points!r}")
     if resume and force:
@@ -147,9 +147,9 @@ def optimise(
     hands = _hired(dask, scene)
     finder = Finder.of(own, question)
     target = None if out is None else Path(out)
-    told = {"starts": starts if isinstance(starts, int) else [dict(start) for start in starts], "screened": screened}
+    told = {"starts": starts if isinstance(starts, int) else [dict(start) for start in starts], "screen": screen}
     with kept(target, {**question.words(own, finder.engine), **told}, resume=resume, force=force) as journal:
-        search = Search(finder, journal, hands, progress or (lambda *_: None), starts, screened)
+        search = Search(finder, journal, hands, progress or (lambda *_: None), starts, screen)
         found: Optimum | Front
         if isinstance(minimise, str):
             problem = Problem(question.objectives[0], question.constraints)

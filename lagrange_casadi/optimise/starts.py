@@ -32,12 +32,12 @@ def spread(count: int, dimensions: int) -> Array:
     return np.asarray((0.5 + np.outer(np.arange(1, count + 1), ratio ** -np.arange(1.0, dimensions + 1))) % 1.0)
 
 
-def checked(starts: Any, screened: Any) -> None:
+def checked(starts: Any, screen: Any) -> None:
     """Raise :class:`DeclarationError` for counts that are none."""
     if not isinstance(starts, (list, tuple)) and (type(starts) is not int or starts < 1):
         raise DeclarationError(f"starts: expected a whole number above 0, or values of parameters, got {starts!r}")
-    if type(screened) is not int or not 1 <= screened <= _MOST:
-        raise DeclarationError(f"screened: expected a whole number from 1 to {_MOST}, got {screened!r}")
+    if type(screen) is not int or not 1 <= screen <= _MOST:
+        raise DeclarationError(f"screen: expected a whole number from 1 to {_MOST}, got {screen!r}")
 
 
 def named(finder: Finder, starts: Sequence[Mapping[str, float]]) -> list[Judged]:
