@@ -99,6 +99,22 @@ def test_a_peak_at_a_jump_is_told():
     assert note.startswith("peak:effort:O is at a kink or a jump, at t = 0.5")
 
 
+@pytest.mark.parametrize("start", [0.35, 0.5, 0.8])
+def test_a_jump_that_goes_with_what_is_chosen_is_followed(start):
+    """The brake sets in at a time of its own, and pulls least where that is 0.6 s."""
+    m = Mechanism("brake")
+    m.set_gravity(0.0, 0.0)
+    at = m.parameter("at", 0.5, "s", low=0.0)
+    arm = m.link("arm", length=0.3, mass=1.0)
+    m.revolute("O", m.ground, arm)
+    m.torque("brake", arm, -ca.if_else(m.time > at, (1 + 10 * (at - 0.6) ** 2) * ca.exp(at - m.time), 0.0))
+    scene = Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0.0, 1.0, 42), wanted=["effort"])
+    found = optimise(scene, minimise="peak:effort:O", over={"at": (0.3, 0.9)}, starts=[{"at": start}])
+    assert found.converged
+    assert found.values["at"] == pytest.approx(0.6, rel=1e-6)
+    assert found.objective == pytest.approx(1.0, rel=1e-9)
+
+
 def program(f, g):
     """What :func:`conditions` asks of a program, of two variables in 0 to 1."""
     x, by = ca.SX.sym("x", 2), ca.SX.sym("by", g(ca.SX.sym("x", 2)).numel())

@@ -194,6 +194,10 @@ class Descent:
             # Between instants a peak is a little larger.
             high = [(point, sign) for point, sign in points if sign * point.value >= least - _LITTLE * abs(largest)]
             exact = self.judge.exact(term.term, high or points[:1], look)
+            first, sign = exact[0]
+            if term.term.kind == "peak" and not any(first.turn) and 0.0 < first.share < 1.0:
+                # Where it is, a kink has no derivative; along its way it has one.
+                exact[0] = self.judge.drifting(term.term, first, judged.p, self.box), sign
             for point, sign in exact:
                 if sign * point.value >= least:
                     added |= term.add(point, sign, near)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,10 +12,14 @@ from ..declare.density import Array
 from ..designs.engine import DesignEngine, Outcome
 from ..instants.refusal import Status
 from .judged import Judged, Signed
-from .look import Look
+from .look import Look, Point
+from .problem import Box
 from .terms import Term
 from .tops import told, top
 from .values import PointValues
+
+_BESIDE, _BESIDE_MOST, _STILL = 1e-3, 0.05, 1e-8
+"""Of the bounds: how far designs are beside one; and of the time, how far a peak goes there at most, and what is no way at all."""
 
 _PEAKS, _FEW = 24, 3
 """Local peaks that are held, the largest first, and those among which the largest is looked for."""
@@ -96,6 +100,25 @@ class Judge:
             sign = -1.0 if term.kind == "min" else 1.0
             return [(point, sign) for point in look.points(term.output, sign)]
         return [(point, math.copysign(1.0, point.value)) for point in look.points(term.output, 0.0)]
+
+    def drifting(self, term: Term, point: Point, p: Array, box: Box) -> Point:
+        """A peak at a kink or a jump that goes with the chosen parameters, seen by designs beside this one.
+
+        The told peak of each is by the same switch where it is near. What does not move is the point itself.
+        """
+        x, size = box.share(p), len(box.names)
+        ways = np.where(x + _BESIDE <= 1.0, _BESIDE, -_BESIDE)
+        rows = np.array([box.all(x + way * unit) for way, unit in zip(ways, np.eye(size), strict=True)])
+        self.evaluations += size
+        found = self.engine.evaluate(rows, threads=1)
+        k = self.engine.quantities.index(term.name)
+        even = self.engine.times.of(rows)[0]
+        shares = (found.t[:, k] - even[:, 0]) / (even[:, -1] - even[:, 0])
+        moved = np.where(np.abs(shares - point.share) <= _BESIDE_MOST, shares - point.share, 0.0)
+        drift = np.where(np.abs(moved) > _STILL, moved / ways, 0.0)
+        if not drift.any():
+            return point
+        return replace(point, share=float(point.share - drift @ x), drift=tuple(drift.tolist()))
 
     def exact(self, term: Term, points: Sequence[Signed], look: Look) -> list[Signed]:
         """Local peaks, the smooth ones where the derivatives by time and place are zero, and how they follow from there."""

@@ -24,7 +24,7 @@ class Point:
 
     ``share`` is the moment's share of the time from the first instant to the last: these may go with the parameters. ``value`` is
     the quantity there, ``guess`` the iterated coordinates. ``turn`` and ``reach`` say how the point follows its peak: see
-    :class:`.Followed`.
+    :class:`.Followed`. ``drift`` is by how much the share changes with that of each chosen parameter, counted from zero.
     """
 
     share: float
@@ -34,6 +34,7 @@ class Point:
     guess: tuple[float, ...]
     turn: tuple[float, float, float] = (0.0, 0.0, 0.0)
     reach: tuple[float, float] = (0.0, 0.0)
+    drift: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -173,7 +173,7 @@ def _optima(finder: Finder, trails: Sequence[Trail]) -> tuple[LocalOptimum, ...]
 
 
 def _notes(finder: Finder, problem: Problem, judged: Judged) -> Iterator[str]:
-    """Which active peaks are at a kink or a jump, where the program knows one side only."""
+    """Which active peaks are at a kink or a jump, whose way the program has by differences."""
     look = judged.look
     assert look is not None
     values = [None, *(c.excess(judged.value(c.term)) / c.scale(judged.value(c.term)) for c in problem.constraints)]
@@ -188,4 +188,4 @@ def _notes(finder: Finder, problem: Problem, judged: Judged) -> Iterator[str]:
         rate = float(followed.slopes(point.share, list(point.guess), judged.p, point.xi, place)[0])
         if abs(rate) * look.step > _STEEP * abs(point.value) and 0.0 < point.share < 1.0:
             time = look.time(point)
-            yield f"{term} is at a kink or a jump, at t = {time:.6g} s: what follows it there is its value, not its time"
+            yield f"{term} is at a kink or a jump, at t = {time:.6g} s: how that time changes is told by differences"

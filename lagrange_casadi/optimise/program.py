@@ -150,12 +150,15 @@ class Program:
         """The points of a term, as many as there is room for; the first one stands for those that lack."""
         output = held.term.output
         size = self.values.of(output).size if places is None and output is not None else 1
-        rows = np.zeros((room, _NUMBERS + size + self.values.graph.instant.size1_in("z")))
+        n = len(self.box.names)
+        rows = np.zeros((room, _NUMBERS + n + size + self.values.graph.instant.size1_in("z")))
         for k in range(room):
             point, sign = held.points[k if k < len(held.points) else 0]
             where = np.zeros(size)
             where[min(point.place, size - 1)] = 1.0
-            rows[k] = np.concatenate([[point.share, point.xi, sign], point.turn, point.reach, where, point.guess])
+            rows[k] = np.concatenate(
+                [[point.share, point.xi, sign], point.turn, point.reach, point.drift or np.zeros(n), where, point.guess]
+            )
         return rows.ravel()
 
     def _build(self, held: Sequence[Held], room: int) -> _Built:
@@ -174,9 +177,11 @@ class Program:
 
         def points(function: Any, size: int, *, moved: bool) -> tuple[Any, Any]:
             """Values at as many points as there is room for, and their signs."""
-            symbol = ca.MX.sym("points", _NUMBERS + size + nz, room)
+            symbol = ca.MX.sym("points", _NUMBERS + n + size + nz, room)
             given.append(ca.vec(symbol))
-            share, xi, sign, turn, reach, place, guess = ca.vertsplit(symbol, [0, 1, 2, 3, 6, 8, 8 + size, 8 + size + nz])
+            ends = np.cumsum([0, 1, 1, 1, 3, 2, n, size, nz]).tolist()
+            share, xi, sign, turn, reach, drift, place, guess = ca.vertsplit(symbol, ends)
+            share = ca.fmin(ca.fmax(share + ca.mtimes(x.T, drift), 0.0), 1.0)
             further = [turn, reach] if moved else []
             return function.map(room)(share, guess, ca.repmat(p, 1, room), xi, place, *further), sign
 
