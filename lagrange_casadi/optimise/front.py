@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ..declare.density import Array
+from ..errors import NoDesignError
 from .judged import Judged
 from .optimum import Optimum, unit_of
 from .problem import Problem
@@ -98,32 +99,43 @@ class _Fronts:
         question = search.finder.question
         self.terms, self.limits = question.objectives, question.constraints
         self.notes: list[str] = []
+        self.kept: list[_Found] = []
 
     def front(self) -> Front:
-        """The front, as far as an interrupt lets it grow."""
-        found = list(self._points())
-        points = [self._told(one) for one in _efficient(found)]
+        """The front, as far as an interrupt lets it grow. Raises :class:`NoDesignError` where that came before the first point."""
+        try:
+            self._grow()
+        except KeyboardInterrupt:
+            self.search.stopped = True
+        if not self.kept:
+            raise NoDesignError("optimise: stopped before a design was looked at")
+        return self.search.whole(self._result)
+
+    def _result(self) -> Front:
+        points = [self._told(one) for one in _efficient(self.kept)]
         case, units = self.search.finder.scene.mechanism.name, tuple(unit_of(self.search.finder, term) for term in self.terms)
         told = tuple(dict.fromkeys([*self.notes, *(note for point in points for note in point.optimum.notes)]))
         return Front(case, self.terms, units, tuple(points), self.search.stopped, self.search.evaluations, told)
 
-    def _points(self) -> Iterator[_Found]:
-        least = []
+    def _grow(self) -> None:
+        """Find points, and keep those that are found; it ends early after an interrupt, or where limits hold nowhere."""
+        least = self.kept
         for term in self.terms:
             problem = Problem(term, self.limits)
             least.append(self._solved(problem, self.search.begin(problem)))
             if self.search.stopped or not least[-1].optimum.feasible:
-                yield from least
                 return
         values = np.array([one.values for one in least])
         low = values.diagonal()
         if not (values - low > _BETTER * np.abs(low)).any():
             self.notes.append("one design is the best in all objectives: there is no front")
-            yield least[0]
-            return
-        yield from self._two(least) if len(self.terms) == 2 else self._grid(least, low, values.max(axis=0))
+            self.kept = least[:1]
+        elif len(self.terms) == 2:
+            self._two(least)
+        else:
+            self._grid(least, low, values.max(axis=0))
 
-    def _two(self, least: Sequence[_Found]) -> Iterator[_Found]:
+    def _two(self, least: Sequence[_Found]) -> None:
         """A front of two objectives: its ends, and limits of the second one between them."""
         ends: list[_Found] = []
         for k, one in ((1, least[1]), (0, least[0])):
@@ -131,9 +143,9 @@ class _Fronts:
             largest = max(end.values[k] for end in (*least, *ends))
             ends.insert(0, self._end(1 - k, k, one.values[k], largest, one))
             if self.search.stopped:
-                yield from ends
                 return
-        row, closed = ends, set[int]()
+        self.kept = row = ends
+        closed = set[int]()
         while len(row) < self.count and not self.search.stopped:
             size = np.ptp([one.values for one in row], axis=0)
             gaps = [
@@ -154,16 +166,13 @@ class _Fronts:
             if one.values[1] < limit - _JUMP * width:
                 closed.add(id(left))
             row.insert(k + 1, one)
-        yield from row
 
-    def _grid(self, least: Sequence[_Found], low: Array, high: Array) -> Iterator[_Found]:
+    def _grid(self, least: Sequence[_Found], low: Array, high: Array) -> None:
         """A front of more objectives: the limits of a grid between their least values and the largest of the least designs'."""
         others = range(1, len(self.terms))
-        ends = [least[0], *(self._end(0, k, low[k], high[k], least[k]) for k in others)]
-        yield from ends
+        self.kept = known = [least[0], *(self._end(0, k, low[k], high[k], least[k]) for k in others)]
         many = max(2, math.ceil(self.count ** (1.0 / len(others))))
         axes = [np.linspace(high[k], low[k], many + 1)[:-1].tolist() for k in others]
-        known = list(ends)
         for limits in itertools.product(*axes):
             if self.search.stopped:
                 return
@@ -173,7 +182,6 @@ class _Fronts:
             one = self._solved(self._limited(0, dict(zip(others, limits, strict=True))), [near.judged])
             if one.optimum.feasible:
                 known.append(one)
-                yield one
 
     def _end(self, objective: int, other: int, low: float, high: float, one: _Found) -> _Found:
         """The best for an objective where another one is within a little of its least, at which ``one`` is."""

@@ -13,7 +13,7 @@ from .finder import Finder
 from .judged import Judged
 from .problem import Problem
 from .terms import Constraint, Term
-from .trail import CONVERGED, HOLDS, STOPPED, Trail
+from .trail import CONVERGED, HOLDS, Trail
 
 _NEAR = 1e-5
 """Of its scale: how near to its limit a term is that is active."""
@@ -100,7 +100,9 @@ class Optimum:
     notes: tuple[str, ...] = ()
 
 
-def optimum_of(finder: Finder, problem: Problem, trails: Sequence[Trail], judged: Judged, evaluations: int) -> Optimum:
+def optimum_of(
+    finder: Finder, problem: Problem, trails: Sequence[Trail], judged: Judged, evaluations: int, *, stopped: bool
+) -> Optimum:
     """What ways from starts come to; ``judged`` is the end of the best of them, looked at closely."""
     best = min(trails, key=lambda trail: trail.merit)
     box, engine = finder.question.box, finder.engine
@@ -133,7 +135,7 @@ def optimum_of(finder: Finder, problem: Problem, trails: Sequence[Trail], judged
         transmission=math.sqrt(judged.closure) if judged.closure >= 0.0 else math.nan,
         feasible=excess <= HOLDS,
         converged=best.ending == CONVERGED,
-        stopped=any(trail.ending == STOPPED for trail in trails),
+        stopped=stopped,
         residual=best.residual,
         curvature=best.curvature,
         history=np.array([[k, *row] for k, trail in enumerate(trails) for row in trail.history]).reshape(-1, 4 + len(box.names)),

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 
 from ..errors import NoDesignError
+from ..system.publish import uninterrupted
 from .finder import Errand, Finder
 from .hands import Hands
 from .journal import Journal
@@ -16,6 +18,8 @@ from .optimum import Optimum, optimum_of
 from .problem import Problem
 from .starts import Starts, chosen, named, screen
 from .trail import STOPPED, Trail
+
+_T = TypeVar("_T")
 
 Progress = Callable[[int, float, float], None]
 """Hears the number of the way, and the objective and the worst excess over a limit of a design on it."""
@@ -54,7 +58,20 @@ class Search:
             raise NoDesignError("optimise: stopped before a design was looked at")
         self.evaluations += sum(trail.evaluations + 1 for trail in trails)
         best = min(trails, key=lambda trail: trail.merit)
-        return optimum_of(self.finder, problem, trails, self.look(best.end), self.evaluations)
+        stopped = self.stopped
+        return self.whole(lambda: optimum_of(self.finder, problem, trails, self.look(best.end), self.evaluations, stopped=stopped))
+
+    def whole(self, action: Callable[[], _T]) -> _T:
+        """What an action gives, which no interrupt ends. One that came meanwhile ends what follows."""
+        found: list[_T] = []
+        try:
+            with uninterrupted():
+                found.append(action())
+        except KeyboardInterrupt:
+            self.stopped = True
+            if not found:
+                raise
+        return found[0]
 
     def look(self, p: Sequence[float]) -> Judged:
         """A design, looked at closely."""
