@@ -12,6 +12,7 @@ from lagrange_casadi import load_case, optimise
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import BusyError, PathError, StoreError
 from lagrange_casadi.optimise.journal import journal_of
+from lagrange_casadi.optimise.searching import Search
 from lagrange_casadi.system.seal import verify
 
 commands = importlib.import_module("lagrange_casadi.cli.optimise")
@@ -114,6 +115,23 @@ def test_what_was_done_is_not_done_again(here):
     assert set(seen) == {2}
     assert len(found.starts) == 3
     assert found.evaluations == asked().evaluations
+
+
+@pytest.mark.parametrize("objectives", ["peak:effort:O", ["peak:effort:O", "T"]])
+def test_an_interrupt_between_ways_loses_nothing(here, objectives, monkeypatch):
+    """It comes where a result is put together: that one is whole, and what would follow is not begun."""
+    calls = iter(range(100))
+
+    def look(self, p, own=Search.look):
+        if next(calls) == 0:
+            signal.raise_signal(signal.SIGINT)
+        return own(self, p)
+
+    monkeypatch.setattr(Search, "look", look)
+    found = asked(minimise=objectives, out="x.h5", subject_to=["c <= 0.5"])
+    assert found.converged
+    verify("x.h5")
+    assert found.stopped == (here / "x.h5.journal").exists() == isinstance(objectives, list)
 
 
 def test_damaged_lines_are_done_again(here):
