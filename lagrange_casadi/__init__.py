@@ -17,7 +17,7 @@ from .errors import LagrangeCasadiError
 from .evaluate import evaluate
 from .export import export
 from .instants.solution import Peak, Solution
-from .optimise import Optimum, optimise
+from .optimise import Front, Optimum, optimise
 from .store.runs import check, load, save
 from .study.peaks import refine
 from .study.sensitivities import Sensitivities, sensitivities
@@ -28,6 +28,7 @@ from .version import __version__
 __all__ = [
     "Case",
     "Curve",
+    "Front",
     "LagrangeCasadiError",
     "LagrangeSystem",
     "Mechanism",

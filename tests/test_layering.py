@@ -41,7 +41,6 @@ ORDER = (
     "report",
     "animation",
     "actuators",
-    "optimise",
     "bearings",
     "density",
     "motion",
@@ -51,6 +50,7 @@ ORDER = (
     "case_modules",
     "case",
     "sweep",
+    "optimise",
     "cli",
 )
 

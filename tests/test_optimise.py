@@ -9,7 +9,7 @@ from conftest import CASES
 
 from lagrange_casadi import Mechanism, Scene, load_case, optimise, prepare
 from lagrange_casadi.errors import DeclarationError, NoDesignError, ParameterError, UnknownNameError
-from lagrange_casadi.motion import harmonic, polynomial, samples
+from lagrange_casadi.motion import harmonic, samples
 
 
 def case(name):
@@ -168,6 +168,11 @@ def test_limits_that_hold_nowhere_are_told():
         ({"minimise": "mean:reaction:O:fx"}, UnknownNameError, "quantity with a mean"),
         ({"minimise": "min:effort:O"}, DeclarationError, "use max:effort:O"),
         ({"over": {"k": (0.1, 0.2)}}, UnknownNameError, "parameter"),
+        (
+            {"over": {"l": (0.2, 0.3), "m2": (0.1, 0.2)}, "minimise": "max:pose:slider:x"},
+            DeclarationError,
+            "nothing .* depends on 'm2'",
+        ),
         ({"over": {}}, DeclarationError, "expected bounds by parameter"),
         ({"over": {"l": 0.3}}, DeclarationError, "expected \\(least, largest\\) for 'l'"),
         ({"over": {"l": (0.4, 0.3)}}, DeclarationError, "must be below the largest"),
@@ -179,6 +184,15 @@ def test_limits_that_hold_nowhere_are_told():
         ({"starts": 0}, DeclarationError, "starts: expected a whole number above 0"),
         ({"starts": [{"r": 0.1}]}, UnknownNameError, "parameter that is chosen"),
         ({"starts": [{"l": 0.7}]}, DeclarationError, "l = 0.7 is not within its bounds"),
+        ({"starts": 2.0}, DeclarationError, "starts: expected a whole number above 0"),
+        ({"screen": 0}, DeclarationError, "screen: expected a whole number from 1"),
+        ({"points": 1}, DeclarationError, "points: expected a whole number above 1"),
+        ({"minimise": []}, DeclarationError, "minimise: expected a text"),
+        ({"minimise": ["r", "r"]}, DeclarationError, "a term is there twice: r, r"),
+        ({"subject_to": "r <= 1"}, DeclarationError, "expected a list of constraints"),
+        ({"resume": True}, DeclarationError, "resume: expected out"),
+        ({"resume": True, "force": True}, DeclarationError, "exclude each other"),
+        ({"dask": "tcp://127.0.0.1:1"}, DeclarationError, "a cluster needs a case"),
         ({"transmission": 2.0}, DeclarationError, "transmission: expected a sine"),
     ],
 )
@@ -190,7 +204,7 @@ def test_mistakes(words, error, said):
 def test_no_design_has_a_result():
     with pytest.raises(NoDesignError, match="no design within the bounds has a result"):
         optimise(case("slider_crank"), minimise="peak:effort:O", over={"l": (0.01, 0.05)})
-    with pytest.raises(DeclarationError, match="expected a Scene"):
+    with pytest.raises(DeclarationError, match="expected a Scene or a Case"):
         optimise(None, minimise="peak:effort:O", over={"l": (0.1, 0.2)})
 
 
@@ -198,15 +212,6 @@ def test_a_casadi_without_ipopt_is_told(monkeypatch):
     monkeypatch.setattr(ca, "has_nlpsol", lambda name: False)
     with pytest.raises(DeclarationError, match="no IPOPT"):
         optimise(case("slider_crank"), minimise="peak:effort:O", over={"l": (0.2, 0.3)})
-
-
-def test_what_has_instants_of_its_own_is_refused():
-    m = Mechanism("wheel")
-    rpm = m.parameter("rpm", 60.0, "1/min")
-    m.revolute("O", m.ground, m.link("arm", length=0.3, mass=1.0))
-    scene = Scene(m, {"O": polynomial(0.0, 2 * math.pi / 60 * rpm)}, t=(0, 60 / rpm, 21))
-    with pytest.raises(DeclarationError, match="the instants must be the same for all designs"):
-        optimise(scene, minimise="peak:effort:O", over={"rpm": (30.0, 90.0)})
 
 
 @pytest.mark.long

@@ -36,6 +36,10 @@ def test_it_writes_a_file_and_a_picture(here, capfd):
     assert out.endswith("wrote a.h5 and a.svg\n")
     assert (here / "a.svg").read_text().lstrip().startswith("<?xml")
     verify("a.h5")
+    assert main(["check", "a.h5"]) == 0
+    assert capfd.readouterr().out == "a.h5: whole and consistent\n"
+    assert main(["info", "a.h5"]) == 1
+    assert "but that of a search for designs, which the command check reads" in capfd.readouterr().err
     assert kind_of("a.h5") == "lagrange-casadi-optimum"
     with h5py.File("a.h5") as file:
         assert file.attrs["feasible"]
@@ -65,13 +69,13 @@ def test_limits_that_hold_nowhere_end_with_a_status(here, capfd):
 def test_an_interrupt_leaves_the_best_so_far(here, capfd, monkeypatch):
     count = iter(range(100))
 
-    def note(self, start, judged, own=Descent.note):
-        own(self, start, judged)
+    def note(self, judged, own=Descent._note):
+        own(self, judged)
         if next(count) == 1:
             os.kill(os.getpid(), signal.SIGINT)
             time.sleep(0.1)
 
-    monkeypatch.setattr(Descent, "note", note)
+    monkeypatch.setattr(Descent, "_note", note)
     assert main([*ASKED, "--out", "a.h5"]) == 1
     out, err = capfd.readouterr()
     assert err == ""

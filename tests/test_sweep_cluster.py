@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 import sweeps
 
-from lagrange_casadi import Case, load_case
+from lagrange_casadi import Case, load_case, optimise
 from lagrange_casadi.declare.times import Timing
 from lagrange_casadi.errors import ClusterError, DeclarationError, StoppedError
 from lagrange_casadi.instants.rung import Rung
@@ -96,6 +96,16 @@ SPACE = {
     "spatial_slider_crank": {"grid": {"l": (0.4, 0.5, 60)}, "wanted": ["effort", "section:rod"], "xi": (0, 1, 5)},
 }
 """Loops of closed forms, iterated loops, and the peaks of resultants along a link."""
+
+
+def test_searches_for_a_design_give_the_same_bytes(slider_crank, two_workers, tmp_path):
+    words = {"minimise": "peak:effort:O", "over": {"l": (0.12, 0.8), "r": (0.05, 0.1)}, "subject_to": ["r >= 0.07"], "starts": 3}
+    words |= {"t": (0, 0.08, 41), "screen": 16}
+    here, there = tmp_path / "here.h5", tmp_path / "there.h5"
+    found = optimise(slider_crank, **words, out=here)
+    assert found.converged
+    assert optimise(slider_crank, **words, out=there, dask=two_workers).starts[2].ending == "converged"
+    assert there.read_bytes() == here.read_bytes()
 
 
 @pytest.mark.long

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from ..optimise.file import check_optimum, is_optimum
 from ..store import runs as store
 from ..sweep import is_sweep
 from ..sweep.checking import check_sweep, progress, unfinished
@@ -30,4 +31,6 @@ def _findings(file: Path) -> list[str]:
     folder = unfinished(file)
     if folder:
         return [progress(folder), *folder.flaws()]
+    if is_optimum(file):
+        return check_optimum(file)
     return check_sweep(file) if is_sweep(file) else store.check(file)

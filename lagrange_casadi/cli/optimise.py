@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 from tqdm import tqdm
@@ -14,12 +15,14 @@ from ..declare.angles import typed
 from ..declare.even_points import EvenPoints
 from ..errors import DeclarationError
 from ..instants.rung import BACKENDS, Backend
-from ..optimise import Optimum
+from ..optimise import Front, Optimum
 from ..optimise import optimise as search
 from ..optimise.figure import PICTURES, draw_optimum
-from ..optimise.file import save_optimum
+from ..optimise.front import POINTS
+from ..optimise.front_figure import draw_front
 from ..system.numerals import real
 from ..system.publish import check_writable, writing
+from .optimum_lines import front_lines, optimum_lines
 from .options import EVEN_POINTS, even_points, parameters, setting
 
 _BOUNDS = "NAME=LEAST:LARGEST"
@@ -37,7 +40,13 @@ def _bounds(text: str) -> tuple[str, tuple[float, float]]:
 
 @click.command()
 @click.argument("case", type=click.Path(path_type=Path))
-@click.option("--minimise", required=True, metavar="TERM", help="peak:QUANTITY, max:, mean: or rms:, or a parameter.")
+@click.option(
+    "--minimise",
+    required=True,
+    multiple=True,
+    metavar="TERM",
+    help="peak:QUANTITY, max:, mean: or rms:, or a parameter; repeated, for their front.",
+)
 @click.option(
     "--over", "bounds", type=_bounds, multiple=True, required=True, metavar=_BOUNDS, help="A parameter to choose; repeatable."
 )
@@ -46,6 +55,10 @@ def _bounds(text: str) -> tuple[str, tuple[float, float]]:
 )
 @click.option("--starts", type=int, default=4, show_default=True, metavar="NUMBER", help="How many designs to start from.")
 @click.option(
+    "--screen", type=int, default=256, show_default=True, metavar="NUMBER", help="Among how many designs starts are chosen."
+)
+@click.option("--points", type=int, default=POINTS, show_default=True, metavar="NUMBER", help="Points of a front, at most.")
+@click.option(
     "--transmission", type=float, default=0.05, show_default=True, metavar="SINE", help="Least sine of transmission angles."
 )
 @click.option(
@@ -53,22 +66,34 @@ def _bounds(text: str) -> tuple[str, tuple[float, float]]:
 )
 @click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
 @click.option("--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="What evaluates designs.")
+@click.option("--dask", metavar="ADDRESS", help="Search on a cluster: its Dask scheduler, as tcp://HOST:8786.")
+@click.option("--resume", is_flag=True, help="Go on with a search that was stopped; start where there is nothing.")
+@click.option("--force", is_flag=True, help="Start anew, whatever is there.")
 @click.option("--out", type=click.Path(path_type=Path), help="History and result, as HDF5; default: <case>_optimum.h5 here.")
 @click.option("--figure", type=click.Path(path_type=Path), help="The picture; default: <case>_optimum.png here.")
 def optimise(
     case: Path,
-    minimise: str,
+    minimise: Sequence[str],
     bounds: Sequence[tuple[str, tuple[float, float]]],
     limits: Sequence[str],
     starts: int,
+    screen: int,
+    points: int,
     transmission: float,
     settings: Sequence[tuple[str, float | str]],
     t: EvenPoints | None,
     backend: Backend,
+    dask: str | None,
+    resume: bool,
+    force: bool,
     out: Path | None,
     figure: Path | None,
 ) -> int:
-    """Find the design of CASE for which a peak or a mean is least, within limits that hold over the whole motion."""
+    """Find the design of CASE for which a peak or a mean is least, within limits that hold over the whole motion.
+
+    Of several terms it finds their front: designs of which none is better in all of them. A search that was stopped leaves the best
+    so far, and goes on with --resume.
+    """
     over = dict(bounds)
     if len(over) < len(bounds):
         raise DeclarationError("over: a parameter has bounds twice")
@@ -84,49 +109,34 @@ def optimise(
             bar.set_postfix_str(f"start {start + 1}: {objective:.5g}{'' if excess <= 0.0 else f', beyond a limit by {excess:.1g}'}")
             bar.update()
 
-        found = search(
-            loaded.scene,
-            minimise=minimise,
-            over=over,
-            subject_to=limits,
-            starts=starts,
-            transmission=transmission,
-            t=t,
-            parameters=parameters(settings),
-            backend=backend,
-            progress=progress,
-        )
+        options: dict[str, Any] = {
+            "subject_to": limits,
+            "starts": starts,
+            "screen": screen,
+            "points": points,
+            "transmission": transmission,
+            "t": t,
+            "parameters": parameters(settings),
+            "backend": backend,
+            "dask": dask,
+            "out": out,
+            "resume": resume,
+            "force": force,
+            "progress": progress,
+        }
+        found: Optimum | Front
+        if len(minimise) == 1:
+            found = search(loaded, minimise=minimise[0], over=over, **options)
+        else:
+            found = search(loaded, minimise=list(minimise), over=over, **options)
     if found.stopped and hasattr(signal, "setitimer"):
         signal.setitimer(signal.ITIMER_REAL, 0.0)  # the interrupt has arrived, and is repeated no more
-    save_optimum(found, out)
     with writing(figure) as (picture,):
-        draw_optimum(loaded.scene, found, picture, figure.suffix)
-    _print(found)
+        if isinstance(found, Optimum):
+            draw_optimum(loaded.scene, found, picture, figure.suffix)
+        else:
+            draw_front(loaded.scene, found, picture, figure.suffix)
+    for line in optimum_lines(found) if isinstance(found, Optimum) else front_lines(found):
+        click.echo(line)
     click.echo(f"wrote {out} and {figure}")
     return 0 if found.feasible and found.converged and not found.stopped else 1
-
-
-def _print(found: Optimum) -> None:
-    told = ", ".join(f"{name} = {value:.8g}" for name, value in found.values.items())
-    click.echo(f"{found.case}: {found.minimised} = {found.objective:.8g} {found.unit} at {told}")
-    if found.stopped:
-        click.echo("stopped: the best design so far")
-    for limit in found.limits:
-        excess = limit.constraint.excess(limit.value)
-        kept = "active" if limit.active else f"VIOLATED by {excess:.4g}" if excess > 0.0 else "holds"
-        relaxed = f", a unit more gains {limit.multiplier:.4g}" if limit.active and found.feasible else ""
-        click.echo(f"  {limit.constraint}: {limit.value:.8g}, {kept}{relaxed}")
-    for name, multiplier in found.bounds.items():
-        if multiplier and found.feasible:
-            click.echo(
-                f"  {name} is at its {'least' if multiplier < 0.0 else 'largest'} value, a unit more gains {abs(multiplier):.4g}"
-            )
-    angle = "" if found.transmission != found.transmission else f", least sine of transmission angles {found.transmission:.4g}"
-    ends = f"{sum(one.ending == 'converged' for one in found.starts)} of {len(found.starts)} starts converged"
-    click.echo(f"  {ends}, {found.evaluations} designs, first-order conditions to {found.residual:.1e}{angle}")
-    if not found.feasible:
-        click.echo("  no design that was found is within all limits")
-    elif not found.converged:
-        click.echo(f"  not known to be an optimum: {found.start.ending}")
-    for note in found.notes:
-        click.echo(f"  note: {note}")

@@ -14,39 +14,40 @@ from ..instants.solution import Solution
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_MILLI, _PIXELS, _FLOOR = 1e3, 1600, 1e-6
+_PIXELS, _FLOOR = 1600, 1e-6
+_UNITS = {False: (1e3, "mm"), True: (1.0, "m")}
 _FROM = {"ends": "the line between its ends", "base": "its axis at the base"}
 
 
-def draw_deflection(solution: Solution, link: str, along: Array, label: str) -> Figure:
+def draw_deflection(solution: Solution, link: str, along: Array, label: str, si: bool = False) -> Figure:
     """The deflection of a link across it as a map, and where its span is a cycle the harmonics of its bending."""
     from matplotlib.figure import Figure
 
     found, swings = solution.deflection(link), vibration(solution, link)
     figure = Figure(figsize=(8.0, 7.0 if swings.harmonics else 3.8), layout="constrained")
     panels = list(figure.subplots(2 if swings.harmonics else 1, 1, squeeze=False).flat)
-    _map(figure, panels[0], found, along, label)
+    _map(figure, panels[0], found, along, label, *_UNITS[si])
     if swings.harmonics:
         _spectrum(panels[1], swings)
     figure.suptitle(f"{solution.case}: deflection of {link} from {_FROM[found.against]}", fontsize=11)
     return figure
 
 
-def _map(figure: Figure, axes: Any, found: Deflection, along: Array, label: str) -> None:
+def _map(figure: Figure, axes: Any, found: Deflection, along: Array, label: str, factor: float, unit: str) -> None:
     member = found.member
     instants, ratios = (slice(None, None, 1 + size // _PIXELS) for size in (member.t.size, member.xi.size))
     xi, peak = member.xi[ratios], found.peak()
     u = np.broadcast_to(xi, (member.t.size, xi.size))
-    values = found.size(u)[instants] * _MILLI
-    most = abs(peak.value) * _MILLI or 1.0
+    values = found.size(u)[instants] * factor
+    most = abs(peak.value) * factor or 1.0
     colours = {"cmap": "viridis", "vmin": 0.0} if member.space else {"cmap": "RdBu_r", "vmin": -most, "vmax": most}
     picture = axes.pcolormesh(along[instants], xi, values.T, shading="nearest", rasterized=True, **colours)
     place = float(along[int(np.argmin(np.abs(member.t - peak.t)))])
     axes.plot(place, peak.xi, "k+", markersize=13, markeredgewidth=1.8, clip_on=False)
-    axes.set_title(f"largest: {peak.value * _MILLI:.4g} mm, " + rf"$\xi/l$ = {peak.xi:.3f}", fontsize=10)
+    axes.set_title(f"largest: {peak.value * factor:.4g} {unit}, " + rf"$\xi/l$ = {peak.xi:.3f}", fontsize=10)
     axes.set_xlabel(label)
     axes.set_ylabel(r"$\xi/l$")
-    figure.colorbar(picture, ax=axes, label="deflection across the link [mm]")
+    figure.colorbar(picture, ax=axes, label=f"deflection across the link [{unit}]")
 
 
 def _spectrum(axes: Any, swings: Vibration) -> None:

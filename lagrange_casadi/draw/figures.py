@@ -241,11 +241,11 @@ class DeflectionPlot:
         """Full names of the quantities it draws."""
         return SectionMaps(self.name, self.link).needs()
 
-    def draw(self, solution: Solution) -> Figure:
+    def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         from .deflection_plot import draw_deflection
 
-        return draw_deflection(solution, self.link, *_along(solution))
+        return draw_deflection(solution, self.link, *_along(solution), si)
 
 
 Spec = TimePlot | SpanPlot | SectionMaps | MechanismDrawing | StrengthPlot | UtilisationPlot | DeflectionPlot

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from .judge import HOLDS, Judge, Judged, scale_of
+from ..errors import AssemblyError
+from .judge import Judge
+from .judged import Judged
 from .look import Point
-from .program import Box, Found, Held
+from .problem import Box, Problem
+from .program import Found, Held, Program
+from .trail import CONVERGED, HOLDS, STOPPED, Trail, rounded
 
 _ROUNDS, _HALVINGS = 40, 12
 """Programs that are solved at most; and how often a step is halved that leads to where loops do not close."""
@@ -29,79 +34,155 @@ _LITTLE = 0.02
 _CLOSED = 12
 """Instants at which a program watches how its loops close, from the beginning."""
 
+_STEPS = (0.1, 0.03, 0.01, 0.003)
+"""Of the bounds: how far from what seems to be no minimum a better design is looked for."""
+
+_SAME = 1e-6
+"""Of a step between instants: how near two points are that are one."""
+
+Told = Callable[[float, float], None]
+"""Hears the objective and the worst excess of each design on the way."""
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """A design on the way, the program that led there, if any, and how the way would end here."""
+
+    judged: Judged
+    by: Found | None
+    ending: str
+
 
 @dataclass(eq=False)
 class Descent:
-    """What searches from several starts share: a ``history`` of designs, and the ``scales`` of the terms."""
+    """A way from a start. Nothing of it depends on other ways, so that it is the same wherever it is gone."""
 
     judge: Judge
+    program: Program
     box: Box
-    progress: Callable[[int, float, float], None] | None
-    history: list[list[float]] = field(default_factory=list)
-    scales: tuple[float, ...] = ()
+    problem: Problem
+    scales: tuple[float, ...]
+    told: Told
+    history: list[tuple[float, ...]] = field(default_factory=list)
+    seen: list[_Seen] = field(default_factory=list)
 
-    def note(self, start: int, judged: Judged) -> None:
+    def go(self, first: Judged) -> Trail:
+        """Go from a design to the best near it; after an interrupt, as far as it went."""
+        before, stopped = self.judge.evaluations, False
+        try:
+            self._descend(first)
+        except KeyboardInterrupt:
+            stopped = True
+        except AssemblyError as error:
+            self.seen.append(_Seen(first, None, str(error)))
+        best = min(reversed(self.seen), key=lambda one: self._merit(one.judged)) if self.seen else _Seen(first, None, "")
+        found = best.by
+        return Trail(
+            start=tuple(first.p.tolist()),
+            end=tuple(best.judged.p.tolist()),
+            objective=best.judged.value(self.problem.objective),
+            excess=self.problem.excess(best.judged),
+            scale=self.scales[0],
+            ending=STOPPED if stopped else best.ending,
+            history=tuple(self.history),
+            multipliers=found.multipliers if found else (),
+            bounds=tuple(found.bounds.tolist()) if found else (),
+            residual=found.conditions.residual if found else math.nan,
+            curvature=found.conditions.curvature if found else math.nan,
+            evaluations=self.judge.evaluations - before,
+        )
+
+    def _merit(self, judged: Judged) -> tuple[float, float]:
+        """A merit less its last digits, so that of designs as good the one that converged is taken."""
+        excess, objective = self.problem.merit(judged)
+        return excess, rounded(objective, self.scales[0])
+
+    def _note(self, judged: Judged) -> None:
         """Keep a design in the history, and tell of it."""
-        row = [float(start), float(judged.values[0]), judged.excess, float(judged.look is not None)]
-        self.history.append([*row, *judged.p[list(self.box.places)].tolist()])
-        if self.progress is not None:
-            self.progress(start, float(judged.values[0]), judged.excess)
+        objective, excess = judged.value(self.problem.objective), self.problem.excess(judged)
+        row = (objective, excess, float(judged.has_result), *judged.p[list(self.box.places)].tolist())
+        self.history.append(row)
+        self.told(objective, excess)
 
-    def descend(self, number: int, first: Judged, better: Callable[[Judged, Found | None, str], None]) -> None:
-        """Go from a design to the best near it; ``better`` is told every design on the way."""
-        self.note(number, first)
-        better(first, None, "start")
-        look = first.look
+    def _better(self, judged: Judged, by: Found | None, ending: str) -> None:
+        """Keep a design that is no worse than those before."""
+        converged = by is not None and ending == CONVERGED
+        if not self.seen or converged or self.problem.merit(judged) <= self.problem.merit(self.seen[-1].judged):
+            self.seen.append(_Seen(judged, by, ending))
+
+    def _descend(self, first: Judged) -> None:
+        self._note(first)
+        self._better(first, None, "start")
+        look, box = first.look, self.box
         assert look is not None
-        # A program is of one scale.
-        values = zip(self.judge.constraints, first.values[1:].tolist(), strict=True)
-        self.scales = self.scales or (abs(float(first.values[0])) or 1.0, *(scale_of(c, v) for c, v in values))
-        held = [Held(self.judge.program.objective, None, self.scales[0])]
-        held += [Held(c.term, c.limit, scale, c.least) for c, scale in zip(self.judge.constraints, self.scales[1:], strict=True)]
-        near = (look.t[-1] - look.t[0]) / max(look.t.size - 1, 1) * 1e-6
-        closures = [look.instant(k) for k in np.unique(np.linspace(0, look.t.size - 1, _CLOSED).astype(int)).tolist()]
-        self._learn(held, closures, first, near, everything=True)
+        held = [Held(self.problem.objective, None, self.scales[0])]
+        for constraint, scale in zip(self.problem.constraints, self.scales[1:], strict=True):
+            held.append(Held(constraint.term, constraint.limit, scale, constraint.least))
+        numbers = np.unique(np.linspace(0, look.t.size - 1, _CLOSED).astype(int)).tolist()
+        closures = [look.instant(k) for k in numbers]
+        self._learn(held, closures, first, everything=True)
         current, tried = first, 0
-        averages = look
         for _ in range(_ROUNDS):
-            every = [averages.instant(k) for k in range(averages.t.size)] if self.judge.program.averaged else []
-            found = self.judge.program.solve(self.box.share(current.p), held, closures, every)
+            every = current.look.instants if self.program.averaged and current.look is not None else []
+            found = self.program.solve(box.share(current.p), held, closures, every)
             x = found.x
             if not np.isfinite(x).all():
-                better(current, None, "the program has no solution: no derivative where it looked")
+                self._better(current, None, "the program has no solution: no derivative where it looked")
                 return
-            following = self.judge.look(self.box.all(x))
-            self.note(number, following)
+            following = self.judge.look(box.all(x))
+            self._note(following)
             back = 0
             while following.look is None and back < _HALVINGS:
                 # Loops do not close somewhere between the points: go back until they do, and look there from then on.
                 back += 1
-                x = (x + self.box.share(current.p)) / 2
-                following = self.judge.look(self.box.all(x))
+                x = (x + box.share(current.p)) / 2
+                following = self.judge.look(box.all(x))
             if following.look is None:
-                better(current, None, "loops close nowhere near")
+                self._better(current, None, "loops close nowhere near")
                 return
-            added = self._learn(held, closures, following, near, everything=back > 0)
+            added = self._learn(held, closures, following, everything=back > 0)
             done = not back and self._settled(found, following)
-            moved = float(np.abs(self.box.share(following.p) - self.box.share(current.p)).max())
-            better(following, found if not back else None, "converged" if done else f"IPOPT: {found.status}")
+            moved = float(np.abs(box.share(following.p) - box.share(current.p)).max())
+            if done and found.conditions.turns_down and (lower := self._lower(found, following)):
+                self._note(lower)
+                self._better(lower, None, "beyond a saddle")
+                self._learn(held, closures, lower, everything=True)
+                current = lower
+                continue
+            self._better(following, found if not back else None, CONVERGED if done else f"IPOPT: {found.status}")
             if done and found.status == "Solve_Succeeded":
                 return
             tried = tried + 1 if moved <= 1e-9 and not added else 0
-            current, averages = following, following.look
+            current = following
             if tried >= 2:
                 return
 
+    def _lower(self, found: Found, judged: Judged) -> Judged | None:
+        """A better design beside one that seems to be no minimum, along the way that it is left; None where it is one after all.
+
+        A program holds some peaks where they are, so that its second derivatives may be less than those of the peaks.
+        """
+        way = found.conditions.way / (np.abs(found.conditions.way).max() or 1.0)
+        excess, objective = self._merit(judged)
+        for step in (share * sign for share in _STEPS for sign in (1.0, -1.0)):
+            tried = self.judge.look(self.box.all(np.clip(found.x + step * way, 0.0, 1.0)))
+            if self._merit(tried) < (excess, objective):
+                return tried
+        return None
+
     def _settled(self, found: Found, judged: Judged) -> bool:
         """Whether a program's solution is what it says, with all peaks that it did not know."""
-        gap = abs(judged.values[0] - found.objective) / (abs(judged.values[0]) or 1.0)
-        return judged.excess <= HOLDS and gap <= HOLDS and found.residual <= _CONDITIONS
+        value = judged.value(self.problem.objective)
+        gap = abs(value - found.objective) / (abs(value) or 1.0)
+        return self.problem.excess(judged) <= HOLDS and gap <= HOLDS and found.conditions.residual <= _CONDITIONS
 
-    def _learn(self, held: Sequence[Held], closures: list[Point], judged: Judged, near: float, *, everything: bool) -> bool:
+    def _learn(self, held: Sequence[Held], closures: list[Point], judged: Judged, *, everything: bool) -> bool:
         """Hold terms at the peaks of a design that programs do not know; whether there were any."""
-        added = False
-        assert judged.look is not None
-        for k, (term, points) in enumerate(zip(held, judged.points, strict=True)):
+        added, look = False, judged.look
+        assert look is not None
+        near = _SAME * look.step
+        for k, term in enumerate(held):
+            points = judged.points[term.term]
             if not points:
                 continue
             largest = points[0][1] * points[0][0].value
@@ -112,17 +193,20 @@ class Descent:
                 least = max(least, level - _NEAR * term.scale)
             # Between instants a peak is a little larger.
             high = [(point, sign) for point, sign in points if sign * point.value >= least - _LITTLE * abs(largest)]
-            exact = self.judge.exact(term.term, high or points[:1], judged)
+            exact = self.judge.exact(term.term, high or points[:1], look)
+            first, sign = exact[0]
+            if term.term.kind == "peak" and not any(first.turn) and 0.0 < first.share < 1.0:
+                # Where it is, a kink has no derivative; along its way it has one.
+                exact[0] = self.judge.drifting(term.term, first, judged.p, self.box), sign
             for point, sign in exact:
                 if sign * point.value >= least:
                     added |= term.add(point, sign, near)
             if not term.points:
                 added |= term.add(*exact[0], near)
-        sines = judged.look.closures()
-        for row in sines:
+        for row in look.closures():
             k = int(np.argmin(row))
-            point = judged.look.instant(k)
-            if row[k] < 4 * self.judge.program.least_closure and all(abs(point.t - other.t) > near for other in closures):
+            point = look.instant(k)
+            if row[k] < 4 * self.program.least_closure and all(abs(point.share - other.share) > near for other in closures):
                 closures.append(point)
                 added = True
         return added

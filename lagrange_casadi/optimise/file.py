@@ -8,42 +8,91 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from ..store.opening import opened_file, schema_of
 from ..system.publish import replacing
 from ..system.seal import seal
+from .front import Front
 from .optimum import Optimum
 
 SCHEMA, VERSION = "lagrange-casadi-optimum", 1
 
 
-def save_optimum(optimum: Optimum, path: str | os.PathLike[str]) -> None:
+def save(found: Optimum | Front, path: str | os.PathLike[str]) -> None:
     """Write the history and the result of a search, replacing the file at ``path`` whole or not at all.
 
     Raises :class:`.PathError` where no file can be put there, :class:`.StoreError` where it cannot be written.
     """
-    names = list(optimum.values)
     with replacing(Path(path), hdf5=True) as draft:
         with h5py.File(draft, "w", track_order=True) as file:
-            file.attrs.update({"schema": SCHEMA, "schema_version": VERSION, "case": optimum.case})
-            file.attrs.update({"minimised": str(optimum.minimised), "unit": optimum.unit, "objective": optimum.objective})
-            for name in ("feasible", "converged", "stopped", "residual", "curvature", "transmission", "evaluations"):
-                file.attrs[name] = getattr(optimum, name)
-            parameters = file.create_group("parameters", track_order=True)
-            for name, value in optimum.parameters.items():
-                parameters[name] = value
-                parameters[name].attrs["chosen"] = name in names
-                if name in names:
-                    parameters[name].attrs["multiplier"] = optimum.bounds[name]
-            limits = file.create_group("limits", track_order=True)
-            for number, limit in enumerate(optimum.limits):
-                group = limits.create_group(f"{number}")
-                group.attrs.update({"constraint": str(limit.constraint), "value": limit.value, "limit": limit.constraint.limit})
-                group.attrs.update({"active": limit.active, "multiplier": limit.multiplier})
-            starts = file.create_group("starts", track_order=True)
-            for number, start in enumerate(optimum.starts):
-                group = starts.create_group(f"{number}")
-                group["start"], group["end"] = (np.array([values[name] for name in names]) for values in (start.values, start.end))
-                group.attrs.update({"objective": start.objective, "excess": start.excess, "ending": start.ending})
-            history = file.create_dataset("history", data=optimum.history)
-            history.attrs["columns"] = ["start", "objective", "excess", "result", *names]
+            file.attrs.update({"schema": SCHEMA, "schema_version": VERSION, "case": found.case})
+            if isinstance(found, Optimum):
+                _write_optimum(file, found)
+            else:
+                _write_front(file, found)
             file.attrs["complete"] = True
         seal(draft, SCHEMA)
+
+
+def is_optimum(path: str | os.PathLike[str]) -> bool:
+    """Whether a path is that of a search's file, whole or not."""
+    return schema_of(path) == SCHEMA
+
+
+def check_optimum(path: str | os.PathLike[str]) -> list[str]:
+    """What is wrong with a search's file, one line each; nothing where it is whole, and what it holds is known to be an optimum.
+
+    Raises :class:`.StoreError` for what is not a whole file of a search, :class:`.PathError` for none.
+    """
+    found = []
+    with opened_file(path, SCHEMA, VERSION, "the file of a search") as file:
+        if file.attrs["stopped"]:
+            found.append("the search was stopped before its end")
+        if not file.attrs["feasible"]:
+            found.append("a limit does not hold")
+        if not file.attrs["converged"]:
+            found.append("it is not known to be an optimum")
+    return found
+
+
+def _write_front(file: h5py.File, front: Front) -> None:
+    for name in ("stopped", "feasible", "converged", "evaluations"):
+        file.attrs[name] = getattr(front, name)
+    names = list(front.points[0].optimum.values)
+    own = file.create_group("front", track_order=True)
+    own.attrs.update({"minimised": list(map(str, front.minimised)), "units": list(front.units), "parameters": names})
+    own["objectives"] = front.objectives
+    own["trades"] = np.array([point.trades for point in front.points])
+    own["designs"] = np.array([[point.optimum.values[name] for name in names] for point in front.points])
+    own["converged"] = np.array([point.optimum.converged for point in front.points])
+    points = file.create_group("points", track_order=True)
+    for number, point in enumerate(front.points):
+        _write_optimum(points.create_group(f"{number}", track_order=True), point.optimum)
+
+
+def _write_optimum(file: h5py.Group, optimum: Optimum) -> None:
+    names = list(optimum.values)
+    file.attrs.update({"minimised": str(optimum.minimised), "unit": optimum.unit, "objective": optimum.objective})
+    for name in ("feasible", "converged", "stopped", "residual", "curvature", "transmission", "evaluations"):
+        file.attrs[name] = getattr(optimum, name)
+    parameters = file.create_group("parameters", track_order=True)
+    for name, value in optimum.parameters.items():
+        parameters[name] = value
+        parameters[name].attrs["chosen"] = name in names
+        if name in names:
+            parameters[name].attrs["multiplier"] = optimum.bounds[name]
+    limits = file.create_group("limits", track_order=True)
+    for number, limit in enumerate(optimum.limits):
+        group = limits.create_group(f"{number}")
+        group.attrs.update({"constraint": str(limit.constraint), "value": limit.value, "limit": limit.constraint.limit})
+        group.attrs.update({"active": limit.active, "multiplier": limit.multiplier})
+    starts = file.create_group("starts", track_order=True)
+    for number, start in enumerate(optimum.starts):
+        group = starts.create_group(f"{number}")
+        group["start"], group["end"] = (np.array([values[name] for name in names]) for values in (start.values, start.end))
+        group.attrs.update({"objective": start.objective, "excess": start.excess, "ending": start.ending})
+    optima = file.create_group("optima", track_order=True)
+    optima["designs"] = np.array([[one.values[name] for name in names] for one in optimum.optima]).reshape(-1, len(names))
+    optima["objective"] = np.array([one.objective for one in optimum.optima])
+    optima["starts"] = np.array([one.starts for one in optimum.optima], int)
+    history = file.create_dataset("history", data=optimum.history)
+    history.attrs["columns"] = ["start", "objective", "excess", "result", *names]

@@ -4,102 +4,94 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..declare.density import Array
-from ..designs.engine import DesignEngine
+from ..designs.engine import DesignEngine, Outcome
 from ..instants.refusal import Status
-from .look import Look
-from .program import Program
-from .terms import Constraint, Term
-from .tops import Signed, told, top
+from .judged import Judged, Signed
+from .look import Look, Point
+from .problem import Box
+from .terms import Term
+from .tops import told, top
+from .values import PointValues
 
-HOLDS = 1e-7
-"""Of its limit: by how much a constraint may be violated that holds."""
+_BESIDE, _BESIDE_MOST, _STILL = 1e-3, 0.05, 1e-8
+"""Of the bounds: how far designs are beside one; and of the time, how far a peak goes there at most, and what is no way at all."""
 
 _PEAKS, _FEW = 24, 3
 """Local peaks that are held, the largest first, and those among which the largest is looked for."""
 
 
-@dataclass(frozen=True, eq=False)
-class Judged:
-    """A design as it is: the value of every term, objective first, and the worst excess over a limit; NaN without a result."""
-
-    p: Array
-    values: Array
-    excess: float
-    look: Look | None
-    closure: float = math.nan
-    points: tuple[tuple[Signed, ...], ...] = ()
-
-    @property
-    def merit(self) -> tuple[float, float]:
-        """What a better design has less of."""
-        if math.isnan(self.excess):
-            return math.inf, math.inf
-        return (max(self.excess, 0.0) if self.excess > HOLDS else 0.0), float(self.values[0])
-
-
 @dataclass(eq=False)
 class Judge:
-    """What judges designs, by an engine that keeps the terms' quantities, and counts them."""
+    """What judges designs by ``terms``, with an engine that keeps their quantities, and counts them."""
 
     engine: DesignEngine
-    program: Program
+    values: PointValues
+    terms: tuple[Term, ...]
+    least_closure: float
     evaluations: int = 0
 
-    @property
-    def constraints(self) -> tuple[Constraint, ...]:
-        """The constraints of the search."""
-        return self.program.constraints
-
-    @property
-    def terms(self) -> tuple[Term, ...]:
-        """All terms, objective first."""
-        return (self.program.objective, *(c.term for c in self.constraints))
-
-    def look(self, p: Array, *, closely: bool = True) -> Judged:
+    def look(self, p: Array) -> Judged:
         """A design's terms, by the engine of sweeps; largest and smallest values by their local peaks."""
         self.evaluations += 1
-        engine, graph = self.engine, self.program.values.graph
-        found = engine.evaluate(p[None], threads=1)
-        if found.status[0] != Status.OK:
-            return Judged(p, np.full(len(self.terms), np.nan), math.nan, None)
-        look, closure = None, math.nan
-        if closely or any(term.kind in ("max", "min") for term in self.terms):
-            look = Look.at(graph, engine.times.of(p[None])[0][0], p, engine.rung)
+        found = self.engine.evaluate(p[None], threads=1)
+        look = None
+        if found.status[0] == Status.OK:
+            look = Look.at(self.engine.graph, self.engine.times.of(p[None])[0][0], p, self.engine.rung)
+        return self._judged(p, found, 0, look)
+
+    def screen(self, rows: Array) -> list[Judged]:
+        """Many designs (n, parameters) at once, by what lanes of designs tell alone where that is enough."""
+        self.evaluations += len(rows)
+        found = self.engine.evaluate(rows)
+        if not any(term.kind in ("max", "min") for term in self.terms):
+            return [self._judged(p, found, k, None) for k, p in enumerate(rows)]
+        judged = []
+        for k, p in enumerate(rows):
+            there = found.status[k] == Status.OK
+            look = Look.at(self.engine.graph, self.engine.times.of(p[None])[0][0], p, self.engine.rung) if there else None
+            judged.append(self._judged(p, found, k, look))
+        return judged
+
+    def _judged(self, p: Array, found: Outcome, row: int, look: Look | None) -> Judged:
+        nothing = Judged(p, dict.fromkeys(self.terms, math.nan))
+        if found.status[row] != Status.OK:
+            return nothing
+        closure, closing = math.nan, -math.inf
+        if look is not None:
             closures = look.closures()
-            closure = float(closures.min()) if closures.size else math.nan
-            if closures.size and not closure > 0.0:
-                return Judged(p, np.full(len(self.terms), np.nan), math.nan, None)
-        values, points = [], []
+            if closures.size:
+                closure = float(closures.min())
+                closing = (self.least_closure - closure) / self.least_closure
+                if not closure > 0.0:
+                    return nothing
+        values, points = {}, {}
         for term in self.terms:
             own: list[Signed] = []
             if look is not None and term.output is not None and not term.averaged:
                 own = self._points(look, term)
                 if term.kind == "peak":
-                    k = engine.quantities.index(term.name)
-                    own = [*told(own, look, float(found.value[0, k]), float(found.t[0, k]), float(found.xi[0, k])), *own]
-            points.append(tuple(own))
+                    k = self.engine.quantities.index(term.name)
+                    own = [*told(own, look, float(found.value[row, k]), float(found.t[row, k]), float(found.xi[row, k])), *own]
+            points[term] = tuple(own)
             if term.output is None:
-                values.append(float(term.of_parameters(engine.scene.mechanism)(p)))
+                values[term] = float(term.of_parameters(self.engine.scene.mechanism)(p))
             elif term.kind == "peak":
-                values.append(abs(float(found.value[0, engine.quantities.index(term.name)])))
+                values[term] = abs(float(found.value[row, self.engine.quantities.index(term.name)]))
             elif term.averaged:
-                values.append(float(getattr(found, term.kind)[0, engine.efforts.index(term.name)]))
+                values[term] = float(getattr(found, term.kind)[row, self.engine.efforts.index(term.name)])
             else:
                 assert look is not None
-                tops = self._exact(term, own[:_FEW], look)
-                values.append(
-                    max((sign * point.value for point, sign in tops), default=math.nan) * (-1 if term.kind == "min" else 1)
+                tops = self.exact(term, own[:_FEW], look)
+                values[term] = max((sign * point.value for point, sign in tops), default=math.nan) * (
+                    -1 if term.kind == "min" else 1
                 )
-        excess = max((c.excess(v) / scale_of(c, v) for c, v in zip(self.constraints, values[1:], strict=True)), default=-math.inf)
-        if not math.isnan(closure):
-            excess = max(excess, (self.program.least_closure - closure) / self.program.least_closure)
-        excess = excess if np.isfinite(values).all() else math.nan
-        return Judged(p, np.array(values), excess, look, closure, tuple(points))
+        judged = Judged(p, values, look, closure, closing, points)
+        return judged if judged.has_result else nothing
 
     def _points(self, look: Look, term: Term) -> list[Signed]:
         """The local peaks of a term, the largest first, with the signs by which they count."""
@@ -109,23 +101,33 @@ class Judge:
             return [(point, sign) for point in look.points(term.output, sign)]
         return [(point, math.copysign(1.0, point.value)) for point in look.points(term.output, 0.0)]
 
-    def exact(self, term: Term, points: Sequence[Signed], judged: Judged) -> list[Signed]:
-        """Local peaks, the smooth ones where the derivatives by time and place are zero, and how they follow from there."""
-        assert judged.look is not None
-        return self._exact(term, points[:_PEAKS], judged.look)
+    def drifting(self, term: Term, point: Point, p: Array, box: Box) -> Point:
+        """A peak at a kink or a jump that goes with the chosen parameters, seen by designs beside this one.
 
-    def _exact(self, term: Term, points: Sequence[Signed], look: Look) -> list[Signed]:
-        followed = self.program.functions[term.name]
-        step = (look.t[-1] - look.t[0]) / max(look.t.size - 1, 1)
+        The told peak of each is by the same switch where it is near. What does not move is the point itself.
+        """
+        x, size = box.share(p), len(box.names)
+        ways = np.where(x + _BESIDE <= 1.0, _BESIDE, -_BESIDE)
+        rows = np.array([box.all(x + way * unit) for way, unit in zip(ways, np.eye(size), strict=True)])
+        self.evaluations += size
+        found = self.engine.evaluate(rows, threads=1)
+        k = self.engine.quantities.index(term.name)
+        even = self.engine.times.of(rows)[0]
+        shares = (found.t[:, k] - even[:, 0]) / (even[:, -1] - even[:, 0])
+        moved = np.where(np.abs(shares - point.share) <= _BESIDE_MOST, shares - point.share, 0.0)
+        drift = np.where(np.abs(moved) > _STILL, moved / ways, 0.0)
+        if not drift.any():
+            return point
+        return replace(point, share=float(point.share - drift @ x), drift=tuple(drift.tolist()))
+
+    def exact(self, term: Term, points: Sequence[Signed], look: Look) -> list[Signed]:
+        """Local peaks, the smooth ones where the derivatives by time and place are zero, and how they follow from there."""
+        assert term.output is not None
+        followed = self.values.of(term.output)
         found = []
-        for point, sign in points:
+        for point, sign in points[:_PEAKS]:
             where = np.zeros(followed.size)
             where[min(point.place, followed.size - 1)] = 1.0
-            free = bool(term.output and term.output.group == "section" and point.place == 0 and 0.0 < point.xi < 1.0)
-            found.append((top(followed, point, look.p, where, sign, step, (look.t[0], look.t[-1]), free=free), sign))
+            free = term.output.group == "section" and point.place == 0 and 0.0 < point.xi < 1.0
+            found.append((top(followed, point, look.p, where, sign, look.step, free=free), sign))
         return found
-
-
-def scale_of(constraint: Constraint, value: float) -> float:
-    """How large a term is beside which its excess is large or small."""
-    return abs(constraint.limit) or abs(value) or 1.0

@@ -20,19 +20,21 @@ from ..tables import table_of
 
 @dataclass(frozen=True)
 class Point:
-    """A time [s] and a place of a quantity: a ratio ``xi``, and which of the places of :meth:`.PointValues.of` is meant.
+    """A moment and a place of a quantity: a ratio ``xi``, and which of the places of :meth:`.PointValues.of` is meant.
 
-    ``value`` is the quantity there, ``guess`` the iterated coordinates. ``turn`` and ``reach`` say how the point follows its peak:
-    see :class:`.Followed`.
+    ``share`` is the moment's share of the time from the first instant to the last: these may go with the parameters. ``value`` is
+    the quantity there, ``guess`` the iterated coordinates. ``turn`` and ``reach`` say how the point follows its peak: see
+    :class:`.Followed`. ``drift`` is by how much the share changes with that of each chosen parameter, counted from zero.
     """
 
-    t: float
+    share: float
     xi: float
     place: int
     value: float
     guess: tuple[float, ...]
     turn: tuple[float, float, float] = (0.0, 0.0, 0.0)
     reach: tuple[float, float] = (0.0, 0.0)
+    drift: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +51,25 @@ class Look:
         """A design looked at; what has no result is NaN there."""
         found, _ = run(graph, t, p, rung)
         return cls(graph, t, p, found)
+
+    @property
+    def shares(self) -> Array:
+        """What share of the time from the first instant to the last each instant is at."""
+        return np.linspace(0.0, 1.0, self.t.size)
+
+    @property
+    def step(self) -> float:
+        """The share of a step between instants."""
+        return 1.0 / max(self.t.size - 1, 1)
+
+    def share(self, t: float) -> float:
+        """That of a time."""
+        span = float(self.t[-1] - self.t[0])
+        return min(max((t - float(self.t[0])) / span, 0.0), 1.0) if span else 0.0
+
+    def time(self, point: Point) -> float:
+        """The time of a point [s]."""
+        return float(self.t[0] + point.share * (self.t[-1] - self.t[0]))
 
     def points(self, output: Output, sign: float) -> list[Point]:
         """The local peaks over time of a quantity times ``sign``, or of its size where that is 0, the largest first."""
@@ -71,12 +92,17 @@ class Look:
         rows = [row * np.abs(row) if self.graph.iterates(name) else row for name, row in zip(names, rows, strict=True)]
         return np.array(rows).reshape(len(rows), self.t.size)
 
+    @property
+    def instants(self) -> list[Point]:
+        """All of them, as points."""
+        return [self.instant(k) for k in range(self.t.size)]
+
     def instant(self, k: int) -> Point:
         """An instant by its number, as a point."""
         return self._point(k, 0.0, 0, 0.0)
 
     def _point(self, k: int, xi: float, place: int, value: float) -> Point:
-        return Point(float(self.t[k]), xi, place, value, tuple(self.found.iterated[:, k].tolist()))
+        return Point(k * self.step, xi, place, value, tuple(self.found.iterated[:, k].tolist()))
 
     def _curves(self, output: Output) -> tuple[Sequence[Array], Sequence[Array]]:
         """Ratios and values of a quantity's curves, (t,) each."""

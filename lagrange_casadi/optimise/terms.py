@@ -18,17 +18,17 @@ from ..system.numerals import real
 
 Kind: TypeAlias = Literal["peak", "max", "min", "mean", "rms", "mass", "parameter"]
 
-KINDS = {
+KINDS: Mapping[Kind, str] = {
     "peak": "the largest size of a quantity over the motion",
     "max": "its largest value",
     "min": "its smallest value",
     "mean": "the mean of an effort or an output",
     "rms": "the root of its mean square",
 }
-MASS: Literal["mass"] = "mass"
-"""The mass of a part."""
-
 """What a term may begin with."""
+
+MASS: Literal["mass"] = "mass"
+"""The mass of a part, or of ``all``."""
 
 _UPPER: tuple[Kind, ...] = ("peak", "max", "rms")
 _CONSTRAINT = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*")
@@ -47,16 +47,16 @@ class Term:
         """Read ``peak:effort:O``, ``rms:effort:O`` or the like, or a parameter's name. Raises :class:`DeclarationError`."""
         if not isinstance(text, str):
             raise DeclarationError(f"expected a text such as 'peak:effort:O', got {text!r}")
-        kind, _, name = text.strip().partition(":")
-        for known in KINDS:
-            if kind == known and name:
+        word, _, name = text.strip().partition(":")
+        for kind in KINDS:
+            if word == kind and name:
                 try:
-                    return cls(known, str(Output.of(name)))  # type: ignore[arg-type]
+                    return cls(kind, str(Output.of(name)))
                 except KeyError:
                     break
         if text.strip() in parameters:
             return cls("parameter", text.strip())
-        if kind == MASS and name:
+        if word == MASS and name:
             return cls(MASS, name)
         raise DeclarationError(
             f"'{text}' is neither a parameter nor {', '.join(f'{kind}:QUANTITY' for kind in KINDS)}; an example is peak:effort:O"
@@ -119,6 +119,15 @@ class Constraint:
     def excess(self, value: float) -> float:
         """By how much a value is beyond the limit; below zero where it is within."""
         return self.limit - value if self.least else value - self.limit
+
+    def scale(self, value: float) -> float:
+        """How large the term is about, beside which its excess is large or small."""
+        return abs(self.limit) or abs(value) or 1.0
+
+    @property
+    def words(self) -> str:
+        """The constraint with all digits of its limit."""
+        return f"{self.term} {'>=' if self.least else '<='} {self.limit!r}"
 
     def __str__(self) -> str:
         return f"{self.term} {'>=' if self.least else '<='} {self.limit:g}"

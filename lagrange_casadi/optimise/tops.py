@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..declare.density import Array
+from .judged import Signed
 from .look import Look, Point
 from .values import Followed
 
@@ -16,13 +17,8 @@ _TRIALS, _NUDGE, _REACH = 6, 1e-2, 8.0
 """Steps of Newton's method to a peak; steps between instants, of which second derivatives are taken, and which a peak follows at
 most."""
 
-Signed = tuple[Point, float]
-"""A point, and the sign by which its value counts."""
 
-
-def top(
-    followed: Followed, point: Point, p: Array, where: Array, sign: float, step: float, span: tuple[float, float], *, free: bool
-) -> Point:
+def top(followed: Followed, point: Point, p: Array, where: Array, sign: float, step: float, *, free: bool) -> Point:
     """The smooth peak that is near a point, by Newton's method; the point itself where there is none. ``free`` may xi be."""
     guess = list(point.guess)
     nudges = np.array([_NUDGE * step, _NUDGE])
@@ -31,10 +27,10 @@ def top(
         found = followed.slopes(at[0], guess, p, at[1], where).full().ravel()
         return found if free else np.array([found[0], 0.0])
 
-    at = np.array([point.t, point.xi])
+    at = np.array([point.share, point.xi])
     turn = np.zeros((2, 2))
     for _ in range(_TRIALS):
-        if not span[0] < at[0] < span[1] or (free and not 0.0 < at[1] < 1.0):
+        if not 0.0 < at[0] < 1.0 or (free and not 0.0 < at[1] < 1.0):
             return point
         bend = np.zeros((2, 2))
         for k in range(1 + free):
@@ -59,7 +55,7 @@ def top(
     reach = (_REACH * step, 0.1 if free else 0.0)
     return replace(
         point,
-        t=float(at[0]),
+        share=float(at[0]),
         xi=float(at[1]),
         value=value,
         turn=(float(turn[0, 0]), float(turn[0, 1]), float(turn[1, 1])),
@@ -70,8 +66,8 @@ def top(
 def told(points: Sequence[Signed], look: Look, value: float, t: float, xi: float) -> list[Signed]:
     """The largest of local peaks, where it is between instants."""
     sign = math.copysign(1.0, value)
-    step = (look.t[-1] - look.t[0]) / max(look.t.size - 1, 1)
-    near = [point for point, its in points if its == sign and abs(point.t - t) <= 2 * step]
+    share = look.share(t)
+    near = [point for point, its in points if its == sign and abs(point.share - share) <= 2 * look.step]
     ratio = 0.0 if math.isnan(xi) else xi
 
     def apart(point: Point) -> float:
@@ -79,6 +75,6 @@ def told(points: Sequence[Signed], look: Look, value: float, t: float, xi: float
 
     if not near or value == 0.0:
         k = int(np.argmin(np.abs(look.t - t)))
-        return [(Point(t, ratio, 0, value, look.instant(k).guess), sign)]
+        return [(Point(share, ratio, 0, value, look.instant(k).guess), sign)]
     best = min(near, key=apart)
-    return [(Point(t, ratio, best.place, value, best.guess), sign)]
+    return [(Point(share, ratio, best.place, value, best.guess), sign)]

@@ -15,7 +15,11 @@ from ..system.seal import Seen, kind_of, verify
 from .untrusted import told_as
 
 SCHEMA = "lagrange-casadi"
-_KNOWN = {SCHEMA: "that of a run, which `load` reads", f"{SCHEMA}-sweep": "that of a sweep, which `Sweep.open` reads"}
+_KNOWN = {
+    SCHEMA: "that of a run, which `load` reads",
+    f"{SCHEMA}-sweep": "that of a sweep, which `Sweep.open` reads",
+    f"{SCHEMA}-optimum": "that of a search for designs, which the command check reads",
+}
 
 
 def schema_of(path: str | os.PathLike[str]) -> str | None:

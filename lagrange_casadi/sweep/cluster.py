@@ -12,7 +12,7 @@ import tempfile
 import threading
 import time
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, wait
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -53,6 +53,11 @@ class SentCase:
     path: str
     content: str
 
+    @classmethod
+    def of(cls, case: Case) -> SentCase:
+        """A case that is loaded."""
+        return cls(str(case.path), case.path.read_text())
+
     def load(self) -> Scene:
         """The scene."""
         path = Path(self.path)
@@ -83,8 +88,16 @@ class Cluster:
 
     def results(self, plan: Plan, queue: Queue) -> Blocks:
         """Evaluate what is in the queue, in the order in which workers are done."""
-        sent = SentCase(str(self.case.path), self.case.path.read_text())
+        sent = SentCase.of(self.case)
         told = signature(plan.scene, plan.task, plan.harvest.engine.provenance)
+
+        def asked(start: int, stop: int) -> Asked:
+            return Asked(_evaluate, (sent, plan.task, told, plan.block(start, stop), plan.room))
+
+        yield from self.done(asked, queue)
+
+    def done(self, asked: Callable[[int, int], Asked], queue: Queue) -> Iterator[tuple[int, int, Any] | None]:
+        """What is ``asked`` for each block of a queue, in the order in which workers are done; None where nothing came for long."""
         _dask()
         with _silenced():
             connecting = _connecting(self.address)
@@ -94,11 +107,13 @@ class Cluster:
                     if queue.stopped:
                         return
                 client = self._connected(connecting)
-                yield from self._served(client, _Roll(client), plan, queue, sent, told)
+                yield from self._served(client, _Roll(client), asked, queue)
             finally:
                 connecting.add_done_callback(_let_go)
 
-    def _served(self, client: Any, roll: _Roll, plan: Plan, queue: Queue, sent: SentCase, told: Mapping[str, Any]) -> Blocks:
+    def _served(
+        self, client: Any, roll: _Roll, asked: Callable[[int, int], Asked], queue: Queue
+    ) -> Iterator[tuple[int, int, Any] | None]:
         waiting = _dask().as_completed(loop=client.loop)
         blocks: dict[Any, tuple[int, int]] = {}
         end = 0.0
@@ -107,8 +122,7 @@ class Cluster:
             most = max(1, _AHEAD * roll.threads)
             while len(blocks) < most and (block := queue.take()):
                 # As bytes: a scheduler needs to know Dask alone.
-                asked = pickle.dumps(_Asked((sent, plan.task, told, plan.block(*block), plan.room)))
-                future = client.submit(pickle.loads, asked, pure=False)
+                future = client.submit(pickle.loads, pickle.dumps(asked(*block)), pure=False)
                 blocks[future] = block
                 waiting.add(future)
 
@@ -158,10 +172,10 @@ class Cluster:
             why = one_line(error) if known else "what is there says nothing that a scheduler says"
         raise ClusterError(f"no Dask scheduler answers at {self.address}: {why}")
 
-    def _result(self, coming: Future[Any], roll: _Roll, start: int, stop: int) -> list[bytes]:
+    def _result(self, coming: Future[Any], roll: _Roll, start: int, stop: int) -> Any:
         dask = _dask()
         try:
-            columns: list[bytes] = coming.result()
+            found = coming.result()
         except ClusterError:
             raise
         except dask.KilledWorker:
@@ -172,7 +186,7 @@ class Cluster:
             roll.settle()
             self._refuse(roll)
             raise ClusterError(f"a worker failed: {type(error).__name__}: {one_line(error)}") from None
-        return columns
+        return found
 
     def _refuse(self, roll: _Roll) -> None:
         """Raise :class:`ClusterError` for workers without this package."""
@@ -295,14 +309,15 @@ def _silenced() -> Iterator[None]:
 
 
 @dataclass(frozen=True)
-class _Asked:
-    """A block that becomes what it evaluates to where it is read."""
+class Asked:
+    """A call that becomes what it comes to where it is read."""
 
+    function: Callable[..., Any]
     arguments: tuple[Any, ...]
 
     def __reduce__(self) -> tuple[Any, ...]:
         """The call that reading it is."""
-        return _evaluate, self.arguments
+        return self.function, self.arguments
 
 
 def _evaluate(sent: SentCase, task: Task, told: Mapping[str, Any], p: Array, room: int) -> list[bytes]:

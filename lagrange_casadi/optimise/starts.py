@@ -1,0 +1,92 @@
+"""Designs to start from: the best of many, evenly spread, that are apart from each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..declare.density import Array
+from ..errors import DeclarationError, NoDesignError, UnknownNameError
+from .finder import Finder
+from .judged import Judged
+from .problem import Problem
+
+Starts = int | Sequence[Mapping[str, float]]
+"""How many designs to start from, or the values of parameters for each."""
+
+_APART = 0.15
+"""Of the bounds: how far starts are from each other."""
+
+_MOST = 1 << 24
+"""Designs that are screened at most."""
+
+
+def spread(count: int, dimensions: int) -> Array:
+    """Points of the unit cube, evenly spread: multiples of powers of the generalized golden ratio (Roberts 2018), less their whole
+    parts."""
+    ratio = 2.0
+    for _ in range(64):
+        ratio = (1.0 + ratio) ** (1.0 / (dimensions + 1))
+    return np.asarray((0.5 + np.outer(np.arange(1, count + 1), ratio ** -np.arange(1.0, dimensions + 1))) % 1.0)
+
+
+def checked(starts: Any, screen: Any) -> None:
+    """Raise :class:`DeclarationError` for counts that are none."""
+    if not isinstance(starts, (list, tuple)) and (type(starts) is not int or starts < 1):
+        raise DeclarationError(f"starts: expected a whole number above 0, or values of parameters, got {starts!r}")
+    if type(screen) is not int or not 1 <= screen <= _MOST:
+        raise DeclarationError(f"screen: expected a whole number from 1 to {_MOST}, got {screen!r}")
+
+
+def named(finder: Finder, starts: Sequence[Mapping[str, float]]) -> list[Judged]:
+    """Starts by their values; parameters that a start lacks have their own.
+
+    Raises :class:`UnknownNameError` and :class:`DeclarationError` for what is not chosen or not within bounds, and
+    :class:`NoDesignError` where none has a result.
+    """
+    box, declared = finder.question.box, finder.engine.parameters
+    rows = []
+    for values in starts:
+        p = box.p.copy()
+        for name, value in values.items():
+            if name not in box.names:
+                raise UnknownNameError("parameter that is chosen", name, box.names)
+            if not box.holds(name, value):
+                raise DeclarationError(f"starts: {name} = {value!r} is not within its bounds")
+            p[declared.index(name)] = value
+        rows.append(box.all(np.clip(box.share(p), 0.0, 1.0)))
+    return _with_results([finder.judge.look(p) for p in rows])
+
+
+def screen(finder: Finder, count: int) -> list[Judged]:
+    """Designs spread evenly over the bounds, after the parameters' own values."""
+    box = finder.question.box
+    shares = np.vstack([np.clip(box.share(box.p), 0.0, 1.0)[None], spread(count, len(box.names))])
+    return finder.judge.screen(np.array([box.all(x) for x in shares]))
+
+
+def chosen(finder: Finder, problem: Problem, screened: Sequence[Judged], count: int) -> list[Judged]:
+    """The best of screened designs for a problem that are apart from each other, looked at closely.
+
+    Raises :class:`NoDesignError` where none has a result.
+    """
+    box = finder.question.box
+    found: list[Judged] = []
+    for one in sorted((one for one in screened if one.has_result), key=problem.merit):
+        share = box.share(one.p)
+        if len(found) == count:
+            break
+        if all(np.abs(share - box.share(other.p)).max() >= _APART for other in found):
+            closely = finder.judge.look(one.p)
+            if closely.has_result:
+                found.append(closely)
+    return _with_results(found)
+
+
+def _with_results(judged: Sequence[Judged]) -> list[Judged]:
+    found = [one for one in judged if one.has_result]
+    if not found:
+        raise NoDesignError("optimise: no design within the bounds has a result; evaluate one to see why")
+    return found
