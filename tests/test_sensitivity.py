@@ -17,8 +17,12 @@ from lagrange_casadi.summits.sharpness import Sharpness
 
 RATIOS = (0.1234567, 0.9034567)
 STEP = 2.0**-13
-OWN = {"beam_pump": ["r", "counterweight", "fluid"], "jansen_leg": ["push"]}
-"""Cases of which the oracle knows some lengths by number: parameters of theirs on which no motion depends."""
+OWN = {
+    "beam_pump": ["r", "counterweight", "fluid"],
+    "jansen_leg": ["push"],
+    "roller_cam": ["lift", "base", "offset", "stiffness"],
+}
+"""Cases of which the oracle knows some lengths by number, as where a spring acts: parameters of theirs that change no drive."""
 
 
 def made(scene, backend="vm"):
