@@ -17,6 +17,7 @@ from .declare.even_points import EvenPoints, points
 from .declare.motion import ends_function, refuse_kinked
 from .declare.scene import Scene, checked_ratios
 from .declare.times import Over, Times, Timing, span_of
+from .declare.wanted_slopes import by_parameters
 from .equations.checks import Check
 from .equations.derive import assembled, derive
 from .equations.described import described
@@ -24,6 +25,7 @@ from .equations.scene_graph import SceneGraph
 from .errors import CertificateWarning, DeclarationError
 from .instants.backends import Evaluated
 from .instants.cost import seconds
+from .instants.derivatives import Derivatives
 from .instants.determinacy import determinate, undetermined
 from .instants.from_table import columns
 from .instants.phases import phases
@@ -34,6 +36,7 @@ from .judge.accuracy import estimate, explained
 from .judge.certificate import certify, failure, tolerance
 from .judge.written import written
 from .quantities import Output
+from .sensitivity.series import series_slopes
 from .system.room import MOST_THREADS, cores, in_words, require
 
 _BESIDE, _CHECKED = 8, 2
@@ -72,7 +75,8 @@ def evaluate(
     over
         Instants in equal steps of a driven coordinate, in place of ``t``: see :class:`.Scene`.
     wanted
-        Output names.
+        Output names; with ``sensitivity`` or ``sensitivity:PARAMETER`` among them the derivatives of all others too, by all
+        parameters or by some: see :class:`.Derivatives`.
     backend, precision, newton, table, flags
         How it is evaluated: see :class:`.Rung`.
     threads
@@ -118,7 +122,9 @@ def evaluate(
     description = described(scene, values)
     ordered = in_order(outputs, description)
     solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open, over=instants.over)
-    solution = replace(solution, tolerance=tolerance(solution))
+    by = by_parameters(scene.mechanism, scene.wanted if wanted is None else wanted)
+    slopes = Derivatives(series_slopes(graph, solution, p, by, rung) if by else {})
+    solution = replace(solution, tolerance=tolerance(solution), sensitivities=slopes)
     if not certificate:
         return solution
     residuals = _closed(graph, out, p) | residuals_of(solution, graph, out, p, within)

@@ -21,6 +21,7 @@ from ..declare.times import DriveAxis
 from ..errors import DeclarationError, UnknownNameError
 from ..quantities import Output
 from ..tables import Table, table_of
+from .derivatives import Derivatives
 from .frames import dataset, frame
 from .laws import law_of, made_of
 from .sizes import largest, size_of
@@ -100,7 +101,7 @@ class Solution:
     by full names. ``certificate`` holds the residuals of :mod:`.certificate`, each (t,), and how near the loops are to a dead
     centre; a residual above ``tolerance`` means that the solution is wrong, not that it is rounded. ``errors`` estimates by
     :mod:`.accuracy` how far each quantity may be off, over all instants, in its unit. ``over`` is the coordinate of the drive by
-    which the instants were asked for, or None.
+    which the instants were asked for, or None; ``sensitivities`` are derivatives by parameters, where these were wanted.
 
     Methods that take a name raise :class:`.UnknownNameError` for one that the solution does not have, and list those it has.
     """
@@ -116,6 +117,7 @@ class Solution:
     errors: Mapping[str, float] = field(default_factory=dict)
     tolerance: float = 0.0
     over: DriveAxis | None = None
+    sensitivities: Derivatives = field(default_factory=Derivatives)
 
     @cached_property
     def table(self) -> Table:
@@ -238,7 +240,8 @@ class Solution:
         outputs = {output: values[instants] for output, values in self.outputs.items()}
         certificate = {name: values[instants] for name, values in self.certificate.items()}
         over = self.over and replace(self.over, values=self.over.values[instants])
-        return replace(self, t=self.t[instants], outputs=outputs, certificate=certificate, over=over)
+        slopes = self.sensitivities.during(instants)
+        return replace(self, t=self.t[instants], outputs=outputs, certificate=certificate, over=over, sensitivities=slopes)
 
     def determined(self, name: str | Output) -> bool:
         """Whether equilibrium determines a quantity, at all instants."""

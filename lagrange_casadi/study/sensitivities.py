@@ -87,17 +87,26 @@ class Sensitivities:
 
         Its slopes are NaN where it has no derivative.
         """
-        output = self._known(name)
-        (found,) = refine(self.scene, self.solution, [name])
-        xi = np.nan if found.xi is None else found.xi
-        place = np.array([found.value]), np.array([found.t]), np.array([xi])
-        chosen = np.array([self.slopes.numbers[output]], np.intc)
-        solution, unit = self.solution, self.solution.unit(name)
+        return self.peaks([name])[0]
+
+    def peaks(self, names: Sequence[str]) -> list[Changes]:
+        """How the peaks of several quantities change."""
+        outputs = [self._known(name) for name in names]
+        found = refine(self.scene, self.solution, names)
+        values, t = np.array([peak.value for peak in found]), np.array([peak.t for peak in found])
+        xi = np.array([np.nan if peak.xi is None else peak.xi for peak in found])
+        chosen = np.array([self.slopes.numbers[output] for output in outputs], np.intc)
+        nothing = np.abs(values) <= NOTHING * np.array([self._largest(peak.unit) for peak in found])
+        ends = np.zeros((2, self.p.size))
+        changes = peak_slopes(self.slopes, self.solution.t, self.p, chosen, (values, t, xi), ends, nothing)
+        every = zip(values.tolist(), changes.slopes, changes.kinds.tolist(), strict=True)
+        return [Changes(value, self._named(slopes), PeakKind(kind)) for value, slopes, kind in every]
+
+    def _largest(self, unit: str) -> float:
+        """The largest size over the instants among the series of a unit."""
+        solution = self.solution
         same = (o for o in solution.quantities() if o.group != "section" and solution.determined(o) and solution.unit(o) == unit)
-        largest = max((float(np.abs(solution.array(o)).max()) for o in same), default=0.0)
-        nothing = np.array([abs(found.value) <= NOTHING * largest])
-        changes = peak_slopes(self.slopes, self.solution.t, self.p, chosen, place, np.zeros((2, self.p.size)), nothing)
-        return Changes(found.value, self._named(changes.slopes[0]), PeakKind(int(changes.kinds[0])))
+        return max((float(np.abs(solution.array(o)).max()) for o in same), default=0.0)
 
     @cached_property
     def _iterated(self) -> Array:
