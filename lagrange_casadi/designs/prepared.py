@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,9 +18,6 @@ from ..errors import AssemblyError, DeclarationError, UnknownNameError
 from ..evaluate import evaluate
 from ..instants.refusal import Status
 from ..instants.rung import Backend, Rung
-from ..sensitivity.ends import end_slopes
-from ..sensitivity.peaks import peak_slopes
-from ..summits.search import NOTHING
 from .engine import DesignEngine, Outcome
 
 
@@ -170,29 +167,9 @@ class Prepared:
         times as long as :meth:`peaks` at most. Raises what that does.
         """
         peaks = self.peaks(values, **named)
-        engine, p = self._engine, self._p[0]
-        instants = engine.times.of(self._p)[0][0]
-        slopes = engine.slopes
-        places = (peaks.value, peaks.t, peaks.xi)
-        timing = engine.times.timing
-        ends = end_slopes(engine.scene, timing, float(instants[0]), float(instants[-1]), p)
-        found = peak_slopes(
-            slopes, instants, p, np.arange(peaks.value.size, dtype=np.intc), places, ends, self._nothing(peaks.value)
-        )
-        value, t, xi = (x.copy() for x in places)
+        value, t, xi = (x.copy() for x in (peaks.value, peaks.t, peaks.xi))
+        found = self._engine.gradient(self._p[0], value, t, xi)
         return Gradient(self.quantities, self.parameters, value, t, xi, found.slopes, found.kinds)
-
-    def _nothing(self, value: Array) -> npt.NDArray[np.bool_]:
-        """Which peaks are zero but for rounding, beside the largest of their unit."""
-        sizes, largest = np.abs(value), np.zeros(self._unit_numbers.size)
-        np.maximum.at(largest, self._unit_numbers, np.where(np.isfinite(sizes), sizes, 0.0))
-        return np.asarray(sizes <= NOTHING * largest[self._unit_numbers])
-
-    @cached_property
-    def _unit_numbers(self) -> npt.NDArray[np.intp]:
-        """The number of each quantity's unit."""
-        numbers = {unit: k for k, unit in enumerate(dict.fromkeys(self.units))}
-        return np.array([numbers[unit] for unit in self.units], np.intp)
 
     def designs(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`; ``threads`` share them.

@@ -35,7 +35,7 @@ def carry_out(plan: Plan, target: Path, workers: Workers, *, resume: bool, force
     """
     if resume and force:
         raise DeclarationError("resume and force exclude each other: go on with what is there, or start anew")
-    check_names(plan.designs, plan.harvest.axis)
+    check_names(plan.designs, plan.harvest.axis, plan.harvest.by)
     check_writable(target, hdf5=True)
     folder = Folder.of(target)
     with folder.locked():

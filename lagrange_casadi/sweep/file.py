@@ -15,6 +15,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from ..declare.wanted_slopes import SENSITIVITY
 from ..errors import DeclarationError
 from ..store.scales import LARGE, Scales
 from ..system.publish import PatientFile
@@ -31,15 +32,15 @@ WORDS = ("versions", "mechanism", "wanted", "t", "xi", "grid")
 
 _CHUNK = 1 << 15
 _XI = ("1", "place along a link, ratio xi/l")
-_TAKEN = ("grid", *(kind for kind in KINDS if kind != "peak_over"), DESIGN, "t", "xi")
+_TAKEN = ("grid", *(kind for kind in KINDS if kind not in ("peak_over", SENSITIVITY)), DESIGN, "t", "xi")
 
 
-def check_names(designs: Designs, axis: InstantAxis) -> None:
+def check_names(designs: Designs, axis: InstantAxis, by: Sequence[str] = ()) -> None:
     """Raise :class:`DeclarationError` for a parameter whose dimension would bear a name that the file keeps for its own.
 
-    ``axis`` is that of the instants.
+    ``axis`` is that of the instants, ``by`` are the parameters of sensitivities.
     """
-    taken = (*_TAKEN, axis.name, *(("peak_over",) if axis.joint else ()))
+    taken = (*_TAKEN, axis.name, *(("peak_over",) if axis.joint else ()), *((SENSITIVITY,) if by else ()))
     for name in designs.dimensions:
         if name in taken and isinstance(designs, Grid):
             raise DeclarationError(
