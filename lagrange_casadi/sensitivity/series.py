@@ -41,7 +41,7 @@ def series_slopes(graph: SceneGraph, solution: Solution, p: Array, by: Sequence[
     require("the sensitivities", (len(by), solution.t.size, len(rows) + sections * solution.xi.size))
     numbers = [list(graph.scene.mechanism.parameters).index(name) for name in by]
     found: dict[Output, Array] = {}
-    for output, column in zip(rows, np.moveaxis(_at_instants(graph, rows, solution.t, p, numbers, rung), 1, 0), strict=True):
+    for output, column in zip(rows, np.moveaxis(at_instants(graph, rows, solution.t, p, numbers, rung), 1, 0), strict=True):
         found[output] = np.where(np.isnan(solution.outputs[output])[:, None], np.nan, column)
     changes = {output: found[output][:, 1:] for output in series}
     for link in solution.links_with_sections:
@@ -49,7 +49,7 @@ def series_slopes(graph: SceneGraph, solution: Solution, p: Array, by: Sequence[
     return {name: {output: np.ascontiguousarray(values[..., k]) for output, values in changes.items()} for k, name in enumerate(by)}
 
 
-def _at_instants(graph: SceneGraph, rows: Sequence[Output], t: Array, p: Array, by: Sequence[int], rung: Rung) -> Array:
+def at_instants(graph: SceneGraph, rows: Sequence[Output], t: Array, p: Array, by: Sequence[int], rung: Rung) -> Array:
     """Rows of a graph at instants, and their derivatives, (t, rows, 1 + parameters)."""
     inner = total(graph, [graph.outputs[output] for output in rows], by)
     time, *driven, z, values = inner.sx_in()
