@@ -3,6 +3,7 @@
 import math
 import re
 
+import casadi as ca
 import h5py
 import numpy as np
 import pytest
@@ -185,6 +186,24 @@ def test_check_looks_at_them(tmp_path, solution):
         "sensitivity/r/effort/O: units is not the schema's",
         "sensitivity/l/effort/O: holds values that are not finite",
     ]
+
+
+def test_a_derivative_that_is_none_is_told(tmp_path):
+    """The root of an angle that begins at nothing grows without bound there, and so does its derivative by the swing."""
+    m = Mechanism("root")
+    arm = m.link("arm", length=1.0, mass=1.0)
+    swing = m.parameter("swing", 0.5, "rad")
+    m.revolute("O", m.ground, arm)
+    m.torque("spring", arm, -ca.sqrt(ca.fabs(m.direction(arm))))
+    scene = Scene(m, {"O": harmonic(0.0, swing, 0.5)}, t=(0, 0.5, 6))
+    solution = evaluate(scene, wanted=["effort", "sensitivity"], backend="vm", certificate=False)
+    assert np.isfinite(solution.effort("O")).all()
+    slopes = solution.sensitivities.array("effort:O", "swing")
+    assert not np.isfinite(slopes[0])
+    assert np.isfinite(slopes[1:]).all()
+    assert solution.notes == ("the derivative of effort:O by swing is no number at 1 of 6 instants",)
+    save(solution, tmp_path / "a.h5")
+    assert check(tmp_path / "a.h5") == ["sensitivity/swing/effort/O: holds values that are not finite"]
 
 
 def test_names():

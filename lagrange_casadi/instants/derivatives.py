@@ -50,6 +50,13 @@ class Derivatives:
             raise UnknownNameError("quantity with sensitivities", str(name), found)
         return found[str(name)]
 
+    def notes(self) -> Iterator[str]:
+        """Which are no numbers at some instants, as where a square root of nothing grows."""
+        for name, found in self.by.items():
+            for output, x in found.items():
+                if many := int((~np.isfinite(x.reshape(len(x), -1)).all(axis=1)).sum()):
+                    yield f"the derivative of {output} by {name} is no number at {many} of {len(x)} instants"
+
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Derivatives:
         """The same at some of the instants."""
         return Derivatives({name: {output: x[instants] for output, x in found.items()} for name, found in self.by.items()})

@@ -223,7 +223,8 @@ class Solution:
     def notes(self) -> tuple[str, ...]:
         """What is worth a word though all is right: points that slide beyond the end of a link, joints that rub and are at rest."""
         known = {output: values for output, values in self.outputs.items() if output not in self.left_open}
-        return tuple(notes(self.t, known, self.description, self.resting))
+        slopes = () if self.resting.any() else self.sensitivities.notes()  # at rest all that rubs is open
+        return (*notes(self.t, known, self.description, self.resting), *slopes)
 
     @cached_property
     def resting(self) -> npt.NDArray[np.bool_]:
