@@ -17,6 +17,7 @@ _WIDTH = 13
 _WORDS = {
     PeakKind.END: "at an end of the instants",
     PeakKind.SWITCH: "at a kink or a jump",
+    PeakKind.LINK_END: "at an end of the link",
     PeakKind.UNTOLD: "at a kink or a jump that nothing explains",
 }
 
@@ -42,4 +43,6 @@ def slope_lines(solution: Solution, scene: Scene, backend: Backend) -> Iterator[
 def _line(name: str, change: Changes, by: tuple[str, ...]) -> str:
     cells = [f"{slope + 0.0:.6g}" if math.isfinite(slope) else "none" for slope in (change.slopes[parameter] for parameter in by)]
     where = _WORDS.get(change.kind) if change.kind is not None else None
+    if change.tied:
+        where = f"{where + ', ' if where else ''}as large elsewhere, where it changes otherwise"
     return f"  {name:<28}" + " ".join(f"{cell:>{_WIDTH}}" for cell in cells) + (f"  {where}" if where else "")

@@ -40,7 +40,7 @@ from ..sensitivity.slopes import Slopes
 from ..summits.sharpness import bent, with_watched
 from ..system.room import cores, require
 from ..tables import table_of
-from .gradients import gradient
+from .gradients import gradient, tied
 from .interpreted import columns_of, outcome
 from .reduction import KeptOutputs, stages_of
 from .times import DesignTimes
@@ -331,6 +331,12 @@ class DesignEngine:
     def gradient(self, p: Array, value: Array, t: Array, xi: Array) -> PeakSlopes:
         """How the peaks (q,) of a design (parameters,), which are at times ``t`` and ratios ``xi``, change with all parameters."""
         return gradient(self.slopes, self.times, self._unit_numbers, p, value, t, xi)
+
+    def tied(self, p: Array, value: Array, own: PeakSlopes) -> npt.NDArray[np.bool_]:
+        """Which of the peaks (q,) of a design, whose gradient is ``own``, tie with another one: see :func:`.ties`."""
+        series = self.evaluate(p[None], threads=1, histories=True).series
+        assert series is not None
+        return tied(self.slopes, self.times, self._unit_numbers, p, value, own, self.outputs, series[0])
 
     def slopes_at(self, p: Array, found: Outcome) -> Array:
         """The derivatives of the peaks of designs by all parameters, (n, q, parameters); NaN where there is none."""

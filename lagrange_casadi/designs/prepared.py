@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -43,7 +43,8 @@ class Gradient:
     ``value``, ``t`` and ``xi``, (q,), are those of :class:`Peaks`. ``slopes`` (q, parameters) are the derivatives of ``value``,
     with its sign, by each of ``parameters``, in the quantity's unit over the parameter's. ``kinds`` (q,) says what each peak is at:
     see :class:`.PeakKind`. Slopes are NaN where a peak has none: it is infinite, not determined, or at a kink or a jump that
-    nothing explains. Where a quantity has two peaks of one size, the slopes are those of the one that is told.
+    nothing explains. Where a quantity has two peaks of one size, the slopes are those of the one that is told; :attr:`tied` says
+    where that is so.
     """
 
     quantities: tuple[str, ...]
@@ -53,6 +54,15 @@ class Gradient:
     xi: Array
     slopes: Array
     kinds: npt.NDArray[np.int8]
+    look: Callable[[], npt.NDArray[np.bool_]] = field(repr=False)
+
+    @cached_property
+    def tied(self) -> npt.NDArray[np.bool_]:
+        """Which peaks (q,) tie with another of the same quantity that changes otherwise: the largest of both has no derivative.
+
+        It is looked for when it is first asked for, which takes longer than the gradient; not at kinks between instants.
+        """
+        return self.look()
 
     def __getitem__(self, quantity: str) -> dict[str, float]:
         """The derivatives of the peak of a quantity, by the parameter's name. Raises :class:`UnknownNameError`."""
@@ -169,7 +179,8 @@ class Prepared:
         peaks = self.peaks(values, **named)
         value, t, xi = (x.copy() for x in (peaks.value, peaks.t, peaks.xi))
         found = self._engine.gradient(self._p[0], value, t, xi)
-        return Gradient(self.quantities, self.parameters, value, t, xi, found.slopes, found.kinds)
+        look = partial(self._engine.tied, self._p[0].copy(), value, found)
+        return Gradient(self.quantities, self.parameters, value, t, xi, found.slopes, found.kinds, look)
 
     def designs(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`; ``threads`` share them.

@@ -12,9 +12,9 @@ from ..instants.backends import begun, follow
 
 def iterated(graph: SceneGraph, following: codegen.Library | None, t: Array, p: Array, places: Array) -> Array:
     """Those (n, z) at ``places`` (n,) between the rising instants ``t``, from which they are followed; by compiled code, if any."""
-    count = graph.instant.size1_in("z")
-    if not count:
+    if graph.newton is None:
         return np.zeros((places.size, 0))
+    count = graph.instant.size1_in("z")
     times, back = np.unique(np.concatenate([t, places]), return_inverse=True)
     guess = np.array(begun(graph, float(times[0]), p), float)
     z = np.zeros((count, times.size))

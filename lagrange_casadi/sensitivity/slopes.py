@@ -66,7 +66,7 @@ class Slopes:
         that; else it stands still. A ratio of what is not along a link may be NaN.
         """
         n = t.size
-        found = AtPoints(np.full(n, np.nan), np.full(n, np.nan), np.full((n, p.size), np.nan))
+        found = AtPoints(np.empty(n), np.empty(n), np.empty((n, p.size)))
         moving = np.full(n, 0.0 if value is None else 1.0)
         ratios = np.where(np.isnan(xi), 0.0, xi)
         values = np.zeros(n) if value is None else np.where(np.isfinite(value), value, 0.0)

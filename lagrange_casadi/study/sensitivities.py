@@ -18,6 +18,7 @@ from ..instants.statistics import shares
 from ..quantities import Output
 from ..sensitivity.peaks import PeakKind, peak_slopes
 from ..sensitivity.slopes import Slopes
+from ..sensitivity.ties import Curve, ties
 from ..summits.search import NOTHING
 from ..summits.sharpness import Sharpness
 from .peaks import refine, resultants, wanted_for
@@ -32,12 +33,14 @@ _BLOCK = 1 << 16
 class Changes:
     """How one number changes with each parameter: ``value`` in its unit, ``slopes`` by the parameter's name.
 
-    ``kind`` says what a peak is at, None of a mean.
+    ``kind`` says what a peak is at, None of a mean. A peak is ``tied`` where another one of the quantity is as large and changes
+    otherwise: the largest of both has no derivative.
     """
 
     value: float
     slopes: dict[str, float]
     kind: PeakKind | None = None
+    tied: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,8 +102,18 @@ class Sensitivities:
         nothing = np.abs(values) <= NOTHING * np.array([self._largest(peak.unit) for peak in found])
         ends = np.zeros((2, self.p.size))
         changes = peak_slopes(self.slopes, self.solution.t, self.p, chosen, (values, t, xi), ends, nothing)
-        every = zip(values.tolist(), changes.slopes, changes.kinds.tolist(), strict=True)
-        return [Changes(value, self._named(slopes), PeakKind(kind)) for value, slopes, kind in every]
+        tied = ties(
+            self.slopes, self.solution.t, self.p, chosen, values, changes, ends, nothing, lambda k: self._curves(outputs[k])
+        )
+        every = zip(values.tolist(), changes.slopes, changes.kinds.tolist(), tied.tolist(), strict=True)
+        return [Changes(value, self._named(slopes), PeakKind(kind), two) for value, slopes, kind, two in every]
+
+    def _curves(self, output: Output) -> Sequence[Curve]:
+        """A quantity over the instants; a section force where it may be largest along the link."""
+        if output.group != "section":
+            return [(np.full(self.solution.t.size, np.nan), self.solution.array(output))]
+        places, values = self.solution.section(output.part).law.curves(output.member)
+        return list(zip(places.T, values.T, strict=True))
 
     def _largest(self, unit: str) -> float:
         """The largest size over the instants among the series of a unit."""
