@@ -18,6 +18,7 @@ from .declare.giving import Elastic, felt, giving
 from .declare.motion import ends_function, refuse_kinked
 from .declare.scene import Scene, Wanted, checked_ratios
 from .declare.times import Over, Times, Timing, span_of
+from .declare.wanted_slopes import by_parameters
 from .elastic.completing import told_errors, wanted_alone
 from .elastic.least_energy import complete
 from .equations.checks import Check
@@ -27,6 +28,7 @@ from .equations.scene_graph import SceneGraph
 from .errors import CertificateWarning, DeclarationError
 from .instants.backends import Evaluated
 from .instants.cost import seconds
+from .instants.derivatives import Derivatives
 from .instants.determinacy import determinate, undetermined
 from .instants.elasticity import Elasticity
 from .instants.from_table import columns
@@ -39,6 +41,7 @@ from .judge.accuracy import estimate, explained
 from .judge.certificate import certify, failure, tolerance
 from .judge.written import written
 from .quantities import Output
+from .sensitivity.series import series_slopes
 from .system.room import MOST_THREADS, cores, in_words, require
 
 _BESIDE, _CHECKED = 8, 2
@@ -78,7 +81,8 @@ def evaluate(
     over
         Instants in equal steps of a driven coordinate, in place of ``t``: see :class:`.Scene`.
     wanted
-        Output names.
+        Output names; with ``sensitivity`` or ``sensitivity:PARAMETER`` among them the derivatives of all others too, by all
+        parameters or by some: see :class:`.Derivatives`.
     backend, precision, newton, table, flags
         How it is evaluated: see :class:`.Rung`.
     threads
@@ -135,7 +139,9 @@ def evaluate(
     outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
     ordered = in_order(outputs, description)
     solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open, over=instants.over)
-    solution = replace(solution, tolerance=tolerance(solution))
+    by = by_parameters(scene.mechanism, scene.wanted if wanted is None else wanted)
+    slopes = Derivatives(series_slopes(graph, solution, p, by, rung) if by else {})
+    solution = replace(solution, tolerance=tolerance(solution), sensitivities=slopes)
     if done is not None:
         solution = replace(solution, elasticity=Elasticity(done.told, done.reasons))
     if not certificate:

@@ -145,6 +145,11 @@ class Output:
         return self.quantity.unit_for("angle" if found is None else found[1].kind)
 
 
+def quotient(unit: str, by: str) -> str:
+    """The unit of a derivative: ``N m/m``, and ``N/(kg/m)`` of what is itself one."""
+    return unit if by == "1" else f"{unit}/{by}" if by.isalnum() else f"{unit}/({by})"
+
+
 def quantity_of(name: str, space: bool = False) -> Quantity:
     """The table's row for a full name such as ``motion:O_rate`` or ``section:rod:law:n0``.
 

@@ -60,7 +60,7 @@ def test_info_shows_the_whole_scene(here, capsys):
     ):
         assert line in lines, line
     assert next(line for line in lines if line.startswith("outputs:")).endswith(
-        "all of a kind: reaction, multiplier, load, section"
+        "all of a kind: reaction, multiplier, load, section, sensitivity"
     )
 
 

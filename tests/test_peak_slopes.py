@@ -3,6 +3,7 @@
 import math
 
 import casadi as ca
+import mpmath
 import numpy as np
 import pytest
 from conftest import CASES
@@ -11,7 +12,7 @@ from parametric import declared
 from lagrange_casadi import Mechanism, Scene, load_case, prepare
 from lagrange_casadi.density import polynomial as density
 from lagrange_casadi.errors import UnknownNameError
-from lagrange_casadi.motion import polynomial, samples
+from lagrange_casadi.motion import harmonic, polynomial, samples
 from lagrange_casadi.sensitivity.peaks import PeakKind
 
 
@@ -77,6 +78,27 @@ def test_a_turning_link_has_the_slopes_of_its_closed_form(backend):
         assert abs(slope - exact[name]) <= 1e-14 * exact["l"]
     with pytest.raises(UnknownNameError, match="quantity with a peak"):
         gradient["effort:O"]
+
+
+def test_a_smooth_peak_has_the_slopes_of_its_exact_place():
+    """A search by values knows the place to 1e-9 s; an oscillation's effort changes there with its frequency at 30 N m/Hz/s."""
+    m = Mechanism("arm")
+    l, swing, beat = m.parameter("l", 0.7, "m"), m.parameter("swing", 0.6, "rad"), m.parameter("beat", 1.3, "Hz")
+    arm = m.link("arm", length=l, mass=2.0)
+    m.revolute("O", m.ground, arm)
+    f = prepare(Scene(m, {"O": harmonic(0.2, swing, beat)}, t=(0, 0.7, 40)), wanted=["effort"])
+    gradient = f.gradient()
+
+    def effort(t, l, swing, beat):
+        w = 2 * mpmath.mp.pi * beat
+        angle, acceleration = mpmath.mpf(0.2) + swing * mpmath.sin(w * t), -swing * w * w * mpmath.sin(w * t)
+        return 2 * l**2 / 3 * acceleration + mpmath.mpf(9.81) * l * mpmath.cos(angle)
+
+    with mpmath.workdps(40):
+        at = [mpmath.mpf(0.7), mpmath.mpf(0.6), mpmath.mpf(1.3)]
+        t = mpmath.findroot(lambda t: mpmath.diff(lambda x: effort(x, *at), t), mpmath.mpf(float(gradient.t[0])))
+        exact = [float(mpmath.diff(lambda *x: effort(t, *x), at, tuple(int(i == k) for i in range(3)))) for k in range(3)]
+    np.testing.assert_allclose(gradient.slopes[0], exact, rtol=1e-11)
 
 
 @pytest.mark.parametrize("asked", ["times", "over"])

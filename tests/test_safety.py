@@ -100,7 +100,7 @@ def test_a_material_without_an_endurance_limit_leaves_fatigue_open():
 
 def test_strength_is_wanted_as_other_outputs_are(scene):
     names = outputs(scene.mechanism)
-    assert names[-4:] == ["stress:rod", "safety:rod", "life:rod", "deflection:rod"]
+    assert [n for n in names if n.endswith(":rod")][-4:] == ["stress:rod", "safety:rod", "life:rod", "deflection:rod"]
     solution = evaluate(scene, wanted=["safety:rod"], certificate=False)
     assert solution.links_with_sections == ("rod",)
     assert not any(name.startswith(("effort", "reaction")) for name in solution.series)

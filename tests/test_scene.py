@@ -15,6 +15,7 @@ pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 def test_outputs():
     assert outputs(slider_crank().mechanism) == [
         "all", "effort", "motion", "reaction:O", "reaction:A", "reaction:B", "reaction:guide", "section:crank", "section:rod",
+        "sensitivity:r", "sensitivity:l", "sensitivity:m1", "sensitivity:m2", "sensitivity:m3",
     ]  # fmt: skip
 
 

@@ -5,20 +5,26 @@ import math
 import numpy as np
 import pytest
 from balance import columns_at
-from conftest import CASES, PLANAR
+from conftest import CASES, PLANAR, SPATIAL
 from parametric import declared
 from precise import precise
+from truth import truth
 
 from lagrange_casadi import derive, load_case
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.quantities import FORCES, Output
+from lagrange_casadi.sensitivity.series import at_instants
 from lagrange_casadi.sensitivity.slopes import Slopes
 from lagrange_casadi.summits.sharpness import Sharpness
 
 RATIOS = (0.1234567, 0.9034567)
 STEP = 2.0**-13
-OWN = {"beam_pump": ["r", "counterweight", "fluid"], "jansen_leg": ["push"]}
-"""Cases of which the oracle knows some lengths by number: parameters of theirs on which no motion depends."""
+OWN = {
+    "beam_pump": ["r", "counterweight", "fluid"],
+    "jansen_leg": ["push"],
+    "roller_cam": ["lift", "base", "offset", "stiffness"],
+}
+"""Cases of which the oracle knows some lengths by number, as where a spring acts: parameters of theirs that change no drive."""
 
 
 def made(scene, backend="vm"):
@@ -85,6 +91,41 @@ def test_slopes_are_those_of_differences_in_50_digits(name):
         for key in told:
             gap = abs(float(own[key][1][j] - exact[key]))
             assert gap <= 1e-10 * sizes[unit(key[0])] / abs(p[j]), (key, parameter, gap, sizes[unit(key[0])])
+
+
+def with_parameters():
+    """The cases in space that have parameters; Bricard's loop closes for its own proportions alone."""
+    return [name for name in SPATIAL if name != "bricard" and load_case(CASES / name).scene.mechanism.parameters]
+
+
+@pytest.mark.sampled(6)
+@pytest.mark.parametrize("name", with_parameters())
+def test_in_space_too(name):
+    """All columns, forward, beside differences of the graph itself in 50 digits: of loops that are closed anew."""
+    scene = load_case(CASES / name).scene
+    start, stop = scene.span
+    t = start + 0.37 * (stop - start)
+    graph, parameters = derive(scene, ["all"]), list(scene.mechanism.parameters)
+    values = scene.mechanism.values()
+    p = np.array(list(values.values()))
+    rows = list(graph.outputs)
+    kinds = [f"{row.group} {row.unit(scene.mechanism)}" for row in rows]
+    instants = np.linspace(start, t, 40)
+    found = at_instants(graph, rows, instants, p, list(range(p.size)), Rung("vm"))[-1]
+    sizes: dict[str, float] = {}
+    for kind, own in zip(kinds, found, strict=True):
+        sizes[kind] = max(sizes.get(kind, 0.0), float(np.abs(own[1:] * p).max()))
+    rounding = 1e-15 * max(sizes.values())  # of what is nothing
+    for j, parameter in enumerate(parameters):
+        x = values[parameter]
+        step = math.ldexp(STEP, math.frexp(x)[1])
+        assert (x + step) - x == step
+        four = {k: truth(scene, [t], {parameter: x + k * step}).sides[0][0] for k in (-2, -1, 1, 2)}
+        for row, kind, own in zip(rows, kinds, found, strict=True):
+            v = {k: columns[str(row)] for k, columns in four.items()}
+            exact = float((8 * (v[1] - v[-1]) - (v[2] - v[-2])) / (12 * step))
+            gap = abs(own[1 + j] - exact) * abs(x)
+            assert gap <= 1e-10 * sizes[kind] + rounding, (str(row), parameter, gap, sizes[kind])
 
 
 @pytest.mark.parametrize("share", [1e-3, 1e-6])

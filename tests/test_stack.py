@@ -25,6 +25,7 @@ RUNGS = {
     "double": {},
     "single": {"precision": "single"},
     "newton": {"newton": 2},
+    "slopes": {"wanted": ["all", "sensitivity"]},
     "table": {"table": 1e-6, "precision": "single", "wanted": ["effort"]},
 }
 
@@ -49,6 +50,7 @@ def sources(tmp_path_factory):
 # A bound is nearest where functions are inlined in one another, and iterated loops are one more.
 BUILT = [(case, rung, name) for case in CASES for rung in ("double", "single") for name in COMPILERS]
 BUILT += [(case, "newton", name) for case in CASES for name in COMPILERS if name.endswith("-O2")]
+BUILT += [(case, "slopes", name) for case in ("slider_crank", "v_twin", "excavator") for name in COMPILERS]
 BUILT += [(case, "table", name) for case in ("slider_crank", "six_bar") for name in COMPILERS]
 
 

@@ -163,7 +163,7 @@ def test_other_files_are_refused(tmp_path, file):
     with pytest.raises(StoreError, match="not the file of a run, its attribute 'schema' is None"):
         load(tmp_path / "other.h5")
     edit(file, lambda h: h.attrs.__setitem__("schema_version", 99))
-    with pytest.raises(StoreError, match="schema version 99, this program reads versions 1 to 6"):
+    with pytest.raises(StoreError, match="schema version 99, this program reads versions 1 to 7"):
         load(file)
     with pytest.raises(PathError, match="is a folder, not a file"):
         load(tmp_path)

@@ -87,6 +87,9 @@ def _describe_file(solution: Solution) -> None:
     click.echo(f"versions: {', '.join(f'{name} {version}' for name, version in provenance.versions.items())}")
     for note in solution.notes:
         click.echo(f"note: {note}")
+    if solution.sensitivities.by:
+        by = ", ".join(solution.sensitivities.parameters)
+        click.echo(f"sensitivities: of {len(solution.sensitivities.quantities)} quantities by {by}")
     click.echo("peaks:")
     for name in solution.names():
         click.echo(peak_line(solution, solution.peak(name)))

@@ -34,6 +34,7 @@ from .options import over as by_drive
 from .replaced import figures_in, replaced_lines
 from .report import report_lines
 from .rows import rows_of, write_csv
+from .slope_lines import slope_lines
 from .strength_lines import strength_lines
 
 
@@ -50,7 +51,7 @@ from .strength_lines import strength_lines
     multiple=True,
     callback=separated,
     metavar="OUTPUT",
-    help="effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; repeatable.",
+    help="effort, reaction:JOINT, section:LINK, motion, sensitivity:PARAMETER, a kind such as section, or all; repeatable.",
 )
 @rung
 @click.option("--threads", type=click.IntRange(1, MOST_THREADS), metavar="N", help="Threads; default: one a core.")
@@ -132,6 +133,8 @@ def run(
     say(f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {backend_used}; {what}:")
     names = [*forces(solution), *resultants(solution)]
     for line in report_lines(solution, refine(loaded.scene, solution, names) if refine_peaks else ()):
+        say(line)
+    for line in slope_lines(solution, loaded.scene, backend):
         say(line)
     for lines in (strength_lines, elastic_lines):
         for line in lines(solution, loaded.scene.mechanism, want or loaded.scene.wanted):

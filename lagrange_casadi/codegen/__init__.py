@@ -1,5 +1,6 @@
 """From a scene's graphs to C, and from C to a loaded library."""
 
+from .batch import BatchLibrary, load_batch
 from .compiler import Compiler, Language, find_compiler
 from .designs import emit_designs
 from .emit import emit
@@ -7,6 +8,7 @@ from .library import DesignsLibrary, Library, load, load_designs
 from .points import PointsLibrary, load_points
 
 __all__ = [
+    "BatchLibrary",
     "Compiler",
     "DesignsLibrary",
     "Language",
@@ -16,6 +18,7 @@ __all__ = [
     "emit_designs",
     "find_compiler",
     "load",
+    "load_batch",
     "load_designs",
     "load_points",
 ]

@@ -26,6 +26,7 @@ from .possible import Demands, demands
 from .shaking import refuse_late
 from .stretches import Timetable, timetable
 from .times import Instants, Over, Times, Timing, instants_of, span_of
+from .wanted_slopes import SENSITIVITY, others, sensitivities
 
 _KINDS = ("reaction", "multiplier", "load", "friction", "section", "output")
 STRENGTH = ("stress", "safety", "life", "deflection")
@@ -85,7 +86,7 @@ class Wanted:
         ``deflection:LINK``.
 
         A kind alone, as ``section``, is all that the mechanism has of it. What an output of the user's own is made of is wanted
-        with it.
+        with it. ``sensitivity`` and ``sensitivity:PARAMETER`` are of the other outputs that are wanted, and ``all`` is without.
         """
         every = outputs(mechanism)
         choices = [*every, *kinds(mechanism)]
@@ -96,6 +97,8 @@ class Wanted:
                 _refuse_output(mechanism, name)
                 raise UnknownNameError("output", name, choices)
             _check_material(mechanism, name)
+        if names and not others(names):
+            raise DeclarationError(f"output '{names[0]}': sensitivities are of other outputs; want some too, as effort")
         chosen = set(every if "all" in names else names)
         own = (output for name, output in mechanism.outputs.items() if chosen & {"output", f"output:{name}"})
         chosen |= {asked.wanted for output in own for asked in output.made_of}
@@ -131,7 +134,8 @@ def outputs(mechanism: Mechanism) -> list[str]:
     own = [f"output:{name}" for name in mechanism.outputs]
     strength = [f"{kind}:{name}" for kind in STRENGTH for name in _made_of_something(mechanism)]
     strength += [f"safety:{joint}" for joint in mechanism.fitted]
-    return ["all", "effort", "motion", *reactions, *multipliers, *loads, *frictions, *sections, *own, *strength]
+    found = ["all", "effort", "motion", *reactions, *multipliers, *loads, *frictions, *sections, *own, *strength]
+    return [*found, *sensitivities(mechanism)]
 
 
 def strength_of(mechanism: Mechanism, kind: str, names: Sequence[str]) -> list[str]:
@@ -176,12 +180,12 @@ def _made_of_something(mechanism: Mechanism) -> list[str]:
 
 def kinds(mechanism: Mechanism) -> list[str]:
     """The kinds of output of which a mechanism has any beside the efforts and the motion: each can be wanted as a whole."""
-    return [kind for kind in (*_KINDS, *STRENGTH) if any(name.startswith(f"{kind}:") for name in outputs(mechanism))]
+    return [kind for kind in (*_KINDS, *STRENGTH, SENSITIVITY) if any(name.startswith(f"{kind}:") for name in outputs(mechanism))]
 
 
 def _refuse_output(mechanism: Mechanism, name: str) -> None:
     kind, _, part = name.partition(":")
-    if name in (*_KINDS, *STRENGTH):
+    if name in (*_KINDS, *STRENGTH, SENSITIVITY):
         raise DeclarationError(f"output '{name}': mechanism '{mechanism.name}' has none; valid: {', '.join(outputs(mechanism))}")
     if kind in STRENGTH and part in mechanism.links:
         raise DeclarationError(

@@ -35,10 +35,12 @@ from ..instants.refusal import Status
 from ..instants.rung import Rung
 from ..instants.solution import Provenance
 from ..quantities import Output
+from ..sensitivity.peaks import PeakSlopes
 from ..sensitivity.slopes import Slopes
 from ..summits.sharpness import bent, with_watched
 from ..system.room import cores, require
 from ..tables import table_of
+from .gradients import gradient, tied
 from .interpreted import columns_of, outcome
 from .reduction import KeptOutputs, stages_of
 from .times import DesignTimes
@@ -145,6 +147,12 @@ class DesignEngine:
     def units(self) -> tuple[str, ...]:
         """Their units."""
         return tuple(self.kept.units[k] for k in self.shown)
+
+    @cached_property
+    def _unit_numbers(self) -> npt.NDArray[np.intp]:
+        """The number of the unit of each of the quantities."""
+        numbers = {unit: k for k, unit in enumerate(dict.fromkeys(self.units))}
+        return np.array([numbers[unit] for unit in self.units], np.intp)
 
     @property
     def efforts(self) -> tuple[str, ...]:
@@ -319,6 +327,23 @@ class DesignEngine:
     def slopes(self) -> Slopes:
         """The derivatives of :attr:`quantities` at points; they are derived and compiled when they are first asked for."""
         return Slopes.of(self.graph, [self.kept.quantities[k] for k in self.shown], self.kept.sharpness, self.rung)
+
+    def gradient(self, p: Array, value: Array, t: Array, xi: Array) -> PeakSlopes:
+        """How the peaks (q,) of a design (parameters,), which are at times ``t`` and ratios ``xi``, change with all parameters."""
+        return gradient(self.slopes, self.times, self._unit_numbers, p, value, t, xi)
+
+    def tied(self, p: Array, value: Array, own: PeakSlopes) -> npt.NDArray[np.bool_]:
+        """Which of the peaks (q,) of a design, whose gradient is ``own``, tie with another one: see :func:`.ties`."""
+        series = self.evaluate(p[None], threads=1, histories=True).series
+        assert series is not None
+        return tied(self.slopes, self.times, self._unit_numbers, p, value, own, self.outputs, series[0])
+
+    def slopes_at(self, p: Array, found: Outcome) -> Array:
+        """The derivatives of the peaks of designs by all parameters, (n, q, parameters); NaN where there is none."""
+        slopes = np.full((*found.value.shape, len(self.parameters)), np.nan)
+        for k in np.flatnonzero(found.status == Status.OK):
+            slopes[k] = self.gradient(p[k], found.value[k], found.t[k], found.xi[k]).slopes
+        return slopes
 
     def failures(self, p: Array) -> dict[str, float]:
         """What fails of one design that has a result, (parameters,), looked at with all its outputs: see :mod:`.witness`."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any
 
@@ -18,9 +18,6 @@ from ..errors import AssemblyError, DeclarationError, UnknownNameError
 from ..evaluate import evaluate
 from ..instants.refusal import Status
 from ..instants.rung import Backend, Rung
-from ..sensitivity.ends import end_slopes
-from ..sensitivity.peaks import peak_slopes
-from ..summits.search import NOTHING
 from .engine import DesignEngine, Outcome
 
 
@@ -46,7 +43,8 @@ class Gradient:
     ``value``, ``t`` and ``xi``, (q,), are those of :class:`Peaks`. ``slopes`` (q, parameters) are the derivatives of ``value``,
     with its sign, by each of ``parameters``, in the quantity's unit over the parameter's. ``kinds`` (q,) says what each peak is at:
     see :class:`.PeakKind`. Slopes are NaN where a peak has none: it is infinite, not determined, or at a kink or a jump that
-    nothing explains. Where a quantity has two peaks of one size, the slopes are those of the one that is told.
+    nothing explains. Where a quantity has two peaks of one size, the slopes are those of the one that is told; :attr:`tied` says
+    where that is so.
     """
 
     quantities: tuple[str, ...]
@@ -56,6 +54,15 @@ class Gradient:
     xi: Array
     slopes: Array
     kinds: npt.NDArray[np.int8]
+    look: Callable[[], npt.NDArray[np.bool_]] = field(repr=False)
+
+    @cached_property
+    def tied(self) -> npt.NDArray[np.bool_]:
+        """Which peaks (q,) tie with another of the same quantity that changes otherwise: the largest of both has no derivative.
+
+        It is looked for when it is first asked for, which takes longer than the gradient; not at kinks between instants.
+        """
+        return self.look()
 
     def __getitem__(self, quantity: str) -> dict[str, float]:
         """The derivatives of the peak of a quantity, by the parameter's name. Raises :class:`UnknownNameError`."""
@@ -170,29 +177,10 @@ class Prepared:
         times as long as :meth:`peaks` at most. Raises what that does.
         """
         peaks = self.peaks(values, **named)
-        engine, p = self._engine, self._p[0]
-        instants = engine.times.of(self._p)[0][0]
-        slopes = engine.slopes
-        places = (peaks.value, peaks.t, peaks.xi)
-        timing = engine.times.timing
-        ends = end_slopes(engine.scene, timing, float(instants[0]), float(instants[-1]), p)
-        found = peak_slopes(
-            slopes, instants, p, np.arange(peaks.value.size, dtype=np.intc), places, ends, self._nothing(peaks.value)
-        )
-        value, t, xi = (x.copy() for x in places)
-        return Gradient(self.quantities, self.parameters, value, t, xi, found.slopes, found.kinds)
-
-    def _nothing(self, value: Array) -> npt.NDArray[np.bool_]:
-        """Which peaks are zero but for rounding, beside the largest of their unit."""
-        sizes, largest = np.abs(value), np.zeros(self._unit_numbers.size)
-        np.maximum.at(largest, self._unit_numbers, np.where(np.isfinite(sizes), sizes, 0.0))
-        return np.asarray(sizes <= NOTHING * largest[self._unit_numbers])
-
-    @cached_property
-    def _unit_numbers(self) -> npt.NDArray[np.intp]:
-        """The number of each quantity's unit."""
-        numbers = {unit: k for k, unit in enumerate(dict.fromkeys(self.units))}
-        return np.array([numbers[unit] for unit in self.units], np.intp)
+        value, t, xi = (x.copy() for x in (peaks.value, peaks.t, peaks.xi))
+        found = self._engine.gradient(self._p[0], value, t, xi)
+        look = partial(self._engine.tied, self._p[0].copy(), value, found)
+        return Gradient(self.quantities, self.parameters, value, t, xi, found.slopes, found.kinds, look)
 
     def designs(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`; ``threads`` share them.

@@ -13,6 +13,7 @@ from .golden import RATIOS
 from .matlab import matlab
 from .program import literal
 from .sections import comparisons, in_words
+from .slopes import in_readme, selftest_function, selftest_numbers
 from .source import Source
 from .text import markdown, quoted, template
 
@@ -63,7 +64,7 @@ def companions(source: Source) -> dict[str, str]:
                 outputs=_table(c.outputs),
                 parameters=_settings(c),
                 links=", ".join(f"`{k.constant}`" for k in c.links) or "none",
-                mapped=_mapped(c),
+                mapped=_mapped(c) + (in_readme(c, source.slopes) if source.slopes else ""),
             ),
         }
         | matlab(source, drive, effort)
@@ -127,15 +128,17 @@ def _selftest(source: Source, words: dict[str, str]) -> str:
         inputs_off=row(g.inputs_off),
         outputs=rows(g.outputs),
         outputs_off=row(g.outputs_off),
-        forces=_forces(c.table, rows(g.forces.reshape(len(g.times), -1)), row(g.forces_off.ravel())) if c.links else "",
+        forces=(_forces(c.table, rows(g.forces.reshape(len(g.times), -1)), row(g.forces_off.ravel())) if c.links else "")
+        + (selftest_numbers(source.slopes, row) if source.slopes else ""),
         given="\n".join(f"  inputs->{m.name} = ({c.prefix}_real) row[{k}];" for k, m in enumerate(c.inputs)),
         taken_inputs="\n".join(_taken(c, m, coordinates) for m in c.inputs if not m.rest_of),
         taken_outputs="\n".join(
             f'  compare("{m.name}", row[{k}], (double) outputs->{m.name}, outputs_off[{k}], {int(m.wrapped)});'
             for k, m in enumerate(c.outputs)
         ),
-        sections=_sections(c) if c.links else "",
-        check_sections="  check_sections(&model, &outputs, k);\n" if c.links else "",
+        sections=(_sections(c) if c.links else "") + (selftest_function(c, source.slopes) if source.slopes else ""),
+        check_sections=("  check_sections(&model, &outputs, k);\n" if c.links else "")
+        + ("  check_sensitivity(&model, k);\n" if source.slopes else ""),
         first_input=next(m.name for m in c.inputs if m.source.startswith("motion:")),
         first_output=c.outputs[0].name,
         null=", 0" if c.settings else "",

@@ -131,6 +131,7 @@ def _manifest(source: Source, files: Mapping[str, bytes]) -> str:
         "parameters": [row | {"default": m.default} for row, m in zip(rows(agreed.settings), agreed.settings, strict=True)],
         "inputs": rows(agreed.inputs),
         "outputs": rows(agreed.outputs),
+        **({"sensitivities": [m.name for m in source.slopes.by]} if source.slopes else {}),
         "links": [{"name": link.name, "constant": link.constant} for link in agreed.links],
         "model": [{"name": name, "type": kind, "count": count} for name, kind, count in source.model],
         "files": {file: hashlib.sha256(content).hexdigest() for file, content in sorted(files.items())},

@@ -6,6 +6,7 @@ import math
 
 from .contract import Contract
 from .sections import about, law_in_words
+from .slopes import declaration, types
 from .source import Source
 from .stack import deepest
 from .statuses import STATUSES
@@ -39,7 +40,7 @@ def header(source: Source) -> str:
         inputs="\n".join(member(p, m.name, m.comment) for m in c.inputs),
         outputs_note=" Angles that loops set are within a turn." if any(m.wrapped for m in c.outputs) else "",
         outputs="\n".join(member(p, m.name, m.comment) for m in c.outputs),
-        links=_links(c),
+        links=_links(c) + (types(c, source.slopes) if source.slopes else ""),
         model="\n".join(f"  {line}" for line in _model(source)),
         for_parameters=", for parameters, or 0 for the defaults" if c.settings else "",
         anew=" Begins anew: iterated loops are where the scene's motion begins." if source.iterated else "",
@@ -50,7 +51,7 @@ def header(source: Source) -> str:
         else "",
         time_rest=f", {p}_real time_rest" if c.rests else "",
         follows=_follows(source),
-        sections=_section_functions(c),
+        sections=_section_functions(c) + (declaration(c) if source.slopes else ""),
     )
 
 

@@ -19,6 +19,8 @@ from .data import sampled, table_call, table_text
 from .golden import Golden
 from .program import Format, Program, literal
 from .sections import functions
+from .slopes import ExportedSlopes
+from .slopes import code as sensitivity
 from .statuses import STATUSES
 from .text import comment, indented, printed, template
 
@@ -28,7 +30,8 @@ class Source:
     """What header and source are written from.
 
     ``scene`` is the hash of the scene, ``guess`` where iterated loops begin, ``rung`` the options by which it is evaluated,
-    ``values`` are the parameters, of which a table leaves none open, and ``golden`` what it must compute.
+    ``values`` are the parameters, of which a table leaves none open, and ``golden`` what it must compute, ``slopes``
+    the derivatives of its outputs, where they are wanted.
     """
 
     contract: Contract
@@ -38,12 +41,15 @@ class Source:
     rung: str
     values: Mapping[str, float]
     golden: Golden
+    slopes: ExportedSlopes | None = None
 
     @cached_property
     def code(self) -> str:
         """The source: ``<prefix>.c``."""
         p, sizes = self.contract.prefix, self.program.sizes
         sections = functions(self.contract, self.program, self._number, self._function("sqrt")) if self.contract.links else ""
+        if self.slopes is not None:
+            sections += sensitivity(self.contract, self.slopes, sizes["drives"], self.iterated)
         return template(
             "mechanism.c",
             **self.words,

@@ -5,11 +5,13 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from ..declare.scene import Scene, without_fitted, without_life
+from ..declare.scene import Scene, Wanted, without_fitted, without_life
+from ..declare.wanted_slopes import by_parameters, others
 from ..equations.derive import assembled, derive
 from ..equations.fingerprint import declaration
 from ..equations.scene_graph import SceneGraph
@@ -23,6 +25,7 @@ from .contract import contract
 from .data import check_size
 from .golden import golden
 from .program import program
+from .slopes import FUNCTION, check_rung, exported_slopes
 from .source import Source
 
 _ENOUGH = 8
@@ -38,6 +41,12 @@ def sourced(
     """
     without_life(wanted or (), "exports")
     without_fitted(scene.mechanism, wanted or (), "exports")
+    names = scene.wanted if wanted is None else wanted
+    by = by_parameters(scene.mechanism, names)
+    if by:
+        check_rung(rung)
+        Wanted.of(scene.mechanism, names)
+        wanted = others(names)
     precision, newton, table = rung.precision, rung.newton, rung.table
     values = scene.mechanism.values(parameters)
     p = np.array(list(values.values()))
@@ -64,7 +73,10 @@ def sourced(
     check_size(emitted, largest)
     guess = graph.newton.guess if graph.newton is not None and read is None else ()
     vectors = golden(whole, agreed, solution, exact, p)
-    return Source(agreed, emitted, _hash(graph, values), guess, rung.options, values, vectors)
+    slopes = exported_slopes(graph, agreed, by, p, exact.t, vectors.times) if by else None
+    if slopes is not None:
+        emitted = replace(emitted, functions={**emitted.functions, FUNCTION: slopes.function})
+    return Source(agreed, emitted, _hash(graph, values), guess, rung.options, values, vectors, slopes)
 
 
 def _hash(graph: SceneGraph, values: Mapping[str, float]) -> str:

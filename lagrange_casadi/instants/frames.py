@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ..declare.density import Array
 from ..errors import LagrangeCasadiError
+from .derivatives import derivatives
 
 if TYPE_CHECKING:
     import pandas
@@ -27,6 +28,8 @@ def dataset(solution: Solution) -> xarray.Dataset:
         str(q): (q.quantity.axes, solution.array(q), {"units": solution.unit(q)} | q.meant(solution.table).attributes)
         for q in solution.quantities()
     }
+    for found in derivatives(solution):
+        data[found.name] = (found.output.quantity.axes, found.values, {"units": found.unit} | found.attributes)
     coordinates = {"t": ("t", solution.t, {"units": "s"}), "xi": ("xi", solution.xi, {"units": "1", "long_name": "ratio xi/l"})}
     if solution.over:
         coordinates["over"] = ("t", solution.over.values, {"units": solution.over.unit, "long_name": solution.over.long_name})
@@ -50,8 +53,9 @@ def columns(solution: Solution) -> dict[str, Array]:
     found: dict[str, Array] = {}
     if solution.over:
         found[f"over:{solution.over.joint} [{solution.over.unit}]"] = solution.over.values
-    for output in solution.quantities():
-        unit, values = solution.unit(output), solution.array(output)
+    named = [(str(output), solution.unit(output), solution.array(output)) for output in solution.quantities()]
+    named += [(found.name, found.unit, found.values) for found in derivatives(solution)]
+    for output, unit, values in named:
         ending = "" if unit == "1" else f" [{unit}]"
         if values.ndim == 1:
             found[f"{output}{ending}"] = values

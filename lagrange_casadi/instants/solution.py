@@ -21,6 +21,7 @@ from ..declare.times import DriveAxis
 from ..errors import DeclarationError, UnknownNameError
 from ..quantities import Output
 from ..tables import Table
+from .derivatives import Derivatives
 from .elasticity import Elasticity
 from .frames import dataset, frame
 from .laws import law_of, made_of
@@ -79,7 +80,8 @@ class Solution:
     by full names. ``certificate`` holds the residuals of :mod:`.certificate`, each (t,), and how near the loops are to a dead
     centre; a residual above ``tolerance`` means that the solution is wrong, not that it is rounded. ``errors`` estimates by
     :mod:`.accuracy` how far each quantity may be off, over all instants, in its unit. ``over`` is the coordinate of the drive by
-    which the instants were asked for, or None. ``elasticity`` says which outputs least strain energy told.
+    which the instants were asked for, or None. ``elasticity`` says which outputs least strain energy told; ``sensitivities`` are
+    derivatives by parameters, where these were wanted.
 
     Methods that take a name raise :class:`.UnknownNameError` for one that the solution does not have, and list those it has.
     """
@@ -96,6 +98,7 @@ class Solution:
     tolerance: float = 0.0
     over: DriveAxis | None = None
     elasticity: Elasticity = field(default_factory=Elasticity)
+    sensitivities: Derivatives = field(default_factory=Derivatives)
 
     @cached_property
     def table(self) -> Table:
@@ -210,7 +213,8 @@ class Solution:
         """What is worth a word though all is right: points that slide beyond the end of a link, joints that rub and are at rest."""
         known = {output: values for output, values in self.outputs.items() if output not in self.left_open}
         found = notes(self.t, known, self.description, self.resting)
-        return (*found, *self.elasticity.notes)
+        slopes = () if self.resting.any() else self.sensitivities.notes()  # at rest all that rubs is open
+        return (*found, *self.elasticity.notes, *slopes)
 
     @cached_property
     def resting(self) -> npt.NDArray[np.bool_]:
@@ -227,7 +231,8 @@ class Solution:
         outputs = {output: values[instants] for output, values in self.outputs.items()}
         certificate = {name: values[instants] for name, values in self.certificate.items()}
         over = self.over and replace(self.over, values=self.over.values[instants])
-        return replace(self, t=self.t[instants], outputs=outputs, certificate=certificate, over=over)
+        slopes = self.sensitivities.during(instants)
+        return replace(self, t=self.t[instants], outputs=outputs, certificate=certificate, over=over, sensitivities=slopes)
 
     @property
     def by_equilibrium(self) -> Solution:

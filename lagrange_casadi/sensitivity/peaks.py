@@ -16,6 +16,8 @@ import numpy.typing as npt
 from ..declare.density import Array
 from ..summits.panels import SIDE, SPACING
 from ..summits.sharpness import Kind, Watch
+from .nearby import at_peaks
+from .points import SAME_PLACE
 from .slopes import Numbers, Slopes
 
 _STEEP = 1e-5
@@ -33,6 +35,11 @@ class PeakKind(enum.IntEnum):
     """A kink or a jump, whose time is known."""
     UNTOLD = 3
     """A kink or a jump of which it is not known what makes it, or none: there is no derivative."""
+    LINK_END = 4
+    """The base or the tip of the link; in time the quantity is stationary there."""
+
+
+_SMOOTH, _END, _SWITCH, _UNTOLD, _LINK_END = map(int, PeakKind)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,27 +65,28 @@ def peak_slopes(
     last move. ``nothing`` (q,) tells which peaks are zero but for rounding: with them nothing moves.
     """
     value, t, xi = peaks
-    found = np.full((t.size, p.size), np.nan)
-    kinds = np.full(t.size, PeakKind.UNTOLD, np.int8)
-    some = np.flatnonzero(np.isfinite(value) & np.isfinite(t))
-    value, t, xi = value[some], t[some], xi[some]
+    sound = np.isfinite(value) & np.isfinite(t)
+    if not sound.all():
+        found, kinds = np.full((t.size, p.size), np.nan), np.full(t.size, _UNTOLD, np.int8)
+        inner = peak_slopes(slopes, instants, p, chosen[sound], (value[sound], t[sound], xi[sound]), ends, nothing[sound])
+        found[sound], kinds[sound] = inner.slopes, inner.kinds
+        return PeakSlopes(found, kinds)
     first, last = instants[0], instants[-1]
     step = (last - first) / max(instants.size - 1, 1)
-    z = slopes.iterated(instants, p, t)
-    here = slopes.at(t, z, p, chosen[some], xi, value)
+    here, lacking, z = at_peaks(slopes, instants, p, chosen, (value, t, xi), step)
     near = _near(step, instants)
     at_first, at_last = t - first <= near, last - t <= near
-    kind = np.where(at_first | at_last, PeakKind.END, PeakKind.SMOOTH)
-    steep = (np.abs(here.rate) * step > _STEEP * np.abs(value)) & (kind == PeakKind.SMOOTH) & ~nothing[some]
+    going = at_first | at_last
+    steep = (np.abs(here.rate) * step > _STEEP * np.abs(value)) & ~(going | nothing)
+    kinds = np.where((xi <= SAME_PLACE) | (xi >= 1.0 - SAME_PLACE), _LINK_END, _SMOOTH).astype(np.int8)
+    kinds[going] = _END
     moved = np.zeros_like(here.slopes)
     moved[at_last], moved[at_first] = ends[1], ends[0]
     if steep.any():
         moved[steep] = _switching(slopes, t[steep], z[steep], p, 2 * near)
-        kind[steep] = np.where(np.isnan(moved[steep]).any(axis=1), PeakKind.UNTOLD, PeakKind.SWITCH)
-    going = kind != PeakKind.SMOOTH
-    here.slopes[going] += here.rate[going, None] * moved[going]
-    found[some], kinds[some] = here.slopes, kind
-    return PeakSlopes(found, kinds)
+        kinds[steep] = np.where(np.isnan(moved[steep]).any(axis=1), _UNTOLD, _SWITCH)
+        going |= steep
+    return PeakSlopes(here.slopes + np.where(going[:, None], here.rate[:, None] * moved, lacking), kinds)
 
 
 def _near(step: float, instants: Array) -> float:

@@ -15,10 +15,11 @@ from .. import codegen
 from ..codegen.stages import plain
 from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
-from ..instants.backends import begun, compiled, follow
+from ..instants.backends import compiled
 from ..instants.rung import Rung
 from ..quantities import Output
 from ..summits.sharpness import Sharpness
+from .following import iterated
 from .points import PointFunction
 
 Numbers = npt.NDArray[np.intc]
@@ -65,7 +66,7 @@ class Slopes:
         that; else it stands still. A ratio of what is not along a link may be NaN.
         """
         n = t.size
-        found = AtPoints(np.full(n, np.nan), np.full(n, np.nan), np.full((n, p.size), np.nan))
+        found = AtPoints(np.empty(n), np.empty(n), np.empty((n, p.size)))
         moving = np.full(n, 0.0 if value is None else 1.0)
         ratios = np.where(np.isnan(xi), 0.0, xi)
         values = np.zeros(n) if value is None else np.where(np.isfinite(value), value, 0.0)
@@ -97,14 +98,4 @@ class Slopes:
 
     def iterated(self, t: Array, p: Array, places: Array) -> Array:
         """The iterated coordinates (n, z) at ``places`` (n,) between the rising instants ``t``, from which they are followed."""
-        count = self.graph.instant.size1_in("z")
-        if not count:
-            return np.zeros((places.size, 0))
-        times, back = np.unique(np.concatenate([t, places]), return_inverse=True)
-        guess = np.array(begun(self.graph, float(times[0]), p), float)
-        z = np.zeros((count, times.size))
-        if self.following is not None:
-            self.following.follow(times, p, guess, z, np.zeros(times.size, np.intc))
-        else:
-            z[:] = follow(self.graph, times, p, guess)[0]
-        return np.ascontiguousarray(z[:, back[t.size :]].T)
+        return iterated(self.graph, self.following, t, p, places)

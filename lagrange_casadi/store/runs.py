@@ -13,6 +13,7 @@ import os
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from ..declare.density import Array
 from ..declare.description import Description, motions_of, shape_of
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
+from ..declare.wanted_slopes import SENSITIVITY
 from ..errors import DeclarationError, PathError, StoreError, one_line
 from ..instants.elasticity import Elasticity
 from ..instants.ordering import in_order
@@ -34,13 +36,14 @@ from ..system.seal import kind_of, seal
 from ..tables import ANGLE, CF, LENGTH, SPACE
 from .opening import SCHEMA, opened_file
 from .scales import LARGE, Scales
+from .slopes import add_slopes, check_slopes, slopes_of
 from .untrusted import check_chunks, check_dataset, check_links, parsed, shown
 
-SCHEMA_VERSION = 6
+SCHEMA_VERSION = 7
 """Files of version 1 have no seal. Those of version 2 are not over a drive's coordinate, those of 3 of planar mechanisms alone, and
-those of 4 have no loads along links, and those of 5 no rotary inertia of slices; all four are still written."""
+those of 4 have no loads along links, those of 5 no rotary inertia of slices, those of 6 no sensitivities; all are still written."""
 
-_WITHOUT_OVER, _PLANAR, _AT_POINTS, _LOADED = 2, 3, 4, 5
+_WITHOUT_OVER, _PLANAR, _AT_POINTS, _LOADED, _THICK = 2, 3, 4, 5, 6
 
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
@@ -105,7 +108,7 @@ def _require_room(solution: Solution, target: Path) -> None:
         8
         * solution.t.size
         * (len(solution.series) + len(solution.table.forces) * solution.xi.size * len(solution.links_with_sections))
-    )
+    ) + sum(values.nbytes for found in solution.sensitivities.by.values() for values in found.values())
     try:
         free = shutil.disk_usage(target.parent).free
     except OSError:
@@ -141,6 +144,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
         if not found:
             found += _check_drive_axis(solution)
             found += [finding for output in outputs for finding in _check_dataset(file, solution, output)]
+            found += check_slopes(file, solution)
             found += _check_certificate(solution)
     return found
 
@@ -229,6 +233,8 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     for link in solution.links_with_sections:
         for force in solution.table.forces:
             _add_grid(file, scales, solution, Output("section", link, force), breathe)
+    breathe()
+    add_slopes(file, scales, solution, partial(_empty, file))
     scales.finish()
     provenance = solution.provenance
     file.attrs["schema"] = SCHEMA
@@ -252,9 +258,11 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
 
 def _version(solution: Solution) -> int:
     """The first version of the schema that has all of a solution."""
+    if solution.sensitivities.by:
+        return SCHEMA_VERSION
     along = {output.member for output in solution.outputs if output.group == "spread"}
     if along:
-        return SCHEMA_VERSION if along & {*solution.table.couples} else _LOADED
+        return _THICK if along & {*solution.table.couples} else _LOADED
     return _AT_POINTS if solution.table is SPACE else _PLANAR if solution.over else _WITHOUT_OVER
 
 
@@ -284,11 +292,15 @@ def _add_grid(file: h5py.File, scales: Scales, solution: Solution, output: Outpu
             dataset[start : start + height, left : left + width] = block.on_grid(output.member, basis)
 
 
-def _create(file: h5py.File, scales: Scales, solution: Solution, output: Output, shape: tuple[int, ...]) -> h5py.Dataset:
-    quantity, name = output.meant(solution.table), str(output)
+def _empty(file: h5py.File, place: str, shape: tuple[int, ...]) -> h5py.Dataset:
     width = tuple(min(size, _CHUNK_BYTES // 8) for size in shape[1:])
     chunks = (min(shape[0], max(1, _CHUNK_BYTES // (8 * math.prod(width)))), *width)
-    dataset = file.create_dataset(_place(output), shape, np.float64, chunks=chunks, fletcher32=True, fillvalue=np.nan)
+    return file.create_dataset(place, shape, np.float64, chunks=chunks, fletcher32=True, fillvalue=np.nan)
+
+
+def _create(file: h5py.File, scales: Scales, solution: Solution, output: Output, shape: tuple[int, ...]) -> h5py.Dataset:
+    quantity, name = output.meant(solution.table), str(output)
+    dataset = _empty(file, _place(output), shape)
     dataset.attrs["units"] = solution.unit(output)
     for key, text in quantity.attributes.items():
         dataset.attrs[key] = text
@@ -308,7 +320,7 @@ def _read(file: h5py.File) -> Solution:
     errors: dict[str, float] = {}
 
     def visit(place: str, item: Any) -> None:
-        if isinstance(item, h5py.Dataset) and place not in (*_AXES, _OVER):
+        if isinstance(item, h5py.Dataset) and place not in (*_AXES, _OVER) and not place.startswith(f"{SENSITIVITY}/"):
             output = Output.of(place.replace("/", ":"))
             if "error_estimate" in item.attrs:
                 errors[str(output)] = float(item.attrs["error_estimate"])
@@ -331,7 +343,7 @@ def _read(file: h5py.File) -> Solution:
         whole = set(law.coefficients) == set(solution.table.law) and all(spread.sound for spread in law.spreads)
         if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is not whole")
-    return solution
+    return replace(solution, sensitivities=slopes_of(file, solution, _numbers))
 
 
 def _drive_axis(dataset: Any, shape: tuple[int, ...], description: Description) -> DriveAxis:

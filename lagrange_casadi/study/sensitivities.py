@@ -18,6 +18,7 @@ from ..instants.statistics import shares
 from ..quantities import Output
 from ..sensitivity.peaks import PeakKind, peak_slopes
 from ..sensitivity.slopes import Slopes
+from ..sensitivity.ties import Curve, ties
 from ..summits.search import NOTHING
 from ..summits.sharpness import Sharpness
 from .peaks import refine, resultants, wanted_for
@@ -32,12 +33,14 @@ _BLOCK = 1 << 16
 class Changes:
     """How one number changes with each parameter: ``value`` in its unit, ``slopes`` by the parameter's name.
 
-    ``kind`` says what a peak is at, None of a mean.
+    ``kind`` says what a peak is at, None of a mean. A peak is ``tied`` where another one of the quantity is as large and changes
+    otherwise: the largest of both has no derivative.
     """
 
     value: float
     slopes: dict[str, float]
     kind: PeakKind | None = None
+    tied: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,17 +90,36 @@ class Sensitivities:
 
         Its slopes are NaN where it has no derivative.
         """
-        output = self._known(name)
-        (found,) = refine(self.scene, self.solution, [name])
-        xi = np.nan if found.xi is None else found.xi
-        place = np.array([found.value]), np.array([found.t]), np.array([xi])
-        chosen = np.array([self.slopes.numbers[output]], np.intc)
-        solution, unit = self.solution, self.solution.unit(name)
+        return self.peaks([name])[0]
+
+    def peaks(self, names: Sequence[str]) -> list[Changes]:
+        """How the peaks of several quantities change."""
+        outputs = [self._known(name) for name in names]
+        found = refine(self.scene, self.solution, names)
+        values, t = np.array([peak.value for peak in found]), np.array([peak.t for peak in found])
+        xi = np.array([np.nan if peak.xi is None else peak.xi for peak in found])
+        chosen = np.array([self.slopes.numbers[output] for output in outputs], np.intc)
+        nothing = np.abs(values) <= NOTHING * np.array([self._largest(peak.unit) for peak in found])
+        ends = np.zeros((2, self.p.size))
+        changes = peak_slopes(self.slopes, self.solution.t, self.p, chosen, (values, t, xi), ends, nothing)
+        tied = ties(
+            self.slopes, self.solution.t, self.p, chosen, values, changes, ends, nothing, lambda k: self._curves(outputs[k])
+        )
+        every = zip(values.tolist(), changes.slopes, changes.kinds.tolist(), tied.tolist(), strict=True)
+        return [Changes(value, self._named(slopes), PeakKind(kind), two) for value, slopes, kind, two in every]
+
+    def _curves(self, output: Output) -> Sequence[Curve]:
+        """A quantity over the instants; a section force where it may be largest along the link."""
+        if output.group != "section":
+            return [(np.full(self.solution.t.size, np.nan), self.solution.array(output))]
+        places, values = self.solution.section(output.part).law.curves(output.member)
+        return list(zip(places.T, values.T, strict=True))
+
+    def _largest(self, unit: str) -> float:
+        """The largest size over the instants among the series of a unit."""
+        solution = self.solution
         same = (o for o in solution.quantities() if o.group != "section" and solution.determined(o) and solution.unit(o) == unit)
-        largest = max((float(np.abs(solution.array(o)).max()) for o in same), default=0.0)
-        nothing = np.array([abs(found.value) <= NOTHING * largest])
-        changes = peak_slopes(self.slopes, self.solution.t, self.p, chosen, place, np.zeros((2, self.p.size)), nothing)
-        return Changes(found.value, self._named(changes.slopes[0]), PeakKind(int(changes.kinds[0])))
+        return max((float(np.abs(solution.array(o)).max()) for o in same), default=0.0)
 
     @cached_property
     def _iterated(self) -> Array:

@@ -16,10 +16,11 @@ import numpy as np
 
 from ..declare.density import Array
 from ..declare.mechanism import Mechanism
+from ..declare.wanted_slopes import SENSITIVITY
 from ..designs.engine import Outcome
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.refusal import Status
-from ..quantities import Output
+from ..quantities import Output, quotient
 from ..tables import Table, table_of
 from .chunks import encoded
 from .column import Column
@@ -37,16 +38,21 @@ STATUS = "status"
 TIMES = "history:t"
 """The times of a design's instants, where these are over anything else."""
 
-KINDS = (STATUS, "peak", "peak_t", "peak_over", "peak_xi", "mean", "rms", "peak_at", "history", LEAST, LIFE, MASS)
+KINDS = (STATUS, "peak", "peak_t", "peak_over", "peak_xi", "mean", "rms", SENSITIVITY, "peak_at", "history", LEAST, LIFE, MASS)
 """What columns are of, in the order in which they are listed."""
 
 MISSING = "NaN for designs of which equilibrium leaves it open"
 """What a file says, as ``missing``, of a column that may lack a number where there is a result."""
 
+NO_SLOPE = "NaN for designs whose peak has no derivative"
+
 _MOST, _BYTES, _SECONDS = 1 << 14, 1 << 24, 1.0
 _AT_HAND = 1 << 22
 _GRID_COST = 5e-10
 """Seconds of a section force at an instant and a ratio."""
+
+_SLOPES_COST = 3e-4
+"""Seconds of the derivatives of a design's peaks."""
 
 
 def check_keep(keep: str) -> None:
@@ -59,7 +65,7 @@ def check_keep(keep: str) -> None:
 class Harvest:
     """An engine, and what is kept of its outcomes: ``axis`` is that of the instants, ``xi`` the ratios kept, none where empty.
 
-    ``safety`` and ``life`` are the links of which these are kept.
+    ``safety`` and ``life`` are the links of which these are kept. By the parameters ``by`` the derivatives of peaks are kept too.
     """
 
     engine: Engine
@@ -69,6 +75,7 @@ class Harvest:
     xi: Array
     safety: tuple[str, ...] = ()
     life: tuple[str, ...] = ()
+    by: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         check_keep(self.keep)
@@ -90,6 +97,7 @@ class Harvest:
             mean, rms = f"mean over time: {words['long_name']}", f"root of the mean square over time: {words['long_name']}"
             found.append(Column(f"mean:{name}", unit, words | {"long_name": mean} | self._open(name)))
             found.append(Column(f"rms:{name}", unit, {"long_name": rms} | self._open(name)))
+        found += [self._slope(parameter, name) for parameter in self.by for name in engine.quantities]
         found += [
             self._along(f"peak_at:section:{link}:{force}", "largest in size over the instants: ", ("xi",))
             for link in self._links
@@ -114,7 +122,7 @@ class Harvest:
     def block(self) -> int:
         """How many designs make a block: what a core does in about a second, no more than memory and a reader's chunk allow."""
         grids = len(self._table.forces) * len(self._links) * self.axis.values.size * self.xi.size
-        seconds = self.engine.cost + grids * _GRID_COST
+        seconds = self.engine.cost + grids * _GRID_COST + (_SLOPES_COST if self.by else 0.0)
         return max(1, min(_MOST, int(_SECONDS / seconds), _BYTES // sum(column.width for column in self.columns)))
 
     def chunks(self, p: Array, room: int) -> list[bytes]:
@@ -151,6 +159,9 @@ class Harvest:
                 found.append(outcome.xi[:, k])
         for k in range(len(self.engine.efforts)):
             found += [outcome.mean[:, k], outcome.rms[:, k]]
+        if self.by:
+            slopes, names = self.engine.slopes_at(p, outcome), list(self.mechanism.parameters)
+            found += [slopes[:, k, names.index(name)] for name in self.by for k in range(len(self._quantities))]
         largest, whole = self._along_links(outcome, p)
         found += largest
         if self._series:
@@ -232,6 +243,13 @@ class Harvest:
         if output.group == "section":
             found.append(Column(f"peak_xi:{name}", "1", {"long_name": f"ratio xi/l of the peak: {what}"} | open_))
         return found
+
+    def _slope(self, parameter: str, name: str) -> Column:
+        """The column of the derivative of a peak."""
+        output = Output.of(name)
+        unit = quotient(output.unit(self.mechanism), self.mechanism.parameters[parameter].unit)
+        what = f"derivative by {parameter} of the peak: {output.meant(self._table).long_name}"
+        return Column(f"{SENSITIVITY}:{parameter}:peak:{name}", unit, {"long_name": what, "missing": NO_SLOPE})
 
     def _open(self, name: str) -> dict[str, str]:
         """What a file says of a quantity that is not determined for every design."""

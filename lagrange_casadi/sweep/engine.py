@@ -52,5 +52,8 @@ class Engine(Protocol):
     def evaluate(self, p: Array, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """Evaluate designs ``p`` (designs, parameters), every parameter in the order of declaration; default: a thread a core."""
 
+    def slopes_at(self, p: Array, outcome: Outcome) -> Array:
+        """The derivatives of the peaks of the outcome of designs ``p`` by all parameters, (designs, quantities, parameters)."""
+
     def failures(self, p: Array) -> Mapping[str, float]:
         """What fails of one design that has a result, (parameters,), when it is checked in full; nothing where all is well."""

@@ -15,6 +15,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from ..declare.wanted_slopes import SENSITIVITY
 from ..errors import DeclarationError
 from ..store.scales import LARGE, Scales
 from ..system.publish import PatientFile
@@ -32,7 +33,7 @@ WORDS = ("versions", "mechanism", "wanted", "t", "xi", "grid")
 """Attributes that are JSON; the others of a plan's identity are as they stand."""
 
 _CHUNK = 1 << 15
-_SOME = ("peak_over", LEAST, LIFE, MASS)
+_SOME = ("peak_over", SENSITIVITY, LEAST, LIFE, MASS)
 """Kinds of columns that not every file has."""
 
 _XI = ("1", "place along a link, ratio xi/l")

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..declare.scene import Scene, Wanted
+from ..declare.wanted_slopes import SENSITIVITY
 from ..equations.described import described
 from ..equations.fingerprint import fingerprint, sources
 from ..errors import DeclarationError
@@ -56,7 +57,8 @@ def is_of(sweep: Sweep, scene: Scene) -> bool:
         return False
     told: dict[str, Any] = {}
     for name, value in sweep.identity["wanted"].items():
-        told[name] = tuple(value) if isinstance(value, list) else value
+        if name != SENSITIVITY:  # of which the graph knows nothing
+            told[name] = tuple(value) if isinstance(value, list) else value
     known = fingerprint(scene, Wanted(**told))
     return known is None or sweep.identity["sources"] != sources() or known == sweep.identity["scene"]
 

@@ -18,6 +18,7 @@ from ..declare.description import Description, shape_of
 from ..declare.even_points import EvenPoints, points
 from ..declare.scene import STRENGTH, Scene, Wanted, checked_ratios, outputs, strength_of, without_fitted
 from ..declare.times import Over, Times, Timing
+from ..declare.wanted_slopes import SENSITIVITY, by_parameters
 from ..designs.engine import DesignEngine
 from ..equations.derive import derive
 from ..equations.described import described
@@ -34,11 +35,11 @@ from .engine import Engine
 from .instant_axis import InstantAxis
 
 SCHEMA = "lagrange-casadi-sweep"
-SCHEMA_VERSION = 4
-"""Files of version 1 have no seal. Those of version 2 have one axis of time for all designs, and those of 3 are of planar
-mechanisms alone; both are still written."""
+SCHEMA_VERSION = 5
+"""Files of version 1 have no seal. Those of version 2 have one axis of time for all designs, those of 3 are of planar mechanisms
+alone, and those of 4 have no sensitivities; all three are still written."""
 
-_WITH_COMMON_TIMES, _PLANAR = 2, 3
+_WITH_COMMON_TIMES, _PLANAR, _WITHOUT_SLOPES = 2, 3, 4
 
 _BOUND = (float, str)
 """Where instants start and stop: a number, or an expression of parameters in words."""
@@ -97,7 +98,8 @@ class Task:
         engine = compiled(scene, self.wanted, self.timing, self.rung)
         named = [name for name in self.wanted if name != "all"]
         safety, life = (tuple(strength_of(scene.mechanism, kind, named)) for kind in ("safety", "life"))
-        return Harvest(engine, scene.mechanism, self.keep, InstantAxis.of(scene, self.timing), xi, safety, life)
+        by = by_parameters(scene.mechanism, self.wanted)
+        return Harvest(engine, scene.mechanism, self.keep, InstantAxis.of(scene, self.timing), xi, safety, life, by)
 
 
 def compiled(scene: Scene, wanted: Sequence[str], timing: Timing, rung: Rung) -> Engine:
@@ -210,8 +212,10 @@ class Plan:
     @property
     def _version(self) -> int:
         """The first version of the schema that has all of it."""
-        if self.scene.mechanism.space:
+        if self.harvest.by:
             return SCHEMA_VERSION
+        if self.scene.mechanism.space:
+            return _WITHOUT_SLOPES
         return _WITH_COMMON_TIMES if self.task.timing.shared else _PLANAR
 
     @property
@@ -263,13 +267,14 @@ def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
     without_fitted(scene.mechanism, names, "sweeps")
     if "all" not in names or "motion" in names:
         return names
-    own = (name for name in outputs(scene.mechanism) if name.partition(":")[0] not in STRENGTH)
-    return tuple(name for name in own if name not in ("all", "motion"))
+    own = (name for name in outputs(scene.mechanism) if name.partition(":")[0] not in (*STRENGTH, SENSITIVITY))
+    slopes = (f"{SENSITIVITY}:{name}" for name in by_parameters(scene.mechanism, names))
+    return (*(name for name in own if name not in ("all", "motion")), *slopes)
 
 
 def signature(scene: Scene, task: Task, provenance: Provenance) -> dict[str, Any]:
     """What the numbers of a design follow from beside its parameters, wherever it is evaluated."""
-    wanted = Wanted.of(scene.mechanism, task.wanted)
+    wanted, by = Wanted.of(scene.mechanism, task.wanted), by_parameters(scene.mechanism, task.wanted)
     words = {
         "versions": {**provenance.versions, "zlib": zlib.ZLIB_RUNTIME_VERSION},
         "sources": sources(),
@@ -278,7 +283,7 @@ def signature(scene: Scene, task: Task, provenance: Provenance) -> dict[str, Any
         "compiler": provenance.compiler,
         "flags": provenance.flags,
         "rung": provenance.rung,
-        "wanted": dataclasses.asdict(wanted),
+        "wanted": dataclasses.asdict(wanted) | ({SENSITIVITY: by} if by else {}),
         "t": task.timing.words(scene.mechanism.symbols),
         "xi": task.xi,
         "keep": task.keep,

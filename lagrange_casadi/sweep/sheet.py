@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
+from ..declare.wanted_slopes import SENSITIVITY
 from .reading import Sweep
 from .scale import Scale, tick
 
@@ -188,6 +189,8 @@ def label(sweep: Sweep, name: str, sized: bool = False) -> str:
     if name in sweep.parameters:
         return name + _unit(sweep.parameters[name], " [{}]")
     kind, group, *parts = name.split(":")
+    if kind == SENSITIVITY:
+        kind, (group, *parts) = f"peak, derivative by {group}", parts[1:]
     words = " ".join(part for part in parts if part != "resultant")
     words = words if group == "section" else f"{group} {words}"
     return f"{words}, {'|peak|' if sized else _KINDS.get(kind, kind)}" + _unit(sweep.column(name).unit, " [{}]")

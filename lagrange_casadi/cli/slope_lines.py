@@ -1,0 +1,48 @@
+"""How peaks change with parameters, in lines."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from ..declare.scene import Scene
+from ..errors import DeclarationError
+from ..instants.rung import Backend
+from ..instants.solution import Solution
+from ..instants.told import told
+from ..sensitivity.peaks import PeakKind
+from ..study.sensitivities import Changes, sensitivities
+
+_WIDTH = 13
+_WORDS = {
+    PeakKind.END: "at an end of the instants",
+    PeakKind.SWITCH: "at a kink or a jump",
+    PeakKind.LINK_END: "at an end of the link",
+    PeakKind.UNTOLD: "at a kink or a jump that nothing explains",
+}
+
+
+def slope_lines(solution: Solution, scene: Scene, backend: Backend) -> Iterator[str]:
+    """The derivatives of the peaks that a run tells, where sensitivities were wanted: a column for each parameter."""
+    by = solution.sensitivities.parameters
+    names = [str(output) for output in told(solution) if solution.determined(output)]
+    if not by or not names:
+        return
+    try:
+        changes = sensitivities(scene, solution, backend=backend).peaks(names)
+    except DeclarationError as error:  # of a table that is very rough
+        yield f"how peaks change cannot be told: {error}"
+        return
+    units = {name: solution.description["parameters"][name]["unit"] for name in by}
+    yield "how peaks change, between the instants too, in their unit for a unit of"
+    yield f"{'':<30}" + " ".join(f"{f'{name} [{units[name]}]':>{_WIDTH}}" for name in by)
+    for name, change in zip(names, changes, strict=True):
+        yield _line(name, change, by)
+
+
+def _line(name: str, change: Changes, by: tuple[str, ...]) -> str:
+    cells = [f"{slope + 0.0:.6g}" if math.isfinite(slope) else "none" for slope in (change.slopes[parameter] for parameter in by)]
+    where = _WORDS.get(change.kind) if change.kind is not None else None
+    if change.tied:
+        where = f"{where + ', ' if where else ''}as large elsewhere, where it changes otherwise"
+    return f"  {name:<28}" + " ".join(f"{cell:>{_WIDTH}}" for cell in cells) + (f"  {where}" if where else "")

@@ -1,0 +1,80 @@
+"""How the peaks of a design change with all parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..declare.density import Array, Density
+from ..instants.signals import SectionForce
+from ..instants.sizes import size_of
+from ..quantities import Output
+from ..sensitivity.ends import end_slopes
+from ..sensitivity.peaks import PeakSlopes, peak_slopes
+from ..sensitivity.slopes import Slopes
+from ..sensitivity.ties import Curve, ties
+from ..summits.search import NOTHING
+from ..tables import table_of
+from .times import DesignTimes
+
+
+def gradient(
+    slopes: Slopes, times: DesignTimes, units: npt.NDArray[np.intp], p: Array, value: Array, t: Array, xi: Array
+) -> PeakSlopes:
+    """That of the peaks (q,) of a design ``p`` (parameters,): they are at times ``t`` and ratios ``xi``.
+
+    ``units`` (q,) are numbers of units: what is nothing beside the largest of its unit moves with nothing.
+    """
+    instants = times.of(p[None])[0][0]
+    chosen, ends = np.arange(value.size, dtype=np.intc), _ends(slopes, times, instants, p)
+    return peak_slopes(slopes, instants, p, chosen, (value, t, xi), ends, _nothing(units, value))
+
+
+def tied(
+    slopes: Slopes,
+    times: DesignTimes,
+    units: npt.NDArray[np.intp],
+    p: Array,
+    value: Array,
+    own: PeakSlopes,
+    outputs: Sequence[Output],
+    series: Array,
+) -> npt.NDArray[np.bool_]:
+    """Which of them (q,) tie with another peak; ``series`` are those of ``outputs`` at the design's instants: see :func:`.ties`."""
+    instants, graph = times.of(p[None])[1][0], slopes.graph
+    mechanism, table = graph.scene.mechanism, table_of(graph.scene.mechanism.space)
+    rows = {output: k for k, output in enumerate(outputs)}
+    values = dict(zip(mechanism.parameters, p.tolist(), strict=True))
+    nowhere = np.full(instants.size, np.nan)
+
+    def number(expression: Any) -> float:
+        return mechanism.number(expression, values)
+
+    def curves(k: int) -> Sequence[Curve]:
+        quantity = slopes.points.quantities[k]
+        if quantity.group != "section":
+            parts = [series[rows[part]] for part in quantity.components(table) if part in rows]
+            return [(nowhere, parts[0] if len(parts) == 1 else size_of(parts))]
+        link = mechanism.links[quantity.part]
+        assert isinstance(link.mass, Density)
+        length = number(link.length)
+        own = {output: row for output, row in rows.items() if output.along and output.part == link.name}
+        force = SectionForce(quantity.member, link.name, own, length, link.mass.at(number, length))
+        return list(zip(*force.curves(series), strict=True))
+
+    chosen, ends = np.arange(value.size, dtype=np.intc), _ends(slopes, times, instants, p)
+    return ties(slopes, instants, p, chosen, value, own, ends, _nothing(units, value), curves)
+
+
+def _ends(slopes: Slopes, times: DesignTimes, instants: Array, p: Array) -> Array:
+    return end_slopes(slopes.graph.scene, times.timing, float(instants[0]), float(instants[-1]), p)
+
+
+def _nothing(units: npt.NDArray[np.intp], value: Array) -> npt.NDArray[np.bool_]:
+    """Which peaks are zero but for rounding, beside the largest of their unit."""
+    sizes, largest = np.abs(value), np.zeros(units.size)
+    np.maximum.at(largest, units, np.where(np.isfinite(sizes), sizes, 0.0))
+    return np.asarray(sizes <= NOTHING * largest[units])

@@ -1,0 +1,84 @@
+"""The derivatives of a solution's quantities by parameters, as arrays that go with it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from ..declare.density import Array
+from ..declare.wanted_slopes import SENSITIVITY
+from ..errors import UnknownNameError
+from ..quantities import Output, quotient
+
+if TYPE_CHECKING:
+    from .solution import Solution
+
+
+@dataclass(frozen=True, eq=False)
+class Derivatives:
+    """The derivatives of quantities ``by`` parameters: of each parameter those of all that equilibrium determines, by output.
+
+    They are exact and total: of loops, motions and densities too. Series have (t,), section forces (t, xi). Instants and ratios
+    xi/l stand still; at a station, a section force is that on its tip's side.
+    """
+
+    by: Mapping[str, Mapping[Output, Array]] = field(default_factory=dict)
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of the parameters."""
+        return tuple(self.by)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The full names of the quantities."""
+        return tuple(str(output) for output in next(iter(self.by.values()), {}))
+
+    def array(self, name: str | Output, parameter: str) -> Array:
+        """The derivative of a quantity by a parameter, in the quantity's unit over the parameter's.
+
+        Raises :class:`.UnknownNameError` for a parameter by which there is none, and a quantity that has none.
+        """
+        if parameter not in self.by:
+            raise UnknownNameError("parameter with sensitivities", parameter, self.by)
+        found = {str(output): values for output, values in self.by[parameter].items()}
+        if str(name) not in found:
+            raise UnknownNameError("quantity with sensitivities", str(name), found)
+        return found[str(name)]
+
+    def notes(self) -> Iterator[str]:
+        """Which are no numbers at some instants, as where a square root of nothing grows."""
+        for name, found in self.by.items():
+            for output, x in found.items():
+                if many := int((~np.isfinite(x.reshape(len(x), -1)).all(axis=1)).sum()):
+                    yield f"the derivative of {output} by {name} is no number at {many} of {len(x)} instants"
+
+    def during(self, instants: slice | npt.NDArray[np.bool_]) -> Derivatives:
+        """The same at some of the instants."""
+        return Derivatives({name: {output: x[instants] for output, x in found.items()} for name, found in self.by.items()})
+
+
+@dataclass(frozen=True, eq=False)
+class Derivative:
+    """One of them: its full ``name``, as ``sensitivity:l:effort:O``, what it is of, its values and unit, what a file says of it."""
+
+    name: str
+    output: Output
+    values: Array
+    unit: str
+    attributes: dict[str, str]
+
+
+def derivatives(solution: Solution) -> Iterator[Derivative]:
+    """All of a solution."""
+    parameters = solution.description["parameters"]
+    for name, found in solution.sensitivities.by.items():
+        for output, values in found.items():
+            unit = quotient(solution.unit(output), str(parameters[name]["unit"]))
+            quantity = output.meant(solution.table)
+            words = quantity.attributes | {"long_name": f"{quantity.long_name}: derivative by {name}"}
+            yield Derivative(f"{SENSITIVITY}:{name}:{output}", output, values, unit, words)

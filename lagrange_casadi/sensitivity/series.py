@@ -1,0 +1,119 @@
+"""Derivatives of all that a solution has by parameters: of series over time, of section forces over time and xi/l."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from .. import codegen
+from ..codegen.stages import plain
+from ..declare.density import Array
+from ..equations.reciprocals import differentiable
+from ..equations.scene_graph import SceneGraph
+from ..instants.backends import compiled
+from ..instants.laws import made_of
+from ..instants.rung import Rung
+from ..instants.solution import Solution
+from ..quantities import Output
+from ..system.room import require
+from .following import iterated
+from .sections import section_slopes
+from .total import total
+
+_BLOCK = 1 << 20
+"""Numbers of one argument that are made ready at once."""
+
+
+def series_slopes(graph: SceneGraph, solution: Solution, p: Array, by: Sequence[str], rung: Rung) -> dict[str, dict[Output, Array]]:
+    """The derivatives by each of some parameters of all that equilibrium determines of a solution of a graph, by output.
+
+    Series have (t,), section forces (t, xi); instants and ratios stand still. They are always made in doubles, by the compiler of a
+    rung, at loops that are closed. Where a quantity is NaN, so are they. Raises :class:`.SizeError` where they do not fit into
+    memory.
+    """
+    series = [o for o in solution.quantities() if o.group != "section" and solution.determined(o)]
+    rows = [o for o in solution.outputs if (o in series or o.along) and o in graph.outputs]
+    sections = len(solution.table.forces) * len(solution.links_with_sections)
+    require("the sensitivities", (len(by), solution.t.size, len(rows) + sections * solution.xi.size))
+    numbers = [list(graph.scene.mechanism.parameters).index(name) for name in by]
+    found: dict[Output, Array] = {}
+    for output, column in zip(rows, np.moveaxis(at_instants(graph, rows, solution.t, p, numbers, rung), 1, 0), strict=True):
+        found[output] = np.where(np.isnan(solution.outputs[output])[:, None], np.nan, column)
+    changes = {output: found[output][:, 1:] for output in series}
+    for link in solution.links_with_sections:
+        changes |= dict(_along(graph, solution, link, found, p, numbers, rung))
+    return {name: {output: np.ascontiguousarray(values[..., k]) for output, values in changes.items()} for k, name in enumerate(by)}
+
+
+def at_instants(graph: SceneGraph, rows: Sequence[Output], t: Array, p: Array, by: Sequence[int], rung: Rung) -> Array:
+    """Rows of a graph at instants, and their derivatives, (t, rows, 1 + parameters)."""
+    inner = total(graph, [graph.outputs[output] for output in rows], by)
+    time, *driven, z, values = inner.sx_in()
+    own = differentiable(graph.instant)(time, *driven, z, values)[[graph.outputs[output] for output in rows]]
+    inner = ca.Function("both", inner.sx_in(), [ca.vertcat(own.T, inner(time, *driven, z, values))])
+    drives = ca.vertcat(*driven)
+    if graph.motion.is_a("SXFunction"):
+        slopes, lead = inner(time, *graph.motion.call([time, values]), z, values), np.zeros((t.size, 0))
+        drives = ca.SX(0, 1)
+    else:  # samples are numbers
+        slopes, lead = inner(time, *driven, z, values), np.vstack([x.full() for x in graph.motion(t[None], p)]).T
+    function = ca.Function("at_once", [time, drives, z, values], [slopes], ["t", "drives", "z", "p"], ["found"], {"cse": True})
+    extra = tuple(shlex.split(rung.flags))
+
+    def build(compiler: codegen.Compiler) -> tuple[codegen.BatchLibrary, codegen.Library | None]:
+        followed = None if graph.newton is None else codegen.load(codegen.emit(graph, plain(graph)), compiler, extra)
+        return codegen.load_batch(function, compiler, extra), followed
+
+    made = compiled(rung, build)
+    library, following = (None, None) if made is None else made[1]
+    place = iterated(graph, following, t, p, t)
+    given = {"t": (t[:, None], 1), "drives": (lead, 1), "z": (place, 1), "p": (p[None], 0)}
+    return _evaluated(function, library, t.size, given).reshape(t.size, len(rows), 1 + len(by))
+
+
+def _along(
+    graph: SceneGraph, solution: Solution, link: str, found: Mapping[Output, Array], p: Array, by: Sequence[int], rung: Rung
+) -> Iterator[tuple[Output, Array]]:
+    """Those of the section forces of a link that are determined, each (t, xi, parameters)."""
+    table, left_open = solution.table, solution.left_open
+    columns = [output for output in solution.outputs if output.along and output.part == link]
+    function = section_slopes(graph.scene.mechanism, link, columns, by)
+    made = compiled(rung, lambda compiler: codegen.load_batch(function, compiler, tuple(shlex.split(rung.flags))))
+    library, xi, forces = None if made is None else made[1], solution.xi, table.forces
+    grids = np.empty((solution.t.size, xi.size, len(forces), len(by)))
+    unknown = np.full((solution.t.size, 1 + len(by)), np.nan)
+    both = np.stack([found.get(column, unknown) for column in columns], axis=1)
+    values, changes = both[:, :, 0], both[:, :, 1:]
+    height = max(1, _BLOCK // (xi.size * function.numel_in("slopes")))
+    for start in range(0, solution.t.size, height):
+        some = slice(start, start + height)
+        many = values[some].shape[0]
+        given = {
+            "columns": (values[some], xi.size),
+            "slopes": (changes[some].reshape(many, -1), xi.size),
+            "xi": (np.tile(xi, many)[:, None], 1),
+            "p": (p[None], 0),
+        }
+        grids[some] = _evaluated(function, library, many * xi.size, given).reshape(many, xi.size, len(forces), len(by))
+    for k, force in enumerate(forces):
+        if not made_of(left_open, link, force, table):
+            yield Output("section", link, force), grids[:, :, k]
+
+
+def _evaluated(function: Any, library: codegen.BatchLibrary | None, n: int, given: Mapping[str, tuple[Array, int]]) -> Array:
+    """A function of one output at n points, (n, result): of each argument its rows, and how many points one is for, 0 for all."""
+    into = np.full((n, function.numel_out(0)), np.nan)
+    if library is not None:
+        library.evaluate(n, given, into)
+        return into
+    columns = []
+    for name, (rows, every) in given.items():
+        height, width = function.size_in(name)
+        each = np.repeat(rows, every, axis=0)[:n] if every else rows
+        columns.append(each.reshape(-1, height).T if width * height else np.zeros((height, width)))
+    into[:] = np.asarray(function(*columns).full()).T.reshape(n, -1)
+    return into
