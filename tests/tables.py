@@ -25,7 +25,7 @@ def made(scene, table=1e-9, wanted=None, rates=RATES):
 def graph_of(scene, wanted=None):
     """The graph of a scene, of what equilibrium determines."""
     graph = derive(scene, wanted)
-    return determinate(graph, np.linspace(*scene.t), values(scene))[0]
+    return determinate(graph, np.linspace(*scene.span, scene.t[2]), values(scene))[0]
 
 
 def values(scene):

@@ -30,7 +30,7 @@ from lagrange_casadi.quantities import Output
 def case(name):
     """A case on a grid of its own, and what it has there."""
     scene = load_case(CASES / name).scene
-    scene = replace(scene, t=(*scene.t[:2], COUNT))
+    scene = replace(scene, t=(*scene.span, COUNT), over=None)
     return scene, exactly(scene)
 
 

@@ -55,7 +55,7 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
 def test_c_fills_every_value_and_agrees_with_the_virtual_machine(name):
     scene = SCENES[name]()
     graph = derive(scene)
-    t, p = np.linspace(*scene.t), np.array(list(scene.mechanism.values().values()))
+    t, p = np.linspace(*scene.span, scene.t[2]), np.array(list(scene.mechanism.values().values()))
     out = columns(graph, t, "c")
     machine, _ = run(graph, t, p, Rung("vm"))
     scale = np.max(np.abs(machine.out), axis=1, keepdims=True) + 1e-300

@@ -182,7 +182,7 @@ def test_emitted_c_is_pedantically_clean(name, tmp_path):
     compiler, source = codegen.find_compiler(), tmp_path / "designs.c"
     for rung in (Rung(), Rung(newton=2), Rung(precision="single")):
         graph = derive(scene, iterate=rung.newton is not None)
-        stages, kept = stages_of(graph, rung, np.linspace(*scene.t)), KeptOutputs.of(graph, rung)
+        stages, kept = stages_of(graph, rung, np.linspace(*scene.span, scene.t[2])), KeptOutputs.of(graph, rung)
         source.write_text(codegen.emit_designs(graph, stages, rung.newton, kept.reduction))
         command = [*compiler.command, *PEDANTIC, "-fsyntax-only", source]
         result = subprocess.run(command, capture_output=True, text=True, check=False)

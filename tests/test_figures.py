@@ -10,6 +10,7 @@ from lagrange_casadi import Mechanism, Scene, evaluate
 from lagrange_casadi.draw import figures
 from lagrange_casadi.draw.drawing import draw_mechanism
 from lagrange_casadi.draw.figures import MechanismDrawing, SectionMaps, SpanPlot, TimePlot
+from lagrange_casadi.draw.kept import dump_specs, parse_specs
 from lagrange_casadi.draw.solid import PATH
 from lagrange_casadi.errors import DeclarationError, StoreError, UnknownNameError
 from lagrange_casadi.motion import polynomial
@@ -194,10 +195,10 @@ def test_springs_are_whole_on_a_drawing():
 
 
 def test_specs_survive_the_file(slider_crank):
-    assert figures.parse_specs(figures.dump_specs(slider_crank.figures)) == slider_crank.figures
-    assert figures.parse_specs("") == ()
+    assert parse_specs(dump_specs(slider_crank.figures)) == slider_crank.figures
+    assert parse_specs("") == ()
     with pytest.raises(StoreError, match="attribute 'figures' is damaged"):
-        figures.parse_specs('[{"kind": "pie"}]')
+        parse_specs('[{"kind": "pie"}]')
 
 
 def test_what_is_not_there_is_not_drawn(slider_crank, tmp_path):

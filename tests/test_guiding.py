@@ -198,11 +198,11 @@ def test_a_path_is_drawn():
     assert "tool" in " ".join(text.get_text() for text in place.texts)
 
 
-def test_an_arm_is_drawn_to_a_point_beside_the_axis():
+def test_a_plate_is_drawn_to_a_point_beside_the_axis():
     m = Mechanism("arm")
     link = m.link("link", length=1.0, mass=1.0)
     m.revolute("O", m.ground, link)
     m.path("nose", link.at(0.5, 0.3))
     place = figures.MechanismDrawing(count=1).draw(evaluate(Scene(m, {"O": motion.polynomial(0.0, 1.0)}, t=(0, 1, 5)))).axes[0]
-    arm = np.array([[0.5, 0.0], [0.5, 0.3]])
-    assert any(line.get_xydata().shape == arm.shape and np.allclose(line.get_xydata(), arm) for line in place.get_lines())
+    plate = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, 0.3], [0.0, 0.0]])
+    assert any(line.get_xydata().shape == plate.shape and np.allclose(line.get_xydata(), plate) for line in place.get_lines())

@@ -33,11 +33,11 @@ def same_bits(found, expected):
 def test_doubles_are_the_virtual_machines(name):
     scene = load_case(CASES / name).scene
     graph, p = derive(scene, ["all"]), list(scene.mechanism.values().values())
-    for t in np.linspace(scene.t[0], scene.t[1], 7):
+    for t in np.linspace(*scene.span, 7):
         driven = interpret(graph.motion, [[t], p], MACHINE)
         expected = graph.motion(t, p)
         assert all(same_bits(row, expected[k].full().ravel()) for k, row in enumerate(driven))
-        z = settle(graph, t, p, scene.t[0]).full().ravel()
+        z = settle(graph, t, p, scene.span[0]).full().ravel()
         (out,) = interpret(graph.instant, [[t], *driven, z, p], MACHINE)
         assert same_bits(out, graph.instant(t, *expected, z, p).full().ravel())
 

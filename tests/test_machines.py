@@ -8,7 +8,7 @@ import oracle
 import pytest
 from balance import assert_balanced
 from conftest import CASES
-from machines import shown
+from machines import ROLLING, rolling, shown
 from splines import by_hand
 
 from lagrange_casadi import evaluate, load_case
@@ -68,7 +68,7 @@ BESIDE = {
     "Toggle press": lambda: {"loads": [force("ram", 0, 0, 80e3)]},
     "Cam": lambda: {"extras": [cam_contact()], "loads": SPRING},
     "SCARA": lambda: {"extras": [BELT]},
-    "Planetary gear": lambda: {
+    "Rolling gear": lambda: {
         "extras": [mesh("inside", -1), mesh("outside", 1)],
         "loads": [force("carrier", 0, 0, 0, -90.0)],
         "unaided": ["output", "pin"],
@@ -85,7 +85,7 @@ def along(values, at):
 @pytest.mark.parametrize("title", BESIDE)
 def test_against_newton_euler(title):
     """The machines that are no cases; at instants of the page's own."""
-    scene = shown(title)["scene"]
+    scene = rolling() if title == "Rolling gear" else shown(title)["scene"]
     start, stop = scene.span
     for part in (0.07, 0.4, 0.83):
         assert_balanced(scene, t=start + part * (stop - start), nudge=1e-4, **BESIDE[title]())
@@ -149,15 +149,14 @@ def test_the_first_motor_of_a_scara_is_a_textbooks():
 @pytest.mark.parametrize("drive", ["main", "output", "pin"])
 def test_rows_hold_where_another_joint_drives(drive):
     """Whoever drives a planetary gear gives the power that its carrier takes; the meshes bear what is then left for them."""
-    names = shown("Planetary gear")
-    scene = replace(names["scene"], drives=[drive])
+    scene = replace(rolling(), drives=[drive])
     found = evaluate(scene)
     assert found.certified
-    power = 90.0 * names["slow"]
+    power = ROLLING["torque"] * ROLLING["slow"]
     assert np.abs(found.effort(drive) * found.motion(drive).rate / power - 1).max() < 1e-12
     mesh = {"main": 90.0 / (0.03 + 0.07), "output": 0.0, "pin": 0.0}[drive]
     assert np.abs(np.abs(found.multiplier("inside")) - mesh).max() < 1e-12 * 90.0 / 0.1
-    assert_balanced(scene, t=0.2, nudge=1e-4, **BESIDE["Planetary gear"]() | {"unaided": []})
+    assert_balanced(scene, t=0.2, nudge=1e-4, **BESIDE["Rolling gear"]() | {"unaided": []})
 
 
 def test_a_wheel_of_four_slots_moves_by_its_closed_form():

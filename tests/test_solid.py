@@ -1,5 +1,7 @@
 """What of a mechanism in space is drawn: points where joints hold them, axes about which they turn, marks and lines."""
 
+import math
+
 import numpy as np
 import pytest
 from drawn_scenes import CASES, every_kind, moved
@@ -101,8 +103,8 @@ def test_bodies_are_lines_and_what_has_none_is_a_block():
     assert "bob" in [mark.body for mark in marks_of(point) if mark.size == BLOCK]
 
 
-def test_arms_lead_to_joints_beside_a_link():
+def test_a_plate_spans_the_joints_beside_a_link():
     delta = moved("delta").during(slice(0, 1))
     arms = [line for line in lines_of(delta) if line.body == "arm0"]
     lengths = sorted(float(np.linalg.norm(line.points[1] - line.points[0])) for line in arms)
-    assert lengths == pytest.approx([0.04, 0.04, 0.3])
+    assert lengths == pytest.approx([0.08, 0.3, math.hypot(0.3, 0.04), math.hypot(0.3, 0.04)])

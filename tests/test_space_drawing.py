@@ -12,7 +12,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from lagrange_casadi.case import load_case
 from lagrange_casadi.cli import main
-from lagrange_casadi.draw.figures import MechanismDrawing, default_figures, draw, dump_specs, parse_specs
+from lagrange_casadi.draw.figures import MechanismDrawing, default_figures, draw
+from lagrange_casadi.draw.kept import dump_specs, parse_specs
 from lagrange_casadi.draw.postures import draw_postures
 from lagrange_casadi.draw.solid import place_of
 from lagrange_casadi.draw.views import views

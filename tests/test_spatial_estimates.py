@@ -34,7 +34,7 @@ def made(name, seed):
     """A mechanism, its scene, and the oracle's results at some instants."""
     drawn = plain(FAMILIES[name](seed))
     scene = declared(drawn, t=0.0)
-    times = np.linspace(*scene.t)
+    times = np.linspace(*scene.span, scene.t[2])
     return drawn, scene, {i: drawn.solve(times[i], digits=40) for i in LOOKED_AT}
 
 

@@ -70,7 +70,7 @@ def exact(graph, t, **beside):
 def case(name, later):
     """A case's graph, three instants of its cycle so much later, and every column there."""
     scene = load_case(CASES / name).scene
-    graph, t = derive(scene, ["all"]), np.array([0.13, 0.4, 0.77]) * (scene.t[1] - scene.t[0]) + scene.t[0] + later
+    graph, t = derive(scene, ["all"]), np.array([0.13, 0.4, 0.77]) * np.ptp(scene.span) + scene.span[0] + later
     z = None if graph.newton is None else run(graph, t, values(graph), Rung("vm"))[0].iterated
     return graph, t, exact(graph, t, z=z)
 
@@ -81,8 +81,8 @@ def test_plain_stages_are_the_graphs_bits(name):
     graph = derive(load_case(CASES / name).scene, ["all"])
     p, stages = values(graph), plain(graph)
     assert not stages.compensated
-    for t in np.linspace(*graph.scene.t[:2], 5):
-        z = settle(graph, t, p, graph.scene.t[0])
+    for t in np.linspace(*graph.scene.span, 5):
+        z = settle(graph, t, p, graph.scene.span[0])
         out = stages.instant(*stages.drive(t, p), z, p)
         assert out.full().tobytes() == graph.instant(t, *graph.motion(t, p), z, p).full().tobytes()
 
@@ -294,7 +294,7 @@ def test_iterated_angles_are_kept_within_a_turn():
 def test_iterated_loops_after_a_million_turns(rungs, later, allowed):
     m = drag_link().mechanism
     scene = Scene(m, {"O": polynomial(0.2, 2 * math.pi)}, posture={"c": 1.6}, t=(later, later + 1.0, 41))
-    graph, t = derive(scene, ["reaction:B", "effort"], iterate=True), np.linspace(*scene.t)
+    graph, t = derive(scene, ["reaction:B", "effort"], iterate=True), np.linspace(*scene.span, scene.t[2])
     for rung in rungs:
         assert gap(graph, t, rung) < allowed
 

@@ -15,7 +15,8 @@ from forging import forging
 
 from lagrange_casadi import Sweep, best, check, evaluate, load, save
 from lagrange_casadi.cli import main
-from lagrange_casadi.draw.figures import TimePlot, dump_specs, parse_specs
+from lagrange_casadi.draw.figures import TimePlot
+from lagrange_casadi.draw.kept import dump_specs, parse_specs
 from lagrange_casadi.errors import DeclarationError, LagrangeCasadiError, StoreError
 from lagrange_casadi.store import runs as store
 from lagrange_casadi.store.untrusted import check_shape, parsed, told_as

@@ -41,7 +41,7 @@ def truth(scene, t, parameters=None):
     graph, p = derive(scene), list(values.values())
     z = None
     if graph.newton is not None:
-        grid = np.unique([*np.linspace(*scene.t[:2], 200), *t])
+        grid = np.unique([*np.linspace(*scene.span, 200), *t])
         z = run(graph, grid, np.array(p), Rung("vm"))[0].iterated[:, np.searchsorted(grid, t)]
     decisions = [[] for _ in t]
     rest = iter(decisions)

@@ -9,8 +9,8 @@ import click
 from tqdm import tqdm
 
 from ..declare.angles import angle
-from ..draw.figures import parse_specs
 from ..draw.index import NAME, write_index
+from ..draw.kept import parse_specs
 from ..errors import NoDesignError
 from ..store.runs import figure_specs, load
 from ..store.untrusted import told_as

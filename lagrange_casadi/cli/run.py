@@ -16,7 +16,7 @@ from ..case import load_case
 from ..declare import turned
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
-from ..draw.figures import dump_specs
+from ..draw.kept import dump_specs
 from ..errors import CertificateError
 from ..evaluate import evaluate
 from ..instants.frames import TIME, columns

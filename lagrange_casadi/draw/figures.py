@@ -5,8 +5,6 @@ Nothing here is imported before a figure is asked for, nor is matplotlib.
 
 from __future__ import annotations
 
-import dataclasses
-import json
 import re
 import textwrap
 from collections.abc import Iterator, Sequence
@@ -18,10 +16,9 @@ import numpy as np
 
 from ..declare.density import Array
 from ..declare.description import parts_of
-from ..errors import DeclarationError, StoreError, UnknownNameError, one_line
+from ..errors import DeclarationError, UnknownNameError
 from ..instants.solution import Peak, Solution
 from ..quantities import Output
-from ..store.untrusted import parsed
 from ..tables import PLANE, SPACE
 from .readable import scale_for
 from .views import AZIMUTH, ELEVATION
@@ -250,9 +247,10 @@ class DeflectionPlot:
 
 Spec = TimePlot | SpanPlot | SectionMaps | MechanismDrawing | StrengthPlot | UtilisationPlot | DeflectionPlot
 _FILE = re.compile(r"[A-Za-z0-9_-]+")
-_KINDS: dict[str, type[Spec]] = {
+KINDS: dict[str, type[Spec]] = {
     spec.kind: spec for spec in (TimePlot, SpanPlot, SectionMaps, MechanismDrawing, StrengthPlot, UtilisationPlot, DeflectionPlot)
 }
+"""By the word for it in files."""
 
 
 def default_figures(solution: Solution) -> tuple[Spec, ...]:
@@ -296,26 +294,6 @@ def strong_of(solution: Solution, *numbers: str) -> tuple[str, ...]:
 def _in_ground_axes(output: Output) -> Iterator[Output]:
     """The components in ground axes of a reaction that is told on the joint's own."""
     return (Output(output.group, output.part, output.member[0] + component) for component in "xyz")
-
-
-def dump_specs(specs: Sequence[Spec]) -> str:
-    """Specs as text, for a file."""
-    return json.dumps([{"kind": spec.kind} | dataclasses.asdict(spec) for spec in specs])
-
-
-def parse_specs(text: str) -> tuple[Spec, ...]:
-    """Specs from a file's text; none from an empty one. Raises :class:`StoreError` for what are none."""
-    try:
-        return tuple(_parse(entry) for entry in parsed(text or "[]", [{"kind": str, "name": str}], "figures"))
-    except (ValueError, TypeError, KeyError, RecursionError) as error:
-        raise StoreError(f"the file's attribute 'figures' is damaged: {one_line(error)}") from None
-
-
-def _parse(entry: dict[str, Any]) -> Spec:
-    fields: dict[str, Any] = {
-        key: tuple(value) if isinstance(value, list) else value for key, value in entry.items() if key != "kind"
-    }
-    return _KINDS[entry["kind"]](**fields)
 
 
 def draw(solution: Solution, specs: Sequence[Spec], folder: Path, si: bool = False) -> Iterator[tuple[Spec, Path | None]]:

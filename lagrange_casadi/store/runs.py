@@ -40,10 +40,12 @@ from .slopes import add_slopes, check_slopes, slopes_of
 from .untrusted import check_chunks, check_dataset, check_links, parsed, shown
 
 SCHEMA_VERSION = 7
-"""Files of version 1 have no seal. Those of version 2 are not over a drive's coordinate, those of 3 of planar mechanisms alone, and
-those of 4 have no loads along links, those of 5 no rotary inertia of slices, those of 6 no sensitivities; all are still written."""
+"""Files of version 1 have no seal. Those of version 2 are not over a drive's coordinate, those of 3 of planar mechanisms alone,
+those of 4 have no loads along links, those of 5 no rotary inertia of slices, those of 6 no friction, stresses or derivatives by
+parameters, and nothing that elasticity tells; all are still written."""
 
 _WITHOUT_OVER, _PLANAR, _AT_POINTS, _LOADED, _THICK = 2, 3, 4, 5, 6
+_LATEST = ("friction", "stress", "utilisation")
 
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
@@ -258,7 +260,8 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
 
 def _version(solution: Solution) -> int:
     """The first version of the schema that has all of a solution."""
-    if solution.sensitivities.by:
+    latest = solution.sensitivities.by or solution.elasticity != Elasticity()
+    if latest or any(output.group in _LATEST for output in solution.outputs):
         return SCHEMA_VERSION
     along = {output.member for output in solution.outputs if output.group == "spread"}
     if along:
