@@ -165,7 +165,7 @@ def test_random_mechanisms(kind):
     assert 0.7 < np.median(every) < 3.0
 
 
-@pytest.mark.sampled(17)
+@pytest.mark.long
 @pytest.mark.parametrize("kind", kinds.LINKAGES, ids=[kind.__name__ for kind in kinds.LINKAGES])
 def test_too_few_steps_claim_what_they_leave(kind):
     """Where loops begin near a dead centre the second instant is the worst, for the first is closed."""

@@ -149,6 +149,7 @@ for own in range(3):
 """
 
 
+@pytest.mark.long
 def test_processes_share_a_cache_that_holds_too_little(tmp_path):
     """Each removes what another one is about to load."""
     command = [sys.executable, "-W", "error", "-c", PROGRAM.format(tests=os.path.dirname(__file__))]

@@ -134,7 +134,7 @@ def scene():
 """
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.long
 @pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
 @pytest.mark.parametrize(
     "command", [["-m", "lagrange_casadi"], ["-c", "import sys; from lagrange_casadi.cli import main; sys.exit(main())"]]

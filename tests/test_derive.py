@@ -114,6 +114,7 @@ def test_what_is_asked_of_an_evaluation_has_no_part_in_the_name():
     assert name_of(pendulum(xi=(0, 1, 7), t=(0.0, 1.0, 3))) == name_of(pendulum())
 
 
+@pytest.mark.long
 def test_names_are_the_same_in_every_process(tmp_path):
     program = "import sys; sys.path[:0] = {!r}; from test_derive import *; print(name_of(four_bar()), name_of(pendulum()))"
     program = program.format([os.path.dirname(__file__)])

@@ -173,6 +173,7 @@ def test_what_is_zero_throughout_peaks_at_the_first_instant(backend):
     assert (value, t) == (0.0, 0.5)
 
 
+@pytest.mark.long
 def test_a_bar_held_at_rest_has_told_peaks():
     """Its shear across the weight turns at its base, but for rounding: in C and in the reference the same curve goes on there."""
     scene = replace(load_case("five_link_suspension").scene, wanted=["section:toe"])

@@ -89,6 +89,7 @@ def test_a_change_point_is_passed_between_instants(backend):
     assert found == expected == [Status.PASSES_DEAD_CENTRE]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("backend", ["c", "vm"])
 def test_iterated_loops_begin_from_the_guess_and_say_what_fails(backend):
     scene = truss_platform()

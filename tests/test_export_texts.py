@@ -276,6 +276,7 @@ def test_a_unit_shows_in_a_figure_as_it_is(tmp_path):
         assert unit in shown.replace(r"\$", "$")
 
 
+@pytest.mark.long
 def test_units_in_an_fmu(tmp_path):
     pytest.importorskip("fmpy")
     import zipfile

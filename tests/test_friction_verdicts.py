@@ -111,6 +111,7 @@ def test_at_a_dead_centre_the_sign_is_that_of_the_instants_right_after(backend):
     assert ring[0] > 0.0 > ring[4]
 
 
+@pytest.mark.sampled(3)
 @every
 def test_where_the_drive_itself_turns_back_too(backend):
     """Its rate there is what rounding leaves of a cosine, of any sign."""
@@ -129,6 +130,7 @@ def start_and_stop(t):
     return 0.3 + 10 * u**3 - 15 * u**4 + 6 * u**5
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("options", [{"backend": "lanes"}, {"backend": "c"}, {"backend": "vm"}, {"precision": "single"}])
 def test_at_rest_friction_is_open_and_all_else_is_not(options, tmp_path):
     scene = reciprocating(expression(start_and_stop), t=(0, 1, 41))

@@ -58,6 +58,7 @@ def holds(solution, name, base, axis, point, force):
     assert moment == pytest.approx(-(lever - np.dot(lever, axis) * axis), abs=1e-12 * size)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("moment", [50.0, -50.0])
 @pytest.mark.parametrize("helix", [20.0, -35.0])
@@ -85,6 +86,7 @@ def test_helical_gears(seed, moment, helix):
     assert solution.output("mesh_axial")[0] == pytest.approx(way * math.tan(psi))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("angle", [90.0, 60.0, 110.0])
 @pytest.mark.parametrize("moment", [50.0, -50.0])

@@ -147,7 +147,7 @@ def test_a_sweep_keeps_its_blocks(here, number):
     assert re.fullmatch(KEPT, err)
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 def test_an_interrupt_comes_through_while_a_long_axis_is_written(here, number):
     """It takes minutes; the blocks that were committed before stay."""
@@ -172,7 +172,7 @@ STEPPING = {
 }
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "number"), zip(STEPPING, [signal.SIGINT, signal.SIGTERM] * 2, strict=True))
 def test_an_interrupt_does_not_wait_for_newtons_steps(here, name, number):
     """The whole takes minutes or hours."""
@@ -186,7 +186,7 @@ def test_an_interrupt_does_not_wait_for_newtons_steps(here, name, number):
     assert not list(here.iterdir())
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP], ids=lambda number: number.name)
 def test_what_was_ignored_at_the_start_stays_ignored(here, number):
     """As by ``nohup``, and of a script's background jobs."""
@@ -200,6 +200,7 @@ def test_what_was_ignored_at_the_start_stays_ignored(here, number):
         assert re.fullmatch(KEPT, started.communicate(timeout=60)[1])
 
 
+@pytest.mark.long
 def test_a_terminal_that_goes_stops_a_sweep_as_told(here):
     """The system sends the signal, and whatever is written to the terminal fails from then on."""
     terminal, side = os.openpty()
@@ -216,6 +217,7 @@ def test_a_terminal_that_goes_stops_a_sweep_as_told(here):
     assert list(here.glob("x.h5.parts/*.part"))
 
 
+@pytest.mark.long
 def test_a_sweep_that_was_held_goes_on(here):
     def parts():
         return len(list(here.glob("x.h5.parts/*.part")))

@@ -79,6 +79,7 @@ SCENES = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", SCENES)
 def test_no_iteration_is_needed(name):
     scene = SCENES[name]()

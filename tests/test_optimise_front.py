@@ -93,6 +93,7 @@ def test_a_stop_leaves_the_front_so_far():
     assert dominated(front.objectives) == []
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("shift", "term"), [(0.0, "peak"), (0.7, "peak"), (0.0, "rms")])
 def test_instants_go_with_what_is_chosen(shift, term):
     """The least time for a torque, where the last instant, and here the first one, is a peak."""

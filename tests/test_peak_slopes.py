@@ -49,6 +49,7 @@ def test_slopes_of_peaks_are_those_of_their_differences(name):
     assert found[worst] <= 1e-6, (worst, found[worst])
 
 
+@pytest.mark.long
 def test_loops_that_are_iterated():
     f = prepare(declared(CASES / "rrr3"), wanted=["effort", "section"])
     found, _ = gaps(f, f.parameters[:: len(f.parameters) // 2])

@@ -65,6 +65,7 @@ RATES = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("planets", [1, pytest.param(5, marks=pytest.mark.long), 2])
 @pytest.mark.parametrize(("driven", "held"), RATES)
 def test_each_member_may_drive_and_each_be_held(driven, held, planets):

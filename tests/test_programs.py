@@ -107,7 +107,7 @@ def test_a_time_limit_that_is_none_is_one_line(here, fresh_cache, monkeypatch, c
     )
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 @pytest.mark.parametrize("script", ["{hangs}", "{tells} {hangs}"], ids=["version", "compiling"])
 def test_an_interrupt_stops_the_compiler(here, tmp_path_factory, monkeypatch, number, script):
@@ -171,6 +171,7 @@ assert codegen.find_compiler() is not None
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("free", [0, 3])
 def test_too_few_descriptors_are_not_no_compiler(free):
     done = subprocess.run([sys.executable, "-c", CROWDED.format(free=free)], capture_output=True, text=True, check=False)

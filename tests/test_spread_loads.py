@@ -326,6 +326,7 @@ def test_exported_c_tells_of_them(tmp_path):
     assert "And then loads along the link, of which a section feels what acts beyond it" in header
 
 
+@pytest.mark.long
 def test_peaks_between_instants_and_of_sweeps():
     scene, designs = linkage(t=(0.1, 0.9, 81)), np.array([[1.0, 0.08], [2.5, 0.0], [-1.0, 0.15]])
     forces = [f"section:{link}:{force}" for link in "bc" for force in ("axial", "shear", "bending")]

@@ -50,7 +50,7 @@ def test_streams_that_are_closed_stop_nothing(here, closed):
     assert list(here.glob("*_figures/*.png"))
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.long
 @pytest.mark.parametrize("closed", ["2>&-", "<&- >&- 2>&-", "2>/dev/full"])
 def test_an_error_that_nobody_hears_has_its_status(here, closed):
     assert shell(f"{PROGRAM} run nothing {closed}").returncode == 2
@@ -58,6 +58,7 @@ def test_an_error_that_nobody_hears_has_its_status(here, closed):
     assert not list(here.iterdir())
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("command", [RUN + " --no-figures", "cases", "--help"])
 def test_a_reader_that_goes_early_is_no_error(here, command):
     """As head, or a pager that is left: no line says so, and what was computed is kept."""
@@ -67,6 +68,7 @@ def test_a_reader_that_goes_early_is_no_error(here, command):
     assert (here / "x.h5").exists() == command.startswith("run")
 
 
+@pytest.mark.long
 def test_a_warning_that_nobody_hears_stops_nothing(here):
     """As of a cache that cannot be written."""
     (here / "file").write_text("")

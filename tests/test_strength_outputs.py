@@ -42,6 +42,7 @@ def test_what_is_not_wanted_is_not_derived():
     assert not [output for output in derive(scene, ["all"]).outputs if output.group in ("stress", "utilisation")]
 
 
+@pytest.mark.long
 def test_gradients_of_peaks_of_stress_and_utilisation_are_exact():
     """Against differences of peaks, at which the place along the link and the time move."""
     f = prepare(slider(), wanted=["stress", "safety"])

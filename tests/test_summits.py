@@ -122,7 +122,7 @@ def test_other_rungs_search_alike(name):
     assert_found(name, OTHERS)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("count", [211, 1500])
 def test_a_hundred_summits(count):
     """All but as high as each other; of few instants each has at most two."""

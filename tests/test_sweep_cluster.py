@@ -155,6 +155,7 @@ def test_a_worker_that_is_killed_is_done_without(slider_crank, whole, tmp_path):
     assert killed == [-signal.SIGKILL]
 
 
+@pytest.mark.long
 def test_a_scheduler_that_is_killed_is_one_line_and_loses_nothing(slider_crank, whole, tmp_path, capfd):
     path = tmp_path / "x.h5"
     with started(tmp_path, 1) as (address, scheduler, _):
@@ -315,7 +316,7 @@ def test_a_worker_is_no_scheduler(slider_crank, two_workers, tmp_path):
         sweep(slider_crank, GRID, **ASKED, out=tmp_path / "x.h5", dask=address)
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 def test_an_interrupt_comes_through_while_nothing_answers(slider_crank, tmp_path, number):
     asked = ["sweep", str(slider_crank.path), "--grid", "l=0.2,0.3", "--out", "x.h5"]

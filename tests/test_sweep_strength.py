@@ -58,7 +58,7 @@ def test_the_lightest_that_is_safe_is_chosen(swept):
     assert chosen.number == 2 * min(rows)[1] + min(rows)[2]
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["sliding", "notched", "space"])
 def test_links_of_every_kind(name):
     """Loads that travel are looked at one design after another; in space most fibres are sheared.

@@ -204,6 +204,7 @@ def test_peaks_between_instants_see_the_turns():
     assert peak.value == pytest.approx(fine.peak("effort:O").value, rel=1e-6)
 
 
+@pytest.mark.long
 def test_loops_that_are_iterated():
     """Three bars on three legs, and springs between legs and bars; one of them crosses half a turn."""
 
