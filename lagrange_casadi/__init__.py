@@ -11,6 +11,7 @@ from .declare.scene import Scene
 from .declare.shaking import shaking
 from .declare.spatial import SpatialMechanism
 from .designs.prepared import Prepared, prepare
+from .elastic.vibration import vibration
 from .equations.derive import derive
 from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
@@ -22,6 +23,7 @@ from .store.runs import check, load, save
 from .study.peaks import refine
 from .study.sensitivities import Sensitivities, sensitivities
 from .study.tolerances import tolerances
+from .study.tool import tool_deflection
 from .sweep import Sweep, best, read_designs, sweep
 from .version import __version__
 
@@ -65,4 +67,6 @@ __all__ = [
     "sweep",
     "table",
     "tolerances",
+    "tool_deflection",
+    "vibration",
 ]

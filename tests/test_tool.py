@@ -5,10 +5,9 @@ import numpy as np
 import pytest
 import strong
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate, tool_deflection
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
-from lagrange_casadi.study.tool import tool_deflection
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 

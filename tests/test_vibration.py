@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 import strong
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate, vibration
 from lagrange_casadi.elastic.bending_modes import closed
-from lagrange_casadi.elastic.vibration import vibration
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import harmonic, polynomial
 
