@@ -12,6 +12,7 @@ import casadi as ca
 
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression, Link, Point
+from ..declare.spatial import SpatialMechanism
 from ..errors import DeclarationError
 
 
@@ -95,11 +96,11 @@ def _turn(y: Any, x: Any) -> Any:
 
 def _weld(mechanism: Mechanism, name: str, first: Link, second: Link, way: Sequence[Any], onward: Sequence[Any]) -> None:
     """Weld a piece to the tip of the one before, at the angle between their ways."""
-    if not mechanism.space:
+    if not isinstance(mechanism, SpatialMechanism):
         # By the sine and cosine of the angle between them, so that it is half a turn at most.
         angle = _turn(way[0] * onward[1] - way[1] * onward[0], way[0] * onward[0] + way[1] * onward[1])
         mechanism.weld(name, first.tip, second, angle=angle)
         return
     (bearing, rise), (next_bearing, next_rise) = ((_turn(y, x), _turn(z, _length([x, y]))) for x, y, z in (way, onward))
     turns: Any = [("y", rise), ("z", next_bearing - bearing), ("y", -next_rise)]
-    mechanism.weld(name, first.tip, second, turned=turns)  # type: ignore[call-arg]
+    mechanism.weld(name, first.tip, second, turned=turns)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression, Link
+from ..declare.spatial import SpatialMechanism
 from ..errors import DeclarationError
 
 _CORNERS = 48
@@ -46,9 +47,9 @@ def wheel(
     told = own.expression(f"{what}: mass", mass) if mass is not None else None
     whole = density * math.pi * (outer * outer - inner * inner) * thick if told is None else told
     polar = whole * (outer * outer + inner * inner) / 2
-    if mechanism.space:
+    if isinstance(mechanism, SpatialMechanism):
         across = polar / 2 + whole * thick * thick / 12
-        return mechanism.link(name, length=outer, mass=whole, centre=(0.0, 0.0, 0.0), inertia=(polar, across, across))  # type: ignore[arg-type]
+        return mechanism.link(name, length=outer, mass=whole, centre=(0.0, 0.0, 0.0), inertia=(polar, across, across))
     link = mechanism.link(name, length=outer, mass=whole, centre=(0.0, 0.0), inertia=polar)
     if teeth is not None and (type(teeth) is not int or teeth < 1):
         raise DeclarationError(f"{what}: teeth must be a whole number, got {teeth!r}")
