@@ -38,9 +38,9 @@ class Motor:
     the mass of what moves in kg.
 
     It bears ``stall_torque`` continuously at rest and ``rated_torque`` at its ``rated_speed``, linear between and on;
-    ``peak_torque`` for a short time, and no speed above ``max_speed``. Where its voltage limits it, it gives ``peak_torque`` up to ``knee_speed``
-    alone, and from there less, linear to ``end_torque`` at ``max_speed``. ``time_constant`` [s] is that of its winding: in so long
-    it warms by 63 %. Infinite, it is warm by the mean of a cycle, however long that is.
+    ``peak_torque`` for a short time, and no speed above ``max_speed``. Where its voltage limits it, it gives ``peak_torque`` up to
+    ``knee_speed`` alone, and from there less, linear to ``end_torque`` at ``max_speed``. ``time_constant`` [s] is that of its
+    winding: in so long it warms by 63 %. Infinite, it is warm by the mean of a cycle, however long that is.
     """
 
     name: str

@@ -53,8 +53,9 @@ def judge(motor: Motor, duty: Duty, refused: tuple[str, ...] = ()) -> Choice:
     """What a duty takes of a motor.
 
     Heat is the root mean square of its torque over what it bears continuously at the mean speed; of a motor with a
-    ``time_constant`` the root of its largest warmth in a cycle that goes on over and over. The peak torque is beside what it gives at the speed of
-    that instant. Raises :class:`.DeclarationError` for a linear motor where the duty is that of a rotary one, and the reverse.
+    ``time_constant`` the root of its largest warmth in a cycle that goes on over and over. The peak torque is beside what it gives
+    at the speed of that instant. Raises :class:`.DeclarationError` for a linear motor where the duty is that of a rotary one, and
+    the reverse.
     """
     if motor.linear != duty.linear:
         kinds = ("a rotary", "a linear")
