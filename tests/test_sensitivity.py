@@ -18,7 +18,7 @@ from lagrange_casadi.sensitivity.slopes import Slopes
 from lagrange_casadi.summits.sharpness import Sharpness
 
 RATIOS = (0.1234567, 0.9034567)
-STEP = 2.0**-13
+STEP = 2.0**-20
 OWN = {
     "beam_pump": ["r", "counterweight", "fluid"],
     "jansen_leg": ["push"],
