@@ -29,6 +29,8 @@ def gaps(f, parameters=None, **at):
     found = {}
     for name in parameters or f.parameters:
         x = values[name]
+        if x == 0.0:  # it gives steps no size
+            continue
         step = 2e-5 * abs(x)
         four = {k: f.peaks(**{**at, name: x + k * step}).value.copy() for k in (-2, -1, 1, 2)}
         slopes = (8 * (four[1] - four[-1]) - (four[2] - four[-2])) / (12 * step)

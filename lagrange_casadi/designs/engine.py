@@ -35,12 +35,13 @@ from ..instants.refusal import Status
 from ..instants.rung import Rung
 from ..instants.solution import Provenance
 from ..quantities import Output
+from ..sensitivity.curvatures import Curvatures
 from ..sensitivity.peaks import PeakSlopes
 from ..sensitivity.slopes import Slopes
 from ..summits.sharpness import bent, with_watched
 from ..system.room import cores, require
 from ..tables import table_of
-from .gradients import gradient, tied
+from .gradients import curvature, gradient, tied
 from .interpreted import columns_of, outcome
 from .reduction import KeptOutputs, stages_of
 from .times import DesignTimes
@@ -331,6 +332,15 @@ class DesignEngine:
     def gradient(self, p: Array, value: Array, t: Array, xi: Array) -> PeakSlopes:
         """How the peaks (q,) of a design (parameters,), which are at times ``t`` and ratios ``xi``, change with all parameters."""
         return gradient(self.slopes, self.times, self._unit_numbers, p, value, t, xi)
+
+    @cached_property
+    def curvatures(self) -> Curvatures:
+        """Their second derivatives at points; they are derived and compiled when they are first asked for."""
+        return Curvatures.of(self.slopes, self.rung)
+
+    def curvature(self, p: Array, value: Array, t: Array, xi: Array, own: PeakSlopes) -> Array:
+        """The second derivatives (q, parameters, parameters) of the peaks of a design, whose gradient is ``own``."""
+        return curvature(self.curvatures, self.times, self._unit_numbers, p, (value, t, xi), own)
 
     def tied(self, p: Array, value: Array, own: PeakSlopes) -> npt.NDArray[np.bool_]:
         """Which of the peaks (q,) of a design, whose gradient is ``own``, tie with another one: see :func:`.ties`."""

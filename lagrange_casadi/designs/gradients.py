@@ -12,7 +12,9 @@ from ..declare.density import Array, Density
 from ..instants.signals import SectionForce
 from ..instants.sizes import size_of
 from ..quantities import Output
-from ..sensitivity.ends import end_slopes
+from ..sensitivity.curvatures import Curvatures
+from ..sensitivity.ends import end_bends, end_slopes
+from ..sensitivity.peak_curvatures import peak_bends
 from ..sensitivity.peaks import PeakSlopes, peak_slopes
 from ..sensitivity.slopes import Slopes
 from ..sensitivity.ties import Curve, ties
@@ -31,6 +33,21 @@ def gradient(
     instants = times.of(p[None], asked=False)[0][0]
     chosen, ends = np.arange(value.size, dtype=np.intc), _ends(slopes, times, instants, p)
     return peak_slopes(slopes, instants, p, chosen, (value, t, xi), ends, _nothing(units, value))
+
+
+def curvature(
+    curvatures: Curvatures,
+    times: DesignTimes,
+    units: npt.NDArray[np.intp],
+    p: Array,
+    peaks: tuple[Array, Array, Array],
+    own: PeakSlopes,
+) -> Array:
+    """The second derivatives (q, parameters, parameters) of the peaks (value, t, xi) of a design, whose gradient is ``own``."""
+    instants = times.of(p[None], asked=False)[0][0]
+    chosen = np.arange(own.kinds.size, dtype=np.intc)
+    ends = end_bends(curvatures.slopes.graph.scene, times.timing, float(instants[0]), float(instants[-1]), p)
+    return peak_bends(curvatures, instants, p, chosen, peaks, own, ends, _nothing(units, peaks[0]))
 
 
 def tied(

@@ -71,6 +71,26 @@ class Gradient:
         return dict(zip(self.parameters, self.slopes[self.quantities.index(quantity)].tolist(), strict=True))
 
 
+@dataclass(frozen=True, eq=False)
+class Curvature:
+    """The second derivatives of the peaks of q ``quantities`` by the ``parameters``.
+
+    ``bends`` (q, parameters, parameters) are symmetric, of the peaks with their sign, in the quantity's unit over both parameters'.
+    They are NaN where :class:`Gradient` has no slopes, and where a peak that is level in time would jump elsewhere.
+    """
+
+    quantities: tuple[str, ...]
+    parameters: tuple[str, ...]
+    bends: Array
+
+    def __getitem__(self, quantity: str) -> dict[str, dict[str, float]]:
+        """Those of the peak of a quantity, by the names of both parameters. Raises :class:`UnknownNameError`."""
+        if quantity not in self.quantities:
+            raise UnknownNameError("quantity with a peak", quantity, self.quantities)
+        rows = self.bends[self.quantities.index(quantity)].tolist()
+        return {name: dict(zip(self.parameters, row, strict=True)) for name, row in zip(self.parameters, rows, strict=True)}
+
+
 class Prepared:
     """A scene that answers for values of its parameters: see :func:`prepare`.
 
@@ -181,6 +201,18 @@ class Prepared:
         found = self._engine.gradient(self._p[0], value, t, xi)
         look = partial(self._engine.tied, self._p[0].copy(), value, found)
         return Gradient(self.quantities, self.parameters, value, t, xi, found.slopes, found.kinds, look)
+
+    def curvature(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Curvature:
+        """The second derivatives of peaks by all parameters, for values of these: how their gradient changes.
+
+        They are exact, by automatic differentiation, as peaks move in time and along links. The first call derives and compiles
+        them, in doubles. Raises what :meth:`gradient` does, and :class:`DeclarationError` for a motion by samples that does not
+        tell its knots.
+        """
+        peaks = self.peaks(values, **named)
+        value, t, xi = (x.copy() for x in (peaks.value, peaks.t, peaks.xi))
+        own = self._engine.gradient(self._p[0], value, t, xi)
+        return Curvature(self.quantities, self.parameters, self._engine.curvature(self._p[0], value, t, xi, own))
 
     def designs(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`; ``threads`` share them.
