@@ -41,7 +41,7 @@ from ..sensitivity.slopes import Slopes
 from ..summits.sharpness import bent, with_watched
 from ..system.room import cores, require
 from ..tables import table_of
-from .gradients import curvature, gradient, tied
+from .gradients import MeanSlopes, curvature, gradient, mean_slopes, tied
 from .interpreted import columns_of, outcome
 from .reduction import KeptOutputs, stages_of
 from .times import DesignTimes
@@ -347,6 +347,18 @@ class DesignEngine:
         series = self.evaluate(p[None], threads=1, histories=True).series
         assert series is not None
         return tied(self.slopes, self.times, self._unit_numbers, p, value, own, self.outputs, series[0])
+
+    def mean_slopes(self, p: Array) -> MeanSlopes:
+        """How the means of :attr:`efforts` over time, and their roots of mean squares, change with all parameters."""
+        chosen = np.array([self.quantities.index(name) for name in self.efforts], np.intc)
+        return mean_slopes(self.slopes, self.times, p, chosen)
+
+    def mean_slopes_at(self, p: Array, found: Outcome) -> Array:
+        """The same of designs, (n, 2, e, parameters), the means first; NaN without a result."""
+        slopes = np.full((len(p), 2, len(self.efforts), len(self.parameters)), np.nan)
+        for k in np.flatnonzero(found.status == Status.OK):
+            slopes[k] = np.where(np.isnan(found.mean[k])[:, None], np.nan, self.mean_slopes(p[k]))
+        return slopes
 
     def slopes_at(self, p: Array, found: Outcome) -> Array:
         """The derivatives of the peaks of designs by all parameters, (n, q, parameters); NaN where there is none."""
