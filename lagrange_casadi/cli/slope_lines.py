@@ -10,12 +10,11 @@ from ..errors import DeclarationError
 from ..instants.rung import Backend
 from ..instants.solution import Solution
 from ..instants.told import told
-from ..quantities import Output
+from ..quantities import AVERAGED, Output
 from ..sensitivity.peaks import PeakKind
 from ..study.sensitivities import Changes, sensitivities
 
 _WIDTH = 13
-_AVERAGED = ("effort", "friction", "output")
 _WORDS = {
     PeakKind.END: "at an end of the instants",
     PeakKind.SWITCH: "at a kink or a jump",
@@ -41,7 +40,7 @@ def slope_lines(solution: Solution, scene: Scene, backend: Backend) -> Iterator[
     yield f"{'':<30}" + " ".join(f"{f'{name} [{units[name]}]':>{_WIDTH}}" for name in by)
     for name, change in zip(names, changes, strict=True):
         yield _line(name, change, by)
-    averaged = [name for name in names if Output.of(name).group in _AVERAGED]
+    averaged = [name for name in names if Output.of(name).group in AVERAGED]
     if averaged:
         yield "how means over time change, and roots of mean squares"
     for name in averaged:
