@@ -99,6 +99,7 @@ print(said)
 _EXPORTED = "from benchmarks.exported import report; print(report('{0}'))"
 _SWEPT = "from benchmarks.sweeps import report; print(report({0}, {1}, {2}))"
 _OPTIMUM = "from benchmarks.optimum import report; print(report(5))"
+_GRADIENTS = "from benchmarks.gradients import report; print(report(20))"
 _LARGE = "from benchmarks.large import report; print(report({0}))"
 
 PROGRAMS = (
@@ -128,6 +129,7 @@ PROGRAMS = (
     Program("sweep-1e6", "10^6 designs of the slider-crank", _SWEPT.format(10**6, 128, 2), repeat=1, reports=True),
     Program("sweep-801", "10^5 designs at the case's own instants", _SWEPT.format(10**5, 801, 2), repeat=1, reports=True),
     Program("optimum", "the least peak torque of the slider-crank under a limit, two parameters", _OPTIMUM, repeat=1, reports=True),
+    Program("gradients", "the gradient of all peaks by all parameters, of the peaks alone", _GRADIENTS, repeat=1, reports=True),
     *(
         Program(f"large-{n}", f"an open chain of {n} links, everything", _LARGE.format(n), cold=True, repeat=1, reports=True)
         for n in (16, 64, 256, 750)

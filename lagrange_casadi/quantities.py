@@ -14,7 +14,7 @@ from typing import Any, Protocol
 
 from .tables import ANGLE, CONVENTIONS, LENGTH, MOMENT, PLANE, QUANTITIES, SPACE, Quantity, Table, table_of
 
-__all__ = ["ANGLE", "CONVENTIONS", "LENGTH", "MOMENT", "QUANTITIES", "Declared", "Output", "quantity_of"]
+__all__ = ["ANGLE", "AVERAGED", "CONVENTIONS", "LENGTH", "MOMENT", "QUANTITIES", "Declared", "Output", "quantity_of"]
 
 LAW, STATION, FORCES, PLACE_FIRST = PLANE.law, PLANE.station, PLANE.forces, PLANE.place_first
 """Those of planar mechanisms."""
@@ -40,6 +40,9 @@ def own_members(*, moment: bool = True) -> tuple[str, ...]:
     """The components of a reaction in space on the joint's own axes."""
     return ("fu", "fv", "fw", "mu", "mv", "mw") if moment else ("fu", "fv", "fw")
 
+
+AVERAGED = ("effort", "friction", "output")
+"""Groups whose outputs have means over time beside their peaks."""
 
 _LAWS = {*PLANE.law, *SPACE.law}
 _SPREAD = re.compile(rf"(?:({'|'.join((*PLANE.spread, *SPACE.spread, *SPACE.couples))})(0|[1-9]\d*)|(width|end))")

@@ -165,7 +165,7 @@ def test_limits_that_hold_nowhere_are_told():
     [
         ({"minimise": "effort:O"}, DeclarationError, "'effort:O' is neither a parameter nor peak:QUANTITY"),
         ({"minimise": "peak:effort:X"}, UnknownNameError, "effort:X"),
-        ({"minimise": "mean:reaction:O:fx"}, UnknownNameError, "quantity with a mean"),
+        ({"minimise": "mean:reaction:O:fx"}, DeclarationError, "means are of effort, friction, output alone"),
         ({"minimise": "min:effort:O"}, DeclarationError, "use max:effort:O"),
         ({"over": {"k": (0.1, 0.2)}}, UnknownNameError, "parameter"),
         (
@@ -188,6 +188,7 @@ def test_limits_that_hold_nowhere_are_told():
         ({"screen": 0}, DeclarationError, "screen: expected a whole number from 1"),
         ({"points": 1}, DeclarationError, "points: expected a whole number above 1"),
         ({"minimise": []}, DeclarationError, "minimise: expected a text"),
+        ({"minimise": "peak:torque"}, UnknownNameError, "unknown output 'torque'"),
         ({"minimise": ["r", "r"]}, DeclarationError, "a term is there twice: r, r"),
         ({"subject_to": "r <= 1"}, DeclarationError, "expected a list of constraints"),
         ({"resume": True}, DeclarationError, "resume: expected out"),

@@ -2,6 +2,7 @@
 
 import math
 
+import casadi as ca
 import numpy as np
 import pytest
 
@@ -88,6 +89,24 @@ def test_a_torsion_spring_takes_the_torque_of_an_oscillation():
     found = optimise(scene, minimise="peak:effort:O", over={"k": (0.0, 100.0)}, starts=2, screen=8)
     assert found.values["k"] == pytest.approx(1.5 * 0.6**2 / 3 * (4 * math.pi) ** 2, rel=1e-6)
     assert found.objective <= 1e-6
+
+
+def test_the_flywheel_of_least_peak_torque():
+    """A load takes an energy E more and less than is even, speeds vary by a share k: the torque is even where the inertia is
+    E/(k w^2) (Norton, Design of Machinery, the section on flywheels)."""
+    m = Mechanism("press")
+    m.set_gravity(0.0, 0.0)
+    inertia = m.parameter("inertia", 1.0, "kg m^2", low=0.0)
+    wheel = m.link("wheel", length=0.3, mass=1.0, centre=(0.0, 0.0), inertia=inertia)
+    m.revolute("shaft", m.ground, wheel)
+    speed, varies, even, swing = 20.0, 0.05, 80.0, 60.0
+    m.torque("load", wheel, -even - swing * ca.sin(2 * speed * m.time))
+    law = expression(lambda t: speed * t + varies / 4 * ca.sin(2 * speed * t))
+    scene = Scene(m, {"shaft": law}, t=(0.0, 2 * math.pi / speed, 73), wanted=["effort"])
+    found = optimise(scene, minimise="peak:effort:shaft", over={"inertia": (0.0, 20.0)}, starts=2, screen=8)
+    # E is the integral of swing sin 2a over a quarter of a turn.
+    assert found.values["inertia"] == pytest.approx(swing / (varies * speed**2), rel=1e-6)
+    assert found.objective == pytest.approx(even, rel=1e-6)
 
 
 def test_the_motion_of_least_rms_torque_is_the_cubic():

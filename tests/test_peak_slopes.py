@@ -29,6 +29,8 @@ def gaps(f, parameters=None, **at):
     found = {}
     for name in parameters or f.parameters:
         x = values[name]
+        if x == 0.0:  # it gives steps no size
+            continue
         step = 2e-5 * abs(x)
         four = {k: f.peaks(**{**at, name: x + k * step}).value.copy() for k in (-2, -1, 1, 2)}
         slopes = (8 * (four[1] - four[-1]) - (four[2] - four[-2])) / (12 * step)
@@ -165,3 +167,22 @@ def test_a_peak_without_bound_has_no_slope():
     assert not endless.all()
     assert np.isnan(gradient.slopes[endless]).all()
     assert np.isfinite(gradient.slopes[~endless]).all()
+
+
+@pytest.mark.parametrize("asked", ["times", "over"])
+def test_means_go_with_instants_that_move(asked):
+    """A torque of size * t over the time T: its mean is size T/2, its rms size T/sqrt(3) but for trapezia."""
+    m, speed, _ = rotor()
+    size = m.parameter("size", 7.0, "N m/s")
+    m.torque("brake", m.bodies["arm"], -size * m.time)
+    at = {"t": (0.0, 2.0 / speed, 41)} if asked == "times" else {"over": ("O", 0.0, 2.0, 41)}
+    f = prepare(Scene(m, {"O": polynomial(0.0, speed)}, t=(0.0, 0.1, 41)), wanted=["effort"], **at)
+    gradient, end = f.gradient(), 2.0 / 20.0
+    assert f.efforts == gradient.efforts == ("effort:O",)
+    peaks = f.peaks()
+    assert peaks.mean[0] == pytest.approx(7.0 * end / 2, rel=1e-12)
+    assert gradient.mean["effort:O"]["size"] == pytest.approx(end / 2, rel=1e-12)
+    assert gradient.mean["effort:O"]["speed"] == pytest.approx(-7.0 * end / 2 / 20, rel=1e-12)
+    assert gradient.rms["effort:O"]["size"] == pytest.approx(peaks.rms[0] / 7.0, rel=1e-12)
+    assert gradient.rms["effort:O"]["speed"] == pytest.approx(-peaks.rms[0] / 20, rel=1e-12)
+    assert abs(gradient.mean["effort:O"]["l"]) <= 1e-14

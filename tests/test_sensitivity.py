@@ -1,5 +1,6 @@
 """Derivatives by parameters: beside differences in 50 digits, and beside closed forms."""
 
+import itertools
 import math
 
 import numpy as np
@@ -13,12 +14,13 @@ from truth import truth
 from lagrange_casadi import derive, load_case
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.quantities import FORCES, Output
+from lagrange_casadi.sensitivity.curvatures import Curvatures, unit_ways
 from lagrange_casadi.sensitivity.series import at_instants
 from lagrange_casadi.sensitivity.slopes import Slopes
 from lagrange_casadi.summits.sharpness import Sharpness
 
 RATIOS = (0.1234567, 0.9034567)
-STEP = 2.0**-13
+STEP = 2.0**-20
 OWN = {
     "beam_pump": ["r", "counterweight", "fluid"],
     "jansen_leg": ["push"],
@@ -91,6 +93,43 @@ def test_slopes_are_those_of_differences_in_50_digits(name):
         for key in told:
             gap = abs(float(own[key][1][j] - exact[key]))
             assert gap <= 1e-10 * sizes[unit(key[0])] / abs(p[j]), (key, parameter, gap, sizes[unit(key[0])])
+
+
+@pytest.mark.sampled(5)
+@pytest.mark.parametrize("name", ["arm", "engine", "four_bar", "quick_return", "rrr3"])
+def test_second_derivatives_too(name):
+    """By two parameters at once, at a time and a place that stand still, beside differences of four values in 50 digits."""
+    scene = load_case(CASES / name).scene if name in OWN else declared(CASES / name)
+    start, stop, _ = scene.t
+    t = start + 0.37 * (stop - start)
+    values = scene.mechanism.values()
+    p, (one, other) = np.array(list(values.values())), [k for k, x in values.items() if x != 0.0][-2:]
+    curvatures = Curvatures.of(slopes := made(scene), Rung("vm"))
+    names = [(q, xi) for q in slopes.points.quantities for xi in (RATIOS if q.group == "section" else (math.nan,))]
+    chosen, xi = np.array([slopes.numbers[q] for q, _ in names], np.intc), np.array([xi for _, xi in names])
+    times = np.full(chosen.size, t)
+    z = slopes.iterated(np.linspace(start, t, 20), p, times)
+    numbers = [list(values).index(name) for name in (one, other)]
+    found = curvatures.at(times, z, p, chosen, xi, np.full(chosen.size, np.nan), unit_ways(numbers, p.size)).changes[:, 2:]
+    found = found[:, :, [2 + number for number in numbers]]
+    np.testing.assert_allclose(found[:, 0, 1], found[:, 1, 0], rtol=0, atol=1e-12 * np.abs(found).max())
+    _, held = columns_at(derive(scene, ["all"]), t, values)
+    steps = [math.ldexp(2.0**-20, math.frexp(values[name])[1]) for name in (one, other)]
+    corners = {}
+    for a, b in itertools.product((-1, 1), (-1, 1)):
+        at = {**values, one: values[one] + a * steps[0], other: values[other] + b * steps[1]}
+        corners[a, b] = precise(scene, t, held, parameters=at)
+    sizes: dict[tuple, float] = {}
+    for (q, _), rows in zip(names, found, strict=True):
+        sizes[unit(str(q))] = max(sizes.get(unit(str(q)), 0.0), float(np.abs(rows * np.outer(p[numbers], p[numbers])).max()))
+    told = [k for k, (q, _) in enumerate(names) if str(q) in corners[1, 1]]
+    assert len(told) >= 6
+    for k in told:
+        q, place = str(names[k][0]), names[k][1]
+        v = {ab: value[q](place) if callable(value[q]) else value[q] for ab, value in corners.items()}
+        exact = float((v[1, 1] - v[1, -1] - v[-1, 1] + v[-1, -1]) / (4 * steps[0] * steps[1]))
+        gap = abs(found[k, 0, 1] - exact) * abs(values[one] * values[other])
+        assert gap <= 1e-10 * sizes[unit(q)] + 1e-14, (q, one, other, gap, sizes[unit(q)])
 
 
 def with_parameters():

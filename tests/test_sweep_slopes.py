@@ -33,6 +33,9 @@ def test_they_are_those_of_a_prepared_scene(slider_crank, swept):
             for name in f.quantities:
                 for by in ("l", "m3"):
                     assert swept[f"sensitivity:{by}:peak:{name}"][i, j] == gradient[name][by]
+            for by in ("l", "m3"):
+                assert swept[f"sensitivity:{by}:mean:effort:O"][i, j] == gradient.mean["effort:O"][by]
+                assert swept[f"sensitivity:{by}:rms:effort:O"][i, j] == gradient.rms["effort:O"][by]
 
 
 def test_they_are_columns_as_others(swept):
@@ -40,6 +43,8 @@ def test_they_are_columns_as_others(swept):
     assert swept.unit("sensitivity:m3:peak:section:rod:axial") == "N/kg"
     assert "sensitivity:r:peak:effort:O" not in swept.columns
     assert label(swept, "sensitivity:l:peak:section:rod:bending") == "rod bending, peak, derivative by l [N m/m]"
+    assert swept.unit("sensitivity:l:rms:effort:O") == "N m/m"
+    assert label(swept, "sensitivity:l:rms:effort:O") == "effort O, rms, derivative by l [N m/m]"
     column = swept["sensitivity:l:peak:effort:O"]
     below = float(np.nanmedian(column))
     (found,) = best(swept, minimise="peak:effort:O", where=[f"sensitivity:l:peak:effort:O<{below}", "r=0.1"])

@@ -150,7 +150,9 @@ def test_run_writes_them(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     asked = ["run", "slider_crank", "--t", "0:0.08:9", "--no-figures", "--out", "a.h5"]
     assert main([*asked, "--want", "effort,sensitivity:r", "--csv", "a.csv"]) == 0
-    assert re.search(r"how peaks change.*\n +r \[m\]\n  effort:O +212\.\d+\n", capsys.readouterr().out)
+    told = capsys.readouterr().out
+    assert re.search(r"how peaks change.*\n +r \[m\]\n  effort:O +212\.\d+\n", told)
+    assert re.search(r"how means over time change.*\n  mean:effort:O +-?\d.*\n  rms:effort:O +[1-9]", told)
     assert load("a.h5").sensitivities.parameters == ("r",)
     assert "sensitivity:r:effort:O [N m/m]" in (tmp_path / "a.csv").read_text().splitlines()[0]
     capsys.readouterr()

@@ -10,6 +10,7 @@ from ..errors import DeclarationError
 from ..instants.rung import Backend
 from ..instants.solution import Solution
 from ..instants.told import told
+from ..quantities import AVERAGED, Output
 from ..sensitivity.peaks import PeakKind
 from ..study.sensitivities import Changes, sensitivities
 
@@ -23,13 +24,14 @@ _WORDS = {
 
 
 def slope_lines(solution: Solution, scene: Scene, backend: Backend) -> Iterator[str]:
-    """The derivatives of the peaks that a run tells, where sensitivities were wanted: a column for each parameter."""
+    """The derivatives of the peaks and means that a run tells, where sensitivities were wanted: a column for each parameter."""
     by = solution.sensitivities.parameters
     names = [str(output) for output in told(solution) if solution.determined(output)]
     if not by or not names:
         return
     try:
-        changes = sensitivities(scene, solution, backend=backend).peaks(names)
+        found = sensitivities(scene, solution, backend=backend)
+        changes = found.peaks(names)
     except DeclarationError as error:  # of a table that is very rough
         yield f"how peaks change cannot be told: {error}"
         return
@@ -38,6 +40,12 @@ def slope_lines(solution: Solution, scene: Scene, backend: Backend) -> Iterator[
     yield f"{'':<30}" + " ".join(f"{f'{name} [{units[name]}]':>{_WIDTH}}" for name in by)
     for name, change in zip(names, changes, strict=True):
         yield _line(name, change, by)
+    averaged = [name for name in names if Output.of(name).group in AVERAGED]
+    if averaged:
+        yield "how means over time change, and roots of mean squares"
+    for name in averaged:
+        yield _line(f"mean:{name}", found.mean(name), by)
+        yield _line(f"rms:{name}", found.rms(name), by)
 
 
 def _line(name: str, change: Changes, by: tuple[str, ...]) -> str:

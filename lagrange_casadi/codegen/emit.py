@@ -87,11 +87,12 @@ _START_SINGLE = """\
 #define casadi_real float
 """
 
-_WIDE = """
+WIDE = """
 #undef CASADI_PREFIX
 #undef casadi_real
 #define casadi_real lanes_pack
 """
+"""What follows is for packs."""
 
 _EVALUATE = """
 /* n instants t, for parameters p. out[k*stride + i] becomes column k at instant i, z[k*stride + i] is iterated coordinate k there.
@@ -246,7 +247,7 @@ def emit(graph: SceneGraph, stages: Stages | None = None, newton: int | None = N
         text += following(graph, stages, newton, sizes)
     pairs = _IN_PAIRS.format(**sizes) if stages.precision == "single" else ""
     inputs = sizes["nc"] + 2 * sizes["nd"] + sizes["nz"] + sizes["nt"] * (1 + sizes["np"]) + sizes["constants"]
-    text += _WIDE + dump("scene", parts.wide)
+    text += WIDE + dump("scene", parts.wide)
     text += _EVALUATE.format(**sizes, drive=parts.drive, single=pairs, inputs=inputs)
     return _START_SINGLE + in_single(text) if stages.precision == "single" else text
 

@@ -1,4 +1,4 @@
-"""The C of single points: one function of a scene at a time, a place and a choice of its own each, one point after another."""
+"""The C of single points: one function of a scene at a time, a place and a choice of its own each, for packs of points at once."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from .calls import Call
 from .compiler import Compiler, broken, loaded
-from .emit import LANES_PLACE, START, dump, work
+from .emit import LANES_PLACE, START, WIDE, dump, work
 
 Array = npt.NDArray[np.float64]
 
@@ -41,26 +41,46 @@ _LOOP = """
 /* n points: t[i], drives + i*{nd}, z + i*{nz}, xi[i], value[i], moving[i], and chosen[i], the number of what is meant; for
    parameters p. Of each found[i] becomes its value, rate[i] its derivative by time, slopes + i*{np} those by the parameters. */
 LAGRANGE_CASADI_EXPORT void {entry}(const {call}* call) {{
-  casadi_int i, iw[{iw}];
-  double w[{w}], one[{many}];
-  const double* arg[{arg}];
-  double* res[{res}];
+  casadi_int i, j, k, of, iw[{iw}];
+  double lane[{own}][LANES], one[{many}][LANES], told[2 + {np}][LANES];
+  casadi_real at[{own}], p[{np} + 1], meant[{many}], y[2 + {np}], w[{w}];
+  const casadi_real* arg[{arg}];
+  casadi_real* res[{res}];
   memset(one, 0, sizeof one);
-  for (i = 0; i < call->n; ++i) {{
-    one[call->chosen[i]] = 1;
-    arg[0] = call->t + i;
-    arg[1] = call->drives + i*{nd};
-    arg[2] = call->z + i*{nz};
-    arg[3] = call->p;
-    arg[4] = call->xi + i;
-    arg[5] = call->value + i;
-    arg[6] = call->moving + i;
-    arg[7] = one;
-    res[0] = call->found + i;
-    res[1] = call->rate + i;
-    res[2] = call->slopes + i*{np};
+  for (k = 0; k < {np}; ++k) p[k] = call->p[k];
+  for (i = 0; i < call->n; i += LANES) {{
+    for (j = 0; j < LANES; ++j) {{
+      /* The last pack is filled up with the last point. */
+      of = i + j < call->n ? i + j : call->n - 1;
+      lane[0][j] = call->t[of];
+      lane[1][j] = call->xi[of];
+      lane[2][j] = call->value[of];
+      lane[3][j] = call->moving[of];
+      for (k = 0; k < {nd}; ++k) lane[4 + k][j] = call->drives[of*{nd} + k];
+      for (k = 0; k < {nz}; ++k) lane[4 + {nd} + k][j] = call->z[of*{nz} + k];
+      one[call->chosen[of]][j] = 1;
+    }}
+    memcpy(at, lane, sizeof lane);
+    memcpy(meant, one, sizeof one);
+    arg[0] = at;
+    arg[1] = at + 4;
+    arg[2] = at + 4 + {nd};
+    arg[3] = p;
+    arg[4] = at + 1;
+    arg[5] = at + 2;
+    arg[6] = at + 3;
+    arg[7] = meant;
+    res[0] = y;
+    res[1] = y + 1;
+    res[2] = y + 2;
     at_point(arg, res, iw, w, 0);
-    one[call->chosen[i]] = 0;
+    memcpy(told, y, sizeof told);
+    for (j = 0; j < LANES && i + j < call->n; ++j) {{
+      call->found[i + j] = told[0][j];
+      call->rate[i + j] = told[1][j];
+      for (k = 0; k < {np}; ++k) call->slopes[(i + j)*{np} + k] = told[2 + k][j];
+    }}
+    for (j = 0; j < LANES; ++j) one[call->chosen[i + j < call->n ? i + j : call->n - 1]][j] = 0;
   }}
 }}
 """
@@ -81,8 +101,8 @@ class PointsLibrary:
 def emit_points(function: Any) -> str:
     """The C of a function at points; the same text in every process."""
     sizes = {f"n{name[0]}": function.size1_in(name) for name in ("drives", "z", "p")}
-    sizes |= {"many": max(1, function.size1_in("chosen"))}
-    text = START + POINTS.text() + dump("points", [function])
+    sizes |= {"many": max(1, function.size1_in("chosen")), "own": 4 + sizes["nd"] + sizes["nz"]}
+    text = START + POINTS.text() + WIDE + dump("points", [function])
     return text + _LOOP.format(entry=_ENTRY, call=POINTS.name, **sizes, **work("", function))
 
 

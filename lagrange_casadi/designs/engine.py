@@ -35,12 +35,13 @@ from ..instants.refusal import Status
 from ..instants.rung import Rung
 from ..instants.solution import Provenance
 from ..quantities import Output
+from ..sensitivity.curvatures import Curvatures
 from ..sensitivity.peaks import PeakSlopes
 from ..sensitivity.slopes import Slopes
 from ..summits.sharpness import bent, with_watched
 from ..system.room import cores, require
 from ..tables import table_of
-from .gradients import gradient, tied
+from .gradients import MeanSlopes, curvature, gradient, mean_slopes, tied
 from .interpreted import columns_of, outcome
 from .reduction import KeptOutputs, stages_of
 from .times import DesignTimes
@@ -332,11 +333,32 @@ class DesignEngine:
         """How the peaks (q,) of a design (parameters,), which are at times ``t`` and ratios ``xi``, change with all parameters."""
         return gradient(self.slopes, self.times, self._unit_numbers, p, value, t, xi)
 
+    @cached_property
+    def curvatures(self) -> Curvatures:
+        """Their second derivatives at points; they are derived and compiled when they are first asked for."""
+        return Curvatures.of(self.slopes, self.rung)
+
+    def curvature(self, p: Array, value: Array, t: Array, xi: Array, own: PeakSlopes) -> Array:
+        """The second derivatives (q, parameters, parameters) of the peaks of a design, whose gradient is ``own``."""
+        return curvature(self.curvatures, self.times, self._unit_numbers, p, (value, t, xi), own)
+
     def tied(self, p: Array, value: Array, own: PeakSlopes) -> npt.NDArray[np.bool_]:
         """Which of the peaks (q,) of a design, whose gradient is ``own``, tie with another one: see :func:`.ties`."""
         series = self.evaluate(p[None], threads=1, histories=True).series
         assert series is not None
         return tied(self.slopes, self.times, self._unit_numbers, p, value, own, self.outputs, series[0])
+
+    def mean_slopes(self, p: Array) -> MeanSlopes:
+        """How the means of :attr:`efforts` over time, and their roots of mean squares, change with all parameters."""
+        chosen = np.array([self.quantities.index(name) for name in self.efforts], np.intc)
+        return mean_slopes(self.slopes, self.times, p, chosen)
+
+    def mean_slopes_at(self, p: Array, found: Outcome) -> Array:
+        """The same of designs, (n, 2, e, parameters), the means first; NaN without a result."""
+        slopes = np.full((len(p), 2, len(self.efforts), len(self.parameters)), np.nan)
+        for k in np.flatnonzero(found.status == Status.OK):
+            slopes[k] = np.where(np.isnan(found.mean[k])[:, None], np.nan, self.mean_slopes(p[k]))
+        return slopes
 
     def slopes_at(self, p: Array, found: Outcome) -> Array:
         """The derivatives of the peaks of designs by all parameters, (n, q, parameters); NaN where there is none."""

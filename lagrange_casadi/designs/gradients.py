@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -11,10 +11,13 @@ import numpy.typing as npt
 from ..declare.density import Array, Density
 from ..instants.signals import SectionForce
 from ..instants.sizes import size_of
+from ..instants.statistics import shares
 from ..quantities import Output
-from ..sensitivity.ends import end_slopes
+from ..sensitivity.curvatures import Curvatures
+from ..sensitivity.ends import end_bends, end_slopes
+from ..sensitivity.peak_curvatures import peak_bends
 from ..sensitivity.peaks import PeakSlopes, peak_slopes
-from ..sensitivity.slopes import Slopes
+from ..sensitivity.slopes import Numbers, Slopes
 from ..sensitivity.ties import Curve, ties
 from ..summits.search import NOTHING
 from ..tables import table_of
@@ -28,9 +31,48 @@ def gradient(
 
     ``units`` (q,) are numbers of units: what is nothing beside the largest of its unit moves with nothing.
     """
-    instants = times.of(p[None])[0][0]
+    instants = times.of(p[None], asked=False)[0][0]
     chosen, ends = np.arange(value.size, dtype=np.intc), _ends(slopes, times, instants, p)
     return peak_slopes(slopes, instants, p, chosen, (value, t, xi), ends, _nothing(units, value))
+
+
+class MeanSlopes(NamedTuple):
+    """The derivatives of means over time, and of roots of mean squares, by all parameters, (e, parameters); NaN of a root of 0."""
+
+    mean: Array
+    rms: Array
+
+
+def mean_slopes(slopes: Slopes, times: DesignTimes, p: Array, chosen: Numbers) -> MeanSlopes:
+    """Those of what is ``chosen`` (e,) of a design ``p`` (parameters,): of sums by trapezia, whose instants may move."""
+    instants = times.of(p[None], asked=False)[0][0]
+    first, last = _ends(slopes, times, instants, p)
+    share = np.linspace(0.0, 1.0, instants.size)[:, None]
+    moved = (1.0 - share) * first + share * last
+    z, weights, nowhere = slopes.iterated(instants, p, instants), shares(instants), np.full(instants.size, np.nan)
+    mean, rms = np.empty((2, chosen.size, p.size))
+    for k, number in enumerate(chosen):
+        found = slopes.at(instants, z, p, np.full(instants.size, number, np.intc), nowhere)
+        whole = found.slopes + found.rate[:, None] * moved
+        mean[k] = weights @ whole
+        with np.errstate(all="ignore"):
+            rms[k] = (weights * found.value) @ whole / np.sqrt(weights @ found.value**2)
+    return MeanSlopes(mean, rms)
+
+
+def curvature(
+    curvatures: Curvatures,
+    times: DesignTimes,
+    units: npt.NDArray[np.intp],
+    p: Array,
+    peaks: tuple[Array, Array, Array],
+    own: PeakSlopes,
+) -> Array:
+    """The second derivatives (q, parameters, parameters) of the peaks (value, t, xi) of a design, whose gradient is ``own``."""
+    instants = times.of(p[None], asked=False)[0][0]
+    chosen = np.arange(own.kinds.size, dtype=np.intc)
+    ends = end_bends(curvatures.slopes.graph.scene, times.timing, float(instants[0]), float(instants[-1]), p)
+    return peak_bends(curvatures, instants, p, chosen, peaks, own, ends, _nothing(units, peaks[0]))
 
 
 def tied(

@@ -19,6 +19,7 @@ from ..evaluate import evaluate
 from ..instants.refusal import Status
 from ..instants.rung import Backend, Rung
 from .engine import DesignEngine, Outcome
+from .gradients import MeanSlopes
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +55,9 @@ class Gradient:
     xi: Array
     slopes: Array
     kinds: npt.NDArray[np.int8]
+    efforts: tuple[str, ...]
     look: Callable[[], npt.NDArray[np.bool_]] = field(repr=False)
+    add_up: Callable[[], MeanSlopes] = field(repr=False)
 
     @cached_property
     def tied(self) -> npt.NDArray[np.bool_]:
@@ -64,11 +67,48 @@ class Gradient:
         """
         return self.look()
 
+    @cached_property
+    def mean(self) -> dict[str, dict[str, float]]:
+        """The derivatives of the means of ``efforts`` over time, by effort and parameter; made when they are first asked for."""
+        return self._named(self._means.mean)
+
+    @cached_property
+    def rms(self) -> dict[str, dict[str, float]]:
+        """Those of their roots of mean squares; NaN where that is 0."""
+        return self._named(self._means.rms)
+
+    @cached_property
+    def _means(self) -> MeanSlopes:
+        return self.add_up()
+
+    def _named(self, slopes: Array) -> dict[str, dict[str, float]]:
+        return {name: dict(zip(self.parameters, row, strict=True)) for name, row in zip(self.efforts, slopes.tolist(), strict=True)}
+
     def __getitem__(self, quantity: str) -> dict[str, float]:
         """The derivatives of the peak of a quantity, by the parameter's name. Raises :class:`UnknownNameError`."""
         if quantity not in self.quantities:
             raise UnknownNameError("quantity with a peak", quantity, self.quantities)
         return dict(zip(self.parameters, self.slopes[self.quantities.index(quantity)].tolist(), strict=True))
+
+
+@dataclass(frozen=True, eq=False)
+class Curvature:
+    """The second derivatives of the peaks of q ``quantities`` by the ``parameters``.
+
+    ``bends`` (q, parameters, parameters) are symmetric, of the peaks with their sign, in the quantity's unit over both parameters'.
+    They are NaN where :class:`Gradient` has no slopes, and where a peak that is level in time would jump elsewhere.
+    """
+
+    quantities: tuple[str, ...]
+    parameters: tuple[str, ...]
+    bends: Array
+
+    def __getitem__(self, quantity: str) -> dict[str, dict[str, float]]:
+        """Those of the peak of a quantity, by the names of both parameters. Raises :class:`UnknownNameError`."""
+        if quantity not in self.quantities:
+            raise UnknownNameError("quantity with a peak", quantity, self.quantities)
+        rows = self.bends[self.quantities.index(quantity)].tolist()
+        return {name: dict(zip(self.parameters, row, strict=True)) for name, row in zip(self.parameters, rows, strict=True)}
 
 
 class Prepared:
@@ -179,8 +219,21 @@ class Prepared:
         peaks = self.peaks(values, **named)
         value, t, xi = (x.copy() for x in (peaks.value, peaks.t, peaks.xi))
         found = self._engine.gradient(self._p[0], value, t, xi)
-        look = partial(self._engine.tied, self._p[0].copy(), value, found)
-        return Gradient(self.quantities, self.parameters, value, t, xi, found.slopes, found.kinds, look)
+        p = self._p[0].copy()
+        look, add_up = partial(self._engine.tied, p, value, found), partial(self._engine.mean_slopes, p)
+        return Gradient(self.quantities, self.parameters, value, t, xi, found.slopes, found.kinds, self.efforts, look, add_up)
+
+    def curvature(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Curvature:
+        """The second derivatives of peaks by all parameters, for values of these: how their gradient changes.
+
+        They are exact, by automatic differentiation, as peaks move in time and along links. The first call derives and compiles
+        them, in doubles. Raises what :meth:`gradient` does, and :class:`DeclarationError` for a motion by samples that does not
+        tell its knots.
+        """
+        peaks = self.peaks(values, **named)
+        value, t, xi = (x.copy() for x in (peaks.value, peaks.t, peaks.xi))
+        own = self._engine.gradient(self._p[0], value, t, xi)
+        return Curvature(self.quantities, self.parameters, self._engine.curvature(self._p[0], value, t, xi, own))
 
     def designs(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`; ``threads`` share them.

@@ -27,7 +27,7 @@ from ..instants.laws import made_of
 from ..instants.refusal import Status
 from ..instants.rules import rules
 from ..instants.rung import Rung
-from ..quantities import Output
+from ..quantities import AVERAGED, Output
 from ..summits.sharpness import Sharpness
 from ..tables import Table, table_of
 
@@ -88,7 +88,7 @@ class KeptOutputs:
             raise DeclarationError("designs: nothing is wanted that has a peak")
         units = tuple(output.unit(mechanism) for output in names)
         numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
-        efforts = tuple(name for name in names if name.group in ("effort", "friction", "output"))
+        efforts = tuple(name for name in names if name.group in AVERAGED)
         along = tuple(_along(mechanism, link, at, table) for link in links)
         matter, positive, margins = _matter(graph.scene, links, along, rung.precision)
         columns = {column for columns in chosen.values() for column in columns}

@@ -14,7 +14,7 @@ import numpy as np
 from ..declare.density import Array
 
 _ACTIVE, _COUNTS = 1e-7, 1e-6
-"""How near to zero a row is that is active; and of the largest, a multiplier that counts."""
+"""How near to zero a row is that is active; and of the largest term, or the objective, a multiplier that counts."""
 
 _STEP = 1e-5
 """Of the bounds: the step of differences of slopes."""
@@ -61,13 +61,12 @@ def conditions(
         hessian = _differences(lambda x: slopes(x, by_g, given)[0].full().ravel(), at, chosen)
     if not (np.isfinite(hessian).all() and np.isfinite(jacobian).all()):
         return Conditions(residual, math.nan, math.nan, np.zeros(chosen))
-    largest = max(float(np.abs(by_g).max(initial=0.0)), float(np.abs(by_x).max(initial=0.0)), np.finfo(float).tiny)
     bounded = np.zeros(at.size, bool)
     bounded[:chosen] = np.minimum(at[:chosen], 1.0 - at[:chosen]) <= _ACTIVE
     found = []
     for active, bound in (
-        (np.abs(by_g) > _COUNTS * largest, np.abs(by_x) > _COUNTS * largest),
-        ((rows.ravel() > -_ACTIVE) | (np.abs(by_g) > _COUNTS * largest), bounded | (np.abs(by_x) > _COUNTS * largest)),
+        (np.abs(by_g) > _COUNTS * size, np.abs(by_x) > _COUNTS * size),
+        ((rows.ravel() > -_ACTIVE) | (np.abs(by_g) > _COUNTS * size), bounded | (np.abs(by_x) > _COUNTS * size)),
     ):
         found.append(_least(hessian, np.vstack([jacobian[active], np.eye(at.size)[bound]])))
     (curvature, _), (least, way) = found

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from ..declare.density import Array
 from ..errors import DeclarationError, NoDesignError, UnknownNameError
 from .finder import Finder
 from .judged import Judged
 from .problem import Problem
+from .sobol import sobol
 
 Starts = int | Sequence[Mapping[str, float]]
 """How many designs to start from, or the values of parameters for each."""
@@ -21,15 +21,6 @@ _APART = 0.15
 
 _MOST = 1 << 24
 """Designs that are screened at most."""
-
-
-def spread(count: int, dimensions: int) -> Array:
-    """Points of the unit cube, evenly spread: multiples of powers of the generalized golden ratio (Roberts 2018), less their whole
-    parts."""
-    ratio = 2.0
-    for _ in range(64):
-        ratio = (1.0 + ratio) ** (1.0 / (dimensions + 1))
-    return np.asarray((0.5 + np.outer(np.arange(1, count + 1), ratio ** -np.arange(1.0, dimensions + 1))) % 1.0)
 
 
 def checked(starts: Any, screen: Any) -> None:
@@ -63,7 +54,7 @@ def named(finder: Finder, starts: Sequence[Mapping[str, float]]) -> list[Judged]
 def screen(finder: Finder, count: int) -> list[Judged]:
     """Designs spread evenly over the bounds, after the parameters' own values."""
     box = finder.question.box
-    shares = np.vstack([np.clip(box.share(box.p), 0.0, 1.0)[None], spread(count, len(box.names))])
+    shares = np.vstack([np.clip(box.share(box.p), 0.0, 1.0)[None], sobol(count, len(box.names))])
     return finder.judge.screen(np.array([box.all(x) for x in shares]))
 
 

@@ -13,7 +13,7 @@ import casadi as ca
 from ..declare.masses import mass_of
 from ..declare.mechanism import Mechanism
 from ..errors import DeclarationError
-from ..quantities import Output
+from ..quantities import AVERAGED, Output
 from ..system.numerals import real
 
 Kind: TypeAlias = Literal["peak", "max", "min", "mean", "rms", "mass", "parameter"]
@@ -30,6 +30,7 @@ KINDS: Mapping[Kind, str] = {
 MASS: Literal["mass"] = "mass"
 """The mass of a part, or of ``all``."""
 
+_AVERAGES: tuple[Kind, ...] = ("mean", "rms")
 _UPPER: tuple[Kind, ...] = ("peak", "max", "rms")
 _CONSTRAINT = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*")
 _EXAMPLE = "peak:section:rod:bending <= 12"
@@ -51,9 +52,12 @@ class Term:
         for kind in KINDS:
             if word == kind and name:
                 try:
-                    return cls(kind, str(Output.of(name)))
+                    output = Output.of(name)
                 except KeyError:
                     break
+                if kind in _AVERAGES and output.group not in AVERAGED:
+                    raise DeclarationError(f"'{text}': means are of {', '.join(AVERAGED)} alone; of '{name}' there is peak:{name}")
+                return cls(kind, str(output))
         if text.strip() in parameters:
             return cls("parameter", text.strip())
         if word == MASS and name:
@@ -65,7 +69,7 @@ class Term:
     @property
     def averaged(self) -> bool:
         """Whether it is made of all instants."""
-        return self.kind in ("mean", "rms")
+        return self.kind in _AVERAGES
 
     @property
     def output(self) -> Output | None:

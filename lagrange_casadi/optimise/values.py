@@ -14,8 +14,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..declare.curves import curve
-from ..declare.motion import expression, motion_function
+from ..declare.motion import motion_function
 from ..designs.times import DesignTimes
 from ..equations.checks import Column
 from ..equations.reciprocals import differentiable
@@ -23,6 +22,7 @@ from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
 from ..quantities import Output
 from ..sensitivity.along import Along, Place
+from ..sensitivity.in_scalars import in_scalars
 from ..tables import table_of
 
 
@@ -164,21 +164,9 @@ class PointValues:
 
     @cached_property
     def _motion(self) -> Any:
-        """The motion in scalars, that by samples too: CasADi's own splines cannot be differentiated so often.
-
-        The spline through what one is at its knots is the same one. Raises :class:`.DeclarationError` where it does not tell them.
-        """
+        """The motion in scalars, that by samples too: CasADi's own splines cannot be differentiated so often."""
         graph, symbols = self.graph, self.graph.scene.mechanism.symbols
-        if graph.motion.is_a("SXFunction"):
-            return graph.motion
-        laws = {name: graph.scene.laws[name] for name in graph.driven}
-        for name, law in laws.items():
-            if law.spline:
-                if not law.knots:
-                    raise DeclarationError(f"optimise: the motion of joint '{name}' does not tell its knots")
-                values = motion_function({name: law}, symbols)(ca.DM(law.knots).T, ca.DM.zeros(symbols.numel()))[0]
-                laws[name] = expression(curve(law.knots, values.full().ravel().tolist()))
-        return motion_function(laws, symbols)
+        return motion_function(in_scalars({name: graph.scene.laws[name] for name in graph.driven}, symbols), symbols)
 
     @cached_property
     def _loops(self) -> Any:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import casadi as ca
 import numpy as np
 
@@ -9,6 +11,7 @@ from ..declare.density import Array
 from ..declare.motion import motion_function
 from ..declare.scene import Scene
 from ..declare.times import Timing
+from .in_scalars import in_scalars
 
 
 def end_slopes(scene: Scene, timing: Timing, first: float, last: float, p: Array) -> Array:
@@ -30,3 +33,33 @@ def end_slopes(scene: Scene, timing: Timing, first: float, last: float, p: Array
         slope = ca.Function("slope", [t, values], [ca.densify(ca.jacobian(motion(t, values)[0], values))])
         own = np.stack([slope(time, p).full().ravel() for time in (first, last)])
     return np.asarray((bounds - own) / rates[:, None])
+
+
+def end_bends(scene: Scene, timing: Timing, first: float, last: float, p: Array) -> Array:
+    """Their second derivatives by all parameters, (2, parameters, parameters) [s].
+
+    Raises :class:`.DeclarationError` where a drive that says when they are has samples that do not tell their knots.
+    """
+    if timing.shared or not p.size:
+        return np.zeros((2, p.size, p.size))
+    symbols, t, values = scene.mechanism.symbols, ca.SX.sym("t"), ca.SX.sym("p", p.size)
+    along: Any = t
+    if timing.joint:
+        laws = in_scalars({timing.joint: scene.laws[timing.joint]}, symbols)
+        along = motion_function(laws, symbols)(t, values)[0]
+    found = []
+    for time, bound in zip((first, last), timing.ends(values), strict=True):
+        hessian, gradient = ca.hessian(ca.SX(along - bound), ca.vertcat(t, values))
+        told = ca.Function("bends", [t, values], [ca.densify(gradient), ca.densify(hessian)])(time, p)
+        slopes, second = told[0].full().ravel(), told[1].full()
+        found.append(implicit_bends(slopes[:1], second[None], -slopes[None, 1:] / slopes[0])[0])
+    return np.stack(found)
+
+
+def implicit_bends(rate: Array, second: Array, moved: Array) -> Array:
+    """The second derivatives of the time T(p) at which W(t, p) is nothing: from W_t (n,), all second derivatives of W by t and p,
+    (n, 1 + parameters, 1 + parameters), and T' (n, parameters)."""
+    tt, tp, pp = second[:, 0, 0], second[:, 0, 1:], second[:, 1:, 1:]
+    across = tp[:, :, None] * moved[:, None, :]
+    total = pp + across + np.swapaxes(across, 1, 2) + tt[:, None, None] * moved[:, :, None] * moved[:, None, :]
+    return np.asarray(-total / rate[:, None, None])

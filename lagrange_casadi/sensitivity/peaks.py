@@ -44,10 +44,16 @@ _SMOOTH, _END, _SWITCH, _UNTOLD, _LINK_END = map(int, PeakKind)
 
 @dataclass(frozen=True, eq=False)
 class PeakSlopes:
-    """Of q peaks the derivatives by all parameters, (q, parameters), and what each is at, (q,)."""
+    """Of q peaks the derivatives by all parameters, (q, parameters), and what each is at, (q,).
+
+    ``moved`` (q, parameters) are those of the times of peaks that go with an end or a switch, ``switch`` (q,) is the number of that
+    switch, or -1.
+    """
 
     slopes: Array
     kinds: npt.NDArray[np.int8]
+    moved: Array
+    switch: Numbers
 
 
 def peak_slopes(
@@ -68,9 +74,10 @@ def peak_slopes(
     sound = np.isfinite(value) & np.isfinite(t)
     if not sound.all():
         found, kinds = np.full((t.size, p.size), np.nan), np.full(t.size, _UNTOLD, np.int8)
+        moved, switch = np.zeros((t.size, p.size)), np.full(t.size, -1, np.intc)
         inner = peak_slopes(slopes, instants, p, chosen[sound], (value[sound], t[sound], xi[sound]), ends, nothing[sound])
-        found[sound], kinds[sound] = inner.slopes, inner.kinds
-        return PeakSlopes(found, kinds)
+        found[sound], kinds[sound], moved[sound], switch[sound] = inner.slopes, inner.kinds, inner.moved, inner.switch
+        return PeakSlopes(found, kinds, moved, switch)
     first, last = instants[0], instants[-1]
     step = (last - first) / max(instants.size - 1, 1)
     here, lacking, z = at_peaks(slopes, instants, p, chosen, (value, t, xi), step)
@@ -80,13 +87,13 @@ def peak_slopes(
     steep = (np.abs(here.rate) * step > _STEEP * np.abs(value)) & ~(going | nothing)
     kinds = np.where((xi <= SAME_PLACE) | (xi >= 1.0 - SAME_PLACE), _LINK_END, _SMOOTH).astype(np.int8)
     kinds[going] = _END
-    moved = np.zeros_like(here.slopes)
+    moved, switch = np.zeros_like(here.slopes), np.full(t.size, -1, np.intc)
     moved[at_last], moved[at_first] = ends[1], ends[0]
     if steep.any():
-        moved[steep] = _switching(slopes, t[steep], z[steep], p, 2 * near)
+        moved[steep], switch[steep] = _switching(slopes, t[steep], z[steep], p, 2 * near)
         kinds[steep] = np.where(np.isnan(moved[steep]).any(axis=1), _UNTOLD, _SWITCH)
         going |= steep
-    return PeakSlopes(here.slopes + np.where(going[:, None], here.rate[:, None] * moved, lacking), kinds)
+    return PeakSlopes(here.slopes + np.where(going[:, None], here.rate[:, None] * moved, lacking), kinds, moved, switch)
 
 
 def _near(step: float, instants: Array) -> float:
@@ -94,13 +101,14 @@ def _near(step: float, instants: Array) -> float:
     return SIDE * step + 2 * SPACING * float(np.abs(instants).max())
 
 
-def _switching(slopes: Slopes, t: Array, z: Array, p: Array, near: float) -> Array:
-    """The derivatives by all parameters of the times (n,) at which something switches, (n, parameters); NaN where nothing does."""
+def _switching(slopes: Slopes, t: Array, z: Array, p: Array, near: float) -> tuple[Array, Numbers]:
+    """The derivatives by all parameters of the times (n,) at which something switches, (n, parameters), NaN where nothing does; and
+    the number of the switch, -1 where a motion's knot or nothing does."""
     switches, first = slopes.points.switches, len(slopes.points.quantities)
     times, at, back = np.unique(t, return_index=True, return_inverse=True)
     laws = slopes.graph.scene.laws
     knots = np.array([knot for name in slopes.graph.driven for knot in laws[name].knots])
-    found = np.full((times.size, p.size), np.nan)
+    found, which = np.full((times.size, p.size), np.nan), np.full(times.size, -1, np.intc)
     if switches:
         many = len(switches)
         chosen = np.tile(np.arange(first, first + many, dtype=np.intc), times.size)
@@ -112,10 +120,11 @@ def _switching(slopes: Slopes, t: Array, z: Array, p: Array, near: float) -> Arr
         for row in range(times.size):
             k = int(np.argmin(away[row]))
             if away[row, k] <= near:
-                found[row] = -there.slopes[row * many + k] / rate[row, k]
+                found[row], which[row] = -there.slopes[row * many + k] / rate[row, k], k
     if knots.size:
-        found[(np.abs(times[:, None] - knots) <= near).any(axis=1)] = 0.0
-    return found[back]
+        at_knots = (np.abs(times[:, None] - knots) <= near).any(axis=1)
+        found[at_knots], which[at_knots] = 0.0, -1
+    return found[back], which[back]
 
 
 def _gap(watch: Watch, values: Array) -> Array:

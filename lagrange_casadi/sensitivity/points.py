@@ -42,13 +42,15 @@ class PointFunction:
     ``chosen`` has a 1 for the quantity that is meant, and 0 for the others; behind the ``quantities`` it may be one of the
     ``switches``: see :class:`.Watch`. ``xi`` is the ratio at which a section force is meant; with ``moving`` it moves with the
     station that is there, on the side on which the force is nearer to ``value``. ``rate`` is the derivative by time [1/s],
-    ``slopes`` (parameters,) are those by the parameters at that time.
+    ``slopes`` (parameters,) are those by the parameters at that time. ``at_drives`` is the same function of the drives'
+    coordinates, rates, accelerations and the rates of these, in place of ``drives``.
     """
 
     quantities: tuple[Output, ...]
     switches: tuple[Watch, ...]
     function: Any
     lead: Any | None
+    at_drives: Any
 
     @classmethod
     def of(cls, graph: SceneGraph, quantities: Sequence[Output], sharpness: Sharpness) -> PointFunction:
@@ -73,7 +75,7 @@ class PointFunction:
         names = ["t", "drives", "z", "p", "xi", "value", "moving", "chosen"]
         every = [given[name] for name in names]
         made = ca.Function("at_point", every, found, names, ["found", "rate", "slopes"], {"cse": True})
-        return cls(tuple(quantities), tuple(sharpness.watches[k] for k in sharp), made, lead)
+        return cls(tuple(quantities), tuple(sharpness.watches[k] for k in sharp), made, lead, inner)
 
 
 def _at_drives(graph: SceneGraph, quantities: Sequence[Output], watched: Any, sharp: Sequence[int]) -> Any:

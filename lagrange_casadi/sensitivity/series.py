@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -20,6 +19,7 @@ from ..instants.rung import Rung
 from ..instants.solution import Solution
 from ..quantities import Output
 from ..system.room import require
+from .batches import at_points
 from .following import iterated
 from .sections import section_slopes
 from .total import total
@@ -72,7 +72,7 @@ def at_instants(graph: SceneGraph, rows: Sequence[Output], t: Array, p: Array, b
     library, following = (None, None) if made is None else made[1]
     place = iterated(graph, following, t, p, t)
     given = {"t": (t[:, None], 1), "drives": (lead, 1), "z": (place, 1), "p": (p[None], 0)}
-    return _evaluated(function, library, t.size, given).reshape(t.size, len(rows), 1 + len(by))
+    return at_points(function, library, t.size, given).reshape(t.size, len(rows), 1 + len(by))
 
 
 def _along(
@@ -98,22 +98,7 @@ def _along(
             "xi": (np.tile(xi, many)[:, None], 1),
             "p": (p[None], 0),
         }
-        grids[some] = _evaluated(function, library, many * xi.size, given).reshape(many, xi.size, len(forces), len(by))
+        grids[some] = at_points(function, library, many * xi.size, given).reshape(many, xi.size, len(forces), len(by))
     for k, force in enumerate(forces):
         if not made_of(left_open, link, force, table):
             yield Output("section", link, force), grids[:, :, k]
-
-
-def _evaluated(function: Any, library: codegen.BatchLibrary | None, n: int, given: Mapping[str, tuple[Array, int]]) -> Array:
-    """A function of one output at n points, (n, result): of each argument its rows, and how many points one is for, 0 for all."""
-    into = np.full((n, function.numel_out(0)), np.nan)
-    if library is not None:
-        library.evaluate(n, given, into)
-        return into
-    columns = []
-    for name, (rows, every) in given.items():
-        height, width = function.size_in(name)
-        each = np.repeat(rows, every, axis=0)[:n] if every else rows
-        columns.append(each.reshape(-1, height).T if width * height else np.zeros((height, width)))
-    into[:] = np.asarray(function(*columns).full()).T.reshape(n, -1)
-    return into

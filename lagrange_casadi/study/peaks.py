@@ -349,4 +349,5 @@ def _columns(quantity: Quantity) -> set[int]:
 def wanted_for(output: Output) -> str:
     """What is to be wanted for an output."""
     kinds = {"effort": "effort", "motion": "motion", "pose": "motion", "utilisation": f"safety:{output.part}"}
-    return kinds.get(output.group, f"{'section' if output.along else output.group}:{output.part}")
+    kind = "section" if output.along else output.group
+    return kinds.get(output.group, f"{kind}:{output.part}" if output.part else kind)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,8 +16,9 @@ from ..instants.rung import Backend, Rung
 from ..instants.solution import Solution
 from ..instants.statistics import shares
 from ..quantities import Output
+from ..sensitivity.curvatures import Curvatures
 from ..sensitivity.peaks import PeakKind, peak_slopes
-from ..sensitivity.slopes import Slopes
+from ..sensitivity.slopes import Numbers, Slopes
 from ..sensitivity.ties import Curve, ties
 from ..summits.search import NOTHING
 from ..summits.sharpness import Sharpness
@@ -56,6 +57,7 @@ class Sensitivities:
     solution: Solution
     slopes: Slopes
     p: Array
+    rung: Rung
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -67,9 +69,22 @@ class Sensitivities:
 
         Its unit is the quantity's over the parameter's. At a station, a section force is that on its tip's side.
         """
-        if parameter not in self.parameters:
-            raise UnknownNameError("parameter", parameter, self.parameters)
-        return self._all(name)[1][..., self.parameters.index(parameter)]
+        return self._all(name)[1][..., self._number(parameter)]
+
+    def curvature(self, name: str, parameter: str, other: str) -> Array:
+        """The second derivative of a quantity by two parameters over the instants, (t,), of a section force (t, xi).
+
+        Its unit is the quantity's over both parameters'. Raises :class:`.DeclarationError` also for a motion by samples that does
+        not tell its knots.
+        """
+        row, way = self._number(parameter), np.zeros((1, 2 + self.p.size))
+        way[0, 2 + self._number(other)] = 1.0
+        nowhere = np.full(_BLOCK, np.nan)
+
+        def second(t: Array, z: Array, chosen: Numbers, xi: Array) -> Array:
+            return self._curvatures.at(t, z, self.p, chosen, xi, nowhere[: t.size], way).changes[:, 0, 2 + row]
+
+        return self._made(name, second, ())
 
     def mean(self, name: str) -> Changes:
         """How the mean of a quantity over the instants changes; it is no section force."""
@@ -142,20 +157,34 @@ class Sensitivities:
 
     def _all(self, name: str) -> tuple[Array, Array]:
         """A quantity and its derivatives by all parameters, (t, parameters) or (t, xi, parameters)."""
+
+        def first(t: Array, z: Array, chosen: Numbers, xi: Array) -> Array:
+            found = self.slopes.at(t, z, self.p, chosen, xi)
+            return np.column_stack([found.value, found.slopes])
+
+        both = self._made(name, first, (1 + self.p.size,))
+        return both[..., 0], both[..., 1:]
+
+    def _made(self, name: str, at: Callable[[Array, Array, Numbers, Array], Array], size: tuple[int, ...]) -> Array:
+        """What is of a ``size`` at points, over the instants, of a section force over (t, xi)."""
         output, solution = self._known(name), self.solution
         along = solution.xi if output.group == "section" else np.full(1, np.nan)
-        shape = (solution.t.size, along.size)
-        rows = np.repeat(np.arange(shape[0]), shape[1])
-        xi = np.tile(along, shape[0])
-        value, slopes = np.empty(rows.size), np.empty((rows.size, self.p.size))
+        rows, xi = np.repeat(np.arange(solution.t.size), along.size), np.tile(along, solution.t.size)
+        found = np.empty((rows.size, *size))
         for start in range(0, rows.size, _BLOCK):
             some = slice(start, start + _BLOCK)
             chosen = np.full(rows[some].size, self.slopes.numbers[output], np.intc)
-            found = self.slopes.at(solution.t[rows[some]], self._iterated[rows[some]], self.p, chosen, xi[some])
-            value[some], slopes[some] = found.value, found.slopes
-        if output.group != "section":
-            return value, slopes
-        return value.reshape(shape), slopes.reshape(*shape, -1)
+            found[some] = at(solution.t[rows[some]], self._iterated[rows[some]], chosen, xi[some])
+        return found if output.group != "section" else found.reshape(solution.t.size, along.size, *size)
+
+    @cached_property
+    def _curvatures(self) -> Curvatures:
+        return Curvatures.of(self.slopes, self.rung)
+
+    def _number(self, parameter: str) -> int:
+        if parameter not in self.parameters:
+            raise UnknownNameError("parameter", parameter, self.parameters)
+        return self.parameters.index(parameter)
 
 
 def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto") -> Sensitivities:
@@ -184,8 +213,8 @@ def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto"
     if not made <= graph.outputs.keys():
         raise _other(scene, solution)
     columns = sorted({graph.outputs[part] for part in made} | {k for o, k in graph.outputs.items() if o.along})
-    slopes = Slopes.of(graph, quantities, Sharpness.of(graph, columns), Rung(backend))
-    found = Sensitivities(scene, solution, slopes, np.array(list(values.values())))
+    slopes = Slopes.of(graph, quantities, Sharpness.of(graph, columns), rung := Rung(backend))
+    found = Sensitivities(scene, solution, slopes, np.array(list(values.values())), rung)
     _refuse_other(found, quantities)
     return found
 

@@ -44,7 +44,11 @@ KINDS = (STATUS, "peak", "peak_t", "peak_over", "peak_xi", "mean", "rms", SENSIT
 MISSING = "NaN for designs of which equilibrium leaves it open"
 """What a file says, as ``missing``, of a column that may lack a number where there is a result."""
 
-NO_SLOPE = "NaN for designs whose peak has no derivative"
+NO_SLOPE = "NaN for designs of which it has no derivative"
+
+_MEANS = ("mean", "rms")
+SLOPES_OF = {"peak": "peak", "mean": "mean over time", "rms": "root of the mean square over time"}
+"""What derivatives are kept of, in words."""
 
 _MOST, _BYTES, _SECONDS = 1 << 14, 1 << 24, 1.0
 _AT_HAND = 1 << 22
@@ -97,7 +101,9 @@ class Harvest:
             mean, rms = f"mean over time: {words['long_name']}", f"root of the mean square over time: {words['long_name']}"
             found.append(Column(f"mean:{name}", unit, words | {"long_name": mean} | self._open(name)))
             found.append(Column(f"rms:{name}", unit, {"long_name": rms} | self._open(name)))
-        found += [self._slope(parameter, name) for parameter in self.by for name in engine.quantities]
+        for parameter in self.by:
+            found += [self._slope(parameter, "peak", name) for name in engine.quantities]
+            found += [self._slope(parameter, kind, name) for kind in _MEANS for name in engine.efforts]
         found += [
             self._along(f"peak_at:section:{link}:{force}", "largest in size over the instants: ", ("xi",))
             for link in self._links
@@ -160,8 +166,10 @@ class Harvest:
         for k in range(len(self.engine.efforts)):
             found += [outcome.mean[:, k], outcome.rms[:, k]]
         if self.by:
-            slopes, names = self.engine.slopes_at(p, outcome), list(self.mechanism.parameters)
-            found += [slopes[:, k, names.index(name)] for name in self.by for k in range(len(self._quantities))]
+            peaks, means = self.engine.slopes_at(p, outcome), self.engine.mean_slopes_at(p, outcome)
+            for number in map(list(self.mechanism.parameters).index, self.by):
+                found += [*np.moveaxis(peaks[:, :, number], 1, 0)]
+                found += [means[:, k, e, number] for k in range(len(_MEANS)) for e in range(len(self.engine.efforts))]
         largest, whole = self._along_links(outcome, p)
         found += largest
         if self._series:
@@ -244,12 +252,12 @@ class Harvest:
             found.append(Column(f"peak_xi:{name}", "1", {"long_name": f"ratio xi/l of the peak: {what}"} | open_))
         return found
 
-    def _slope(self, parameter: str, name: str) -> Column:
-        """The column of the derivative of a peak."""
+    def _slope(self, parameter: str, kind: str, name: str) -> Column:
+        """The column of the derivative of a peak, or of a mean."""
         output = Output.of(name)
         unit = quotient(output.unit(self.mechanism), self.mechanism.parameters[parameter].unit)
-        what = f"derivative by {parameter} of the peak: {output.meant(self._table).long_name}"
-        return Column(f"{SENSITIVITY}:{parameter}:peak:{name}", unit, {"long_name": what, "missing": NO_SLOPE})
+        what = f"derivative by {parameter} of the {SLOPES_OF[kind]}: {output.meant(self._table).long_name}"
+        return Column(f"{SENSITIVITY}:{parameter}:{kind}:{name}", unit, {"long_name": what, "missing": NO_SLOPE})
 
     def _open(self, name: str) -> dict[str, str]:
         """What a file says of a quantity that is not determined for every design."""

@@ -55,5 +55,8 @@ class Engine(Protocol):
     def slopes_at(self, p: Array, outcome: Outcome) -> Array:
         """The derivatives of the peaks of the outcome of designs ``p`` by all parameters, (designs, quantities, parameters)."""
 
+    def mean_slopes_at(self, p: Array, outcome: Outcome) -> Array:
+        """Those of means over time, and of roots of mean squares, (designs, 2, efforts, parameters)."""
+
     def failures(self, p: Array) -> Mapping[str, float]:
         """What fails of one design that has a result, (parameters,), when it is checked in full; nothing where all is well."""

@@ -190,7 +190,7 @@ def label(sweep: Sweep, name: str, sized: bool = False) -> str:
         return name + _unit(sweep.parameters[name], " [{}]")
     kind, group, *parts = name.split(":")
     if kind == SENSITIVITY:
-        kind, (group, *parts) = f"peak, derivative by {group}", parts[1:]
+        kind, (group, *parts) = f"{parts[0]}, derivative by {group}", parts[1:]
     words = " ".join(part for part in parts if part != "resultant")
     words = words if group == "section" else f"{group} {words}"
     return f"{words}, {'|peak|' if sized else _KINDS.get(kind, kind)}" + _unit(sweep.column(name).unit, " [{}]")
