@@ -13,7 +13,7 @@ from ..instants.solution import Solution
 from .buckling import Column, column, load_factor
 from .fatigue import damage_score, factor, factor_score, worst
 from .member import Member
-from .stress import Stress
+from .stress import Stress, StressPeak
 
 
 @dataclass(frozen=True)
@@ -89,10 +89,7 @@ def judged(member: Member, of: Column, *, criterion: str = "goodman", yielding: 
     """The same of a link in numbers; what comes after a factor that is not ``enough`` is left out."""
     found, link = Stress(member), member.link
     material = member.beam.material
-    (strength,) = material.needs("safety against yielding", "yield_strength")
-    peak = found.peak(yielding)
-    where = f"{yielding} {peak.value / 1e6:.4g} MPa at t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}, {peak.fibre}"
-    verdicts = [Verdict("yield", _over(strength, peak.value), where)]
+    verdicts = [yielded(member, found.peak(yielding))]
     if verdicts[0].factor < enough:
         return Safety(link, tuple(verdicts))
     verdicts.append(buckling(member, of))
@@ -110,6 +107,13 @@ def judged(member: Member, of: Column, *, criterion: str = "goodman", yielding: 
 def as_column(description: Description, member: Member) -> Column:
     """A link as a column, by the effective lengths of its beam or its joints."""
     return column(member, member.beam.columns or effective_lengths(description, member.link))
+
+
+def yielded(member: Member, peak: StressPeak) -> Verdict:
+    """The factor of safety of a link against yielding, by the peak of a stress."""
+    (strength,) = member.beam.material.needs("safety against yielding", "yield_strength")
+    where = f"{peak.kind} {peak.value / 1e6:.4g} MPa at t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}, {peak.fibre}"
+    return Verdict("yield", _over(strength, peak.value), where)
 
 
 def buckling(member: Member, of: Column) -> Verdict:
