@@ -1,6 +1,7 @@
 """What links are made of: cross-sections, materials, and where stress concentrates."""
 
 from .beam import Beam, Notch
+from .concentration import hole, keyway, sensitivity, shoulder
 from .material import Material, material
 from .profiles import Profile, read_profiles
 from .properties import Fibre, Properties
@@ -36,12 +37,16 @@ __all__ = [
     "c_section",
     "ellipse",
     "given",
+    "hole",
     "i_section",
+    "keyway",
     "material",
     "polygon",
     "read_profiles",
     "rectangle",
     "round_bar",
+    "sensitivity",
+    "shoulder",
     "stepped",
     "t_section",
     "tapered",
