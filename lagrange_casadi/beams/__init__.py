@@ -1,5 +1,6 @@
 """What links are made of: cross-sections, materials, and where stress concentrates."""
 
+from .analysed import analysed
 from .beam import Beam, Notch
 from .concentration import hole, keyway, sensitivity, shoulder
 from .material import Material, material
@@ -33,6 +34,7 @@ __all__ = [
     "Properties",
     "Shape",
     "along",
+    "analysed",
     "box",
     "c_section",
     "ellipse",
