@@ -8,6 +8,7 @@ import re
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Wanted
 from ..errors import DeclarationError
+from ..strength.fatigue import strengths
 from ..sweep.strength import WAYS, tires
 from ..system.numerals import real
 from .terms import Constraint
@@ -18,7 +19,7 @@ _LEAST = re.compile(r"\s*least:(safety|yield|buckling|fatigue):([^<>=!:]+?)\s*(<
 def constraints_of(text: str, mechanism: Mechanism) -> list[Constraint]:
     """The constraints that a text says: ``least:safety:LINK >= NUMBER`` is one for each way to fail, any other text one.
 
-    Raises :class:`.DeclarationError` for what is none.
+    Raises :class:`.DeclarationError` for what is none, and where fatigue is to be limited of a material that lacks a number.
     """
     found = _LEAST.fullmatch(text) if isinstance(text, str) else None
     if found is None:
@@ -33,5 +34,7 @@ def constraints_of(text: str, mechanism: Mechanism) -> list[Constraint]:
         raise DeclarationError(f"'{text}': expected a least factor of safety, as least:safety:{link} >= 2")
     beam = mechanism.links[link].beam
     assert beam is not None
+    if way == "fatigue":
+        strengths(beam.material, "goodman")
     ways = tuple(w for w in WAYS if w != "fatigue" or tires(beam.material)) if way == "safety" else (way,)
     return [Constraint.parse(f"peak:utilisation:{link}:{each} <= {1.0 / factor:.17g}", mechanism.parameters) for each in ways]
