@@ -59,9 +59,8 @@ def test_gradients_of_peaks_of_stress_and_utilisation_are_exact():
 
 def test_the_lightest_that_is_safe_is_found():
     scene = slider()
-    found = optimise(
-        scene, minimise="mass:all", over={"h": (0.004, 0.04)}, subject_to=["least:safety:rod >= 2", "least:safety:crank>=2"]
-    )
+    limits = ["least:safety:rod >= 2", "least:safety:crank>=2"]
+    found = optimise(scene, minimise="mass:all", over={"h": (0.004, 0.04)}, subject_to=limits, starts=2, screen=16)
     assert found.converged
     assert found.feasible
     assert found.unit == "kg"
@@ -74,8 +73,6 @@ def test_the_lightest_that_is_safe_is_found():
 @pytest.mark.parametrize(
     ("limit", "told"),
     [
-        ("least:safety:rod >= 2", "fatigue is that of a whole cycle"),
-        ("least:fatigue:rod >= 2", "limit least:yield:rod and least:buckling:rod"),
         ("least:yield:rod <= 2", "as least:safety:rod >= 2"),
         ("least:yield:rod >= -1", "as least:safety:rod >= 2"),
         ("least:yield:ram >= 2", "safety:ram"),

@@ -1,6 +1,8 @@
 """What links are made of: cross-sections, materials, and where stress concentrates."""
 
+from .analysed import analysed
 from .beam import Beam, Notch
+from .concentration import hole, keyway, sensitivity, shoulder
 from .material import Material, material
 from .profiles import Profile, read_profiles
 from .properties import Fibre, Properties
@@ -32,16 +34,21 @@ __all__ = [
     "Properties",
     "Shape",
     "along",
+    "analysed",
     "box",
     "c_section",
     "ellipse",
     "given",
+    "hole",
     "i_section",
+    "keyway",
     "material",
     "polygon",
     "read_profiles",
     "rectangle",
     "round_bar",
+    "sensitivity",
+    "shoulder",
     "stepped",
     "t_section",
     "tapered",

@@ -136,9 +136,9 @@ def run(
         say(line)
     for line in slope_lines(solution, loaded.scene, backend):
         say(line)
-    for lines in (strength_lines, elastic_lines):
-        for line in lines(solution, loaded.scene.mechanism, want or loaded.scene.wanted):
-            say(line)
+    asked = (solution, loaded.scene.mechanism, want or loaded.scene.wanted)
+    for line in (*strength_lines(*asked, loaded.scene if refine_peaks else None), *elastic_lines(*asked)):
+        say(line)
     told = np.array([[parameter["value"] for parameter in solution.description["parameters"].values()]])
     for note in (*solution.notes, turned.note(loaded.scene, loaded.scene.timing(t, over), told)):
         if note:

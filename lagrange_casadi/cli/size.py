@@ -11,6 +11,7 @@ from ..beams.profiles import read_profiles
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
+from ..strength.critical_plane import FINDLEY
 from ..strength.fatigue import CRITERIA
 from ..strength.stress import KINDS
 from ..study.sizing import Sized, size
@@ -26,7 +27,9 @@ from .strength_lines import safety_lines, told
 )
 @click.option("--safety", type=float, default=2.0, show_default=True, metavar="FACTOR", help="The least factor of safety.")
 @click.option("--link", "links", multiple=True, metavar="LINK", help="Size this link; repeatable. Default: all that profiles fit.")
-@click.option("--criterion", type=click.Choice(tuple(CRITERIA)), default="goodman", show_default=True, help="How a mean counts.")
+@click.option(
+    "--criterion", type=click.Choice((*CRITERIA, FINDLEY)), default="goodman", show_default=True, help="How a mean counts."
+)
 @click.option(
     "--yielding",
     type=click.Choice(tuple(kind for kind in KINDS if kind not in ("normal", "shear"))),

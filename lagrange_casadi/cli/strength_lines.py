@@ -6,27 +6,31 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 
 from ..declare.mechanism import Mechanism
-from ..declare.scene import fitted_of, strength_of
+from ..declare.scene import Scene, fitted_of, strength_of
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..strength.safety import Life, Safety
 from ..strength.stress import KINDS, StressPeak
+from ..study.strength_peaks import refine_safety, refine_stress
 
 _BAR = 40
 _GUESS = 1e3
 """Cycles below which a life is a guess."""
 
 
-def strength_lines(solution: Solution, mechanism: Mechanism, wanted: Sequence[str]) -> Iterator[str]:
-    """What is wanted of links that have a beam; where it is not asked for by name, why it cannot be told."""
+def strength_lines(solution: Solution, mechanism: Mechanism, wanted: Sequence[str], scene: Scene | None = None) -> Iterator[str]:
+    """What is wanted of links that have a beam; where it is not asked for by name, why it cannot be told.
+
+    With its ``scene`` it is that of all times, else that of the instants.
+    """
     if links := strength_of(mechanism, "stress", wanted):
         yield "stresses along the links, largest in size:"
         for link in links:
-            yield from told(link, lambda name: list(_stresses(solution, name)))
+            yield from told(link, lambda name: list(_stresses(solution, name, scene)))
     if links := [*strength_of(mechanism, "safety", wanted), *fitted_of(mechanism, wanted)]:
         yield "factors of safety, and utilisation, which is one over the least of them:"
         for link in links:
-            yield from told(link, lambda name: list(safety_lines(solution.safety(name))))
+            yield from told(link, lambda name: list(safety_lines(_safety(solution, name, scene))))
     if links := strength_of(mechanism, "life", wanted):
         yield f"lives, {solution.t[-1] - solution.t[0]:.5g} s repeated:"
         for link in links:
@@ -53,16 +57,26 @@ def told(link: str, lines: Callable[[str], Sequence[str]]) -> Iterator[str]:
         yield f"  {link:<20} {'open':>8} {error}"
 
 
-def _stresses(solution: Solution, link: str) -> Iterator[str]:
+def _safety(solution: Solution, part: str, scene: Scene | None) -> Safety:
+    if scene is None or part in solution.description["joints"]:
+        return solution.safety(part)
+    return refine_safety(scene, solution, part)
+
+
+def _stresses(solution: Solution, link: str, scene: Scene | None) -> Iterator[str]:
     stress = solution.stress(link)
-    for kind in KINDS:
-        yield _peak(link, stress.peak(kind))
-    if stress.member.beam.notches:
-        yield _peak(link, stress.peak("von_mises", notches=True))
+    asked = [(kind, False) for kind in KINDS] + [("von_mises", True)] * bool(stress.member.beam.notches)
+    for kind, notches in asked:
+        if scene is None:
+            yield _peak(link, stress.peak(kind, notches=notches))
+        else:
+            yield _peak(link, refine_stress(scene, solution, link, kind, notches=notches))
 
 
 def _peak(link: str, peak: StressPeak) -> str:
     where = f"t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}, {peak.fibre}{', with the factors of its notch' if peak.notch else ''}"
+    if peak.least is not None:
+        return f"  {f'stress:{link}:{peak.kind}':<28}{'not told':>13} at least {peak.least / 1e6:.6g} MPa at {where}"
     return f"  {f'stress:{link}:{peak.kind}':<28}{peak.value / 1e6 + 0.0:>13.6g} MPa at {where}"
 
 

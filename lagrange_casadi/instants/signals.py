@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,17 @@ from .sizes import size_of
 _BLOCK = 4096
 
 
+class Along(Protocol):
+    """What has several curves, or such as are told by a whole link: the columns it is made of, by what these are."""
+
+    @property
+    def columns(self) -> Mapping[Output, int]:
+        """The columns."""
+
+    def curves(self, columns: Array) -> tuple[Array, Array]:
+        """Ratios and values, each (curves, t), from the graph's columns (columns, t)."""
+
+
 @dataclass(frozen=True, eq=False)
 class SectionForce:
     """A section force of a link: the columns of the outputs that its law is made of, and how its mass lies."""
@@ -43,8 +54,8 @@ class SectionForce:
         return places.T, values.T
 
 
-Quantity: TypeAlias = "tuple[int, ...] | SectionForce"
-"""A column, some that are the components of a vector whose size is meant, or a section force."""
+Quantity: TypeAlias = "tuple[int, ...] | Along"
+"""A column, some that are the components of a vector whose size is meant, or what is told along a link, as a section force."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +132,7 @@ class Signals:
         """Of each quantity its curves, as ratios and values (curves, t), from the graph's columns (columns, t)."""
         found = []
         for q, quantity in enumerate(self.quantities):
-            if isinstance(quantity, SectionForce):
+            if not isinstance(quantity, tuple):
                 found.append(quantity.curves(columns))
                 continue
             rows = columns[list(quantity)]

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import AssemblyError
+from .fatigue import tired_link
 from .judge import Judge
 from .judged import Judged
 from .look import Point
@@ -195,7 +196,7 @@ class Descent:
             high = [(point, sign) for point, sign in points if sign * point.value >= least - _LITTLE * abs(largest)]
             exact = self.judge.exact(term.term, high or points[:1], look)
             first, sign = exact[0]
-            if term.term.kind == "peak" and not any(first.turn) and 0.0 < first.share < 1.0:
+            if term.term.kind == "peak" and not tired_link(term.term.output) and not any(first.turn) and 0.0 < first.share < 1.0:
                 # Where it is, a kink has no derivative; along its way it has one.
                 exact[0] = self.judge.drifting(term.term, first, judged.p, self.box), sign
             for point, sign in exact:

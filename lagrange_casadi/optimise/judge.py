@@ -11,6 +11,7 @@ import numpy as np
 from ..declare.density import Array
 from ..designs.engine import DesignEngine, Outcome
 from ..instants.refusal import Status
+from .fatigue import tired_link
 from .judged import Judged, Signed
 from .look import Look, Point
 from .problem import Box
@@ -48,7 +49,7 @@ class Judge:
         """Many designs (n, parameters) at once, by what lanes of designs tell alone where that is enough."""
         self.evaluations += len(rows)
         found = self.engine.evaluate(rows)
-        if not any(term.kind in ("max", "min") for term in self.terms):
+        if not any(term.kind in ("max", "min") or tired_link(term.output) for term in self.terms):
             return [self._judged(p, found, k, None) for k, p in enumerate(rows)]
         judged = []
         for k, p in enumerate(rows):
@@ -74,12 +75,14 @@ class Judge:
             own: list[Signed] = []
             if look is not None and term.output is not None and not term.averaged:
                 own = self._points(look, term)
-                if term.kind == "peak":
+                if term.kind == "peak" and not tired_link(term.output):
                     k = self.engine.quantities.index(term.name)
                     own = [*told(own, look, float(found.value[row, k]), float(found.t[row, k]), float(found.xi[row, k])), *own]
             points[term] = tuple(own)
             if term.output is None:
                 values[term] = float(term.of_parameters(self.engine.scene.mechanism)(p))
+            elif tired_link(term.output):
+                values[term] = own[0][0].value
             elif term.kind == "peak":
                 values[term] = abs(float(found.value[row, self.engine.quantities.index(term.name)]))
             elif term.averaged:
@@ -96,6 +99,8 @@ class Judge:
     def _points(self, look: Look, term: Term) -> list[Signed]:
         """The local peaks of a term, the largest first, with the signs by which they count."""
         assert term.output is not None
+        if link := tired_link(term.output):
+            return [(point, 1.0) for point in self.values.tired(link).points(look)]
         if term.kind != "peak":
             sign = -1.0 if term.kind == "min" else 1.0
             return [(point, sign) for point in look.points(term.output, sign)]
@@ -123,11 +128,12 @@ class Judge:
     def exact(self, term: Term, points: Sequence[Signed], look: Look) -> list[Signed]:
         """Local peaks, the smooth ones where the derivatives by time and place are zero, and how they follow from there."""
         assert term.output is not None
+        if tired_link(term.output):
+            return list(points)
         followed = self.values.of(term.output)
         found = []
         for point, sign in points[:_PEAKS]:
-            where = np.zeros(followed.size)
-            where[min(point.place, followed.size - 1)] = 1.0
+            where = point.where(followed.size)
             free = term.output.group == "section" and point.place == 0 and 0.0 < point.xi < 1.0
             found.append((top(followed, point, look.p, where, sign, look.step, free=free), sign))
         return found

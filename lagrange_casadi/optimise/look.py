@@ -24,7 +24,8 @@ class Point:
 
     ``share`` is the moment's share of the time from the first instant to the last: these may go with the parameters. ``value`` is
     the quantity there, ``guess`` the iterated coordinates. ``turn`` and ``reach`` say how the point follows its peak: see
-    :class:`.Followed`. ``drift`` is by how much the share changes with that of each chosen parameter, counted from zero.
+    :class:`.Followed`. ``drift`` is by how much the share changes with that of each chosen parameter, counted from zero. Of a
+    swing ``xi`` is the share of its other instant, and ``second`` the iterated coordinates there.
     """
 
     share: float
@@ -35,6 +36,14 @@ class Point:
     turn: tuple[float, float, float] = (0.0, 0.0, 0.0)
     reach: tuple[float, float] = (0.0, 0.0)
     drift: tuple[float, ...] = ()
+    second: tuple[float, ...] = ()
+
+    def where(self, size: int) -> Array:
+        """Its place as the ``size`` numbers that :meth:`.PointValues.of` takes."""
+        found = np.zeros(size)
+        found[min(self.place, size - 1)] = 1.0
+        found[size - len(self.second) :] = self.second
+        return found
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..declare.density import Array
+from .fatigue import tired_link
 from .finder import Finder
 from .judged import Judged
 from .problem import Problem
@@ -175,12 +176,11 @@ def _notes(finder: Finder, problem: Problem, judged: Judged) -> Iterator[str]:
     values = [None, *(c.excess(judged.value(c.term)) / c.scale(judged.value(c.term)) for c in problem.constraints)]
     for term, excess in zip(problem.terms, values, strict=True):
         points = judged.points[term]
-        if not points or term.output is None or (excess is not None and abs(excess) > _NEAR):
+        if not points or term.output is None or tired_link(term.output) or (excess is not None and abs(excess) > _NEAR):
             continue
         point, _ = points[0]
         followed = finder.judge.values.of(term.output)
-        place = np.zeros(followed.size)
-        place[min(point.place, followed.size - 1)] = 1.0
+        place = point.where(followed.size)
         rate = float(followed.slopes(point.share, list(point.guess), judged.p, point.xi, place)[0])
         if abs(rate) * look.step > _STEEP * abs(point.value) and 0.0 < point.share < 1.0:
             time = look.time(point)

@@ -19,6 +19,7 @@ from ..equations.fingerprint import fingerprint, sources
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.rung import Backend, Rung
 from ..study.peaks import wanted_for
+from .fatigue import tired_link
 from .judged import Judged
 from .strength_limits import constraints_of
 from .terms import Constraint, Term
@@ -159,7 +160,8 @@ class Question:
     def wanted(self) -> list[str]:
         """The outputs that the terms are of."""
         outputs = [term.output for term in self.terms if term.output is not None]
-        return list(dict.fromkeys(map(wanted_for, outputs))) or ["motion"]
+        wants = [f"section:{link}" if (link := tired_link(output)) else wanted_for(output) for output in outputs]
+        return list(dict.fromkeys(wants)) or ["motion"]
 
     def engine(self, scene: Scene) -> DesignEngine:
         """What evaluates designs. Raises :class:`UnknownNameError` for a term of what has none."""
@@ -167,6 +169,9 @@ class Question:
         for term in self.terms:
             if term.output is None:
                 term.of_parameters(scene.mechanism)
+            if term.kind == "peak" and (link := tired_link(term.output)):
+                Wanted.of(scene.mechanism, [f"safety:{link}"])
+                continue
             there = engine.efforts if term.averaged else engine.quantities
             if term.output is not None and term.name not in there:
                 raise UnknownNameError(f"quantity with a {term.kind}", term.name, there)

@@ -154,8 +154,7 @@ class Program:
         rows = np.zeros((room, _NUMBERS + n + size + self.values.graph.instant.size1_in("z")))
         for k in range(room):
             point, sign = held.points[k if k < len(held.points) else 0]
-            where = np.zeros(size)
-            where[min(point.place, size - 1)] = 1.0
+            where = point.where(size)
             rows[k] = np.concatenate(
                 [[point.share, point.xi, sign], point.turn, point.reach, point.drift or np.zeros(n), where, point.guess]
             )

@@ -8,17 +8,18 @@ import re
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Wanted
 from ..errors import DeclarationError
+from ..strength.fatigue import strengths
+from ..sweep.strength import WAYS, tires
 from ..system.numerals import real
 from .terms import Constraint
 
 _LEAST = re.compile(r"\s*least:(safety|yield|buckling|fatigue):([^<>=!:]+?)\s*(<=|>=|<|>)\s*([^<>=!]+?)\s*")
-_WAYS = ("yield", "buckling")
 
 
 def constraints_of(text: str, mechanism: Mechanism) -> list[Constraint]:
     """The constraints that a text says: ``least:safety:LINK >= NUMBER`` is one for each way to fail, any other text one.
 
-    Raises :class:`.DeclarationError` for what is none, and for a factor against fatigue.
+    Raises :class:`.DeclarationError` for what is none, and where fatigue is to be limited of a material that lacks a number.
     """
     found = _LEAST.fullmatch(text) if isinstance(text, str) else None
     if found is None:
@@ -33,8 +34,7 @@ def constraints_of(text: str, mechanism: Mechanism) -> list[Constraint]:
         raise DeclarationError(f"'{text}': expected a least factor of safety, as least:safety:{link} >= 2")
     beam = mechanism.links[link].beam
     assert beam is not None
-    if way == "fatigue" or (way == "safety" and beam.material.endurance is not None):
-        own = " and ".join(f"least:{each}:{link}" for each in _WAYS)
-        raise DeclarationError(f"'{text}': fatigue is that of a whole cycle, and is followed by sweeps alone; limit {own}")
-    ways = _WAYS if way == "safety" else (way,)
+    if way == "fatigue":
+        strengths(beam.material, "goodman")
+    ways = tuple(w for w in WAYS if w != "fatigue" or tires(beam.material)) if way == "safety" else (way,)
     return [Constraint.parse(f"peak:utilisation:{link}:{each} <= {1.0 / factor:.17g}", mechanism.parameters) for each in ways]

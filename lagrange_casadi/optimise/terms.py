@@ -15,6 +15,7 @@ from ..declare.mechanism import Mechanism
 from ..errors import DeclarationError
 from ..quantities import AVERAGED, Output
 from ..system.numerals import real
+from .fatigue import tired_link
 
 Kind: TypeAlias = Literal["peak", "max", "min", "mean", "rms", "mass", "parameter"]
 
@@ -87,6 +88,8 @@ class Term:
         """Its unit."""
         if self.kind == MASS:
             return "kg"
+        if tired_link(self.output):
+            return "1"
         return mechanism.parameters[self.name].unit if self.output is None else self.output.unit(mechanism)
 
     def __str__(self) -> str:

@@ -24,6 +24,7 @@ from ..quantities import Output
 from ..sensitivity.along import Along, Place
 from ..sensitivity.in_scalars import in_scalars
 from ..tables import table_of
+from .fatigue import Tired, tired_link
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +78,7 @@ class PointValues:
     graph: SceneGraph
     times: DesignTimes
     known: dict[Output, Followed] = field(default_factory=dict)
+    links: dict[str, Tired] = field(default_factory=dict)
 
     def of(self, quantity: Output) -> Followed:
         """A quantity at a point; it is made once.
@@ -91,6 +93,10 @@ class PointValues:
         t, d, rate, acceleration, z, p = inputs = self._instant.sx_in()
         xi = ca.SX.sym("xi")
         out = self._instant(*inputs)
+        if name := tired_link(quantity):
+            tired = self.tired(name)
+            value = tired.swing(self._at_time([*inputs, xi, ca.SX.sym("place")], tired.stresses(out, p)))
+            return Followed.of(value, value.numel_in(4))
         mechanism, table = self.graph.scene.mechanism, table_of(self.graph.scene.mechanism.space)
         columns: dict[Column, Any] = {output: out[k] for output, k in self.graph.outputs.items()}
         if quantity.group == "section":
@@ -105,6 +111,12 @@ class PointValues:
         value = sum((ca.if_else(place[k] > 0, size, 0) for k, size in enumerate(sizes)), ca.SX(0))
         value = ca.substitute(ca.SX(value), mechanism.symbols, p)
         return Followed.of(self._at_time([t, d, rate, acceleration, z, p, xi, place], value), len(sizes))
+
+    def tired(self, link: str) -> Tired:
+        """A link whose utilisation against fatigue is a term; it is made once."""
+        if link not in self.links:
+            self.links[link] = Tired(self.graph, link)
+        return self.links[link]
 
     def closures(self) -> Any | None:
         """``value(share, guess, p, xi, place)``: the squares of the sines of all loops' transmission angles, None without loops.

@@ -3,6 +3,7 @@
 from ..declare.held import effective_lengths
 from .bearings import joint_safety
 from .buckling import Column, critical_stress
+from .critical_plane import Plane, critical_plane, plane_factor
 from .fatigue import CRITERIA, cycles, factor, reversed_amplitude
 from .parts import safeties
 from .rainflow import Swing, rainflow
@@ -13,17 +14,20 @@ __all__ = [
     "CRITERIA",
     "Column",
     "Life",
+    "Plane",
     "Safety",
     "Stress",
     "StressPeak",
     "Swing",
     "Verdict",
+    "critical_plane",
     "critical_stress",
     "cycles",
     "effective_lengths",
     "factor",
     "joint_safety",
     "life",
+    "plane_factor",
     "rainflow",
     "reversed_amplitude",
     "safeties",

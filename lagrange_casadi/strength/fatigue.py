@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -204,15 +204,24 @@ def worst(stress: Stress, score: Score) -> tuple[tuple[float, ...], Place, str, 
 
     Ratios are looked at evenly, at both sides of stations and steps, and at notches; where it is worst, finer and finer.
     """
-    found = [_at(stress, place, score) for place in _places(stress)]
-    best = min(found, key=lambda one: one[0])
-    step = 1.0 / (FEW - 1)
+    found: list[tuple[tuple[float, ...], Place, str, Loaded]] = []
+
+    def look(places: Iterable[Place]) -> Place:
+        found[:] = [min([*found, *(_at(stress, place, score) for place in places)], key=lambda one: one[0])]
+        return found[0][1]
+
+    sought(stress, look)
+    return found[0]
+
+
+def sought(stress: Stress, look: Callable[[Iterable[Place]], Place]) -> None:
+    """Look at the places of a link, and then around the one that ``look`` says is the worst so far, finer and finer."""
+    place, step = look(_places(stress)), 1.0 / (FEW - 1)
     for _ in range(_ROUNDS):
-        around = np.linspace(best[1].xi - step, best[1].xi + step, _ZOOM)
-        again = [_at(stress, Place(float(x), "tip", None), score) for x in around if 0.0 <= x <= 1.0 and best[1].notch is None]
-        best = min([best, *again], key=lambda one: one[0])
-        step *= 2 / (_ZOOM - 1)
-    return best
+        if place.notch is not None:
+            return
+        around = np.linspace(place.xi - step, place.xi + step, _ZOOM).tolist()
+        place, step = look(Place(x, "tip", None) for x in around if 0.0 <= x <= 1.0), step * 2 / (_ZOOM - 1)
 
 
 def _places(stress: Stress) -> Iterator[Place]:

@@ -161,5 +161,5 @@ class Member:
         twist, bending = (np.abs(self.law.at(force, ends)).max() for force in ("torsion", "bending"))
         if twist > _TWIST * (twist + bending):
             kind = self.beam.course.cells[0][0].kind
-            how = "give its properties by beams.given, with its torsion"
+            how = "give its properties by beams.given, with its torsion, or by beams.analysed"
             raise DeclarationError(f"link '{self.link}' is twisted, and for torsion of a {kind} there is no formula; {how}")

@@ -7,13 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..beams.material import Material
 from ..declare.description import Description
 from ..declare.held import effective_lengths
+from ..errors import UnknownNameError
 from ..instants.solution import Solution
 from .buckling import Column, column, load_factor
-from .fatigue import damage_score, factor, factor_score, worst
+from .critical_plane import FINDLEY, plane_factor, worst_plane
+from .fatigue import CRITERIA, damage_score, factor, factor_score, worst
 from .member import Member
-from .stress import Stress
+from .stress import Stress, StressPeak
 
 
 @dataclass(frozen=True)
@@ -77,9 +80,11 @@ def stress(solution: Solution, link: str) -> Stress:
 def safety(solution: Solution, link: str, *, criterion: str = "goodman", yielding: str = "von_mises") -> Safety:
     """The factors of safety of a link against yielding, buckling and fatigue, over all instants.
 
-    Yielding is by nominal stresses, for ductile parts; fatigue has the factors of notches. It is open where the material has no
-    endurance limit. Raises :class:`.DeclarationError` where it lacks any other number that is needed, and
-    :class:`.UnknownNameError` for a ``criterion`` or a kind of stress that is none.
+    Yielding is by nominal stresses, for ductile parts; fatigue has the factors of notches, and counts swings by a ``criterion`` of
+    :data:`.CRITERIA`, or looks for the critical plane by ``findley``. It is open where the material has no endurance limit.
+
+    Raises :class:`.DeclarationError` where the material lacks any other number that is needed, and :class:`.UnknownNameError` for a
+    ``criterion`` or a kind of stress that is none.
     """
     member = Member.of(solution, link)
     return judged(member, as_column(solution.description, member), criterion=criterion, yielding=yielding)
@@ -87,12 +92,11 @@ def safety(solution: Solution, link: str, *, criterion: str = "goodman", yieldin
 
 def judged(member: Member, of: Column, *, criterion: str = "goodman", yielding: str = "von_mises", enough: float = 0.0) -> Safety:
     """The same of a link in numbers; what comes after a factor that is not ``enough`` is left out."""
+    if criterion not in (known := (*CRITERIA, FINDLEY)):
+        raise UnknownNameError("fatigue criterion", criterion, known)
     found, link = Stress(member), member.link
     material = member.beam.material
-    (strength,) = material.needs("safety against yielding", "yield_strength")
-    peak = found.peak(yielding)
-    where = f"{yielding} {peak.value / 1e6:.4g} MPa at t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}, {peak.fibre}"
-    verdicts = [Verdict("yield", _over(strength, peak.value), where)]
+    verdicts = [yielded(member, found.peak(yielding))]
     if verdicts[0].factor < enough:
         return Safety(link, tuple(verdicts))
     verdicts.append(buckling(member, of))
@@ -100,16 +104,36 @@ def judged(member: Member, of: Column, *, criterion: str = "goodman", yielding: 
         return Safety(link, tuple(verdicts))
     if material.endurance is None:
         return Safety(link, tuple(verdicts), (f"fatigue: material '{material.name}' has no endurance",))
-    (value, *_), place, fibre, swings = worst(found, factor_score(material, criterion))
-    k = int(np.argmin(factor(swings.amplitude, swings.mean, material, criterion)))
-    told = f"{swings.mean[k] / 1e6:.4g} +- {swings.amplitude[k] / 1e6:.4g} MPa by {criterion}"
-    verdicts.append(Verdict("fatigue", value, f"{told} at xi/l = {place.xi:.4f}, {fibre}{', notch' if place.notch else ''}"))
+    verdicts.append(tired(found, material, criterion))
     return Safety(link, tuple(verdicts))
+
+
+def tired(stress: Stress, material: Material, criterion: str) -> Verdict:
+    """The factor of safety of a link against fatigue."""
+    if criterion == FINDLEY:
+        plane, place, fibre = worst_plane(stress)
+        value = plane_factor(plane, material)
+        told = (
+            f"{plane.amplitude / 1e6:.4g} MPa in shear and {plane.normal / 1e6:.4g} MPa across, on a plane at "
+            f"{math.degrees(plane.angle):.0f} deg to the cross-section, by {criterion}"
+        )
+    else:
+        (value, *_), place, fibre, swings = worst(stress, factor_score(material, criterion))
+        k = int(np.argmin(factor(swings.amplitude, swings.mean, material, criterion)))
+        told = f"{swings.mean[k] / 1e6:.4g} +- {swings.amplitude[k] / 1e6:.4g} MPa by {criterion}"
+    return Verdict("fatigue", value, f"{told} at xi/l = {place.xi:.4f}, {fibre}{', notch' if place.notch else ''}")
 
 
 def as_column(description: Description, member: Member) -> Column:
     """A link as a column, by the effective lengths of its beam or its joints."""
     return column(member, member.beam.columns or effective_lengths(description, member.link))
+
+
+def yielded(member: Member, peak: StressPeak) -> Verdict:
+    """The factor of safety of a link against yielding, by the peak of a stress."""
+    (strength,) = member.beam.material.needs("safety against yielding", "yield_strength")
+    where = f"{peak.kind} {peak.value / 1e6:.4g} MPa at t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}, {peak.fibre}"
+    return Verdict("yield", _over(strength, peak.value), where)
 
 
 def buckling(member: Member, of: Column) -> Verdict:

@@ -42,7 +42,8 @@ _SIDES: tuple[Side, Side] = ("base", "tip")
 class StressPeak:
     """The stress that is largest in size, with its sign [Pa], and where: time [s], ratio xi/l, and the fibre's name.
 
-    ``notch`` tells whether it is the stress at a notch, its factors included.
+    ``notch`` tells whether it is the stress at a notch, its factors included. Where a peak between the instants cannot be told,
+    ``value`` is NaN, and ``least`` the largest size that was found.
     """
 
     kind: str
@@ -51,6 +52,7 @@ class StressPeak:
     xi: float
     fibre: str
     notch: bool = False
+    least: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +121,12 @@ class Stress:
                 best = found
         assert best is not None
         return best
+
+    def largest_at_notches(self, kind: str) -> Array:
+        """The size of a stress at notches, their factors included, at every instant (t,)."""
+        weights = _weights(kind)
+        each = [self.at(notch.at, side, notch) for notch in self.member.beam.notches for side in _SIDES]
+        return np.asarray(np.sqrt(np.max([_square(values, weights).max(axis=0) for values in each], axis=0)))
 
     def _highest(self, kind: str, floor: float) -> StressPeak | None:
         """The peak of a few instants; None where it is not above a floor. A coarse look leaves out instants that have it not."""

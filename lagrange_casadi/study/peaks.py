@@ -61,7 +61,7 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
     Raises :class:`DeclarationError` where the solution is not of this scene, :class:`UnknownNameError` for a name that is none.
     """
     sampled = [solution.peak(name) for name in (solution.names() if names is None else names)]
-    found = _ContinuousSolution.of(scene, solution.by_equilibrium)
+    found = ContinuousSolution.of(scene, solution.by_equilibrium)
     peaks = (found if are_even(solution.t) else found.in_equal_steps()).peaks(sampled)
     return peaks if solution.over is None else [found.at_the_drive(peak, solution.over.joint) for peak in peaks]
 
@@ -159,7 +159,7 @@ def rates(graph: SceneGraph) -> ca.Function:
 
 
 @dataclass(frozen=True, eq=False)
-class _ContinuousSolution:
+class ContinuousSolution:
     """A solution, and what its quantities and their time derivatives are at any time of its span."""
 
     graph: SceneGraph
@@ -170,7 +170,8 @@ class _ContinuousSolution:
     rows: Mapping[Output, int]
 
     @classmethod
-    def of(cls, scene: Scene, solution: Solution) -> _ContinuousSolution:
+    def of(cls, scene: Scene, solution: Solution) -> ContinuousSolution:
+        """That of a solution. Raises :class:`.DeclarationError` where it is not one of this scene."""
         mechanism = scene.mechanism
         told = mechanism.values({name: parameter["value"] for name, parameter in solution.description["parameters"].items()})
         wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
@@ -202,21 +203,20 @@ class _ContinuousSolution:
         limits = [_SAME * sizes[unit] + rounding for unit in units]
         return bool(np.all([~(gap > limit) for gap, limit in zip(gaps, limits, strict=True)], axis=0).any())
 
-    def in_equal_steps(self) -> _ContinuousSolution:
-        """The same from as many instants in equal steps of time, between which peaks are sought."""
+    def in_equal_steps(self, *wanted: str) -> ContinuousSolution:
+        """The same, or what is ``wanted``, from as many instants in equal steps of time, between which peaks are sought."""
         scene, solution, t = self.graph.scene, self.solution, self.solution.t
         told = dict(zip(scene.mechanism.parameters, self.p.tolist(), strict=True))
-        wanted = list(dict.fromkeys(map(wanted_for, solution.outputs)))
         even = (float(t[0]), float(t[-1]), t.size)
         words: dict[str, Any] = {
             "parameters": told,
             "t": even,
-            "wanted": wanted,
+            "wanted": list(wanted) or list(dict.fromkeys(map(wanted_for, solution.outputs))),
             "backend": "vm",
             "certificate": False,
             "elastic": False,
         }
-        return _ContinuousSolution.of(scene, evaluate(scene, **words))
+        return ContinuousSolution.of(scene, evaluate(scene, **words))
 
     def at_the_drive(self, peak: Peak, joint: str) -> Peak:
         """A peak with the coordinate of a drive at its time."""
@@ -238,7 +238,8 @@ class _ContinuousSolution:
         sought = [output for output in found if solution.determined(output)]
         if not sought or solution.t.size == 1:
             return list(sampled)
-        signals = self.signals(sought)
+        turned = {k: solution.outputs[name] for k, name in enumerate(sought) if name in self.graph.loop_angles}
+        signals = self.signals([self.quantity(name) for name in sought], turned)
         units, scales = self.scales(sought)
         searched = signals.peaks(units, scales)
         value, t, xi = self.timed(signals, sought, searched)
@@ -252,12 +253,10 @@ class _ContinuousSolution:
                 found[output] = Peak(peak.name, float(value[k]), peak.unit, float(t[k]), along)
         return [found[Output.of(peak.name)] for peak in sampled]
 
-    def signals(self, names: Sequence[Output]) -> Signals:
-        """Quantities as curves over time."""
-        quantities = [self.quantity(name) for name in names]
+    def signals(self, quantities: Sequence[Quantity], turned: Mapping[int, Array]) -> Signals:
+        """Quantities as curves over time; ``turned`` as in :class:`.Signals`."""
         columns = {k for quantity in quantities for k in _columns(quantity)}
         sharpness = Sharpness.of(self.graph, sorted(columns))
-        turned = {k: self.solution.outputs[name] for k, name in enumerate(names) if name in self.graph.loop_angles}
         return Signals(self.graph, self.stages, sharpness, quantities, self.solution.t, self.p, self.z, turned=turned)
 
     def quantity(self, output: Output) -> Quantity:
@@ -341,9 +340,7 @@ class _ContinuousSolution:
 
 def _columns(quantity: Quantity) -> set[int]:
     """The columns that a quantity is made of."""
-    if isinstance(quantity, SectionForce):
-        return set(quantity.columns.values())
-    return set(quantity)
+    return set(quantity if isinstance(quantity, tuple) else quantity.columns.values())
 
 
 def wanted_for(output: Output) -> str:

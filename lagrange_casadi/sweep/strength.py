@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..beams.beam import Notch
+from ..beams.material import Material
 from ..declare.density import Array
 from ..declare.masses import ALL, mass_of
 from ..declare.mechanism import Mechanism
@@ -95,11 +96,24 @@ class Fatigue:
     def stresses(self, members: Array, p: Array) -> tuple[Array, Array]:
         """Of designs whose members are (n, members, t): normal stresses (n, places, t), and shear stresses (n, 2, sheared, t)."""
         n, k, t = members.shape
-        numbers = self.rows(members[:, :, 0].T, p.T)
-        matrix = np.array(numbers.nonzeros()).reshape(n, -1, k)
+        matrix = self._matrices(members[:, :, 0], p).reshape(n, -1, k)
         found = np.matmul(matrix, np.ascontiguousarray(members))
         first = found.shape[1] - 2 * self.sheared.size
         return found[:, :first], found[:, first:].reshape(n, 2, -1, t)
+
+    def _matrices(self, members: Array, p: Array) -> Array:
+        """The numbers of ``rows`` for designs (n, ...), through memory that CasADi itself reads and writes: by far the fastest."""
+        buffer, evaluate = self.rows.buffer()
+        given, found = [np.zeros(members.shape[1]), np.zeros(p.shape[1])], np.empty((len(p), self.rows.nnz_out(0)))
+        row = np.empty(found.shape[1])
+        for number, values in enumerate(given):
+            buffer.set_arg(number, values.data)
+        buffer.set_res(0, row.data)
+        for i in range(len(p)):
+            given[0][:], given[1][:] = members[i], p[i]
+            evaluate()
+            found[i] = row
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +176,7 @@ class Kept:
 
     def _tires(self, link: str) -> bool:
         beam = self.mechanism.links[link].beam
-        return beam is not None and beam.material.endurance is not None and beam.material.ultimate is not None
+        return beam is not None and tires(beam.material)
 
     def _tired(self, link: str, there: Any, series: Array | None, times: Array, p: Array) -> tuple[Array, Array]:
         """Utilisation against fatigue, and the life in cycles, of every design."""
@@ -220,8 +234,28 @@ class Kept:
         return ca.Function("masses", [mechanism.symbols], [ca.densify(ca.vertcat(*found))])
 
 
-def worst(normal: Array, shears: Array, sheared: npt.NDArray[np.intp], material: Any) -> Array:
+def tires(material: Material) -> bool:
+    """Whether fatigue of a material can be told by Goodman."""
+    return material.endurance is not None and material.ultimate is not None
+
+
+def worst(normal: Array, shears: Array, sheared: npt.NDArray[np.intp], material: Material) -> Array:
     """Utilisation against fatigue of designs (n,), one over the least factor by Goodman: see :meth:`Fatigue.stresses`."""
+    bound, known = bounds(normal, shears, sheared, material)
+    best = known.max(axis=1)
+    columns = {int(k): number for number, k in enumerate(sheared)}
+    for i in np.flatnonzero(bound.max(axis=1) > best):
+        for k in np.argsort(-bound[i], kind="stable").tolist():
+            if bound[i, k] <= best[i]:
+                break
+            if k in columns:
+                swings = loaded(np.vstack([normal[i, k], shears[i, :, columns[k]]]))
+                best[i] = max(best[i], float(np.max(1.0 / factor(swings.amplitude, swings.mean, material, _CRITERION))))
+    return np.asarray(best)
+
+
+def bounds(normal: Array, shears: Array, sheared: npt.NDArray[np.intp], material: Material) -> tuple[Array, Array]:
+    """Bounds on the utilisation of places of designs, and what is known of it at least, each (n, places)."""
     endurance, strength = strengths(material, _CRITERION)
     high, low = normal.max(axis=2), normal.min(axis=2)
     bound = (high - low) / (2 * endurance) + np.maximum((high + low) / 2, 0.0) / strength
@@ -237,16 +271,7 @@ def worst(normal: Array, shears: Array, sheared: npt.NDArray[np.intp], material:
         wide = 2.0 * square if strength >= math.sqrt(2.0) * endurance else swing + square
         other = np.sqrt(wide) / (2 * endurance) + np.sqrt(np.maximum(high, 0.0) ** 2 + size) / strength
         bound[:, sheared] = np.maximum(whole, other)
-    best = known.max(axis=1)
-    columns = {int(k): number for number, k in enumerate(sheared)}
-    for i in np.flatnonzero(bound.max(axis=1) > best):
-        for k in np.argsort(-bound[i], kind="stable").tolist():
-            if bound[i, k] <= best[i]:
-                break
-            if k in columns:
-                swings = loaded(np.vstack([normal[i, k], shears[i, :, columns[k]]]))
-                best[i] = max(best[i], float(np.max(1.0 / factor(swings.amplitude, swings.mean, material, _CRITERION))))
-    return np.asarray(best)
+    return bound, known
 
 
 def _places(body: Loaded, link: Link) -> Iterator[tuple[int, Any, Any, Notch | None]]:

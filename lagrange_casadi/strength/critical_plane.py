@@ -1,0 +1,144 @@
+"""The critical plane: fatigue where normal and shear stress are not in phase, by Findley's criterion.
+
+Of all planes through a place the one is critical on which shear amplitude + k times the largest normal stress is largest; it must
+not exceed what it is at the endurance limit of a bar that is bent to and fro, S_e (k + sqrt(1 + k^2))/2 (Findley, *A theory for the
+effect of mean stress on fatigue of metals under combined torsion and axial load or bending*, J. Eng. Ind. 81 (1959) 301-306; Socie
+and Marquis, *Multiaxial Fatigue*, SAE 2000, chapter 5). k is about 0.3 for ductile steels. The shear amplitude on a plane is half
+of the widest extent of the stress that goes round in it. A largest normal stress in compression counts as none.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..beams.material import Material
+from ..declare.density import Array
+from .fatigue import Place, sought
+from .stress import Stress
+
+FINDLEY = "findley"
+"""The criterion's name."""
+
+DUCTILE = 0.3
+"""k of ductile steels."""
+
+_FLAT = (90,)
+_SPACE = (9, 24, 12)
+"""How many angles are looked at first: where there is one shear stress, and where there are two."""
+
+_ROUNDS, _BESIDE, _NEARER = 8, 2, 2.5
+"""How often the worst plane is looked at again, how many planes on each side, and how much nearer they come."""
+
+
+@dataclass(frozen=True)
+class Plane:
+    """The plane on which a history is worst: shear ``amplitude``, largest ``normal`` stress [Pa], none in compression, and the
+    plane's ``angle`` to the link's cross-section [rad].
+    """
+
+    amplitude: float
+    normal: float
+    angle: float
+
+    def value(self, share: float = DUCTILE) -> float:
+        """Shear amplitude and ``share`` of the normal stress."""
+        return self.amplitude + share * self.normal
+
+
+def critical_plane(values: Array, share: float = DUCTILE) -> Plane:
+    """The critical plane of a history of stresses (3, t) in a beam: normal, and shear along y and along z [Pa].
+
+    ``share`` is Findley's k.
+    """
+    sheared = [bool(row.any()) for row in values[1:]]
+    if not all(sheared):
+        # All planes that count go through the direction without stress.
+        shear = values[2] if sheared[1] else values[1]
+        return _best(np.stack([values[0], shear, np.zeros_like(shear)]), share, _turned, [math.pi], _FLAT)
+    return _best(values, share, _around, [math.pi / 2, 2 * math.pi, math.pi], _SPACE)
+
+
+def plane_factor(plane: Plane, material: Material, share: float = DUCTILE) -> float:
+    """By how much all loads may grow until a part no longer lasts for ever.
+
+    Raises :class:`.DeclarationError` where the material has no endurance limit.
+    """
+    (endurance,) = material.needs(f"fatigue by {FINDLEY}", "endurance")
+    value = plane.value(share)
+    return endurance * (share + math.sqrt(1.0 + share**2)) / 2 / value if value else math.inf
+
+
+def worst_plane(stress: Stress, share: float = DUCTILE) -> tuple[Plane, Place, str]:
+    """The worst critical plane along a link and over its fibres, the place, and the fibre's name."""
+    found = [(Plane(-1.0, 0.0, 0.0), Place(0.0, "tip", None), "")]
+
+    def look(places: Iterable[Place]) -> Place:
+        seen = []
+        for place in places:
+            values = stress.at(place.xi, place.side, place.notch)
+            seen += [(bound, place, k, values[:, k]) for k, bound in enumerate(_bounds(values, share).tolist())]
+        for bound, place, k, history in sorted(seen, key=lambda one: -one[0]):
+            if bound <= found[0][0].value(share):
+                break
+            plane = critical_plane(history, share)
+            if plane.value(share) > found[0][0].value(share):
+                found[0] = plane, place, stress.fibres(place.xi, place.side)[k]
+        return found[0][1]
+
+    sought(stress, look)
+    return found[0]
+
+
+def _bounds(values: Array, share: float) -> Array:
+    """What is not exceeded on any plane, of fibres with histories (3, fibres, t): by the largest shear and principal stresses."""
+    wide = np.ptp(values, axis=2)
+    shear = np.sum(values[1:] ** 2, axis=0)
+    principal = values[0] / 2 + np.sqrt((values[0] / 2) ** 2 + shear)
+    return np.asarray(np.sqrt(wide[0] ** 2 + 4.0 * (wide[1] ** 2 + wide[2] ** 2)) / 4 + share * principal.max(axis=1))
+
+
+def _best(
+    values: Array, share: float, planes: Callable[[Array], tuple[Array, Array]], spans: Sequence[float], counts: Sequence[int]
+) -> Plane:
+    """The worst of planes that angles tell: of many evenly, then nearer and nearer to the worst."""
+    grids = [(np.arange(n) + 0.5) * span / n for span, n in zip(spans, counts, strict=True)]
+    steps = np.array([grid[1] - grid[0] for grid in grids])
+    angles = np.stack(np.meshgrid(*grids, indexing="ij"), -1).reshape(-1, len(grids))
+    best, middle = Plane(-1.0, 0.0, 0.0), angles[0]
+    for _ in range(_ROUNDS + 1):
+        normal, way = planes(angles)
+        across = np.maximum((_told(normal, normal) @ values).max(axis=1), 0.0)
+        amplitude = np.ptp(_told(normal, way) @ values, axis=1) / 2
+        k = int(np.argmax(amplitude + share * across))
+        found = Plane(float(amplitude[k]), float(across[k]), math.acos(min(1.0, abs(float(normal[k, 0])))))
+        if found.value(share) > best.value(share):
+            best, middle = found, angles[k]
+        beside = [np.arange(-_BESIDE, _BESIDE + 1) / _BESIDE * step for step in steps]
+        angles = middle + np.stack(np.meshgrid(*beside, indexing="ij"), -1).reshape(-1, len(grids))
+        steps = steps / _NEARER
+    return best
+
+
+def _turned(angles: Array) -> tuple[Array, Array]:
+    """Normals in the plane of x and the shear stress, and the directions across them there."""
+    c, s = np.cos(angles[:, 0]), np.sin(angles[:, 0])
+    zero = np.zeros_like(c)
+    return np.stack([c, s, zero], 1), np.stack([-s, c, zero], 1)
+
+
+def _around(angles: Array) -> tuple[Array, Array]:
+    """Normals by their angle to x and around it, and directions in their planes."""
+    (c, s), (cy, cz), (u, v) = ((np.cos(a), np.sin(a)) for a in angles.T)
+    normal = np.stack([c, s * cy, s * cz], 1)
+    down, across = np.stack([-s, c * cy, c * cz], 1), np.stack([np.zeros_like(c), -cz, cy], 1)
+    return normal, u[:, None] * down + v[:, None] * across
+
+
+def _told(n: Array, m: Array) -> Array:
+    """What the stress on planes ``n`` in directions ``m`` takes of the three stresses in a beam: (planes, 3)."""
+    shears = [n[:, 0] * m[:, k] + n[:, k] * m[:, 0] for k in (1, 2)]
+    return np.stack([n[:, 0] * m[:, 0], *shears], 1)
