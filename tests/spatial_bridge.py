@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Sequence
 
 import casadi as ca
 import numpy as np
 from spatial_bodies import GROUND, Rigid, Rod
 from spatial_draft import Drawn
+from spatial_rubbing import Rub
 
 from lagrange_casadi import Scene, SpatialMechanism, density, derive, motion
 
@@ -40,8 +42,8 @@ def plain(drawn: Drawn) -> Drawn:
     return dataclasses.replace(drawn, mechanism=dataclasses.replace(drawn.mechanism, joints=joints))
 
 
-def declared(drawn: Drawn, t: float = 0.0, **options) -> Scene:
-    """A scene of what was drawn, its loops assembled as the oracle has them at an instant."""
+def declared(drawn: Drawn, t: float = 0.0, rubs: Sequence[Rub] = (), **options) -> Scene:
+    """A scene of what was drawn, with friction where it rubs, its loops assembled as the oracle has them at an instant."""
     one = drawn.mechanism
     m = SpatialMechanism("drawn")
     m.set_gravity(*map(float, one.gravity))
@@ -64,6 +66,8 @@ def declared(drawn: Drawn, t: float = 0.0, **options) -> Scene:
     for k, spring in enumerate(one.springs):
         ends = (at(body, point) for body, point in spring.ends)
         m.spring(f"spring{k}", *ends, stiffness=spring.stiffness, length=spring.free, damping=spring.damping)
+    for rub in rubs:
+        m.friction(rub.name, m.joints[rub.joint.name], along=rub.along, **rub.numbers)
     for row in one.rows:
         m.nonholonomic(row.name, _rates(m, one, row, parts), replaces=m.joints[row.replaces[0]])
     laws = {coordinate(one.joint(name), k): _law(law) for (name, k), law in drawn.laws.items()}

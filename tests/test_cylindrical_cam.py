@@ -21,7 +21,7 @@ def law(size):
     return moves(parts, cyclic=True, period=2 * math.pi)
 
 
-def sliding(axis=(0.0, 0.0, 1.0), lift=None, across=(1.0, 0.0, 0.0)):
+def sliding(axis=(0.0, 0.0, 1.0), lift=None, across=(1.0, 0.0, 0.0), **more):
     """A drum about an axis through (0.1, 0.2, 0.3), and a carriage beside it that slides along that."""
     m = SpatialMechanism("sliding")
     h = m.parameter("h", 0.05, "m")
@@ -32,7 +32,7 @@ def sliding(axis=(0.0, 0.0, 1.0), lift=None, across=(1.0, 0.0, 0.0)):
     main = m.revolute("main", m.ground.at(*centre), drum.at(0.0, 0.0, 0.04), axis=axis, turned=[("x", "40 deg"), ("y", "25 deg")])
     lead = m.prismatic("lead", m.ground.at(*(centre + 0.15 * r + 0.02 * u)), cart, axis=axis, turned=[("z", "70 deg")])
     arm = rotation([("z", 70)]).T @ (-(0.15 - RADIUS) * r + 0.03 * u)
-    cam = cylindrical_cam(m, "cam", main, lead, lift or law(h), start=0.01, point=cart.at(*arm))
+    cam = cylindrical_cam(m, "cam", main, lead, lift or law(h), start=0.01, point=cart.at(*arm), **more)
     return cam, Scene(m, {"main": polynomial(0.2, OMEGA, 3.0)}, t=(0, 0.24, 61), posture={"lead": 0.02})
 
 
@@ -229,3 +229,59 @@ def test_planes_have_disc_cams():
     main, lead = m.revolute("main", m.ground, drum), m.prismatic("lead", m.ground, cart, axis=(1, 0))
     with pytest.raises(DeclarationError, match="expected a revolute joint whose parent is the ground, in space, got 'main'"):
         cylindrical_cam(m, "cam", main, lead, lambda x: 0.0 * x)
+
+
+ROLLER, WIDTH, YOUNG, POISSON = 0.01, 0.012, 180e9, 0.28
+HERTZ = {"roller": ROLLER, "width": WIDTH, "elastic": (YOUNG, POISSON)}
+
+
+def pressed(force, radius):
+    """Johnson's 4.43 and 4.45 by half the width of contact, of two bodies of one material."""
+    together = YOUNG / (2 * (1 - POISSON**2))
+    half = np.sqrt(4 * np.abs(force) / WIDTH * radius / (np.pi * together))
+    return 2 * np.abs(force) / WIDTH / (np.pi * half)
+
+
+def test_the_pressure_of_hertz_on_the_flank_that_is_touched():
+    """Rothbart: the path's radius on the unrolled drum is (R^2 + s'^2)^(3/2)/(R s''); the flank's, more or less the roller's."""
+    _, scene = sliding(lift=(lift := law(0.05)), **HERTZ)
+    solution = evaluate(scene)
+    assert solution.certified
+    force = solution.output("cam_force")
+    _, slope, bend = values_of(lift, solution.motion("main").value)
+    curvature = RADIUS * bend / (RADIUS**2 + slope**2) ** 1.5
+    assert np.ptp(curvature) > 1.0
+    with np.errstate(divide="ignore"):
+        # On the flank from which it is pushed: hollow where the path curves along the force.
+        flank = 1.0 / (np.sign(force) * curvature) + ROLLER
+        radius = 1.0 / (1.0 / ROLLER - 1.0 / flank)
+    assert solution.output("cam_hertz") == pytest.approx(pressed(force, radius), rel=1e-9)
+
+
+def test_the_bend_of_a_swinging_arms_groove_is_that_of_its_points():
+    """Across the roller, by three neighbours of the path in the drum's axes, as seen along the roller's axis."""
+    cam, scene = swinging()
+    count, values = 14400, [*scene.mechanism.values().values()]
+    path, rows = cam.groove(count=count), [cam.design.bend, *cam.design.normal]
+    told = ca.Function("told", [cam.design.angle, scene.mechanism.symbols], [ca.vertcat(*map(ca.SX, rows))])
+    for k in range(400, count, count // 12):
+        angle = math.tau * k / count
+        bend, *normal = told(angle, values).full().ravel()
+        before, here, after = (rotation([("x", math.degrees(angle))]) @ path[(k + j) % count] for j in (-1, 0, 1))
+        way, change = (after - before) / 2, after - 2 * here + before
+        assert bend == pytest.approx(change @ normal / (way[0] ** 2 + way[1] ** 2), rel=1e-4, abs=1e-3)
+
+
+def test_a_groove_that_the_roller_would_cut_is_refused_by_name():
+    with pytest.raises(
+        DeclarationError, match=r"cam 'cam': its groove is undercut at .* deg of the cam, where its path has a radius"
+    ):
+        sliding(lift=law(0.05), **HERTZ | {"roller": 0.08})
+    for told, words in (
+        ({"width": 0.01}, "width needs roller"),
+        ({"roller": -1.0, "width": 0.01}, "roller must be positive, got -1 m"),
+    ):
+        with pytest.raises(DeclarationError, match=f"cam 'cam': {words}"):
+            sliding(lift=law(0.05), **told)
+    with pytest.raises(DeclarationError, match="cam 'cam': width must be positive, got 0 m"):
+        sliding(lift=law(0.05), roller=0.01, width=0.0)

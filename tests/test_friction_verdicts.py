@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from compiled import told
 
-from lagrange_casadi import Mechanism, Scene, evaluate, export, refine
+from lagrange_casadi import Mechanism, Scene, evaluate, export, prepare, refine, sweep
 from lagrange_casadi.animation import Film, write_animation
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError
@@ -15,6 +15,7 @@ from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.motion import expression, harmonic, polynomial
 from lagrange_casadi.store.runs import check, load, save
+from lagrange_casadi.sweep.checking import check_sweep
 
 WEIGHT, ARM = 50.0, 0.2
 every = pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
@@ -163,6 +164,49 @@ def test_a_design_at_rest_has_its_status(backend):
     assert DesignEngine.of(scene, rung=Rung(backend)).evaluate(np.array([[0.1]])).status.tolist() == [Status.AT_REST]
     moving = DesignEngine.of(scene, t=(0.1, 0.4, 41), rung=Rung(backend))
     assert moving.evaluate(np.array([[0.1]])).status.tolist() == [Status.OK]
+
+
+@every
+def test_prepared_scenes_and_designs_tell_the_series_of_what_comes_to_rest(backend):
+    """As a single evaluation does: numbers where it moves, none where it rests. Peaks are refused in words that help."""
+    scene = reciprocating(expression(start_and_stop), t=(0, 1, 41), wanted=["effort", "motion"])
+    alone, ready = evaluate(scene, parameters={"mu": 0.1}, backend=backend), prepare(scene, backend=backend)
+    series = ready(mu=0.1)
+    for name in ("effort:O", "motion:bore"):
+        assert series[name].tolist() == pytest.approx(alone.array(name).tolist(), rel=1e-12, abs=1e-12, nan_ok=True)
+    assert np.isnan(series["effort:O"]).tolist() == alone.resting.tolist()
+    found = ready.designs(np.array([[0.1], [0.2]]), histories=True)
+    assert found.status.tolist() == [Status.AT_REST, Status.AT_REST]
+    assert np.isnan(found.value).all()
+    effort = found.series[0, ready.outputs.index("effort:O")]
+    assert effort.tolist() == pytest.approx(series["effort:O"].tolist(), nan_ok=True)
+    with pytest.raises(AssemblyError, match=r"there are no peaks: .* at rest at 22 of 41 instants.*; take instants that move"):
+        ready.peaks(mu=0.1)
+
+
+def test_a_sweep_keeps_the_histories_of_what_comes_to_rest(tmp_path):
+    scene = reciprocating(expression(start_and_stop), t=(0, 1, 21), wanted=["effort", "section:rod"])
+    found = sweep(scene, {"mu": [0.1, 0.2]}, keep="histories", xi=(0, 1, 2), out=tmp_path / "rest.h5", backend="vm")
+    assert check_sweep(tmp_path / "rest.h5") == []
+    assert found["status"].tolist() == [Status.AT_REST] * 2
+    for name in ("effort:O", "section:rod:axial"):
+        moving = np.isfinite(found[f"history:{name}"]).reshape(2, 21, -1)
+        assert moving[:, 1:10].all()
+        assert not moving[:, 10:].any()
+        assert np.isnan(found[f"peak:{name}"]).all()
+    assert np.isnan(found["peak_at:section:rod:axial"]).all()
+
+
+@every
+def test_a_jam_is_told_before_rest(backend):
+    """Whichever comes first: at rest a design has a series, and in a jam it has none."""
+    scene = pushed_beside()
+    scene = Scene(scene.mechanism, {"O": expression(lambda t: 0.1 * ca.fmax(t - 0.05, 0.0) ** 3)}, t=(0, 0.1, 9))
+    designs = DesignEngine.of(scene, rung=Rung(backend))
+    found = designs.evaluate(np.array([[0.2, 0.1], [0.2, 0.05]]), histories=True)
+    assert found.status.tolist() == [Status.AT_REST, Status.JAMS]
+    assert np.isfinite(found.series[0]).any()
+    assert np.isnan(found.series[1]).all()
 
 
 def test_what_never_moves_is_open_and_what_bears_nothing_does_not_rub():

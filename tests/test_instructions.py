@@ -26,7 +26,7 @@ INSTANT = {
     "beam_pump": 480,
     "scara": 158,
     "roller_cam": 304,
-    "v_twin": 1778,
+    "v_twin": 1524,
     "servo_press": 223,
     "planetary_gear": 628,
     "screw_lift": 237,

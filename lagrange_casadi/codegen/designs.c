@@ -1,5 +1,5 @@
 /* Many designs, one after another. */
-/* Everything of one design; a design without a result leaves nothing but why. */
+/* Everything of one design; a design without a result leaves nothing but why, and one at rest its history. */
 static int designs_one(designs_now* now, const double* p, const double* guess, double* value, double* t, double* xi, double* mean,
                        double* rms, double* history) {
   designs_real pairs[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], pair[DESIGNS_NT], z[DESIGNS_SOME(DESIGNS_NZ)], margin;
@@ -68,7 +68,8 @@ static void designs_timed(designs_now* now, const double* t) {
 
 /* So many designs, rows of parameters p, over n instants t, those of a design t_apart values beyond those of the one before, or the
    same. value, peak_t and xi become rows of quantities, mean and rms of efforts, all of them or none where value is NULL; these ask
-   for instants in equal steps. history, unless it is NULL, becomes outputs by instants; of a design without a result all is NaN. bent
+   for instants in equal steps. history, unless it is NULL, becomes outputs by instants; of a design without a result all is NaN, but
+   for the history of one at rest. bent
    tells after which instants the motion bends more than they show, its rows are bent_apart values apart. Of the room there are DESIGNS_ROOM rows of stride values, of which the first is zero, and as many
    panels of DESIGNS_STRIDE values a row as may lie within each other; of the status stride integers that are zero, and of hiding
    twice as many. */
@@ -100,6 +101,6 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_design
     if (why == DESIGNS_OK) continue;
     for (k = 0; values && k < DESIGNS_QUANTITIES; ++k) values[k] = times[k] = places[k] = NAN;
     for (k = 0; values && k < DESIGNS_EFFORTS; ++k) means[k] = squares[k] = NAN;
-    for (i = 0; whole && i < DESIGNS_OUTPUTS*n; ++i) whole[i] = NAN;
+    for (i = 0; whole && why != DESIGNS_AT_REST && i < DESIGNS_OUTPUTS*n; ++i) whole[i] = NAN;
   }
 }

@@ -157,10 +157,10 @@ static designs_real designs_most(const designs_now* now, int check) {
   return most;
 }
 
-/* Why an instant has no result, or DESIGNS_OK. */
+/* Why an instant has no result, or DESIGNS_OK; that it is at rest only where nothing else is wrong. */
 static int designs_why(const designs_now* now, casadi_int i) {
   designs_real x, limit;
-  int k;
+  int k, rests = 0;
   for (k = 0; k < DESIGNS_CHECKS; ++k) {
     if (designs_kind[k] == DESIGNS_IS_BEYOND && designs_row(now, DESIGNS_CHECKED + k)[i] > designs_limit[k]) return DESIGNS_BEYOND_ENDS;
   }
@@ -183,7 +183,7 @@ static int designs_why(const designs_now* now, casadi_int i) {
     } else if (designs_kind[k] == DESIGNS_IS_JAM) {
       if (!(x > limit)) return DESIGNS_JAMS;
     } else if (designs_kind[k] == DESIGNS_IS_REST) {
-      if (x > limit) return DESIGNS_AT_REST;
+      rests |= x > limit;
     } else if (designs_kind[k] == DESIGNS_IS_SLIP) {
       if (x > limit) return DESIGNS_JAMS;
     } else if (designs_kind[k] == DESIGNS_IS_TURNED) {
@@ -195,16 +195,17 @@ static int designs_why(const designs_now* now, casadi_int i) {
     }
   }
   if (now->status[i] == DESIGNS_SLOW) return DESIGNS_SLOW;
+  if (rests) return DESIGNS_AT_REST;
   x = designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS)[i];
   return x - x == 0 ? DESIGNS_OK : DESIGNS_NOT_FINITE;
 }
 
-/* Why a design has no result: that of its first instant without one. */
+/* Why a design has no result: that of its first instant without one; at rest it has one beside what friction reaches. */
 static int designs_refused(const designs_now* now) {
   const designs_real* row = designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS);
   designs_real limit;
   casadi_int i;
-  int k, bad = 0, why;
+  int k, bad = 0, why, rests = DESIGNS_OK;
   for (i = 0; i < now->n; ++i) bad |= !(row[i] - row[i] == 0);
   for (i = 0; i < now->n; ++i) bad |= now->status[i] != DESIGNS_OK;
   for (k = 0; k < DESIGNS_CHECKS; ++k) {
@@ -226,9 +227,10 @@ static int designs_refused(const designs_now* now) {
   if (!bad) return DESIGNS_OK;
   for (i = 0; i < now->n; ++i) {
     why = designs_why(now, i);
-    if (why != DESIGNS_OK) return why;
+    if (why != DESIGNS_OK && why != DESIGNS_AT_REST) return why;
+    if (why == DESIGNS_AT_REST) rests = why;
   }
-  return DESIGNS_OK;
+  return rests;
 }
 
 /* Whether equilibrium leaves open, at any instant, what a check tells of. */

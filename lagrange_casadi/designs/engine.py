@@ -31,7 +31,7 @@ from ..instants.backends import begun, compiled, provenance
 from ..instants.cost import seconds
 from ..instants.determinacy import determinate, undetermined
 from ..instants.laws import made_of
-from ..instants.refusal import Status
+from ..instants.refusal import WITH_SERIES, Status
 from ..instants.rung import Rung
 from ..instants.solution import Provenance
 from ..quantities import Output
@@ -273,11 +273,11 @@ class DesignEngine:
             return
         others = np.zeros(len(p), np.int8)
         self._series(p, asked, others, found.series, threads)
-        failed = (found.status == Status.OK) & (others != Status.OK)
+        failed = np.isin(found.status, WITH_SERIES) & (others != Status.OK)
         found.status[failed] = others[failed]
         for array in (found.value, found.t, found.xi, found.mean, found.rms):
             array[failed] = np.nan
-        found.series[found.status != Status.OK] = np.nan
+        found.series[~np.isin(found.status, WITH_SERIES)] = np.nan
 
     def _evaluate(self, p: Array, t: Array, found: Outcome, threads: int) -> None:
         if self.library is None:

@@ -30,7 +30,7 @@ class DesignResult:
 
 
 def columns_of(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, Evaluated | None]:
-    """The columns of a design at instants, or why it has no result."""
+    """The columns of a design at instants, or why it has no result; at rest it has both, and no number where friction reaches."""
     if not np.isfinite(p).all():
         return Status.INVALID, None
     reduction = kept.reduction
@@ -42,17 +42,20 @@ def columns_of(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton:
     rung = Rung("vm", newton=newton)
     evaluated, _ = run(graph, t, p, rung)
     why = refusal(graph, evaluated, t, p, rung)
-    if why is None and resting(graph, evaluated.out).any():
-        return Status.AT_REST, None
-    return (Status.OK, evaluated) if why is None else (why.status, None)
+    if why is not None:
+        return why.status, None
+    return Status.AT_REST if resting(graph, evaluated.out).any() else Status.OK, evaluated
 
 
 def outcome(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, DesignResult | None]:
-    """What is kept of a design, or why it has no result."""
+    """What is kept of a design, or why it has no result; of one at rest, its columns."""
     status, evaluated = columns_of(graph, kept, t, p, newton)
     if evaluated is None:
         return status, None
     reduction, rung = kept.reduction, Rung("vm", newton=newton)
+    if status != Status.OK:
+        open_ = np.full((3, len(reduction.units)), np.nan), np.full((2, len(kept.efforts)), np.nan)
+        return status, DesignResult(*open_, evaluated.out)
     left_open = {graph.doubtful[output] for output in undetermined(graph, evaluated.out, p, rung)}
     doubted = {quantity for check, quantity in reduction.doubts if reduction.checks[check][0] in left_open}
     told = [k for k in range(len(reduction.units)) if k not in doubted]

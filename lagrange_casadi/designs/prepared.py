@@ -16,8 +16,9 @@ from ..declare.scene import Scene, without_fitted, without_life
 from ..declare.times import Over, Times
 from ..errors import AssemblyError, DeclarationError, UnknownNameError
 from ..evaluate import evaluate
-from ..instants.refusal import Status
+from ..instants.refusal import WITH_SERIES, Status
 from ..instants.rung import Backend, Rung
+from ..instants.solution import Solution
 from .engine import DesignEngine, Outcome
 from .gradients import MeanSlopes
 
@@ -117,7 +118,7 @@ class Prepared:
     It serves one thread at a time, for its answers lie in arrays of its own; :meth:`copy` gives one for another thread.
     """
 
-    def __init__(self, engine: DesignEngine, explain: Callable[[Mapping[str, float]], object]) -> None:
+    def __init__(self, engine: DesignEngine, explain: Callable[[Mapping[str, float]], Solution]) -> None:
         self._engine, self._explain = engine, explain
         self._declared = engine.scene.mechanism.parameters
         self._place = {name: k for k, name in enumerate(self._declared)}
@@ -178,6 +179,7 @@ class Prepared:
     def __call__(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Mapping[str, Array]:
         """The series (t,) of all outputs, by name, for values of parameters, by name or in a mapping; the defaults for others.
 
+        Where a joint that rubs is at rest, what depends on its friction is NaN at these instants, as in :func:`.evaluate`.
         The arrays are this object's own: its next evaluation overwrites them. Raises :class:`UnknownNameError` and
         :class:`ParameterError` for what is no parameter, or out of range, and :class:`AssemblyError` where there is no result.
         """
@@ -186,16 +188,16 @@ class Prepared:
         if self._fill is None:
             found = engine.evaluate(self._p, threads=1, histories=True)
             assert found.series is not None
-            self._refuse(found.status[0])
+            self._refuse(found.status[0], WITH_SERIES)
             return dict(zip(engine.columns, found.series[0], strict=True))
         self._fill[0]()
-        self._refuse(self._status[0])
+        self._refuse(self._status[0], WITH_SERIES)
         return self._rows if engine.plain else {str(o): row for o, row in engine.told(self._history[0], self._p[0]).items()}
 
     def peaks(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Peaks:
         """Peaks and means for values of parameters; the arrays are this object's own, as those of a call are.
 
-        Raises what a call does, and :class:`AssemblyError` too where a peak cannot be told.
+        Raises what a call does, and :class:`AssemblyError` too where a peak cannot be told, or a joint that rubs is at rest.
         """
         self._set(values, named)
         engine = self._engine
@@ -254,10 +256,13 @@ class Prepared:
                     parameter.check(value)
                 row[self._place[name]] = value if type(value) is float else parameter.number(value)
 
-    def _refuse(self, status: int) -> None:
-        if status != Status.OK:
+    def _refuse(self, status: int, valid: Sequence[Status] = (Status.OK,)) -> None:
+        if status not in valid:
             # It says where, and why.
-            self._explain(dict(zip(self.parameters, self._p[0].tolist(), strict=True)))
+            solution = self._explain(dict(zip(self.parameters, self._p[0].tolist(), strict=True)))
+            if status == Status.AT_REST:
+                told = "; ".join(solution.notes)
+                raise AssemblyError(f"there are no peaks: {told}; take instants that move, or give the friction smooth")
             raise AssemblyError(f"there is no result: {Status(status).meaning}")
 
 

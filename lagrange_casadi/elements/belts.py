@@ -4,6 +4,11 @@ Half of the strands' sum of tensions is the preload, until the slack strand is s
 larger of twice the preload and of the force that is passed on, and a chain is a belt without preload. Strands are straight and
 have no mass, they do not stretch and do not slip.
 
+Links of a chain, and a toothed or a V-belt, resist where they bend on to a wheel and off it. What this takes is a force f along the
+pitch circle of each wheel against its turning. The strands then pull a little beside their tangents: across the line of the centres
+the wheels bear (f r1 +- f r2)/distance. Of the power W + f that goes in W - f comes out, whichever drives, so f = W (1 -
+efficiency)/(1 + efficiency), with W the difference of the tensions.
+
 Source: J. E. Shigley, C. R. Mischke, *Mechanical Engineering Design*, chapter 17: the initial tension is half of the sum of both.
 """
 
@@ -17,12 +22,12 @@ from typing import Any
 import casadi as ca
 
 from ..declare.mechanism import Mechanism
-from ..declare.meshes import FITTING, Fit, Mesh, Transmission, Wrench
+from ..declare.meshes import FITTING, Fit, Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Body, Constraint, Expression, Point
 from ..errors import DeclarationError
 from ..geometry.vectors import cross, dot, minus, times
 from .courses import Numbers, along, courses_on, fits_of, length
-from .ranges import positive
+from .ranges import positive, share
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +49,7 @@ def belt(
     crossed: bool = False,
     carrier: Body | None = None,
     offset: Expression = 0.0,
+    efficiency: Expression | None = None,
 ) -> Belt:
     """Lay a belt or a chain round two pulleys.
 
@@ -51,14 +57,15 @@ def belt(
     in parallel; ``radii`` those of their pitch circles [m]. ``preload`` is the tension of both strands where nothing is passed on
     [N]: of a chain nothing. A ``crossed`` belt turns the second pulley the other way round. ``carrier`` is the body on which both
     turn, by default the one that joints tell; ``offset`` is the way that the first pitch circle is ahead where both coordinates are
-    zero [m].
+    zero [m]. ``efficiency`` is the share of the power that comes out, of what goes in, whichever pulley drives.
 
     The multiplier is the force along the first pulley's pitch circle, positive where it turns this forward. Outputs are NAME_tight
     and NAME_slack, the tensions of the strands [N]. The slack one is zero where the preload is too small for what is passed on: a
-    chain or toothed belt bears that, a flat belt slips.
+    chain or toothed belt bears that, a flat belt slips. With an efficiency, NAME_loss is the power that is lost [W], and open where
+    the belt is at rest, as friction in joints is.
 
     Raises :class:`.DeclarationError` for bodies that do not turn about parallel axes through these points, radii for which the
-    pulleys touch, and a preload that is negative.
+    pulleys touch, a preload that is negative, and an efficiency that is none.
     """
     what, own = f"belt '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
@@ -96,15 +103,25 @@ def belt(
     sense = 1 if (numbers.of(dot(u, v)) > 0.0) != crossed else -1
     other = -sense * r2
     ahead = own.expression(f"{what}: offset", offset)
+    loss = None
+    if efficiency is not None:
+        value = own.expression(f"{what}: efficiency", efficiency)
+        fits += share(what, value)
+        sideways = times((r1 - r2 if crossed else r1 + r2) / distance, cross(u, e))
+        mesh = replace(mesh, braking=Wrench(sideways, times(r1, u)))
+        loss = Loss(f"{name}:loss", (1 - value) / (1 + value), 0.0, one.turns)
     constraint = mechanism.constraint(name, r1 * one.way(mechanism) + other * two.way(mechanism) - ahead)
     fits += [fit for course in (one, two) for fit in fits_of("its centre", course)]
     varying = [fit for fit in fits if isinstance(fit.got, ca.SX) or isinstance(fit.meant, ca.SX)]
-    constraint = replace(constraint, transmission=Transmission(name, (mesh,), 2 * tension, tuple(varying)))
+    constraint = replace(constraint, transmission=Transmission(name, (mesh,), 2 * tension, tuple(varying), loss))
     mechanism.constraints[name] = constraint
     force = ca.fabs(mechanism.results.multiplier(constraint))
     whole = ca.fmax(2 * tension, force)
     mechanism.output(f"{name}_tight", (whole + force) / 2, unit="N")
     mechanism.output(f"{name}_slack", (whole - force) / 2, unit="N")
+    if loss is not None:
+        rate = sum((sign * mechanism.rate(joint) for sign, joint in loss.turns), ca.SX(0))
+        mechanism.output(f"{name}_loss", 2 * r1 * loss.arm * force * ca.fabs(rate), unit="W")
     return Belt(constraint, -(r1 / other))
 
 

@@ -8,7 +8,6 @@ where it should be turned. Its multiplier is the force of the contact, on both b
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, cast
@@ -22,10 +21,8 @@ from ..declare.parts import Constraint, Expression, Ground, Link, Point
 from ..errors import DeclarationError
 from ..geometry.rotation import direction
 from .cam_profile import CamProfile, profile_of
+from .hertz import STEEL, largest_pressure
 from .lift import rise_of
-
-_ELASTIC = (210e9, 0.3)
-"""Young's modulus [Pa] and Poisson's ratio of steel."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +80,7 @@ def disc_cam(
     flat: bool = False,
     side: int = 1,
     width: Expression | None = None,
-    elastic: tuple[float, float] = _ELASTIC,
+    elastic: tuple[float, float] = STEEL,
 ) -> Cam:
     """Declare the contact of a disc cam with its follower in a plane, from the follower's motion.
 
@@ -323,9 +320,7 @@ def _outputs(made: Cam, cam: Joint, width: Expression | None, elastic: tuple[flo
     mechanism.output(f"{name}_pressure_angle", ca.atan2(ca.fabs(_cross(here.normal, here.way)), cosine), unit="rad")
     mechanism.output(f"{name}_radius", radius, unit="m")
     if width is not None:
-        stiffness = elastic[0] / (2.0 * (1.0 - elastic[1] ** 2))
         roller = made.design.roller
         rolled = 0.0 if isinstance(roller, float) and roller == 0.0 else 1.0 / roller
-        # K. L. Johnson, Contact Mechanics, 1985, equation 4.45: the largest pressure of two cylinders.
-        pressed = ca.fmax(force, 0.0) * ca.fmax(1.0 / radius + rolled, 0.0) * stiffness / (math.pi * width)
-        mechanism.output(f"{name}_hertz", ca.sqrt(pressed), unit="Pa")
+        pressure = largest_pressure(f"cam '{name}'", mechanism, ca.fmax(force, 0.0), 1.0 / radius + rolled, width, elastic)
+        mechanism.output(f"{name}_hertz", pressure, unit="Pa")

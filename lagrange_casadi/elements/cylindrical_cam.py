@@ -28,12 +28,14 @@ from ..declare.parts import Constraint, Expression, Ground, Link, Point
 from ..errors import DeclarationError
 from ..geometry.rotation import Rotation, direction
 from ..geometry.vectors import ZERO, Vector, cross, dot, minus, plus, times
+from .hertz import STEEL, largest_pressure
 from .lift import rise_of
 
 _SAME = 1e-9
 """A cosine, or a share of a size, that is smaller is zero."""
 
 _LEAST = 16
+_LOOKED_AT = 721
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +43,8 @@ class Groove:
     """Where the roller is, by the symbol ``angle`` of the drum [rad], in ground axes.
 
     ``place`` is its centre, ``normal`` of length one along the contact's force, ``way`` the direction in which the follower
-    moves the centre; ``axis`` is that of the drum through ``centre``.
+    moves the centre; ``axis`` is that of the drum through ``centre``. ``bend`` is the curvature of its path on the drum, in the
+    plane across the roller [1/m], positive where it curves along the normal.
     """
 
     angle: Any
@@ -50,6 +53,7 @@ class Groove:
     way: Vector
     axis: Vector
     centre: Vector
+    bend: Any
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +61,8 @@ class CylindricalCam:
     """A cylindrical cam: its ``constraint``, whose multiplier is the force of its contact, and its ``design``.
 
     Outputs are NAME_force [N], positive where it pushes the follower along its coordinate: where the sign changes, the roller goes
-    over to the other flank; and NAME_pressure_angle [rad] between the force and the way of the roller.
+    over to the other flank; NAME_pressure_angle [rad] between the force and the way of the roller; and with a width NAME_hertz,
+    the largest pressure between the roller and the flank that it touches [Pa].
     """
 
     name: str
@@ -90,6 +95,9 @@ def cylindrical_cam(
     *,
     start: Expression = 0.0,
     point: Point | None = None,
+    roller: Expression | None = None,
+    width: Expression | None = None,
+    elastic: tuple[float, float] = STEEL,
 ) -> CylindricalCam:
     """Declare the contact of a drum's groove with the roller of its follower in space, from the follower's motion.
 
@@ -105,10 +113,13 @@ def cylindrical_cam(
         The coordinate of the follower's joint where the lift is zero [m or rad].
     point
         The centre of the roller, in the middle of the groove's depth; by default the point at which the joint holds the follower.
+    roller, width, elastic
+        The radius of the roller and the width of its contact [m], for the pressure of Hertz, and Young's modulus [Pa] and Poisson's
+        ratio of both bodies. The flank is that of the middle of the groove's depth: a curve beside the path of the centre.
 
     Of a follower that slides the roller turns about the line from the drum's axis to its centre; of one that swings, about an axis
-    along its joint's. Raises :class:`.DeclarationError` for joints that are others, a roller on the drum's axis, and a lift that
-    has a kink or is not the same after a turn.
+    along its joint's. Raises :class:`.DeclarationError` for joints that are others, a roller on the drum's axis or too large
+    for the groove's bends, and a lift that has a kink or is not the same after a turn.
     """
     what, own = f"cam '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
@@ -130,6 +141,16 @@ def cylindrical_cam(
     cosine, across = (ca.substitute(ca.SX(value), x, turn) for value in _lean(design))
     mechanism.output(f"{name}_force", mechanism.results.multiplier(constraint), unit="N")
     mechanism.output(f"{name}_pressure_angle", ca.atan2(across, cosine), unit="rad")
+    if width is not None:
+        if roller is None:
+            raise DeclarationError(f"{what}: width needs roller, the roller's radius [m]")
+        round_ = _round(what, mechanism, design, own.expression(f"{what}: roller", roller))
+        force = mechanism.results.multiplier(constraint)
+        # The flank is as far beside the path as the roller's radius, on the side from which it pushes.
+        bend = ca.sign(force) * ca.substitute(ca.SX(design.bend), x, turn)
+        curvature = 1.0 / (round_ * (1.0 + bend * round_))
+        pressure = largest_pressure(what, mechanism, ca.fabs(force), curvature, width, elastic)
+        mechanism.output(f"{name}_hertz", pressure, unit="Pa")
     return made
 
 
@@ -149,14 +170,36 @@ def _groove(what: str, mechanism: Mechanism, x: Any, coordinate: Any, cam: Joint
     way = line if slides else _unit(cross(line, arm))
     about = _unit(minus(seat, times(dot(seat, axis), axis))) if slides else line
     moved = tuple(ca.jacobian(ca.SX(component), x) for component in place)
-    normal = _unit(cross(minus((moved[0], moved[1], moved[2]), cross(axis, seat)), about))
+    on_drum = minus((moved[0], moved[1], moved[2]), cross(axis, seat))
+    normal = _unit(cross(on_drum, about))
+    # Its way and its second derivative as the drum sees them, which turns.
+    again = tuple(ca.jacobian(ca.SX(component), x) for component in on_drum)
+    bent = minus((again[0], again[1], again[2]), cross(axis, on_drum))
+    beside = cross(on_drum, about)
+    bend = dot(bent, normal) / dot(beside, beside)
     # Along the follower's coordinate, where the drum alone moves.
     values = list(mechanism.values().values())
     ahead = ca.Function("ahead", [x, mechanism.symbols], [ca.SX(dot(cross(about, cross(axis, seat)), way))])
     side = float(ahead(0.0, values))
     if not abs(side) > 0.0:
         raise DeclarationError(f"{what}: the drum does not pass by the roller; expected it off the axis, and a follower along it")
-    return Groove(x, place, normal if side > 0.0 else times(-1.0, normal), way, axis, centre)
+    normal, bend = (normal, bend) if side > 0.0 else (times(-1.0, normal), -bend)
+    return Groove(x, place, normal, way, axis, centre, bend)
+
+
+def _round(what: str, mechanism: Mechanism, design: Groove, roller: Expression) -> Expression:
+    """The radius of the roller, for which the groove's flanks must have room in its bends."""
+    angles = np.linspace(0.0, math.tau, _LOOKED_AT)
+    told = ca.Function("bends", [design.angle, mechanism.symbols], [ca.SX(design.bend), ca.SX(roller)])
+    values = list(mechanism.values().values())
+    bends, radius = (np.broadcast_to(row.full().ravel(), angles.shape) for row in told(angles[None], values))
+    if radius[0] <= 0.0:
+        raise DeclarationError(f"{what}: roller must be positive, got {radius[0]:g} m")
+    tight = int(np.argmax(np.abs(bends)))
+    if abs(bends[tight]) * radius[0] >= 1.0:
+        where = f"{math.degrees(angles[tight]):.4g} deg of the cam, where its path has a radius of {1.0 / abs(bends[tight]):.3g} m"
+        raise DeclarationError(f"{what}: its groove is undercut at {where}; expected a smaller roller or a slower lift")
+    return roller
 
 
 def _check(what: str, mechanism: Mechanism, design: Groove, rise: Any, follower: Joint) -> None:

@@ -22,8 +22,7 @@ from ..errors import DeclarationError
 from ..geometry.vectors import cross, dot
 from .courses import Course, along, length
 from .pitch import Pitch, Teeth
-
-_LEAST = 1e-12
+from .ranges import LEAST, at_least, share
 
 
 def braking_of(pitch: Pitch) -> Wrench:
@@ -48,19 +47,18 @@ def loss_of(
         raise DeclarationError(f"{what}: expected mu of crossed axes, efficiency of others")
     if mu is not None:
         value = own.expression(f"{what}: mu", mu)
-        fits = _least(what, "mu must not be negative", value, 0.0, value)
+        fits = at_least(what, "mu must not be negative", value, 0.0, value)
         # The force at right angles to the teeth, of that along the pitch circle.
         cosine = ca.cos(teeth.pressure) if isinstance(teeth.pressure, ca.SX) else math.cos(teeth.pressure)
         return Loss(f"{name}:loss", value * length(pitch.force) / cosine, 0.0, first.turns), fits
     value = own.expression(f"{what}: efficiency", efficiency)
-    fits = _least(what, "efficiency must be above 0", value, _LEAST, value)
-    fits += _least(what, "efficiency must not be above 1", 1 - value, 0.0, value)
+    fits = share(what, value)
     q, radius = length(pitch.relative), teeth.radii[0]
     k = dot(pitch.axis, pitch.relative) / q
     slip = 1 - value
     driving, driven = q - slip * k, value * q + slip * k
     for divisor in (driving, driven):
-        fits += _least(what, "efficiency is too low for a gear in this ring", divisor, _LEAST, value)
+        fits += at_least(what, "efficiency is too low for a gear in this ring", divisor, LEAST, value)
     ahead, back = slip * radius / driving, slip * radius / driven
     return Loss(f"{name}:loss", (ahead + back) / 2, (back - ahead) / 2, first.turns), fits
 
@@ -70,12 +68,3 @@ def lost(mechanism: Mechanism, constraint: Constraint, loss: Loss, pitch: Pitch)
     rate = sum((sign * mechanism.rate(joint) for sign, joint in loss.turns), ca.SX(0))
     force = mechanism.results.multiplier(constraint)
     return length(pitch.relative) * (loss.arm * ca.fabs(force * rate) + loss.lean * force * rate)
-
-
-def _least(what: str, words: str, value: Expression, least: float, told: Expression) -> list[Fit]:
-    """That a number is not below another; an error tells ``told``."""
-    if isinstance(value, ca.SX):
-        return [Fit(f"{words}, got {{got}}", told, told + ca.fmax(least - value, 0.0), _LEAST)]
-    if value < least:
-        raise DeclarationError(f"{what}: {words}, got {told:g}")
-    return []

@@ -11,7 +11,8 @@ from ..declare.parts import Expression
 from ..errors import DeclarationError
 from ..system.numerals import readable
 
-_LEAST = 1e-12
+LEAST = 1e-12
+"""What is smaller is not above zero."""
 
 
 def whole(what: str, told: str, value: Expression) -> list[Fit]:
@@ -27,7 +28,7 @@ def whole(what: str, told: str, value: Expression) -> list[Fit]:
 def positive(what: str, told: str, value: Expression) -> list[Fit]:
     """That a length is positive."""
     if isinstance(value, ca.SX):
-        return [Fit(f"{told} must be positive, got {{got}} m", value, ca.fmax(value, _LEAST), _LEAST)]
+        return [Fit(f"{told} must be positive, got {{got}} m", value, ca.fmax(value, LEAST), LEAST)]
     if value <= 0.0:
         raise DeclarationError(f"{what}: {told} must be positive, got {readable(value)} m")
     return []
@@ -41,3 +42,18 @@ def within(what: str, told: str, angle: Expression, low: float, high: float) -> 
     if not low <= angle <= high:
         raise DeclarationError(f"{what}: {bounds}, got {math.degrees(angle):.6g} deg")
     return []
+
+
+def at_least(what: str, words: str, value: Expression, low: float, told: Expression) -> list[Fit]:
+    """That a number is not below another; an error tells ``told``."""
+    if isinstance(value, ca.SX):
+        return [Fit(f"{words}, got {{got}}", told, told + ca.fmax(low - value, 0.0), LEAST)]
+    if value < low:
+        raise DeclarationError(f"{what}: {words}, got {told:g}")
+    return []
+
+
+def share(what: str, value: Expression) -> list[Fit]:
+    """That an efficiency is above 0, and 1 at most."""
+    found = at_least(what, "efficiency must be above 0", value, LEAST, value)
+    return found + at_least(what, "efficiency must not be above 1", 1 - value, 0.0, value)

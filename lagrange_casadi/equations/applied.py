@@ -12,7 +12,7 @@ from ..declare.parts import Force, Friction, LineLoad, Link, Load, Point, Spring
 from ..geometry.frames import Velocities
 from ..geometry.vectors import AXES, ZERO, cross, dot, minus, nil, plus, times
 from .growing import Grown
-from .joints import gap_motion, reaction, slide
+from .joints import carried, gap_motion, reaction
 from .multibody import Applied, LoopEquations, RowGraph
 
 
@@ -123,14 +123,9 @@ def _along_coordinate(resting: Grown, name: str, joint: Joint, axis: Axis, force
     """What works along a joint's coordinate does to its bodies."""
     parent, child = resting.ends(joint)
     along = times(force, resting.along(joint, axis))
-    if axis.kind == "angle":
-        yield Applied(name, joint.child, couple=along)
-        yield Applied(name, joint.parent, couple=times(-1, along))
-        return
-    place = joint.parent.place
-    for other in joint.axes:
-        if other.kind == "slide":
-            place = plus(place, times(slide(joint, parent, child, other.direction), other.direction))
-    x, y, z = place
-    yield Applied(name, joint.child, along)
-    yield Applied(name, Point(joint.parent.body, x, y, z=z), times(-1, along))
+    under = joint.parent
+    if joint.slides:
+        x, y, z = carried(joint, parent, child)
+        under = Point(joint.parent.body, x, y, z=z)
+    for point, force in ((joint.child, along), (under, times(-1, along))):
+        yield Applied(name, point, couple=force) if axis.kind == "angle" else Applied(name, point, force)

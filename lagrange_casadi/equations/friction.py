@@ -25,7 +25,7 @@ import numpy as np
 from ..declare.meshes import Loss, Transmission
 from .checks import Check, Column
 from .multibody import column
-from .pressing import Rubbing
+from .pressing import Contact, Rubbing, both_edges
 
 STEPS = 4
 """Newton's steps: the error goes as the 4th, 10th, 22nd, 46th power of how much of itself a friction brings about."""
@@ -64,8 +64,7 @@ def solve(found: Sequence[Rubbing], open_: Any) -> Solved:
             first += len(contact.pressing)
             parts.append(
                 _Pressed(
-                    contact.arm,
-                    contact.lean,
+                    contact,
                     [free[row] for row in rows],
                     [[_entry(slopes, row, k) for k in range(n)] for row in rows],
                 )
@@ -86,8 +85,7 @@ def solve(found: Sequence[Rubbing], open_: Any) -> Solved:
 class _Pressed:
     """A contact as R0 + A s: ``free`` is R0, ``slopes`` the rows of A, None where nothing."""
 
-    arm: Any
-    lean: Any
+    contact: Contact
     free: list[Any]
     slopes: list[list[Any]]
 
@@ -98,24 +96,27 @@ class _Pressed:
     def seen(self, k: int) -> Any:
         """How much it changes at most with a friction; None where not at all."""
         column_ = [row[k] for row in self.slopes if row[k] is not None]
-        most = self.arm if self.lean is None else self.arm + ca.fabs(self.lean)
-        return None if not column_ else most * _size(column_)
+        lean = self.contact.lean
+        most = self.contact.arm if lean is None else self.contact.arm + ca.fabs(lean)
+        return None if not column_ else most * self.contact.size(column_)
 
     def push(self, pressing: Sequence[Any], sigma: Any) -> Any:
         """The couple or force of a unit of mu where so much presses."""
-        size = self.arm * _size(pressing)
-        return size if self.lean is None else size + sigma * (self.lean * pressing[0])
+        size, lean = self.contact.arm * self.contact.size(pressing), self.contact.lean
+        return size if lean is None else size + sigma * (lean * pressing[0])
 
-    def slope(self, pressing: Sequence[Any], sigma: Any, k: int) -> Any:
-        """How it changes with a friction; None where not at all."""
-        terms = [(x, row[k]) for x, row in zip(pressing, self.slopes, strict=True) if row[k] is not None]
-        if not terms:
-            return None
+    def weights(self, pressing: Sequence[Any], sigma: Any, unit: Any) -> list[Any]:
+        """How ``unit`` times the push changes with each component; their products with the components add up to it."""
+        arm, lean = self.contact.arm, self.contact.lean
         if len(pressing) == 1:
-            way = self.arm * ca.sign(pressing[0])
-            return (way if self.lean is None else way + sigma * self.lean) * terms[0][1]
-        along = sum((x * slope for x, slope in terms[1:]), terms[0][0] * terms[0][1])
-        return self.arm * (along / ca.fmax(_size(pressing), _NOTHING))
+            way = arm * ca.sign(pressing[0])
+            return [unit * (way if lean is None else way + sigma * lean)]
+        share = unit * arm
+        if self.contact.edges:
+            one, other = (ca.sign(edge) for edge in both_edges(pressing))
+            return [share / 2 * (one + other), share / 2 * (one - other)]
+        share = share / ca.fmax(self.contact.size(pressing), _NOTHING)
+        return [share * x for x in pressing]
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,9 +156,23 @@ class _Law:
         dry = -self.sigma * (self.mu * sum((part.push(part.at(values), self.sigma) for part in self.pressed), ca.SX(0)))
         return dry if self.steady is None else dry - self.steady
 
+    def straight(self, values: Sequence[Any], known: Sequence[Any]) -> tuple[Any, list[Any]]:
+        """The force as ``start - slopes s``, beside what is ``known``, if all that presses kept its direction at ``values``."""
+        start, slopes = ca.SX(0) if self.steady is None else -self.steady, [None] * len(known)
+        for part in self.pressed:
+            weights = part.weights(part.at(values), self.sigma, self.sigma * self.mu)
+            for weight, beside, row in zip(weights, part.at(known), part.slopes, strict=True):
+                start = start - weight * beside
+                slopes = [
+                    so_far if slope is None else weight * slope if so_far is None else so_far + weight * slope
+                    for so_far, slope in zip(slopes, row, strict=True)
+                ]
+        return start, slopes
+
     def depends(self, k: int) -> bool:
-        """Whether it depends on a friction."""
-        return any(part.seen(k) is not None for part in self.pressed)
+        """Whether it depends on a friction: never where its joint does not move at all, for then it is open."""
+        still = self.rest is not None and ca.SX(self.rest).is_one()
+        return not still and any(part.seen(k) is not None for part in self.pressed)
 
 
 def _way(one: Rubbing, lever: Any = 1.0) -> tuple[Any, Any]:
@@ -169,13 +184,14 @@ def _way(one: Rubbing, lever: Any = 1.0) -> tuple[Any, Any]:
         least, most = (lever * limit for limit in one.slowest)
         moves = ca.logic_or(moves, ca.fabs(other) > least)
         turns = ca.logic_or(turns, ca.fabs(change) > most)
-    rest = ca.if_else(moves, 0, ca.if_else(turns, 0, 1))
     if one.beside:
         way = ca.if_else(moves, lever * v, lever * acceleration)
         across = ca.if_else(moves, other, change)
         sigma = way / ca.fmax(ca.sqrt(way * way + across * across), _NOTHING)
+        rest = ca.if_else(moves, 0, ca.logic_not(turns))
     else:
-        sigma = ca.sign(ca.if_else(moves, v, ca.if_else(turns, acceleration, 0)))
+        way = ca.if_else(moves, v, ca.if_else(turns, acceleration, 0))
+        sigma, rest = ca.sign(way), ca.logic_not(way)
     # No number at rest: zero over zero, which of what never moves would be read as zero.
     return (ca.sqrt(1 - 2 * rest) - 1 if ca.SX(sigma).is_zero() else sigma / (1 - rest)), rest
 
@@ -187,24 +203,20 @@ def _solve_block(laws: Sequence[_Law], block: Sequence[int], values: list[Any]) 
         values[j] = law.pushed(known)
     if not any(law.depends(k) for law in laws for k in block):
         return {}
+    found = list(values)
     for _ in range(STEPS):
-        left, matrix = [], []
-        for j, law in zip(block, laws, strict=True):
-            at = [part.at(values) for part in law.pressed]
-            left.append(values[j] - law.pushed(values))
-            row: list[Any] = []
-            for k in block:
-                each = (part.slope(pressing, law.sigma, k) for part, pressing in zip(law.pressed, at, strict=True))
-                slopes = [slope for slope in each if slope is not None]
-                entry = None if not slopes else law.sigma * (law.mu * sum(slopes[1:], slopes[0]))
-                row.append(entry if j != k else 1 if entry is None else 1 + entry)
-            matrix.append(row)
-        for j, correction in zip(block, _eliminated(matrix, left)[0], strict=True):
-            values[j] = values[j] - correction
+        rows = [law.straight(found, known) for law in laws]
+        matrix = [
+            [slopes[k] if k != j else 1 if slopes[k] is None else 1 + slopes[k] for k in block]
+            for j, (_, slopes) in zip(block, rows, strict=True)
+        ]
+        for j, value in zip(block, _eliminated(matrix, [start for start, _ in rows])[0], strict=True):
+            found[j] = value
     missed, size = ca.SX(0), ca.SX(_NOTHING)
     for j, law in zip(block, laws, strict=True):
-        push = law.pushed(values)
-        missed, size = missed + ca.fabs(values[j] - push), size + ca.fabs(push)
+        push = law.pushed(found)
+        missed, size = missed + ca.fabs(found[j] - push), size + ca.fabs(push)
+        values[j] = push
     name = ", ".join(law.name for law in laws)
     return {Check("jam", name): _least_pivot(laws, block), Check("slip", name): missed / size}
 
@@ -212,7 +224,7 @@ def _solve_block(laws: Sequence[_Law], block: Sequence[int], values: list[Any]) 
 def _doubted(laws: Sequence[_Law], values: Sequence[Any], doubts: Any) -> list[Any]:
     """Values with what they change at most where what presses on them changes by ``doubts``, row by row."""
     rows = iter(ca.vertsplit(doubts))
-    own = [law.mu * sum((part.arm * next(rows) for part in law.pressed for _ in part.free), ca.SX(0)) for law in laws]
+    own = [law.mu * sum((part.contact.arm * next(rows) for part in law.pressed for _ in part.free), ca.SX(0)) for law in laws]
     changes = own
     for _ in laws:
         changes = [
@@ -298,14 +310,6 @@ def _sum(row: Sequence[Any], values: Sequence[Any], start: Any) -> Any:
         if slope is not None and value is not None:
             total = slope * value if total is None else total + slope * value
     return start if total is None else start + total
-
-
-def _size(components: Sequence[Any]) -> Any:
-    return (
-        ca.fabs(components[0])
-        if len(components) == 1
-        else ca.sqrt(sum((x * x for x in components[1:]), components[0] * components[0]))
-    )
 
 
 def _entry(matrix: Any, row: int, k: int) -> Any:

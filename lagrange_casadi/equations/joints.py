@@ -42,6 +42,16 @@ def slide(joint: Joint, parent: Frame, child: Frame, along: Vector) -> Expressio
     return dot(apart(joint, parent, child), along)
 
 
+def carried(joint: Joint, parent: Frame, child: Frame) -> Vector:
+    """The place of the parent where a joint's child is at the moment, in the parent's axes."""
+    place = joint.parent.place
+    for freedom in joint.lets:
+        if freedom.move != "turn":
+            direction = joint.triad[freedom.direction]
+            place = plus(place, times(slide(joint, parent, child, direction), direction))
+    return place
+
+
 def slide_motion(joint: Joint, parent: Frame, child: Frame, along: Vector) -> tuple[Expression, Expression]:
     """Rate and acceleration of :func:`slide`, while nothing moves but along the joint's slides."""
     axis = parent.rotation.apply(along)

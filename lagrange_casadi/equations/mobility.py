@@ -36,7 +36,7 @@ from .checks import Check, Column
 from .drives import solve_efforts
 from .friction import Solved, needed, solve
 from .gaps import reach
-from .joints import borne, orientation, reaction, slide
+from .joints import borne, carried, orientation, reaction
 from .kinematics import Kinematics
 from .lagrange import LagrangeSystem
 from .meshes import braking, pressing_apart, transmissions_of
@@ -287,10 +287,7 @@ def _loads_on(
             x, y, z = point.place
             if joint.slides and point is joint.parent:
                 parent, child = (multibody.frames[body.name] for body in joint.bodies)
-                for freedom in joint.lets:
-                    if freedom.move != "turn":
-                        direction = joint.triad[freedom.direction]
-                        x, y, z = plus((x, y, z), times(slide(joint, parent, child, direction), direction))
+                x, y, z = carried(joint, parent, child)
             elif _at_base(point):
                 continue
             elif point.end == "tip":

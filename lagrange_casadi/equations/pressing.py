@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import casadi as ca
@@ -23,12 +23,30 @@ _REST = 1e-12
 class Contact:
     """What presses on a rubbing place [N], of one component or two, and the ``arm`` that its friction has: 1 or a radius [m].
 
-    Of a thread, ``lean`` tells how much more one direction of sliding presses than the other [m].
+    Two components are those of a force; or, of a guide that rests on its ``edges``, what presses both together, and what a moment
+    presses them together on opposite sides. Of a thread, ``lean`` tells how much more one direction of sliding presses than the
+    other [m].
     """
 
     arm: Any
     pressing: tuple[Any, ...]
     lean: Any = None
+    edges: bool = False
+
+    def size(self, components: Sequence[Any]) -> Any:
+        """How much components press together."""
+        if self.edges and len(components) == 2:
+            one, other = both_edges(components)
+            return ca.fabs(one) + ca.fabs(other)  # no fmax of the components: that passes over what is no number
+        if len(components) == 1:
+            return ca.fabs(components[0])
+        return ca.sqrt(sum((x * x for x in components[1:]), components[0] * components[0]))
+
+
+def both_edges(components: Sequence[Any]) -> tuple[Any, Any]:
+    """What presses on either edge of a guide."""
+    both, tilt = components
+    return (both + tilt) / 2, (both - tilt) / 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +80,7 @@ class Rubbing:
     def of_rows(self, rows: Sequence[Any]) -> Rubbing:
         """The same with other expressions."""
         left = iter(rows)
-        contacts = tuple(Contact(c.arm, tuple(next(left) for _ in c.pressing), c.lean) for c in self.contacts)
+        contacts = tuple(replace(c, pressing=tuple(next(left) for _ in c.pressing)) for c in self.contacts)
         rate, acceleration, rests, goes_on, *beside = left
         return Rubbing(self.friction, contacts, rate, acceleration, (rests, goes_on), tuple(beside))
 
@@ -87,8 +105,7 @@ def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vec
         if friction.length is None:
             contacts = (Contact(1.0, (pressing,)),)
         else:
-            tilt = couple[2] / friction.length
-            contacts = tuple(Contact(1.0, (pressing / 2 + sign * tilt,)) for sign in (1, -1))
+            contacts = (Contact(1.0, (pressing, 2 * couple[2] / friction.length), edges=True),)
     beside: tuple[Any, ...] = ()
     if friction.beside is not None:
         lever = friction.radius if friction.beside.kind == "angle" else 1.0

@@ -80,9 +80,13 @@ _MEANINGS = {
     Status.PEAK_NOT_TOLD: "a peak cannot be told: too much may hide between the instants; more instants may help",
     Status.BEYOND_ENDS: "what is put into a curve is beyond its ends",
     Status.JAMS: "the mechanism jams: friction has no force that holds its law, or several",
-    Status.AT_REST: "a joint that rubs is at rest: its friction is open",
+    Status.AT_REST: "a joint that rubs is at rest: its friction is open; take instants that move, or smooth friction",
     Status.NO_INSTANTS: "its instants cannot be: the motion does not go where they are asked for, or they end before they start",
 }
+
+
+WITH_SERIES = (Status.OK, Status.AT_REST)
+"""Those of designs that have series; at rest some of the numbers are none, and there are no peaks."""
 
 
 @dataclass(frozen=True)

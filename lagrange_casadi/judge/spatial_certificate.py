@@ -210,7 +210,9 @@ def _acting(reported: Reported, bodies: Mapping[str, Moving]) -> Iterator[_Actio
     for name, load in solution.description["loads"].items():
         force, couple = vectors("load", name)
         for point, sign in zip(load["points"], (1.0, -1.0), strict=False):
-            yield _Action(point["body"], bodies[point["body"]].point(spot(point))[0], sign * force, sign * couple, True)
+            # Friction is where the joint's child is, on both.
+            place = load["points"][0] if "friction" in load else point
+            yield _Action(point["body"], bodies[place["body"]].point(spot(place))[0], sign * force, sign * couple, True)
 
 
 def _vector(solution: Solution, group: str, name: str, members: Sequence[str]) -> Array:

@@ -19,7 +19,7 @@ from ..declare.mechanism import Mechanism
 from ..declare.wanted_slopes import SENSITIVITY
 from ..designs.engine import Outcome
 from ..errors import DeclarationError, UnknownNameError
-from ..instants.refusal import Status
+from ..instants.refusal import WITH_SERIES, Status
 from ..quantities import Output, quotient
 from ..tables import Table, table_of
 from .chunks import encoded
@@ -178,7 +178,7 @@ class Harvest:
             found += [outcome.series[:, rows[name]] for name in self._series]
         if self._own_times:
             assert outcome.times is not None
-            found.append(np.where((outcome.status == Status.OK)[:, None], outcome.times, np.nan))
+            found.append(np.where(np.isin(outcome.status, WITH_SERIES)[:, None], outcome.times, np.nan))
         if self.strength.columns:
             times = outcome.times if outcome.times is not None else self.axis.values[None]
             found_there = (outcome.status, outcome.value, outcome.series, times, p)
@@ -283,10 +283,11 @@ class Harvest:
             with np.errstate(all="ignore"):  # of designs that have no result
                 laws = matter.law({output: series[:, k] for output, k in rows.items()}, p)
                 basis = laws.basis(self.xi)
-                largest += [laws.largest(force, basis) for force in self._table.forces]
+                found = (laws.largest(force, basis) for force in self._table.forces)
+                largest += [np.where((outcome.status == Status.OK)[:, None], one, np.nan) for one in found]
             if self.keep == "histories":
                 grids = np.full((len(self._table.forces), len(p), self.axis.values.size, self.xi.size), np.nan)
-                for i in np.flatnonzero(outcome.status == 0):
+                for i in np.flatnonzero(np.isin(outcome.status, WITH_SERIES)):
                     law = matter.law({output: series[i, k] for output, k in rows.items()}, p[i])
                     basis = law.basis(self.xi)
                     for force, grid in zip(self._table.forces, grids, strict=True):

@@ -519,7 +519,7 @@ const char* press_message(press_status status) {
   case PRESS_JAMS:
     return "the mechanism jams: friction has no force that holds its law, or several";
   case PRESS_AT_REST:
-    return "a joint that rubs is at rest: its friction is open";
+    return "a joint that rubs is at rest: its friction is open; take instants that move, or smooth friction";
   }
   return "no status of this mechanism";
 }

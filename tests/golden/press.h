@@ -62,7 +62,7 @@ typedef enum {
   PRESS_TURNED = 16 /* an angle that a load sees with its turns might be a turn further */,
   PRESS_BEYOND_ENDS = 17 /* what is put into a curve is beyond its ends */,
   PRESS_JAMS = 18 /* the mechanism jams: friction has no force that holds its law, or several */,
-  PRESS_AT_REST = 19 /* a joint that rubs is at rest: its friction is open */
+  PRESS_AT_REST = 19 /* a joint that rubs is at rest: its friction is open; take instants that move, or smooth friction */
 } press_status;
 
 /* Numbers that may change without generating anything again. */

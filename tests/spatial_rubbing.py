@@ -1,0 +1,111 @@
+"""Friction beside the spatial oracle: its laws by fixed-point iteration, around vector Newton-Euler on free bodies.
+
+It shares nothing with the package. What a friction does is a load on both bodies of its joint. What all joints bear is linear in
+the frictions' forces, so a balance of all bodies for each of these alone tells them all; the instant that is solved again with what
+was found must agree.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from spatial_bodies import GROUND, Joint, Load
+from spatial_draft import Drawn
+from spatial_oracle import Result
+
+PASSES = 20000
+
+
+@dataclass(frozen=True)
+class Rub:
+    """Friction along a coordinate of a joint that turns about one axis, slides along it, or both, by what declares it."""
+
+    joint: Joint
+    index: int
+    numbers: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        return f"rub_{self.joint.name}_{self.index}"
+
+    @property
+    def along(self) -> str:
+        """The coordinate's name, of a joint that has two."""
+        return "" if self.joint.count == 1 else "turn" if self.turns else "slide"
+
+    @property
+    def turns(self) -> bool:
+        return self.index in self.joint.turning
+
+    def axis(self, found: Result) -> np.ndarray:
+        """The joint's axis in ground axes."""
+        R = np.eye(3) if self.joint.parent == GROUND else found.poses[self.joint.parent].R
+        own = np.asarray(self.joint.axis, float)
+        return R @ (own / np.linalg.norm(own))
+
+    def loads(self, found: Result, force: float) -> list[Load]:
+        """What a force or couple along the coordinate does to both bodies."""
+        child, way = found.poses[self.joint.child], self.axis(found) * force
+        place = child.at(np.asarray(self.joint.at_child, float))
+        acts = []
+        for body, sign in ((self.joint.child, 1.0), (self.joint.parent, -1.0)):
+            if body != GROUND:
+                pose = found.poses[body]
+                told = {"torque" if self.turns else "force": sign * way}
+                acts.append(Load(body, pose.R.T @ (place - pose.r), **told))
+        return acts
+
+    def law(self, found: Result, reaction: np.ndarray) -> float:
+        """What the law says of a reaction: bearings by statics, threads by the angles of lead and of friction."""
+        n, kind, u = self.numbers, self.joint.kind, self.axis(found)
+        v, mu, radius = found.coordinates[self.joint.name, self.index][1], n.get("mu", 0.0), n.get("radius", 0.0)
+        steady = -n.get("viscous", 0.0) * v
+        force, moment = reaction[:3], reaction[3:]
+        axial, torque = force @ u, moment @ u
+        if kind == "screw":
+            lead = abs(self.joint.lead) / math.tau / radius
+            lifts = axial * self.joint.lead * v > 0.0
+            angle, phi = math.atan(lead if lifts else -lead), math.atan(mu)
+            return steady - math.copysign(radius * abs(axial) * (math.tan(angle + phi) - math.tan(angle)), v)
+        across, apart = force - axial * u, 2.0 / n["length"] * np.cross(moment, u)
+        pressed = np.linalg.norm(across + apart) / 2 + np.linalg.norm(across - apart) / 2
+        pressed += {"revolute": abs(axial), "prismatic": abs(torque) / radius, "cylindrical": 0.0}[kind]
+        slides = [found.coordinates[self.joint.name, k][1] * (radius if k in self.joint.turning else 1.0) for k in self.both]
+        speed = math.hypot(*slides)
+        if "static" in n:
+            mu += (n["static"] - mu) * math.exp(-((speed / n["stribeck"]) ** 2))
+        share = v * (radius if self.turns else 1.0) / speed
+        return steady - share * mu * pressed * (radius if self.turns else 1.0)
+
+    @property
+    def both(self) -> range:
+        return range(self.joint.count)
+
+
+def solve_rubbing(drawn: Drawn, rubs: Sequence[Rub], t: float) -> tuple[Result, dict[str, float]]:
+    """The instant with friction, and the frictions' forces by name. Fails where the iteration does not converge."""
+    still = drawn.solve(t)
+    guess = {name: (pose.r, pose.R) for name, pose in still.poses.items()} | {k: q for k, (q, *_) in still.coordinates.items()}
+
+    def balanced(forces):
+        more = [load for rub, force in zip(rubs, forces, strict=True) for load in rub.loads(still, force)]
+        loaded = replace(drawn.mechanism, loads=[*drawn.mechanism.loads, *more])
+        result = replace(drawn, mechanism=loaded).solve(t, guess=guess)
+        return result, np.array([result.reactions[rub.joint.name] for rub in rubs])
+
+    n = len(rubs)
+    alone = balanced(np.zeros(n))[1]
+    size = 1.0 + np.max(np.abs(alone))
+    slopes = np.stack([(balanced(size * unit)[1] - alone) / size for unit in np.eye(n)], axis=-1)
+    forces = np.zeros(n)
+    for _ in range(PASSES):
+        before, forces = forces, np.array([rub.law(still, r) for rub, r in zip(rubs, alone + slopes @ forces, strict=True)])
+        if np.max(np.abs(forces - before)) <= 1e-16 * size:
+            break
+    result, reactions = balanced(forces)
+    left = max(abs(rub.law(still, r) - force) for rub, r, force in zip(rubs, reactions, forces, strict=True))
+    assert left <= 1e-12 * size, "the friction of the spatial oracle does not converge"
+    return result, {rub.name: float(force) for rub, force in zip(rubs, forces, strict=True)}

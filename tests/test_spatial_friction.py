@@ -1,0 +1,138 @@
+"""Friction in space: random trees and loops whose pins, guides, sleeves and threads rub, and what a cycle takes."""
+
+import math
+
+import numpy as np
+import pytest
+from spatial_bridge import coordinate, declared, plain
+from spatial_mechanisms import FAMILIES, tree
+from spatial_oracle import REACTION, SECTION
+from spatial_rubbing import Rub, solve_rubbing
+
+from lagrange_casadi import Scene, SpatialMechanism, evaluate
+from lagrange_casadi.errors import AssemblyError
+from lagrange_casadi.motion import harmonic, polynomial
+
+pytestmark = pytest.mark.usefixtures("interpreted")
+
+RUBBING = ("revolute", "prismatic", "cylindrical", "screw")
+CASES = [("tree", seed) for seed in range(40)] + [("loop", seed) for seed in range(16)]
+CASES += [(name, seed) for name in ("rsur", "rsup", "rssr", "rssp") for seed in range(3)]
+RATIOS = (0.1371, 0.7713, 2)
+_RUBS = 4
+
+
+def rubbing(case):
+    """A random mechanism, an instant, and friction in up to four of its coordinates that move; none in others."""
+    name, seed = case
+    drawn = plain(tree(seed, kinds=RUBBING) if name == "tree" else FAMILIES[name](seed))
+    rng, t = np.random.default_rng((seed, 78)), 0.4 * drawn.span
+    found, rubs = drawn.solve(t), []
+    open_ = {joint for joint, _ in found.open}
+    for joint in drawn.mechanism.joints:
+        rates = [found.coordinates[joint.name, k][1] for k in range(joint.count)] if joint.kind in RUBBING else [0.0]
+        if min(map(abs, rates)) < 1e-3 or joint.name in open_ or len(rubs) >= _RUBS:
+            continue
+        numbers = {"mu": rng.uniform(0.0, 0.15), "radius": found.size * rng.uniform(0.01, 0.05)}
+        if joint.kind != "screw":
+            numbers["length"] = found.size * rng.uniform(0.4, 0.9)
+            if rng.random() < 0.4:
+                numbers |= {"static": rng.uniform(0.05, 0.2), "stribeck": rng.uniform(0.05, 1.0)}
+        if rng.random() < 0.3:
+            numbers["viscous"] = rng.uniform(0.0, 2.0)
+        rubs += [Rub(joint, k, numbers) for k in range(joint.count)]
+    return drawn, t, rubs
+
+
+def compare(case):
+    """The largest gap of forces over the largest of them; None where nothing rubs, or what rubs jams."""
+    drawn, t, rubs = rubbing(case)
+    if not rubs:
+        return None
+    scene = declared(drawn, t, rubs=rubs, xi=RATIOS)
+    try:
+        solution = evaluate(scene, t=(t, t, 1))
+    except AssemblyError as error:
+        if "jams" not in str(error):
+            raise
+        return None
+    assert solution.certified
+    true, frictions = solve_rubbing(drawn, rubs, t)
+    force = max(1.0, *(np.abs(r[:3]).max() for r in true.reactions.values()))
+    moment = max(force * true.size, *(np.abs(r[3:]).max() for r in true.reactions.values()))
+    gaps = [abs(solution.series[f"friction:{name}:along"][0] - found) / moment for name, found in frictions.items()]
+    for (joint, k), effort in true.efforts.items():
+        gaps.append(abs(solution.effort(coordinate(drawn.mechanism.joint(joint), k))[0] - effort) / moment)
+    for joint, reaction in true.reactions.items():
+        for value, member in zip(reaction, REACTION, strict=True):
+            name = f"reaction:{joint}:{member}"
+            if (joint, member) not in true.open and name in solution.series:
+                gaps.append(abs(solution.series[name][0] - value) / (force if member[0] == "f" else moment))
+    for rod in (name for name in drawn.rods if not (drawn.idle and name == "coupler")):
+        for k, xi in enumerate(RATIOS[:2]):
+            shut, own = true.open_section(rod, xi), solution.section(rod)
+            for value, member, is_open in zip(true.sections[rod].at(xi), SECTION, shut, strict=True):
+                size = force if member in ("axial", "shear_y", "shear_z") else moment
+                gaps.append(0.0 if is_open else abs(getattr(own, member)[0, k] - value) / size)
+    for rub in rubs:
+        taken = -frictions[rub.name] * true.coordinates[rub.joint.name, rub.index][1]
+        assert solution.series[f"friction:{rub.name}:loss"][0] == pytest.approx(taken, rel=1e-9, abs=1e-10 * moment)
+    return max(gaps)
+
+
+@pytest.mark.sampled(29)
+@pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, case)))
+def test_right_or_refused(case):
+    worst = compare(case)
+    assert worst is None or worst < 1e-10
+
+
+@pytest.mark.long
+def test_most_of_them_rub_and_every_kind_does():
+    kinds = [rub.joint.kind for case in CASES for rub in rubbing(case)[2]]
+    assert all(kinds.count(kind) > 5 for kind in RUBBING)
+    assert sum(compare(case) is not None for case in CASES) > len(CASES) / 2
+
+
+def balanced(scene, period, instants=721):
+    """Of a cycle, what drives give and what friction takes; forces that depend on places alone give back what they took."""
+    solution = evaluate(scene, t=(0.0, period, instants))
+    assert solution.certified
+    drives = list(scene.laws)
+    given = sum(solution.effort(name) * solution.motion(name).rate for name in drives)
+    losses = {name: values for name, values in solution.series.items() if name.endswith(":loss")}
+    assert all((values >= 0.0).all() and values.max() > 0.0 for values in losses.values())
+    step = period / (instants - 1)
+    # The powers jump where something turns back; their sum, the gain of energy, does not, so trapezia are exact.
+    return np.sum(given[:-1]) * step, np.sum(sum(losses.values())[:-1]) * step
+
+
+def test_over_a_turn_the_drive_gives_what_friction_takes():
+    """A spatial slider-crank whose main bearing and guide rub."""
+    m = SpatialMechanism("skew")
+    crank, rod = m.link("crank", length=0.1, mass=0.4), m.link("rod", length=0.4, mass=0.8)
+    slider = m.link("slider", length=0.05, mass=2.0, centre=(0.01, 0, 0.02), inertia=(1e-3, 1e-3, 1e-3))
+    main = m.revolute("O", m.ground, crank, axis=(0, 0, 1))
+    m.spherical("A", crank.tip, rod)
+    m.spherical("B", rod.tip, slider)
+    guide = m.prismatic("guide", m.ground.at(0.0, 0.05, 0.1), slider, axis=(1, 0, 0))
+    m.force("push", slider, x=-150.0)
+    m.friction("bearings", main, mu=0.1, radius=0.02, length=0.08, viscous=1e-3)
+    m.friction("ways", guide, mu=0.12, radius=0.03, length=0.1, static=0.2, stribeck=0.3)
+    scene = Scene(m, {"O": polynomial(0.0, 20.0)}, t=(0, 1, 2), posture={"guide": 0.4})
+    given, taken = balanced(scene, math.tau / 20.0)
+    assert taken > 1.0
+    assert given == pytest.approx(taken, rel=1e-10)
+
+
+def test_over_a_cycle_of_a_sleeve_both_drives_give_what_it_takes():
+    """A bent bar that slides and turns in a sleeve aslant, both by laws of their own."""
+    m = SpatialMechanism("sleeve")
+    bar = m.link("bar", length=0.3, mass=3.0, centre=(0.1, 0.04, 0.0), inertia=(2e-2, 3e-2, 3e-2))
+    sleeve = m.cylindrical("sleeve", m.ground, bar, axis=(0.6, 0.0, 0.8))
+    for along in ("slide", "turn"):
+        m.friction(f"rub_{along}", sleeve, along=along, mu=0.15, radius=0.03, length=0.2)
+    laws = {"sleeve:slide": harmonic(0.1, 0.05, 2.0), "sleeve:turn": harmonic(0.3, 1.2, 2.0, 0.7)}
+    given, taken = balanced(Scene(m, laws, t=(0, 1, 2)), 0.5)
+    assert taken > 1.0
+    assert given == pytest.approx(taken, rel=1e-10)
