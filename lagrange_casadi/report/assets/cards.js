@@ -30,6 +30,12 @@ class Card {
 
   renew() {
     this.stale = false;
+    if (live.moving && this.plot && this.width && designState() !== "none") {
+      this.plot.follow(this.width);
+      this.drawLegend();
+      this.mark(player.instant);
+      return;
+    }
     showTip(null);
     const without = designState() === "none";
     this.plot = without ? null : this.make(this);
@@ -56,12 +62,13 @@ class Card {
     if (!this.plot || !this.seen) return;
     if (this.plot.across || this.plot.middle) this.plot.mark(instant);
     this.values?.forEach(([curve, place]) => {
-      place.textContent = shown(curve.values[instant], curve.unit, 5, largestOf(curve.values));
+      say(place, shown(curve.values[instant], curve.unit, 5, largestOf(curve.values)));
     });
   }
 
   drawLegend() {
     const curves = this.plot?.curves ?? [];
+    if (live.moving && curves.length && curves.length === this.values?.length) return;
     this.values = [];
     this.legend.replaceChildren(
       ...curves.map((curve, k) => {

@@ -15,6 +15,8 @@ class Heat {
       },
     });
     this.canvas = element("canvas", { class: "heat", "aria-hidden": "true" });
+    this.context = this.canvas.getContext("2d");
+    this.marks = drawn("g");
     this.sheet.body.prepend(this.canvas);
   }
 
@@ -23,23 +25,36 @@ class Heat {
     this.across = scaled(endsOf([this.x.values], false), [FIELD.left, width - FIELD.right - 58], this.x.unit, this.x.title);
     this.up = scaled([0, 1], [height - FIELD.bottom, FIELD.top], "1", "");
     const { across, up, section, force } = this;
-    const peak = rowByName.get(`section:${section.link}:${force.name}`)?.peak;
-    this.most = Math.abs(peak?.value ?? 0) || 1;
-    const scale = scaleFor(force.unit, this.most);
     const field = { x: across.from, y: up.to, width: across.to - across.from, height: up.from - up.to };
     // On the sheet it keeps its place at every size, as the drawing around it does.
     const parts = { left: field.x / width, top: field.y / height, width: field.width / width, height: field.height / height };
     for (const [side, part] of Object.entries(parts)) this.canvas.style[side] = `${100 * part}%`;
-    this.paint(Math.max(2, Math.round(field.width)));
     this.sheet.fill(
       width, height,
       axesOf(across, up),
       drawn("text", { x: 14, y: (up.from + up.to) / 2, class: "label", transform: `rotate(-90 14 ${(up.from + up.to) / 2})` }, "ξ/l, base to tip"),
       drawn("text", { x: (across.from + across.to) / 2, y: height - 6, class: "label" }, across.label),
-      ...this.key(scale, width - FIELD.right - 44, up),
-      ...(peak ? this.peakMark(peak, scale) : []),
+      drawn("image", { x: width - FIELD.right - 44, y: up.to + 16, width: 12, height: up.from - up.to - 46, href: barOf(this.colours, signed(force)), preserveAspectRatio: "none" }),
+      this.marks,
     );
+    this.paint(Math.max(2, Math.round(field.width)));
     this.mark(player.instant);
+  }
+
+  /** Take what the arrays hold now. */
+  follow(width) {
+    const ends = endsOf([this.x.values], false);
+    if (width !== this.sheet.width || ends[0] !== this.across.low || ends[1] !== this.across.high) this.draw(width);
+    else this.paint(Math.max(2, Math.round(this.across.to - this.across.from)));
+  }
+
+  /** Tell the ends of the colours, and where the force is largest. */
+  markEnds() {
+    const { section, force, up } = this;
+    const peak = rowByName.get(`section:${section.link}:${force.name}`)?.peak;
+    this.most = Math.abs(peak?.value ?? 0) || 1;
+    const scale = scaleFor(force.unit, this.most);
+    this.marks.replaceChildren(...this.key(scale, this.sheet.width - FIELD.right - 44, up), ...(peak ? this.peakMark(peak, scale) : []));
   }
 
   /** Where and when the force is largest, as a button that shows it. */
@@ -62,12 +77,11 @@ class Heat {
     ];
   }
 
-  /** The bar of colours with its ends. */
+  /** The ends of the bar of colours. */
   key(scale, x, up) {
     const least = signed(this.force) ? -this.most : 0;
     const text = (value, y) => drawn("text", { x: x + 6, y, class: "key" }, `${format(value * scale.factor, 3)}`);
     return [
-      drawn("image", { x, y: up.to + 16, width: 12, height: up.from - up.to - 46, href: barOf(this.colours, signed(this.force)), preserveAspectRatio: "none" }),
       text(this.most, up.to + 9), text(least, up.from - 18), drawn("text", { x: x + 6, y: up.from - 2, class: "key" }, scale.unit),
     ];
   }
@@ -77,29 +91,32 @@ class Heat {
     return coloursOf(deck.stage.paper.inks);
   }
 
-  /** Paint the map; a coarse one while a slider moves. */
+  /** Paint the map, with its marks; a coarse one while a slider moves. */
   paint(width) {
-    const { section, force, canvas, values } = this;
+    this.markEnds();
+    const { section, force, canvas, context, values } = this;
     const rows = section.xi.length;
-    const columns = Math.min(width, Math.max(instants.count, 2), live.moving ? 160 : 700);
+    const step = live.moving ? 2 : 1;
+    const columns = Math.min(width, Math.max(instants.count, 2), live.moving ? 140 : 700);
     const wide = columns < 240 && !live.moving ? 2 * columns : columns;
-    const high = live.moving ? 51 : 2 * rows;
-    if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
-    const context = canvas.getContext("2d");
-    const image = context.createImageData(wide, high);
-    const pixels = new Uint32Array(image.data.buffer);
+    const high = live.moving ? Math.ceil(rows / 2) : 2 * rows;
+    if (canvas.width !== wide || canvas.height !== high) {
+      [canvas.width, canvas.height] = [wide, high];
+      this.image = context.createImageData(wide, high);
+    }
+    const pixels = new Uint32Array(this.image.data.buffer);
     const { colours } = this;
-    const places = Array.from({ length: high }, (_, row) => Math.round(((high - 1 - row) / (high - 1)) * (rows - 1)));
+    const places = Array.from({ length: high }, (_, row) => step * Math.round(((high - 1 - row) / (high - 1)) * ((rows - 1) / step)));
     let seen = 0;
     let known = -1;
     for (let column = 0; column < wide; column += 1) {
       const x = this.across.back(this.across.from + ((column + 0.5) / wide) * (this.across.to - this.across.from));
       seen = over ? nearest(this.x.values, x, seen) : instantAt(x);
-      if (seen !== known) sectionForces(section, force.name, seen, values);
+      if (seen !== known) sectionForces(section, force.name, seen, values, step);
       known = seen;
       for (let row = 0; row < high; row += 1) pixels[row * wide + column] = pixelOf(values[places[row]] / this.most, column + row, colours);
     }
-    context.putImageData(image, 0, 0);
+    context.putImageData(this.image, 0, 0);
   }
 
   mark(instant) {

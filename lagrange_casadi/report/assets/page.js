@@ -38,14 +38,14 @@ function headOf() {
   const verdict = () => {
     const [words, kind] = states[{ file: contents.certificate.state, other: "other", none: "impossible" }[designState()]];
     badge.className = `badge ${kind}`;
-    badge.textContent = words;
+    say(badge, words);
   };
   verdict();
   reading.watchers.add(verdict);
   const shownOf = instants.count < instants.total ? `, ${instants.count} of them shown` : "";
   const span = () => `${instants.total} instant${instants.total > 1 ? "s" : ""}${shownOf}, t = ${[0, -1].map((k) => shown(instants.t.at(k), "s", 5, Math.abs(instants.t.at(-1)))).join(" to ")}`;
   const told = element("p", { class: "told" }, span());
-  reading.watchers.add(() => (told.textContent = span()));
+  reading.watchers.add(() => say(told, span()));
   const si = element("button", { type: "button", class: "switch", "aria-pressed": "false", title: "Units of the file: SI, without prefixes", click: () => {
     setSi(!reading.si);
     si.setAttribute("aria-pressed", String(reading.si));
@@ -72,16 +72,22 @@ function glanceOf() {
     const rows = contents.rows.filter((row) => row.group === group && !row.open && filter(row));
     return rows.length ? [rows.reduce((best, row) => (Math.abs(row.peak.value) > Math.abs(best.peak.value) ? row : best))] : [];
   });
-  const fill = () => tiles().map((row) => {
-    const where = row.peak.xi === null ? "" : ` · ξ/l = ${row.peak.xi.toFixed(2)}`;
-    return element("button", { type: "button", class: "tile", title: "Show when and where", click: () => showRow(row) },
-      element("span", { class: "what" }, `Largest ${row.what.replace("resultant ", "")}`),
-      element("b", {}, Number.isFinite(row.peak.value) ? shown(row.peak.value, row.unit, 4) : "–"),
-      element("span", { class: "where" }, Number.isFinite(row.peak.value) ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result"));
+  const places = tiles().map((row) => {
+    const place = { row, what: element("span", { class: "what" }), value: element("b"), where: element("span", { class: "where" }) };
+    place.tile = element("button", { type: "button", class: "tile", title: "Show when and where", click: () => showRow(place.row) }, place.what, place.value, place.where);
+    return place;
   });
-  const bar = element("div", { class: "glance" }, fill());
-  reading.watchers.add(() => bar.replaceChildren(...fill()));
-  return bar;
+  const fill = () => tiles().forEach((row, k) => {
+    const known = Number.isFinite(row.peak.value);
+    const where = row.peak.xi === null ? "" : ` · ξ/l = ${row.peak.xi.toFixed(2)}`;
+    places[k].row = row;
+    say(places[k].what, `Largest ${row.what.replace("resultant ", "")}`);
+    say(places[k].value, known ? shown(row.peak.value, row.unit, 4) : "–");
+    say(places[k].where, known ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result");
+  });
+  fill();
+  reading.watchers.add(fill);
+  return element("div", { class: "glance" }, places.map((place) => place.tile));
 }
 
 /** Show when a row peaks; of a section force also where, with its ribbon. */
