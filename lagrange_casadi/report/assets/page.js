@@ -8,7 +8,7 @@ function buildPage() {
   const frame = element("div", { class: "frame" }, canvas);
   const left = element("div", { class: "left" }, frame);
   root.append(
-    element("a", { class: "skip", href: "#tables" }, "Skip to the tables"), headOf(), glanceOf(), element("div", { class: "desk" }, left, element("div", { class: "right" }, deck.list, addingBar())),
+    element("a", { class: "skip", href: "#tables" }, "Skip to the tables"), headOf(), glanceOf(), element("div", { class: "desk" }, left, element("div", { class: "right" }, linksTable(), deck.list, addingBar())),
     element("div", { class: "tables", id: "tables" }, resultTables(showRow)), element("div", { class: "facts" }, factSections()), tip, said,
   );
   const stage = new Stage(canvas);
@@ -67,7 +67,7 @@ function headOf() {
 
 /** What is largest, at a glance: press one to see when and where it is. */
 function glanceOf() {
-  const groups = [["effort", () => true], ["reaction", (row) => row.name.endsWith(":resultant")], ["section", (row) => row.name.endsWith(":axial")], ["section", (row) => row.name.endsWith(":shear")], ["section", (row) => row.name.endsWith(":bending")]];
+  const groups = [["effort", () => true], ["reaction", (row) => row.name.endsWith(":resultant")], ["section", (row) => row.name.endsWith(":axial")], ["section", (row) => row.name.endsWith(":shear")], ["section", (row) => row.name.endsWith(":bending")], ["stress", () => true]];
   const tiles = () => groups.flatMap(([group, filter]) => {
     const rows = contents.rows.filter((row) => row.group === group && !row.open && filter(row));
     return rows.length ? [rows.reduce((best, row) => (Math.abs(row.peak.value) > Math.abs(best.peak.value) ? row : best))] : [];
@@ -90,17 +90,44 @@ function glanceOf() {
   return element("div", { class: "glance" }, places.map((place) => place.tile));
 }
 
+/** What is largest in each link, with when it is: a row a link, a button a force; nothing where no link has sections. */
+function linksTable() {
+  const names = ["axial", "shear", "torsion", "bending"];
+  const rowsOf = (link) => [...names.map((name) => rowByName.get(`section:${link}:${name}`)), rowByName.get(`stress:${link}:von_mises`)];
+  const links = contents.sections.map((entry) => [entry.link, rowsOf(entry.link)]);
+  const columns = [0, 1, 2, 3, 4].filter((k) => links.some(([, rows]) => rows[k]));
+  if (!columns.length) return null;
+  const cells = [];
+  const cellOf = (row) => {
+    if (!row || row.open) return element("td", {}, row ? "open" : "");
+    const [value, when] = [element("b"), element("small")];
+    cells.push([row, value, when]);
+    return element("td", {}, element("button", { type: "button", title: "Show when and where", click: () => showRow(row) }, value, when));
+  };
+  const heads = columns.map((k) => element("th", { scope: "col" }, links.map(([, rows]) => rows[k]).find(Boolean).what.replace("resultant ", "")));
+  const lines = links.map(([link, rows]) => element("tr", {}, element("th", { scope: "row" }, link), columns.map((k) => cellOf(rows[k]))));
+  const fill = () => cells.forEach(([row, value, when]) => {
+    const { peak } = row;
+    const known = Number.isFinite(peak.value);
+    say(value, known ? shown(peak.value, row.unit, 4) : "–");
+    say(when, !known ? "" : over ? `${over.joint} = ${shown(peak.over, over.unit, 4)}` : whenOf(peak.t, null));
+  });
+  fill();
+  reading.watchers.add(fill);
+  return element("section", { class: "card links" }, element("header", {}, element("h3", {}, "Largest in each link")),
+    element("div", { class: "scroll" }, element("table", { "aria-label": "Largest in each link" }, element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "link"), heads)), element("tbody", {}, lines))));
+}
+
 /** Show when a row peaks; of a section force also where, with its ribbon. */
 function showRow(row) {
   const { stage } = deck;
   player.pause();
   player.seek(instantAt(row.peak.t));
   if (row.group === "section") {
-    const section = sectionByLink.get(row.part);
     const force = row.name.slice(`section:${row.part}:`.length);
     stage.show("ribbon", force);
     document.querySelector(".shows .ribbon").value = force;
-    pinSection({ section, ratio: Math.round(row.peak.xi * (section.xi.length - 1)) }, false);
+    showSection(row.part, row.peak.xi);
   }
   deck.stage.paper.canvas.scrollIntoView({ block: "nearest", behavior: "smooth" });
   announce(`${titleOf(row)}: ${shown(row.peak.value, row.unit)}, ${whenOf(row.peak.t, row.peak.over)}`);

@@ -111,6 +111,7 @@ function answer() {
   const values = live.asked;
   live.asked = null;
   live.moving = true;
+  document.documentElement.classList.add("moving");
   live.engine.show(values, chartsPlaces());
   renewAll();
   follow(end);
@@ -137,6 +138,7 @@ function follow(end) {
 /** When a slider rests: everything, in full. */
 function arrive() {
   live.moving = false;
+  document.documentElement.classList.remove("moving");
   live.engine.show(live.engine.values);
   renewAll();
   for (const fill of reading.tables) fill();
