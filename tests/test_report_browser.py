@@ -9,9 +9,11 @@ import alive
 import browser
 import numpy as np
 import pytest
+import strong
 from drawn_scenes import every_kind
 from reports import HOSTILE, hostile, press, solved
 
+from lagrange_casadi import evaluate
 from lagrange_casadi.quantities import Output
 
 pytestmark = alive.NEEDS_BROWSER
@@ -178,6 +180,25 @@ def test_a_section_map_tells_the_solutions_forces(page, name):
     quiet(one)
 
 
+def test_a_map_of_stress_tells_the_solutions_stress_and_where_it_is_largest(page):
+    solution = evaluate(strong.slider(), wanted=["all", "stress:rod"], backend="vm", certificate=False)
+    one = page(solution)
+    card = "[...document.querySelectorAll('.card')].find((one) => one.querySelectorAll('select')[1]?.value === 'stress')"
+    one.run(f"{{ const list = {card}.querySelector('select'); list.value = 'rod'; list.dispatchEvent(new Event('change')); }}")
+    stress = solution.stress("rod")
+    peak = stress.peak("von_mises")
+    words = one.run(f"{card}.querySelector('.told-peak').textContent").translate({0xA0: " "})
+    place = f"ξ/l = {peak.xi:.3g}, t = {to_digits(1e3 * peak.t, 5):g} ms, {peak.fibre}"
+    assert words == f"largest: {to_digits(peak.value / 1e6, 5):g} MPa at {place}"
+    one.run(f"document.querySelectorAll('.map').forEach((map) => map.closest('.card') === {card} || map.closest('.card').remove())")
+    head, lines = hovered(one, "map", 0.5, 0.4)
+    i, xi = instant_of(solution, head), float(re.search(r"ξ/l = ([\d.]+)", head)[1])
+    value, unit = lines["von Mises' stress"]
+    expected = stress.grid("von_mises", np.array([xi]))[i, 0]
+    assert value * FACTORS[unit[0]] == pytest.approx(expected, rel=1e-4)
+    quiet(one)
+
+
 def test_a_polar_plot_tells_a_bearings_load_in_ground_axes_and_on_a_body(page):
     solution = solved("slider_crank")
     one = page(solution)
@@ -334,7 +355,7 @@ def test_what_is_the_same_but_for_rounding_is_a_level_line(page):
         return np.where(np.arange(values.size) % 2, np.nextafter(values, np.inf), values) if output.member == "rate" else values
 
     one = page(changed(jittered))
-    lists = "document.querySelector('.card').querySelectorAll('select')"
+    lists = "document.querySelector('.cards .card').querySelectorAll('select')"
     for k in (0, 1):
         one.run(f"{{ const list = {lists}[{k}]; list.value = 'motion:O_rate'; list.dispatchEvent(new Event('change')); }}")
     ticks = one.run("[...document.querySelectorAll('.card:first-child .axes text')].map((text) => text.textContent)")

@@ -204,6 +204,16 @@ DRAG = """(async () => {
   const pictures = () => [...document.querySelectorAll('canvas')].map((one) => one.toDataURL());
   const shown = () => [document.querySelector('.cards').innerHTML, ...pictures()];
   const seen = [];
+  const inSight = (one) => one.getBoundingClientRect().top < window.innerHeight;
+  const lines = (card) => [...card.querySelectorAll('.curve[d]')].map((one) => one.getAttribute('d'));
+  const curves = () => [...document.querySelectorAll('.card')].filter(inSight).flatMap(lines);
+  const before = curves();
+  for (let k = 0; k < 12; k += 1) {
+    field.value = 0.08;
+    field.dispatchEvent(new Event('input'));
+    await new Promise((done) => requestAnimationFrame(done));
+  }
+  const moved = curves().map((d, k) => d !== before[k]);
   for (const way of [[0.06, 0.075, 0.09, 0.08, 0.085], [0.085]]) {
     for (const value of way) {
       field.value = value;
@@ -218,13 +228,15 @@ DRAG = """(async () => {
     field.dispatchEvent(new Event('input'));
     await new Promise((done) => setTimeout(done, 400));
   }
-  return [...seen, shown()];
+  return [...seen, shown(), moved];
 })()"""
 
 
 def test_a_slider_that_rests_leaves_all_of_its_design(crank):
     """Charts, maps and the picture follow in turn while it moves; at rest none is left behind, whatever the way was."""
-    slow, at_once, other = crank().run(DRAG)
+    slow, at_once, other, moved = crank().run(DRAG)
+    assert moved
+    assert all(moved)
     assert slow == at_once
     assert len(slow) == len(other) > 2
     assert [one != changed for one, changed in zip(slow, other, strict=True)] == [True] * len(slow)

@@ -24,6 +24,8 @@ from ..strength import safeties
 from .arrays import Arrays, finite
 from .instants import shown_instants
 from .live import Live
+from .maps import map_entries
+from .marks import Mark, mark
 from .sections import section_entries
 from .words import GROUPS, what
 
@@ -47,16 +49,6 @@ class Series:
     unit: str
     values: int
     places: int | None = None
-
-
-@dataclass(frozen=True)
-class Mark:
-    """A value with its time, its ratio xi/l where it is along a link, and the drive's coordinate where instants are over one."""
-
-    value: float
-    t: float
-    xi: float | None
-    over: float | None
 
 
 @dataclass(frozen=True)
@@ -99,6 +91,7 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Any]:
         "paths": [{"name": name} | asdict(spot) for name, spot in path_spots(description).items()],
         "series": [asdict(one) for one in _series(solution, chosen, arrays)],
         "sections": list(section_entries(solution, chosen, arrays)),
+        "maps": list(map_entries(solution, arrays)),
         "groups": GROUPS,
         "rows": [asdict(row) for row in _rows(solution)],
         "strength": list(_strength(solution)),
@@ -175,18 +168,16 @@ def _series(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) ->
 
 
 def _rows(solution: Solution) -> Iterator[Row]:
-    def mark(extreme: Extreme) -> Mark:
-        own = solution.over
-        over = float(own.values[int(np.argmax(solution.t == extreme.t))]) if own else None
-        return Mark(extreme.value + 0.0, extreme.t, extreme.xi, over)
+    def marked(extreme: Extreme) -> Mark:
+        return mark(solution, extreme.value, extreme.t, extreme.xi)
 
-    for output in told(solution):
+    for output in (*told(solution), *(output for output in solution.quantities() if output.group == "stress")):
         words = str(output), output.group, output.part, what(output, solution.table), solution.unit(output)
         if not solution.determined(output):
             yield Row(*words, open=True)
             continue
         own = solution.statistics(output)
-        peak, smallest, largest = (mark(extreme) for extreme in (own.peak, own.smallest, own.largest))
+        peak, smallest, largest = (marked(extreme) for extreme in (own.peak, own.smallest, own.largest))
         means = (None if mean is None else finite(mean) for mean in (own.mean, own.rms))
         yield Row(*words, False, peak, error_of(solution, output), smallest, largest, *means)
 

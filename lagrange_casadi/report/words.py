@@ -11,13 +11,14 @@ _CUT = (
     " of the joint's",
     " of the joint",
     " of the drive",
+    ", the largest along the link",
 )
 
 GROUPS = {
     "effort": "Efforts",
     "reaction": "Reactions",
     "section": "Section forces",
-    "stress": "Stresses",
+    "stress": "Stresses, largest along the link",
     "utilisation": "Utilisation",
     "output": "Own outputs",
     "motion": "Motion of joints",

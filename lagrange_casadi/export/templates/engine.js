@@ -8,6 +8,8 @@ class Engine {
     this.calls = instance.exports;
     this.layout = layout;
     this.calls._initialize?.();
+    const own = (name) => this.calls[layout.prefix + "_" + name];
+    this.own = { prepare: own("prepare"), motion: own("motion"), batch: own("batch"), section: own("section"), message: own("message") };
     this.real = layout.precision === "single" ? Float32Array : Float64Array;
     let at = (this.calls.__heap_base.value + 15) & ~15;
     const room = (bytes) => {
@@ -49,35 +51,31 @@ class Engine {
   /** Take parameters, in the order of the C's struct, and begin anew. Returns a status, as all that follow do: 0 where all is well. */
   prepare(values) {
     new this.real(this.calls.memory.buffer, this.given, values.length).set(values);
-    return this.call("prepare", this.model, this.given);
+    return this.own.prepare(this.model, this.given);
   }
 
   /** Put what the scene's motion prescribes at a time [s] into the inputs with a number. */
   motion(time, number = 0) {
     const place = this.in + this.real.BYTES_PER_ELEMENT * this.layout.inputs * number;
-    if (this.layout.precision !== "single") return this.call("motion", this.model, time, place);
-    return this.call("motion", this.model, Math.fround(time), time - Math.fround(time), place);
+    if (this.layout.precision !== "single") return this.own.motion(this.model, time, place);
+    return this.own.motion(this.model, Math.fround(time), time - Math.fround(time), place);
   }
 
   /** Evaluate the first instants, so many; the status of each is among the statuses. */
   evaluate(count = this.count) {
-    return this.call("batch", this.model, count, this.in, this.out, this.told);
+    return this.own.batch(this.model, count, this.in, this.out, this.told);
   }
 
   /** The forces inside a link at a ratio xi/l, for the outputs with a number; null where there are none, for a reason that is told. */
   section(link, xi, number = 0) {
     const place = this.out + this.real.BYTES_PER_ELEMENT * this.layout.outputs * number;
-    this.failed = this.call("section", this.model, place, link, xi, this.forces);
+    this.failed = this.own.section(this.model, place, link, xi, this.forces);
     return this.failed ? null : new this.real(this.calls.memory.buffer, this.forces, this.layout.forces);
   }
 
   /** What a status means. */
   message(status) {
-    const bytes = new Uint8Array(this.calls.memory.buffer, this.call("message", status));
+    const bytes = new Uint8Array(this.calls.memory.buffer, this.own.message(status));
     return new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
-  }
-
-  call(name, ...values) {
-    return this.calls[this.layout.prefix + "_" + name](...values);
   }
 }

@@ -1,6 +1,6 @@
 // The engine in the page: for other parameters it evaluates the whole cycle, and puts what it finds in the place of what is shown.
 
-const BLOCK = 1024; // Instants that are evaluated at once.
+const BLOCK = 128; // Instants that are evaluated at once: so many that their numbers stay near the processor.
 
 class Alive {
   constructor(instance) {
@@ -26,6 +26,7 @@ class Alive {
     const single = (number) => of.get(number)[0] - told.layout.inputs;
     const named = new Map(contents.series.map((one) => [one.values, one.name]));
     this.targets = told.of.map(([number, sources]) => ({ array: array(number), sources, row: rows.get(named.get(number)) }));
+    this.column = new Float64Array(BLOCK);
     this.paths = contents.bodies.flatMap((body) => {
       const sources = told.poses[body.name];
       return body.pose.map((number, k) => ({ array: array(number), source: sources[k], body: body.name }));
@@ -38,7 +39,7 @@ class Alive {
         const one = seriesByName.get(`section:${entry.link}:${force.name}`);
         const row = rows.get(`section:${entry.link}:${force.name}`);
         if (one) curve.series.set(k, [{ array: array(one.values) }, { array: array(one.places) }]);
-        if (row && !row.open) curve.rows = (curve.rows ?? new Map()).set(k, row);
+        if (row && !row.open) curve.rowOf.set(k, row);
       });
       return curve;
     });
@@ -65,6 +66,7 @@ class Alive {
       contents.rows.forEach((row, k) => Object.assign(row, structuredClone(this.file.rows[k])));
       this.engine.prepare(this.values);
       this.place();
+      for (const curve of this.curves) curve.forget();
       return;
     }
     try {
@@ -83,71 +85,76 @@ class Alive {
     const numbers = this.place();
     const times = this.times(numbers[0], numbers[1]);
     if (told.loops) this.close(times[0]);
-    const tallies = [...this.targets.filter((target) => target.row && !target.row.open), ...this.curves.flatMap((curve) => [...(curve.rows ?? new Map()).values()].map((row) => ({ row, along: true })))]
-      .map((one) => [one.row.name, new Tally(one.row, one.along)]);
-    this.tallies = new Map(tallies);
     const weights = weightsOf(times);
+    const tallies = new Map();
+    const tallyOf = (row, along) => row && !row.open && (tallies.get(row) ?? tallies.set(row, new Tally(along)).get(row));
+    for (const target of this.targets) target.tally = tallyOf(target.row, false);
+    for (const curve of this.curves) curve.fit(times.length);
     this.turns = told.wrapped.map(() => null);
-    for (let from = 0; from < times.length; from += BLOCK) this.block(times, weights, from, Math.min(BLOCK, times.length - from), whole);
-    for (const [name, tally] of this.tallies) Object.assign(rowByName.get(name), tally.told(times, this.coordinates));
+    for (let from = 0; from < times.length; from += BLOCK) this.block(times, weights, from, Math.min(BLOCK, times.length - from));
+    this.put(instants.t, times, 0, times.length);
+    if (over) this.put(array(over.values), this.coordinates, 0, times.length);
+    for (const curve of this.curves) this.along(curve, times.length, whole, (row) => tallyOf(row, true));
+    for (const [row, tally] of tallies) Object.assign(row, tally.told(times, this.coordinates));
     for (const bar of this.bars) complete(bar);
     for (const values of this.unknown) values.fill(NaN);
   }
 
-  block(times, weights, from, count, whole) {
-    const { engine, told, position } = this;
+  /** Put values of instants, the first of which has a number, where they are shown. */
+  put(into, values, from, count) {
+    const { position } = this;
+    for (let i = 0; i < count; i += 1) {
+      const place = position ? position[from + i] : from + i;
+      if (place >= 0) into[place] = values[i];
+    }
+  }
+
+  block(times, weights, from, count) {
+    const { engine, told, column } = this;
     engine.fit(count);
     for (let i = 0; i < count; i += 1) this.check(engine.motion(times[from + i], i), times[from + i]);
     if (engine.evaluate(count)) {
       const i = engine.statuses.findIndex(Boolean);
       this.check(engine.statuses[i], times[from + i]);
     }
-    const many = [told.layout.inputs, told.layout.outputs];
-    const views = [engine.inputs.slice(), engine.outputs.slice()];
-    const reader = (source) => (source < many[0] ? [views[0], many[0], source] : [views[1], many[1], source - many[0]]);
-    told.wrapped.forEach((output, k) => (this.turns[k] = unwrap(views[1], many[1], output, count, this.turns[k])));
-    const at = (i) => (position ? position[from + i] : from + i);
-    for (const { array: into, sources, row } of this.targets) {
-      const readers = sources.map(reader);
-      const tally = row && this.tallies.get(row.name);
-      const [[view, stride, start], ...others] = readers;
-      for (let i = 0; i < count; i += 1) {
-        let value = view[i * stride + start];
-        for (const [other, step, first] of others) value = Math.hypot(value, other[i * step + first]);
-        const place = at(i);
-        if (place >= 0) into[place] = value;
-        tally?.add(value, from + i, weights[from + i]);
-      }
+    const { inputs: given, outputs: many } = told.layout;
+    const [inputs, outputs] = [engine.inputs, engine.outputs];
+    told.wrapped.forEach((output, k) => (this.turns[k] = unwrap(outputs, many, output, count, this.turns[k])));
+    const read = (source) => {
+      const [view, stride, start] = source < given ? [inputs, given, source] : [outputs, many, source - given];
+      for (let i = 0; i < count; i += 1) column[i] = view[i * stride + start];
+    };
+    for (const { array: into, sources, tally } of this.targets) {
+      read(sources[0]);
+      if (sources.length > 1) sizesInto(column, outputs, many, sources.map((source) => source - given), count);
+      this.put(into, column, from, count);
+      if (tally) tally.take(column, from, count, weights);
     }
     for (const { array: into, source } of this.paths) {
       if (source < 0) continue;
-      const [view, stride, start] = reader(source);
-      for (let i = 0; i < count; i += 1) if (at(i) >= 0) into[at(i)] = view[i * stride + start];
+      read(source);
+      this.put(into, column, from, count);
     }
-    for (let i = 0; i < count; i += 1) {
-      const place = at(i);
-      if (place >= 0) instants.t[place] = times[from + i];
-      if (over && place >= 0) array(over.values)[place] = this.coordinates[from + i];
-    }
-    for (const curve of this.curves) this.along(curve, views[1], many[1], from, count, at, whole);
+    for (const curve of this.curves) curve.keep(outputs, many, from, count);
   }
 
-  along(curve, outputs, many, from, count, at, whole) {
-    if (from === 0) curve.prepare(this.lengths[curve.entry.link], outputs);
-    const rows = curve.entry.forces.map((force, number) => [number, this.tallies.get(`section:${curve.entry.link}:${force.name}`), whole && curve.series.get(number)]).filter((row) => row[1] || row[2]);
-    for (let i = 0; i < count; i += 1) {
-      const place = at(i);
-      const found = curve.reach(outputs, i * many, whole);
-      for (const [number, tally, series] of rows) {
-        const ends = found[number];
+  along(curve, count, whole, tallyOf) {
+    const { position } = this;
+    curve.prepare(this.lengths[curve.entry.link]);
+    const rows = curve.entry.forces.map((_, k) => [k, tallyOf(curve.rowOf.get(k)), whole && curve.series.get(k)]).filter((row) => row[1] || row[2]);
+    curve.reachAll(count, whole, (found, i) => {
+      const place = position ? position[i] : i;
+      for (const [k, tally, series] of rows) {
+        const ends = found[k];
         if (Number.isNaN(ends[0])) continue;
         if (series && place >= 0) {
           series[0].array[place] = ends[4];
           series[1].array[place] = ends[5];
         }
-        tally?.reach(ends, from + i);
+        if (tally) tally.reach(ends, i);
       }
-    }
+    });
+    for (const [, tally] of rows) for (const end of tally ? [tally.low, tally.high] : []) curve.ends.add(end[1]);
   }
 
   /** The times of the instants: equal steps, or when the drive's coordinate takes equal steps. */
@@ -249,18 +256,26 @@ class Alive {
 /** Why a design has no numbers. */
 class NoResult extends Error {}
 
-/** What a quantity is over all instants. */
+/** What a quantity is over all instants; one that is `along` a link has a place there, and no mean. */
 class Tally {
-  constructor(row, along) {
-    Object.assign(this, { row, along, low: [Infinity], high: [-Infinity], most: [0, 0, null], sum: 0, squares: 0 });
+  constructor(along) {
+    Object.assign(this, { along, low: [Infinity], high: [-Infinity], most: [0, 0, null], sum: 0, squares: 0 });
   }
 
-  add(value, instant, weight) {
-    if (value < this.low[0]) this.low = [value, instant, null];
-    if (value > this.high[0]) this.high = [value, instant, null];
-    if (Math.abs(value) > Math.abs(this.most[0])) this.most = [value, instant, null];
-    this.sum += weight * value;
-    this.squares += weight * value * value;
+  /** Take the values of some instants, the first of which has a number. */
+  take(values, from, count, weights) {
+    let [low, high, most, lowAt, highAt, mostAt] = [this.low[0], this.high[0], Math.abs(this.most[0]), -1, -1, -1];
+    for (let i = 0; i < count; i += 1) {
+      const [value, weight] = [values[i], weights[from + i]];
+      if (value < low) [low, lowAt] = [value, i];
+      if (value > high) [high, highAt] = [value, i];
+      if (Math.abs(value) > most) [most, mostAt] = [Math.abs(value), i];
+      this.sum += weight * value;
+      this.squares += weight * value * value;
+    }
+    if (lowAt >= 0) this.low = [low, from + lowAt, null];
+    if (highAt >= 0) this.high = [high, from + highAt, null];
+    if (mostAt >= 0) this.most = [values[mostAt], from + mostAt, null];
   }
 
   reach(ends, instant) {
@@ -291,6 +306,15 @@ function weightsOf(t) {
   }
   const sum = found.reduce((all, weight) => all + weight, 0);
   return sum ? found.map((weight) => weight / sum) : found.fill(1 / t.length);
+}
+
+/** Of the values in a column the sizes with others of the same instants; the first of the sources is the column's own. */
+function sizesInto(column, view, stride, sources, count) {
+  for (let i = 0; i < count; i += 1) {
+    let sum = column[i] * column[i];
+    for (let k = 1; k < sources.length; k += 1) sum += view[i * stride + sources[k]] ** 2;
+    column[i] = Math.sqrt(sum);
+  }
 }
 
 /** Let an angle go on where it jumps by a turn; `before` is where it was. Returns where it is at last. */

@@ -3,65 +3,103 @@
 /** The law of a link in a live page. `sourceOf` tells which output an array of the page is. */
 class Along {
   constructor(entry, told, engine, sourceOf) {
-    Object.assign(this, { entry, told, engine, sourceOf });
+    Object.assign(this, { entry, told, engine });
     this.many = told.degree + 1;
-    this.spreads = told.spreads.map((ends) => ends.map((source) => source - engine.layout.inputs));
     this.plain = entry.forces.filter((force) => !force.parts.length);
     const place = new Map(this.plain.map((force, k) => [force.name, k]));
-    this.sources = [...new Set(this.plain.flatMap((force) => force.terms.map(([coefficient]) => sourceOf(coefficient))))];
-    this.terms = this.plain.map((force) => [...new Set(force.terms.map(([coefficient]) => this.sources.indexOf(sourceOf(coefficient))))]);
-    this.stations = entry.loads.map((load) => sourceOf(load.station));
-    this.acting = this.plain.map((force) => entry.loads.map((load) => sourceOf(load[force.acting])));
-    this.across = this.plain.map((force) => (force.arm ? entry.loads.map((load) => sourceOf(load[force.across])) : null));
+    // Of all outputs it keeps its own, an instant after another.
+    this.outputs = [];
+    const own = (output) => {
+      if (!this.outputs.includes(output)) this.outputs.push(output);
+      return this.outputs.indexOf(output);
+    };
+    const kept = (number) => own(sourceOf(number));
+    this.terms = this.plain.map((force) => [...new Set(force.terms.map(([coefficient]) => kept(coefficient)))]);
+    this.spreads = told.spreads.map((ends) => ends.map((source) => own(source - engine.layout.inputs)));
+    this.stations = entry.loads.map((load) => kept(load.station));
+    this.acting = this.plain.map((force) => entry.loads.map((load) => kept(load[force.acting])));
+    this.across = this.plain.map((force) => (force.arm ? entry.loads.map((load) => kept(load[force.across])) : null));
+    this.rowsOf = this.plain.map((force) => force.terms.map(([coefficient, row, sign]) => [kept(coefficient), array(row), sign]));
     this.scratch = this.plain.map(() => new Float64Array(this.many));
     this.factor = new Float64Array(this.many);
+    this.values = new Float64Array(this.many);
+    this.within = Array.from(this.values, () => new Float64Array(this.many));
+    this.units = this.within.map((one, k) => one.map((_, j) => Number(j === k)));
     this.tallies = entry.forces.map(() => new Float64Array(6).fill(NaN));
     this.asked = entry.forces.flatMap((force, k) => {
       const parts = (force.parts.length ? force.parts : [force.name]).map((name) => this.scratch[place.get(name)]);
-      return force.open ? [] : [{ parts, tally: this.tallies[k], slope: new Float64Array(2 * this.many), known: new Float64Array(2) }];
+      return force.open ? [] : [{ parts, tally: this.tallies[k], slope: new Float64Array(2 * this.many), square: new Float64Array(2 * this.many - 1), known: new Float64Array(2), none: false }];
     });
     this.needed = this.scratch.map((c) => this.asked.some((one) => one.parts.includes(c)));
     this.series = new Map();
+    this.rowOf = new Map();
+    this.ends = new Set();
+    this.pieces = [];
   }
 
-  /** Take the design that the engine is prepared for; `first` are the outputs of one of its instants. */
-  prepare(length, first) {
-    const { told, engine, entry } = this;
+  /** Have room for the outputs of so many instants. */
+  fit(count) {
+    if (this.held?.length !== count * this.outputs.length) this.held = new Float64Array(count * this.outputs.length);
+  }
+
+  /** Keep what it needs of the outputs of some instants, the first of which has a number; each has so many. */
+  keep(outputs, many, from, count) {
+    const { held, outputs: own } = this;
+    let place = from * own.length;
+    for (let i = 0; i < count; i += 1) for (let k = 0; k < own.length; k += 1) held[place++] = outputs[i * many + own[k]];
+  }
+
+  /** Take the design that the engine is prepared for, of which all instants are kept. */
+  prepare(length) {
+    const { told, engine, entry, held, many } = this;
     this.length = length;
     for (const { known } of this.asked) [known[0], known[1]] = [Infinity, -Infinity];
-    const constants = this.spreads.flat().map((source) => [source, first[source]]);
-    const marks = this.spreads.flatMap(([width, end]) => [first[end] - first[width], first[end]]).filter((u) => u > 0 && u < 1);
-    const cuts = [...new Set([...told.breaks, ...marks])].sort((a, b) => a - b);
-    const nodes = Array.from({ length: this.many }, (_, j) => Math.cos((Math.PI * j) / told.degree));
+    const constants = this.spreads.flat().map((own) => [this.outputs[own], held[own]]);
+    const marks = this.spreads.flatMap(([width, end]) => [held[end] - held[width], held[end]]).filter((u) => u > 0 && u < 1);
+    let changed = this.cut([...new Set([...told.breaks, ...marks])].sort((a, b) => a - b));
     engine.fit(1);
     const outputs = engine.outputs;
-    const unit = (source) => {
+    const columns = this.plain.map((force) => contents.live.forces.indexOf(force.name));
+    const values = this.plain.map(() => new Float64Array(many));
+    for (const source of new Set(this.terms.flat())) {
       outputs.fill(0);
-      for (const [place, value] of constants) outputs[place] = value;
-      outputs[source] = 1;
-    };
-    this.pieces = cuts.slice(1).map((high, k) => ({ low: cuts[k], high, middle: (cuts[k] + high) / 2, half: (high - cuts[k]) / 2 }));
-    for (const piece of this.pieces) piece.rows = this.plain.map(() => []);
-    const names = contents.live.forces;
-    const columns = this.plain.map((force) => names.indexOf(force.name));
-    const xi = array(entry.xi);
-    this.sources.forEach((source, number) => {
-      unit(source);
-      const at = (u) => {
-        const forces = this.forcesAt(u);
-        return columns.map((column) => forces[column]);
-      };
+      for (const [output, value] of constants) outputs[output] = value;
+      outputs[this.outputs[source]] = 1;
+      const felt = this.plain.map((_, k) => k).filter((k) => this.terms[k].includes(source));
       for (const piece of this.pieces) {
-        const values = nodes.map((v) => at(Math.max(0, Math.min(1, piece.middle + piece.half * v))));
-        this.plain.forEach((_, k) => (piece.rows[k][number] = chebyshevOf(values.map((row) => row[k]))));
+        for (let j = 0; j < many; j += 1) {
+          const forces = this.forcesAt(Math.max(0, Math.min(1, piece.middle + piece.half * Math.cos((Math.PI * j) / told.degree))));
+          for (const k of felt) values[k][j] = forces[columns[k]];
+        }
+        for (const k of felt) if (chebyshevInto(piece.rows[k][this.terms[k].indexOf(source)], values[k])) changed = true;
       }
-      const rows = this.plain.flatMap((force, k) => force.terms.filter(([coefficient]) => this.sourceOf(coefficient) === source).map(([, row, sign]) => [array(row), sign, columns[k]]));
-      if (!rows.length) return;
-      for (let j = 0; j < xi.length; j += 1) {
-        const forces = this.forcesAt(xi[j]);
-        for (const [row, sign, column] of rows) row[j] = forces[column] / sign;
+      if (changed) this.fill(array(entry.xi), source, felt, columns);
+    }
+  }
+
+  /** Have pieces between cuts; those that there were before are kept, with all that is known of them. Returns whether any is new. */
+  cut(cuts) {
+    if (cuts.length === this.pieces.length + 1 && this.pieces.every(({ low, high }, k) => low === cuts[k] && high === cuts[k + 1])) return false;
+    const rows = () => this.terms.map((own) => own.map(() => new Float64Array(this.many)));
+    this.pieces = cuts.slice(1).map((high, k) => ({ low: cuts[k], high, middle: (cuts[k] + high) / 2, half: (high - cuts[k]) / 2, rows: rows() }));
+    return true;
+  }
+
+  /** Put a function along the link into the rows of the page. */
+  fill(xi, source, felt, columns) {
+    for (let j = 0; j < xi.length; j += 1) {
+      const piece = this.pieces.find(({ low, high }) => xi[j] > low && xi[j] < high);
+      const forces = piece ? null : this.forcesAt(xi[j]);
+      for (const k of felt) {
+        const value = piece ? chebyshevAt(piece.rows[k][this.terms[k].indexOf(source)], (xi[j] - piece.middle) / piece.half, this.many) : forces[columns[k]];
+        for (const [own, row, sign] of this.rowsOf[k]) if (own === source) row[j] = value / sign;
       }
-    });
+    }
+  }
+
+  /** Let what follows begin anew, for the page's rows are those of another design. */
+  forget() {
+    this.pieces = [];
   }
 
   forcesAt(u) {
@@ -70,84 +108,180 @@ class Along {
     return found;
   }
 
-  /** What each determined force is at the instant whose outputs begin at a place of `outputs`: smallest, where, largest, where,
-   *  largest in size, where. The numbers hold until the next call. Unless `whole`, what cannot be beyond all that was found since the
-   *  design was taken is not looked for within pieces: the ends of the cycle are the same. */
-  reach(outputs, place, whole) {
-    const { tallies, stations } = this;
-    for (const tally of tallies) tally[0] = NaN;
-    const cuts = stations.length ? stations.map((source) => outputs[place + source]) : stations;
-    const inner = cuts.length ? cuts.filter((u) => u > 0 && u < 1).sort((a, b) => a - b) : cuts;
+  /** Tell of every instant, with its number, what each determined force is there: smallest, where, largest, where, largest in size,
+   *  where. The numbers hold until the next instant. Unless `whole`, what is beyond nothing that was found for this design is left out:
+   *  the ends of the cycle are the same. */
+  reachAll(count, whole, tell) {
+    // Where the ends were in the design before, those of this one are near: then little is beyond what is known.
+    if (!whole) for (const instant of this.ends) if (instant < count) this.reach(instant, false);
+    this.ends.clear();
+    for (const one of this.asked) one.none = false;
+    for (let i = 0; i < count; i += 1) tell(this.reach(i, whole), i);
+  }
+
+  reach(instant, whole) {
+    const { tallies, stations, held } = this;
+    const place = instant * this.outputs.length;
+    for (let k = 0; k < tallies.length; k += 1) tallies[k][0] = NaN;
+    if (!stations.length) {
+      for (const piece of this.pieces) this.look(piece, piece.low, piece.high, piece.middle, place, whole);
+      return tallies;
+    }
+    const cuts = stations.map((own) => held[place + own]);
+    const inner = cuts.filter((u) => u > 0 && u < 1).sort((a, b) => a - b);
     for (const piece of this.pieces) {
       let low = piece.low;
       for (const u of inner) {
         if (u <= low || u >= piece.high) continue;
-        this.look(piece, low, u, (low + u) / 2, outputs, place, whole);
+        this.look(piece, low, u, (low + u) / 2, place, whole);
         low = u;
       }
-      this.look(piece, low, piece.high, (low + piece.high) / 2, outputs, place, whole);
+      this.look(piece, low, piece.high, (low + piece.high) / 2, place, whole);
     }
     // What acts at the very base is seen by the section there from its base side alone.
-    if (cuts.includes(0)) this.look(this.pieces[0], 0, 0, -1, outputs, place, whole);
+    if (cuts.includes(0)) this.look(this.pieces[0], 0, 0, -1, place, whole);
     return tallies;
   }
 
   /** Look for smallest and largest values in a part of a piece; what acts beyond its `middle` is seen there. */
-  look(piece, low, high, middle, outputs, place, whole) {
-    for (let k = 0; k < this.plain.length; k += 1) if (this.needed[k]) this.sum(k, piece, middle, outputs, place);
-    const [a, b] = [(low - piece.middle) / piece.half, (high - piece.middle) / piece.half];
-    for (const { parts, tally, slope, known } of this.asked) {
-      put(tally, known, sizeAt(parts, a), low);
-      if (b <= a) continue;
-      put(tally, known, sizeAt(parts, b), high);
-      if (!whole && isWithin(parts, known)) continue;
-      const count = parts.length > 1 ? squaredSlope(parts, slope, this.factor) : slopeInto(slope, parts[0], this.many);
-      const zeros = zerosOf(slope, count, a, b);
-      for (let z = 0; z < zeros.count; z += 1) put(tally, known, sizeAt(parts, zeros.at[z]), piece.middle + piece.half * zeros.at[z]);
+  look(piece, low, high, middle, place, whole) {
+    for (let k = 0; k < this.plain.length; k += 1) if (this.needed[k]) this.sum(k, piece, middle, place);
+    if (high > low && (low > piece.low || high < piece.high)) this.narrow(piece, low, high);
+    const whence = high > low ? (low + high) / 2 : piece.middle;
+    const half = high > low ? (high - low) / 2 : piece.half;
+    for (const one of this.asked) {
+      if (!whole && high > low && isWithin(one)) continue;
+      const { parts, tally, slope, known } = one;
+      put(tally, known, sizeAt(parts, high > low ? -1 : (low - whence) / half), low);
+      if (high > low) {
+        put(tally, known, sizeAt(parts, 1), high);
+        const count = parts.length > 1 ? squaredSlope(parts, slope, this.factor) : slopeInto(slope, parts[0], this.many);
+        const zeros = zerosOf(slope, count, -1, 1);
+        for (let z = 0; z < zeros.count; z += 1) put(tally, known, sizeAt(parts, zeros.at[z]), whence + half * zeros.at[z]);
+      }
+      if (tally[0] === 0) one.none = true;
+    }
+  }
+
+  /** Have the sums of a piece as those of a part of it. */
+  narrow(piece, low, high) {
+    const { many, values, scratch, within } = this;
+    const whence = ((low + high) / 2 - piece.middle) / piece.half;
+    const half = (high - low) / 2 / piece.half;
+    const cosines = cosinesOf(many - 1);
+    // What each of Chebyshev's polynomials is there.
+    for (let k = 0; k < many; k += 1) {
+      for (let j = 0; j < many; j += 1) values[j] = chebyshevAt(this.units[k], whence + half * cosines[j], k + 1);
+      chebyshevInto(within[k], values);
+    }
+    for (let n = 0; n < scratch.length; n += 1) {
+      if (!this.needed[n]) continue;
+      const c = scratch[n];
+      for (let j = 0; j < many; j += 1) {
+        let sum = 0;
+        for (let k = j; k < many; k += 1) sum += c[k] * within[k][j];
+        c[j] = sum;
+      }
     }
   }
 
   /** A force in a piece, with what acts at the stations that are seen. */
-  sum(k, piece, middle, outputs, place) {
-    const [c, rows, { many }] = [this.scratch[k].fill(0), piece.rows[k], this];
-    for (const number of this.terms[k]) {
-      const [row, value] = [rows[number], outputs[place + this.sources[number]]];
+  sum(k, piece, middle, place) {
+    const { many, held, stations } = this;
+    const c = this.scratch[k];
+    const rows = piece.rows[k];
+    const terms = this.terms[k];
+    for (let j = 0; j < many; j += 1) c[j] = 0;
+    for (let n = 0; n < terms.length; n += 1) {
+      const row = rows[n];
+      const value = held[place + terms[n]];
       for (let j = 0; j < many; j += 1) c[j] += value * row[j];
     }
-    const [stations, acting, across] = [this.stations, this.acting[k], this.across[k]];
+    if (!stations.length) return;
+    const acting = this.acting[k];
+    const across = this.across[k];
     for (let l = 0; l < stations.length; l += 1) {
-      const station = outputs[place + stations[l]];
+      const station = held[place + stations[l]];
       if (!(middle < station)) continue;
-      c[0] += outputs[place + acting[l]];
+      c[0] += held[place + acting[l]];
       if (!across) continue;
-      const slope = this.plain[k].arm * this.length * outputs[place + across[l]];
+      const slope = this.plain[k].arm * this.length * held[place + across[l]];
       c[0] += slope * (station - piece.middle);
       c[1] -= slope * piece.half;
     }
   }
 }
 
+/** A sum at a place; of several the size, which is nothing where it is no more than rounding. */
 function sizeAt(parts, v) {
   if (parts.length === 1) return chebyshevAt(parts[0], v, parts[0].length);
-  let size = 0;
-  for (const c of parts) size = Math.hypot(size, chebyshevAt(c, v, c.length));
-  return size;
+  let sum = 0;
+  let scale = 0;
+  for (let p = 0; p < parts.length; p += 1) {
+    const c = parts[p];
+    sum += chebyshevAt(c, v, c.length) ** 2;
+    for (let k = 0; k < c.length; k += 1) scale += Math.abs(c[k]);
+  }
+  const size = Math.sqrt(sum);
+  return size > VANISHING * scale ? size : 0;
 }
 
-/** Whether a sum, or the size of several, can nowhere on -1 to 1 be beyond what is known: no polynomial of Chebyshev's is above 1. */
-function isWithin(parts, known) {
-  let [low, high] = [0, 0];
-  for (const c of parts) {
-    let reach = 0;
-    for (let k = 1; k < c.length; k += 1) reach += Math.abs(c[k]);
-    reach += ROUNDED * (Math.abs(c[0]) + reach);
-    if (parts.length === 1) [low, high] = [c[0] - reach, c[0] + reach];
-    else [low, high] = [Math.hypot(low, Math.max(0, Math.abs(c[0]) - reach)), Math.hypot(high, Math.abs(c[0]) + reach)];
+/** Whether a force is everywhere on -1 to 1 between what is known, or at the nothing that there was before. */
+function isWithin(one) {
+  const { parts, known } = one;
+  if (parts.length > 1) return isSizeWithin(one);
+  const c = parts[0];
+  // No polynomial of Chebyshev's is above 1.
+  let reach = 0;
+  for (let k = 1; k < c.length; k += 1) reach += Math.abs(c[k]);
+  reach += ROUNDED * (Math.abs(c[0]) + reach);
+  return c[0] + reach < known[1] && c[0] - reach > known[0];
+}
+
+/** The same for a size, whose square is a polynomial; that is between its ordinates of Bernstein, which are at its ends where it only
+ *  rises or falls. */
+function isSizeWithin({ parts, square, known, none }) {
+  square.fill(0);
+  let scale = 0;
+  for (let p = 0; p < parts.length; p += 1) addProduct(square, parts[p], parts[p].length, parts[p], parts[p].length);
+  for (let k = 0; k < square.length; k += 1) scale += Math.abs(square[k]);
+  const rounded = ROUNDED * scale;
+  const least = none ? -Infinity : known[0] * known[0] + rounded;
+  const most = known[1] * known[1] - rounded;
+  if (scale < most && least < 0) return true;
+  return isBetween(ordinatesInto(halves(0, square.length).left, square), least, most, 1);
+}
+
+/** Whether a polynomial is between two values, by its ordinates of Bernstein, or those of its halves and of theirs. */
+function isBetween(ordinates, least, most, depth) {
+  const many = ordinates.length;
+  if (!(ordinates[0] < most && ordinates[0] > least && ordinates[many - 1] < most && ordinates[many - 1] > least)) return false;
+  let within = true;
+  for (let j = 1; within && j < many - 1; j += 1) within = ordinates[j] < most && ordinates[j] > least;
+  if (within) return true;
+  if (depth > HALVINGS) return false;
+  const { left, right } = halves(depth, many);
+  right.set(ordinates);
+  for (let i = 0; i < many; i += 1) {
+    left[i] = right[0];
+    for (let j = 0; j < many - 1 - i; j += 1) right[j] = (right[j] + right[j + 1]) / 2;
   }
-  return high <= known[1] && low >= known[0];
+  return isBetween(left, least, most, depth + 1) && isBetween(right, least, most, depth + 1);
+}
+
+const HALVINGS = 4;
+
+const halved = [];
+
+/** Room for the ordinates of two halves. */
+function halves(depth, many) {
+  if (halved[depth]?.left.length !== many) halved[depth] = { left: new Float64Array(many), right: new Float64Array(many) };
+  return halved[depth];
 }
 
 const ROUNDED = 1e-12; // Over a value: more than rounding can hide.
+
+const VANISHING = 2e-13; // Over the coefficients of a size: what is smaller at a place is the rounding of nothing.
 
 function put(tally, known, value, u) {
   const first = Number.isNaN(tally[0]);

@@ -45,10 +45,12 @@ function curveOf(name) {
   return { name, title: titleOf(one) + ending, unit: one.unit, values: array(one.values), places: one.places === null ? null : array(one.places) };
 }
 
-/** A section force at a ratio of a link, over all instants. */
+/** A section force at a ratio of a link, over all instants; it is found anew by `renew`. */
 function curveOfSection(section, force, ratio) {
-  const values = Float64Array.from({ length: instants.count }, (_, i) => sectionForce(section, force.name, i, ratio));
-  return { name: "", title: force.what, unit: force.unit, values };
+  const values = new Float64Array(instants.count);
+  const renew = () => sectionOverInstants(section, force.name, ratio, values);
+  renew();
+  return { name: "", title: force.what, unit: force.unit, values, renew };
 }
 
 /** The entries of a list of quantities, by kind. */
@@ -95,7 +97,12 @@ function scaled([low, high], [from, to], unit, title, room = 0) {
     const text = stripped(tick.toFixed(Math.min(8, decimals + 1)));
     return minus(text === "-0" ? "0" : text);
   };
-  return { at, back, ticks, tell, factor, unit: readable, label: labelled(title, readable), from, to };
+  return { at, back, ticks, tell, factor, unit: readable, label: labelled(title, readable), from, to, low: a, high: b };
+}
+
+/** Whether values with these ends are all on a scale, and take up much of it. */
+function fitsIn([low, high], scale) {
+  return low >= scale.low && high <= scale.high && high - low >= 0.4 * (scale.high - scale.low);
 }
 
 /** The lines and numbers of two scales around a field. */
@@ -113,19 +120,33 @@ function axesOf(x, y, { ground = true, bottom = true } = {}) {
   return group;
 }
 
-/** A curve as the path of an element, broken where there are no numbers. */
-function pathOf(xs, ys, x, y) {
-  const parts = [];
-  let pen = "M";
+/** A curve as the path of an element, broken where there are no numbers. Of more instants than its columns, each so many points wide,
+ *  can tell, a column has its lowest and its highest. */
+function pathOf(xs, ys, x, y, column) {
+  const [perX, perY] = [(x.to - x.from) / (x.high - x.low), (y.to - y.from) / (y.high - y.low)];
+  const across = (i) => Math.round(10 * (x.from + (xs[i] - x.low) * perX)) / 10;
+  const up = (i) => Math.round(10 * (y.from + (ys[i] - y.low) * perY)) / 10;
+  const many = column && xs.length > 2 * ((x.to - x.from) / column);
+  let [path, pen] = ["", "M"];
   for (let i = 0; i < xs.length; i += 1) {
     if (!Number.isFinite(xs[i]) || !Number.isFinite(ys[i])) {
       pen = "M";
       continue;
     }
-    parts.push(`${pen}${x.at(xs[i]).toFixed(1)} ${y.at(ys[i]).toFixed(1)}`);
+    path += `${pen}${across(i)} ${up(i)}`;
     pen = "L";
+    if (!many) continue;
+    const end = Math.floor(across(i) / column);
+    let [low, high, last] = [i, i, i];
+    while (last + 1 < xs.length && Number.isFinite(ys[last + 1]) && Math.floor(across(last + 1) / column) === end) {
+      last += 1;
+      if (ys[last] < ys[low]) low = last;
+      if (ys[last] > ys[high]) high = last;
+    }
+    for (const k of [Math.min(low, high), Math.max(low, high)]) if (k > i) path += `L${across(k)} ${up(k)}`;
+    i = last;
   }
-  return parts.join("");
+  return path;
 }
 
 const tip = element("div", { class: "tip", role: "presentation", hidden: true });

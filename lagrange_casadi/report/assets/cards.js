@@ -30,10 +30,16 @@ class Card {
 
   renew() {
     this.stale = false;
+    if (live.moving && this.plot && !this.plot.field?.ofFile && this.width && designState() !== "none") {
+      this.plot.follow(this.width);
+      this.drawLegend();
+      this.mark(player.instant);
+      return;
+    }
     showTip(null);
     const without = designState() === "none";
     this.plot = without ? null : this.make(this);
-    const words = without ? "There is no such design." : "Nothing is chosen.";
+    const words = without ? "There is no such design." : (this.lacking?.() ?? "Nothing is chosen.");
     this.field.replaceChildren(this.plot ? this.plot.sheet.body : element("p", { class: "none" }, words));
     this.drawLegend();
     this.draw();
@@ -56,12 +62,13 @@ class Card {
     if (!this.plot || !this.seen) return;
     if (this.plot.across || this.plot.middle) this.plot.mark(instant);
     this.values?.forEach(([curve, place]) => {
-      place.textContent = shown(curve.values[instant], curve.unit, 5, largestOf(curve.values));
+      say(place, shown(curve.values[instant], curve.unit, 5, largestOf(curve.values)));
     });
   }
 
   drawLegend() {
     const curves = this.plot?.curves ?? [];
+    if (live.moving && curves.length && curves.length === this.values?.length) return;
     this.values = [];
     this.legend.replaceChildren(
       ...curves.map((curve, k) => {
@@ -158,6 +165,12 @@ function sectionCard(section, ratio, focus = false) {
   return addCard(card, focus);
 }
 
+/** Show the section of a link at a ratio. */
+function showSection(link, xi) {
+  const section = sectionByLink.get(link);
+  pinSection({ section, ratio: Math.round(xi * (section.xi.length - 1)) }, false);
+}
+
 /** Pin a section: the card of sections shows it, and the picture marks it. */
 function pinSection(pinned, focus = true) {
   const card = deck.cards.find((one) => one.ofSection) ?? sectionCard(pinned.section, pinned.ratio, focus);
@@ -166,33 +179,43 @@ function pinSection(pinned, focus = true) {
   announce(`${pinned.section.link} at xi/l = ${xi}: ${sectionLines(pinned.section, pinned.ratio, player.instant).map((line) => line.join(" ")).join(", ")}`);
 }
 
-function mapCard(section, force, focus = false) {
-  const state = { section, force };
+/** What can be mapped of a link: its section forces, and what the page holds of it; each with a name, words and a field. */
+function mappedOf(link) {
+  const section = sectionByLink.get(link);
+  const forces = knownForces(section).map((force) => ({ name: force.name, what: force.what, field: () => fieldOfForce(section, force) }));
+  const held = contents.maps.filter((map) => map.link === link).map((map) => ({ name: map.name.split(":")[0], what: map.what, field: () => fieldOfMap(map), ofFile: true }));
+  return [...forces, ...held];
+}
+
+/** A map along a link: of a section force by its name, or of "stress" or "deflection". */
+function mapCard(link, name, focus = false) {
+  const state = { link, name };
+  const chosen = () => mappedOf(state.link).find((one) => one.name === state.name);
   const card = new Card(
     "Section map",
     (own) => {
       const what = element("span");
       const offer = () =>
         what.replaceChildren(
-          chooser("Section force", knownForces(state.section).map((one) => [one.name, one.what]), state.force.name, (name) => {
-            state.force = state.section.forces.get(name);
+          chooser("What is mapped", mappedOf(state.link).map((one) => [one.name, one.what]), state.name, (name) => {
+            state.name = name;
             own.renew();
           }),
         );
       const known = sections.filter((one) => knownForces(one).length).map((one) => [one.link, one.link]);
-      const link = chooser("Link", known, section.link, (name) => {
-        state.section = sectionByLink.get(name);
-        state.force = knownForces(state.section).find((one) => one.name === state.force.name) ?? knownForces(state.section)[0];
+      const links = chooser("Link", known, link, (name) => {
+        state.link = name;
+        if (!chosen()) state.name = mappedOf(name)[0].name;
         offer();
         own.renew();
       });
       offer();
-      own.choices.append(link, what);
+      own.choices.append(links, what);
+      own.lacking = () => "This map is of the file's design alone; charts and peaks of stresses follow the sliders.";
     },
     () => {
-      const map = new Heat(state.section, state.force);
-      map.pin = (pinned) => pinSection(pinned, false);
-      return map;
+      const one = chosen();
+      return one.ofFile && designState() !== "file" ? null : new Heat(one.field());
     },
   );
   return addCard(card, focus);
@@ -237,10 +260,12 @@ function firstCards() {
   const bent = forces.filter(([, force]) => force && !force.open).map(([section, force]) => [section, force, peakOf(`section:${section.link}:${force.name}`)]);
   const worst = bent.filter(([, force]) => force.name === bent[0][1].name).sort((a, b) => b[2] - a[2])[0];
   if (worst) {
-    mapCard(worst[0], worst[1]);
+    mapCard(worst[0].link, worst[1].name);
     const peak = rowByName.get(`section:${worst[0].link}:${worst[1].name}`)?.peak;
     sectionCard(worst[0], Math.round((peak?.xi ?? 0.5) * (worst[0].xi.length - 1)));
   }
+  const stressed = contents.maps.filter((map) => map.name.startsWith("stress:")).sort((a, b) => b.peak.value - a.peak.value)[0];
+  if (stressed) mapCard(stressed.link, "stress");
   if (resultants.length) chartCard(largest(resultants, 5));
   const joints = polarJoints();
   const turning = joints.filter((joint) => joint.kind === "revolute");
@@ -263,7 +288,7 @@ function addingBar() {
     effort && button("chart", () => chartCard([effort.name], alongInstants, true)),
     effort && driven && button("cross-plot", () => chartCard([effort.name], driven.name, true)),
     section && button("section", () => pinSection({ section, ratio: 50 })),
-    section && button("section map", () => mapCard(section, knownForces(section)[0], true)),
+    section && button("section map", () => mapCard(section.link, knownForces(section)[0].name, true)),
     joint && button("polar plot", () => polarCard(joint, true)),
   );
 }

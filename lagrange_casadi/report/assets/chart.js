@@ -12,7 +12,30 @@ class Chart {
       hover: (event) => this.hover(event),
       press: (event) => seekTo(this.instantUnder(event)),
     });
-    this.ordered = [1, -1].some((way) => x.values.every((value, i) => i === 0 || way * value > way * x.values[i - 1]));
+    this.order();
+  }
+
+  order() {
+    const { values } = this.x;
+    this.ordered = [1, -1].some((way) => values.every((value, i) => i === 0 || way * value > way * values[i - 1]));
+  }
+
+  /** Take what the arrays hold now. Axes stay where they are while curves fit in: then what changes is seen, and little is to be drawn. */
+  follow(width) {
+    for (const curve of [this.x, ...this.curves]) curve.renew?.();
+    if (this.x.name !== "t" && this.x.name !== "over") this.order();
+    const { across, fields } = this;
+    const ends = endsOf([this.x.values], false);
+    const same = this.ordered ? ends[0] === across.low && ends[1] === across.high : fitsIn(ends, across);
+    if (width !== this.sheet.width || !same || !fields.every(({ up, own }) => fitsIn(endsOf(own.map((curve) => curve.values), true), up))) {
+      this.draw(width);
+      return;
+    }
+    for (const { up, own, lines } of fields) lines.forEach((line, k) => line.setAttribute("d", this.pathOf(own[k], up)));
+  }
+
+  pathOf(curve, up) {
+    return pathOf(this.x.values, curve.values, this.across, up, this.ordered ? (live.moving ? 3 : 0.5) : 0);
   }
 
   draw(width) {
@@ -25,14 +48,14 @@ class Chart {
       const top = FIELD.top + k * (high + FIELD.between);
       const own = this.curves.filter((curve) => curve.unit === unit);
       const up = scaled(endsOf(own.map((curve) => curve.values), true), [top + high, top], unit, "", 0.06);
-      return { up, own, top, bottom: top + high };
+      return { up, own, top, bottom: top + high, lines: own.map((curve) => this.line(curve, up)) };
     });
     this.sheet.fill(
       width, height,
       ...this.fields.map(({ up }, k) => axesOf(across, up, { bottom: k === this.fields.length - 1 })),
       ...this.fields.map(({ up, top }) => drawn("text", { x: FIELD.left - 7, y: top - 7, class: "unit" }, up.unit || "1")),
       drawn("text", { x: (FIELD.left + width - FIELD.right) / 2, y: height - 6, class: "label" }, across.label),
-      ...this.fields.flatMap(({ up, own }) => own.map((curve) => this.line(curve, up))),
+      ...this.fields.flatMap(({ lines }) => lines),
     );
     this.mark(player.instant);
   }
@@ -40,7 +63,7 @@ class Chart {
   line(curve, up) {
     const number = this.curves.indexOf(curve);
     return drawn("path", {
-      d: pathOf(this.x.values, curve.values, this.across, up),
+      d: this.pathOf(curve, up),
       class: `curve of-${number % BODY_COLOURS}`,
       "stroke-dasharray": DASHES[number % DASHES.length],
     });

@@ -1,14 +1,28 @@
 // Polynomials on -1 to 1 as sums of Chebyshev's: values, slopes and zeros. They are asked for at every instant of every link while a
 // slider moves, so nothing is made anew: a sum is an array and how many of its numbers count.
 
-/** The coefficients of the polynomial that has values at the extrema of Chebyshev's polynomial, the first at 1, the last at -1. */
-function chebyshevOf(values) {
+/** The coefficients of the polynomial that has values at the extrema of Chebyshev's polynomial, the first at 1, the last at -1, into
+ *  `found`; returns whether any is another than before. */
+function chebyshevInto(found, values) {
   const n = values.length - 1;
-  return Float64Array.from({ length: n + 1 }, (_, k) => {
+  const cosines = cosinesOf(n);
+  let changed = false;
+  for (let k = 0; k <= n; k += 1) {
     let sum = 0;
-    for (let j = 0; j <= n; j += 1) sum += (j % n ? 1 : 0.5) * values[j] * Math.cos((Math.PI * j * k) / n);
-    return ((k % n ? 2 : 1) / n) * sum;
-  });
+    for (let j = 0; j <= n; j += 1) sum += (j % n ? 1 : 0.5) * values[j] * cosines[(j * k) % (2 * n)];
+    const value = ((k % n ? 2 : 1) / n) * sum;
+    if (value !== found[k]) changed = true;
+    found[k] = value;
+  }
+  return changed;
+}
+
+const circles = [];
+
+/** The cosines of the multiples of a half turn's n-th part, over a whole turn. */
+function cosinesOf(n) {
+  circles[n] ??= Float64Array.from({ length: 2 * n }, (_, k) => Math.cos((Math.PI * k) / n));
+  return circles[n];
 }
 
 /** A sum at a place (Clenshaw's way). */
@@ -63,22 +77,22 @@ function zerosOf(c, many, low, high) {
   while (n > 0 && Math.abs(c[n]) <= NOTHING * most) n -= 1;
   const found = roomFor(n);
   found.count = 0;
-  const take = (place) => {
-    if (place > low && place < high) found.at[found.count++] = place;
-  };
   if (n === 0) return found;
   if (n === 1) {
-    take(-c[0] / c[1]);
+    takeZero(found, -c[0] / c[1], low, high);
     return found;
   }
   if (n === 2) {
-    const [a, b, constant] = [2 * c[2], c[1], c[0] - c[2]];
+    const a = 2 * c[2];
+    const b = c[1];
+    const constant = c[0] - c[2];
     const root = b * b - 4 * a * constant;
     if (!(root >= 0)) return found;
     const q = -(b + (b < 0 ? -1 : 1) * Math.sqrt(root)) / 2;
-    const [one, other] = q ? [q / a, constant / q] : [0, 0];
-    take(Math.min(one, other));
-    if (q) take(Math.max(one, other));
+    const one = q ? q / a : 0;
+    const other = q ? constant / q : 0;
+    takeZero(found, Math.min(one, other), low, high);
+    if (q) takeZero(found, Math.max(one, other), low, high);
     return found;
   }
   // It is monotonic between two zeros of its slope.
@@ -92,6 +106,10 @@ function zerosOf(c, many, low, high) {
     from = to;
   }
   return found;
+}
+
+function takeZero(found, place, low, high) {
+  if (place > low && place < high) found.at[found.count++] = place;
 }
 
 /** The zero of what is monotonic between two places, of a degree n and with a slope, by Newton's method held between them; NaN where it has none. */
@@ -110,4 +128,40 @@ function zeroBetween(c, slope, n, a, b) {
     if (!(moved > 1e-13)) break;
   }
   return v;
+}
+
+/** The ordinates of Bernstein of a sum on -1 to 1, into `found`; returns that. The polynomial is between the least and the largest. */
+function ordinatesInto(found, c) {
+  const many = c.length;
+  const factors = ordinateFactors(many - 1);
+  for (let j = 0, r = 0; j < many; j += 1) {
+    let sum = 0;
+    for (let k = 0; k < many; k += 1, r += 1) sum += factors[r] * c[k];
+    found[j] = sum;
+  }
+  return found;
+}
+
+const factorsKnown = [];
+
+/** By which factors the coefficients of a sum of a degree give its ordinates of Bernstein on -1 to 1, those of an ordinate after another. */
+function ordinateFactors(n) {
+  if (factorsKnown[n]) return factorsKnown[n];
+  const choose = (m, k) => {
+    let found = 1;
+    for (let i = 1; i <= k; i += 1) found = (found * (m - k + i)) / i;
+    return found;
+  };
+  const found = new Float64Array((n + 1) ** 2);
+  for (let k = 0; k <= n; k += 1) {
+    // Of degree k they are known; a higher one spreads them.
+    const own = Array.from({ length: k + 1 }, (_, i) => ((k - i) % 2 ? -1 : 1) * choose(2 * k, 2 * i));
+    for (let j = 0; j <= n; j += 1) {
+      let sum = 0;
+      for (let i = Math.max(0, j - n + k); i <= Math.min(j, k); i += 1) sum += own[i] * choose(n - k, j - i);
+      found[j * (n + 1) + k] = sum / choose(n, j);
+    }
+  }
+  factorsKnown[n] = found;
+  return found;
 }

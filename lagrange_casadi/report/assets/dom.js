@@ -20,6 +20,11 @@ function filled(made, attributes, children) {
   return made;
 }
 
+/** Have an element say something, which costs nothing where it does. */
+function say(one, words) {
+  if (one.textContent !== words) one.textContent = words;
+}
+
 /** A button with a sign on it and words for those who do not see it. */
 function signButton(sign, words, press, attributes = {}) {
   return element("button", { type: "button", class: "sign", title: words, "aria-label": words, click: press, ...attributes }, sign);

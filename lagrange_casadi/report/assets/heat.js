@@ -1,20 +1,53 @@
-// Section maps: a force along a link over the whole cycle, its peak marked. What is negative is hatched too.
+// Maps along links: a section force, a stress or a deflection over the whole cycle, its peak marked. What is negative is hatched too.
+
+/** What a map shows of a section force: its values at an instant, in words too, and where it is largest. */
+function fieldOfForce(section, force) {
+  const row = rowByName.get(`section:${section.link}:${force.name}`);
+  const { values } = curveOf(alongInstants);
+  return {
+    link: section.link, what: force.what, unit: force.unit, signed: signed(force), xi: section.xi, where: "",
+    peak: () => (row && !row.open ? row.peak : null),
+    column: (place, near) => (over ? nearest(values, place, near) : instantAt(place)),
+    fill: (column, found, step) => sectionForces(section, force.name, column, found, step),
+    tell: (column, ratio) => [whenIs(column), sectionLines(section, ratio, column)],
+    show: () => showRow(row),
+  };
+}
+
+/** The same of a map whose numbers the page holds, at some of the instants. It is of the design of the file alone. */
+function fieldOfMap(map) {
+  const [t, xi, values, places] = [array(map.t), array(map.xi), array(map.values), array(over ? map.over : map.t)];
+  const at = (column) => values.subarray(column * xi.length, (column + 1) * xi.length);
+  return {
+    link: map.link, what: map.what, unit: map.unit, signed: map.signed, xi, where: map.where, ofFile: true,
+    peak: () => map.peak,
+    column: (place) => nearest(places, place, 0),
+    fill: (column, found) => found.set(at(column)),
+    tell: (column, ratio) => [whenOf(t[column], over ? places[column] : null), [[map.what, shown(at(column)[ratio], map.unit)]]],
+    show: () => {
+      seekTo(instantAt(map.peak.t));
+      showSection(map.link, map.peak.xi);
+      announce(`${map.link}: ${map.what} ${shown(map.peak.value, map.unit)}, ${whenOf(map.peak.t, map.peak.over)}`);
+    },
+  };
+}
 
 class Heat {
-  constructor(section, force) {
-    this.section = section;
-    this.force = force;
+  constructor(field) {
+    this.field = field;
     this.x = curveOf(alongInstants);
-    this.values = new Float64Array(section.xi.length);
-    this.sheet = new Sheet("map", `${section.link}: ${force.what} over the cycle and along the link`, {
+    this.values = new Float64Array(field.xi.length);
+    this.sheet = new Sheet("map", `${field.link}: ${field.what} over the cycle and along the link`, {
       hover: (event) => this.hover(event),
       press: (event) => {
         const at = this.under(event);
         seekTo(at?.instant);
-        if (at) this.pin?.({ section, ratio: at.ratio });
+        if (at) showSection(field.link, at.xi);
       },
     });
     this.canvas = element("canvas", { class: "heat", "aria-hidden": "true" });
+    this.context = this.canvas.getContext("2d");
+    this.marks = drawn("g");
     this.sheet.body.prepend(this.canvas);
   }
 
@@ -22,33 +55,46 @@ class Heat {
     const height = 244;
     this.across = scaled(endsOf([this.x.values], false), [FIELD.left, width - FIELD.right - 58], this.x.unit, this.x.title);
     this.up = scaled([0, 1], [height - FIELD.bottom, FIELD.top], "1", "");
-    const { across, up, section, force } = this;
-    const peak = rowByName.get(`section:${section.link}:${force.name}`)?.peak;
-    this.most = Math.abs(peak?.value ?? 0) || 1;
-    const scale = scaleFor(force.unit, this.most);
-    const field = { x: across.from, y: up.to, width: across.to - across.from, height: up.from - up.to };
+    const { across, up } = this;
+    const place = { x: across.from, y: up.to, width: across.to - across.from, height: up.from - up.to };
     // On the sheet it keeps its place at every size, as the drawing around it does.
-    const parts = { left: field.x / width, top: field.y / height, width: field.width / width, height: field.height / height };
+    const parts = { left: place.x / width, top: place.y / height, width: place.width / width, height: place.height / height };
     for (const [side, part] of Object.entries(parts)) this.canvas.style[side] = `${100 * part}%`;
-    this.paint(Math.max(2, Math.round(field.width)));
     this.sheet.fill(
       width, height,
       axesOf(across, up),
       drawn("text", { x: 14, y: (up.from + up.to) / 2, class: "label", transform: `rotate(-90 14 ${(up.from + up.to) / 2})` }, "ξ/l, base to tip"),
       drawn("text", { x: (across.from + across.to) / 2, y: height - 6, class: "label" }, across.label),
-      ...this.key(scale, width - FIELD.right - 44, up),
-      ...(peak ? this.peakMark(peak, scale) : []),
+      drawn("image", { x: width - FIELD.right - 44, y: up.to + 16, width: 12, height: up.from - up.to - 46, href: barOf(this.colours, this.field.signed), preserveAspectRatio: "none" }),
+      this.marks,
     );
+    this.paint(Math.max(2, Math.round(place.width)));
     this.mark(player.instant);
   }
 
-  /** Where and when the force is largest, as a button that shows it. */
+  /** Take what the arrays hold now. */
+  follow(width) {
+    const ends = endsOf([this.x.values], false);
+    if (width !== this.sheet.width || ends[0] !== this.across.low || ends[1] !== this.across.high) this.draw(width);
+    else this.paint(Math.max(2, Math.round(this.across.to - this.across.from)));
+  }
+
+  /** Tell the ends of the colours, and where the force is largest. */
+  markEnds() {
+    const { field, up } = this;
+    const peak = field.peak();
+    this.most = Math.abs(peak?.value ?? 0) || 1;
+    const scale = scaleFor(field.unit, this.most);
+    this.marks.replaceChildren(...this.key(scale, this.sheet.width - FIELD.right - 44, up), ...(peak ? this.peakMark(peak, scale) : []));
+  }
+
+  /** Where and when it is largest, as a button that shows it. */
   told() {
-    const { section, force } = this;
-    const row = rowByName.get(`section:${section.link}:${force.name}`);
-    if (!row || row.open || !Number.isFinite(row.peak.value)) return [];
-    const words = `largest: ${shown(row.peak.value, row.unit)} at ξ/l = ${format(row.peak.xi, 3)}, ${whenOf(row.peak.t, row.peak.over)}`;
-    return [element("li", {}, element("button", { type: "button", class: "told-peak", title: "Show when and where", click: () => showRow(row) }, words))];
+    const { field } = this;
+    const peak = field.peak();
+    if (!peak || !Number.isFinite(peak.value)) return [];
+    const words = `largest: ${shown(peak.value, field.unit)} at ξ/l = ${format(peak.xi, 3)}, ${whenOf(peak.t, peak.over)}${field.where ? `, ${field.where}` : ""}`;
+    return [element("li", {}, element("button", { type: "button", class: "told-peak", title: "Show when and where", click: field.show }, words))];
   }
 
   peakMark(peak, scale) {
@@ -62,12 +108,11 @@ class Heat {
     ];
   }
 
-  /** The bar of colours with its ends. */
+  /** The ends of the bar of colours. */
   key(scale, x, up) {
-    const least = signed(this.force) ? -this.most : 0;
+    const least = this.field.signed ? -this.most : 0;
     const text = (value, y) => drawn("text", { x: x + 6, y, class: "key" }, `${format(value * scale.factor, 3)}`);
     return [
-      drawn("image", { x, y: up.to + 16, width: 12, height: up.from - up.to - 46, href: barOf(this.colours, signed(this.force)), preserveAspectRatio: "none" }),
       text(this.most, up.to + 9), text(least, up.from - 18), drawn("text", { x: x + 6, y: up.from - 2, class: "key" }, scale.unit),
     ];
   }
@@ -77,29 +122,32 @@ class Heat {
     return coloursOf(deck.stage.paper.inks);
   }
 
-  /** Paint the map; a coarse one while a slider moves. */
+  /** Paint the map, with its marks; a coarse one while a slider moves. */
   paint(width) {
-    const { section, force, canvas, values } = this;
-    const rows = section.xi.length;
-    const columns = Math.min(width, Math.max(instants.count, 2), live.moving ? 160 : 700);
+    this.markEnds();
+    const { field, canvas, context, values } = this;
+    const rows = field.xi.length;
+    const step = live.moving ? 2 : 1;
+    const columns = Math.min(width, Math.max(instants.count, 2), live.moving ? 140 : 700);
     const wide = columns < 240 && !live.moving ? 2 * columns : columns;
-    const high = live.moving ? 51 : 2 * rows;
-    if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
-    const context = canvas.getContext("2d");
-    const image = context.createImageData(wide, high);
-    const pixels = new Uint32Array(image.data.buffer);
+    const high = live.moving ? Math.ceil(rows / 2) : 2 * rows;
+    if (canvas.width !== wide || canvas.height !== high) {
+      [canvas.width, canvas.height] = [wide, high];
+      this.image = context.createImageData(wide, high);
+    }
+    const pixels = new Uint32Array(this.image.data.buffer);
     const { colours } = this;
-    const places = Array.from({ length: high }, (_, row) => Math.round(((high - 1 - row) / (high - 1)) * (rows - 1)));
+    const places = Array.from({ length: high }, (_, row) => step * Math.round(((high - 1 - row) / (high - 1)) * ((rows - 1) / step)));
     let seen = 0;
     let known = -1;
     for (let column = 0; column < wide; column += 1) {
       const x = this.across.back(this.across.from + ((column + 0.5) / wide) * (this.across.to - this.across.from));
-      seen = over ? nearest(this.x.values, x, seen) : instantAt(x);
-      if (seen !== known) sectionForces(section, force.name, seen, values);
+      seen = field.column(x, seen);
+      if (seen !== known) field.fill(seen, values, step);
       known = seen;
       for (let row = 0; row < high; row += 1) pixels[row * wide + column] = pixelOf(values[places[row]] / this.most, column + row, colours);
     }
-    context.putImageData(image, 0, 0);
+    context.putImageData(this.image, 0, 0);
   }
 
   mark(instant) {
@@ -113,7 +161,7 @@ class Heat {
     if (px < across.from || px > across.to || py < up.to || py > up.from) return null;
     const x = across.back(px);
     const instant = over ? nearest(this.x.values, x, 0) : instantAt(x);
-    return { instant, ratio: Math.round(Math.max(0, Math.min(1, up.back(py))) * (this.section.xi.length - 1)) };
+    return { instant, x, xi: Math.max(0, Math.min(1, up.back(py))) };
   }
 
   hover(event) {
@@ -122,8 +170,10 @@ class Heat {
       showTip(null);
       return;
     }
-    const { section } = this;
-    showTip(event, `${section.link} at ξ/l = ${format(section.xi[at.ratio], 3)}; ${whenIs(at.instant)}`, sectionLines(section, at.ratio, at.instant));
+    const { field } = this;
+    const ratio = Math.round(at.xi * (field.xi.length - 1));
+    const [when, lines] = field.tell(field.column(at.x, 0), ratio);
+    showTip(event, `${field.link} at ξ/l = ${format(field.xi[ratio], 3)}; ${when}`, lines);
   }
 }
 

@@ -42,25 +42,52 @@ function forceAt(section, force, instant, xi, along, side) {
   return sum;
 }
 
-/** A force at an instant at all ratios of a link, on the tip's side of stations, into `found`; returns that. */
-function sectionForces(section, name, instant, found) {
+/** A force at an instant at every so manieth ratio of a link, on the tip's side of stations, into `found`; returns that. */
+function sectionForces(section, name, instant, found, step = 1) {
   const force = section.forces.get(name);
   const { xi } = section;
   found.fill(0);
   if (force.parts.length) {
-    for (const part of force.parts) sectionForces(section, part, instant, new Float64Array(xi.length)).forEach((value, k) => (found[k] = Math.hypot(found[k], value)));
+    const own = sizesRoom(xi.length);
+    for (const part of force.parts) {
+      sectionForces(section, part, instant, own, step);
+      for (let k = 0; k < found.length; k += step) found[k] += own[k] * own[k];
+    }
+    for (let k = 0; k < found.length; k += step) found[k] = Math.sqrt(found[k]);
     return found;
   }
   for (const [coefficient, row, sign] of force.terms) {
     const [factor, along] = [sign * array(coefficient)[instant], array(row)];
-    for (let k = 0; k < found.length; k += 1) found[k] += factor * along[k];
+    for (let k = 0; k < found.length; k += step) found[k] += factor * along[k];
   }
   for (const load of section.loads) {
     const [station, acts] = [load.station[instant], load[force.acting][instant]];
     const lever = force.arm ? force.arm * section.length * load[force.across][instant] : 0;
-    for (let k = 0; k < found.length; k += 1) if (xi[k] < station || (xi[k] >= 1 && station >= 1)) found[k] += acts + lever * (station - xi[k]);
+    for (let k = 0; k < found.length; k += step) if (xi[k] < station || (xi[k] >= 1 && station >= 1)) found[k] += acts + lever * (station - xi[k]);
   }
   return found;
+}
+
+let sizes = new Float64Array();
+
+/** Room for the parts of a size, one after another. */
+function sizesRoom(count) {
+  if (sizes.length !== count) sizes = new Float64Array(count);
+  return sizes;
+}
+
+/** A force at one ratio of a link at all instants, on the tip's side of stations, into `found`. */
+function sectionOverInstants(section, name, ratio, found) {
+  const force = section.forces.get(name);
+  if (force.parts.length || section.loads.length) {
+    for (let i = 0; i < found.length; i += 1) found[i] = sectionForce(section, name, i, ratio);
+    return;
+  }
+  found.fill(0);
+  for (const [coefficient, row, sign] of force.terms) {
+    const [values, along] = [array(coefficient), array(row)[ratio]];
+    for (let i = 0; i < found.length; i += 1) found[i] += sign * values[i] * along;
+  }
 }
 
 /** A force along a link at an instant: ratios and values, twice at each station. */

@@ -8,7 +8,7 @@ function buildPage() {
   const frame = element("div", { class: "frame" }, canvas);
   const left = element("div", { class: "left" }, frame);
   root.append(
-    element("a", { class: "skip", href: "#tables" }, "Skip to the tables"), headOf(), glanceOf(), element("div", { class: "desk" }, left, element("div", { class: "right" }, deck.list, addingBar())),
+    element("a", { class: "skip", href: "#tables" }, "Skip to the tables"), headOf(), glanceOf(), element("div", { class: "desk" }, left, element("div", { class: "right" }, linksTable(), deck.list, addingBar())),
     element("div", { class: "tables", id: "tables" }, resultTables(showRow)), element("div", { class: "facts" }, factSections()), tip, said,
   );
   const stage = new Stage(canvas);
@@ -38,14 +38,14 @@ function headOf() {
   const verdict = () => {
     const [words, kind] = states[{ file: contents.certificate.state, other: "other", none: "impossible" }[designState()]];
     badge.className = `badge ${kind}`;
-    badge.textContent = words;
+    say(badge, words);
   };
   verdict();
   reading.watchers.add(verdict);
   const shownOf = instants.count < instants.total ? `, ${instants.count} of them shown` : "";
   const span = () => `${instants.total} instant${instants.total > 1 ? "s" : ""}${shownOf}, t = ${[0, -1].map((k) => shown(instants.t.at(k), "s", 5, Math.abs(instants.t.at(-1)))).join(" to ")}`;
   const told = element("p", { class: "told" }, span());
-  reading.watchers.add(() => (told.textContent = span()));
+  reading.watchers.add(() => say(told, span()));
   const si = element("button", { type: "button", class: "switch", "aria-pressed": "false", title: "Units of the file: SI, without prefixes", click: () => {
     setSi(!reading.si);
     si.setAttribute("aria-pressed", String(reading.si));
@@ -67,21 +67,55 @@ function headOf() {
 
 /** What is largest, at a glance: press one to see when and where it is. */
 function glanceOf() {
-  const groups = [["effort", () => true], ["reaction", (row) => row.name.endsWith(":resultant")], ["section", (row) => row.name.endsWith(":axial")], ["section", (row) => row.name.endsWith(":shear")], ["section", (row) => row.name.endsWith(":bending")]];
+  const groups = [["effort", () => true], ["reaction", (row) => row.name.endsWith(":resultant")], ["section", (row) => row.name.endsWith(":axial")], ["section", (row) => row.name.endsWith(":shear")], ["section", (row) => row.name.endsWith(":bending")], ["stress", () => true]];
   const tiles = () => groups.flatMap(([group, filter]) => {
     const rows = contents.rows.filter((row) => row.group === group && !row.open && filter(row));
     return rows.length ? [rows.reduce((best, row) => (Math.abs(row.peak.value) > Math.abs(best.peak.value) ? row : best))] : [];
   });
-  const fill = () => tiles().map((row) => {
-    const where = row.peak.xi === null ? "" : ` · ξ/l = ${row.peak.xi.toFixed(2)}`;
-    return element("button", { type: "button", class: "tile", title: "Show when and where", click: () => showRow(row) },
-      element("span", { class: "what" }, `Largest ${row.what.replace("resultant ", "")}`),
-      element("b", {}, Number.isFinite(row.peak.value) ? shown(row.peak.value, row.unit, 4) : "–"),
-      element("span", { class: "where" }, Number.isFinite(row.peak.value) ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result"));
+  const places = tiles().map((row) => {
+    const place = { row, what: element("span", { class: "what" }), value: element("b"), where: element("span", { class: "where" }) };
+    place.tile = element("button", { type: "button", class: "tile", title: "Show when and where", click: () => showRow(place.row) }, place.what, place.value, place.where);
+    return place;
   });
-  const bar = element("div", { class: "glance" }, fill());
-  reading.watchers.add(() => bar.replaceChildren(...fill()));
-  return bar;
+  const fill = () => tiles().forEach((row, k) => {
+    const known = Number.isFinite(row.peak.value);
+    const where = row.peak.xi === null ? "" : ` · ξ/l = ${row.peak.xi.toFixed(2)}`;
+    places[k].row = row;
+    say(places[k].what, `Largest ${row.what.replace("resultant ", "")}`);
+    say(places[k].value, known ? shown(row.peak.value, row.unit, 4) : "–");
+    say(places[k].where, known ? `${row.part}${where} · ${whenOf(row.peak.t, row.peak.over)}` : "no result");
+  });
+  fill();
+  reading.watchers.add(fill);
+  return element("div", { class: "glance" }, places.map((place) => place.tile));
+}
+
+/** What is largest in each link, with when it is: a row a link, a button a force; nothing where no link has sections. */
+function linksTable() {
+  const names = ["axial", "shear", "torsion", "bending"];
+  const rowsOf = (link) => [...names.map((name) => rowByName.get(`section:${link}:${name}`)), rowByName.get(`stress:${link}:von_mises`)];
+  const links = contents.sections.map((entry) => [entry.link, rowsOf(entry.link)]);
+  const columns = [0, 1, 2, 3, 4].filter((k) => links.some(([, rows]) => rows[k]));
+  if (!columns.length) return null;
+  const cells = [];
+  const cellOf = (row) => {
+    if (!row || row.open) return element("td", {}, row ? "open" : "");
+    const [value, when] = [element("b"), element("small")];
+    cells.push([row, value, when]);
+    return element("td", {}, element("button", { type: "button", title: "Show when and where", click: () => showRow(row) }, value, when));
+  };
+  const heads = columns.map((k) => element("th", { scope: "col" }, links.map(([, rows]) => rows[k]).find(Boolean).what.replace("resultant ", "")));
+  const lines = links.map(([link, rows]) => element("tr", {}, element("th", { scope: "row" }, link), columns.map((k) => cellOf(rows[k]))));
+  const fill = () => cells.forEach(([row, value, when]) => {
+    const { peak } = row;
+    const known = Number.isFinite(peak.value);
+    say(value, known ? shown(peak.value, row.unit, 4) : "–");
+    say(when, !known ? "" : over ? `${over.joint} = ${shown(peak.over, over.unit, 4)}` : whenOf(peak.t, null));
+  });
+  fill();
+  reading.watchers.add(fill);
+  return element("section", { class: "card links" }, element("header", {}, element("h3", {}, "Largest in each link")),
+    element("div", { class: "scroll" }, element("table", { "aria-label": "Largest in each link" }, element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "link"), heads)), element("tbody", {}, lines))));
 }
 
 /** Show when a row peaks; of a section force also where, with its ribbon. */
@@ -90,11 +124,10 @@ function showRow(row) {
   player.pause();
   player.seek(instantAt(row.peak.t));
   if (row.group === "section") {
-    const section = sectionByLink.get(row.part);
     const force = row.name.slice(`section:${row.part}:`.length);
     stage.show("ribbon", force);
     document.querySelector(".shows .ribbon").value = force;
-    pinSection({ section, ratio: Math.round(row.peak.xi * (section.xi.length - 1)) }, false);
+    showSection(row.part, row.peak.xi);
   }
   deck.stage.paper.canvas.scrollIntoView({ block: "nearest", behavior: "smooth" });
   announce(`${titleOf(row)}: ${shown(row.peak.value, row.unit)}, ${whenOf(row.peak.t, row.peak.over)}`);

@@ -101,7 +101,8 @@ function extentNow() {
     }
   }
   const middle = low.map((value, k) => (value + high[k]) / 2);
-  return { low, high, middle, size: Math.max(...high.map((value, k) => value - low[k])) || 1 };
+  const floor = allPlaces.reduce((least, place) => Math.min(least, dot(place, contents.upright[2])), Infinity);
+  return { low, high, middle, floor, size: Math.max(...high.map((value, k) => value - low[k])) || 1 };
 }
 
 /** Find both anew. */

@@ -99,7 +99,7 @@ function transportBar() {
     slider.value = instant;
     const when = whenOf(instants.t[instant], over ? array(over.values)[instant] : null);
     slider.setAttribute("aria-valuetext", when);
-    readout.textContent = when;
+    say(readout, when);
   };
   player.watchers.add(tell);
   reading.watchers.add(() => tell(player.instant));

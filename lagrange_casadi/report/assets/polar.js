@@ -34,25 +34,63 @@ class Polar {
       hover: (event) => this.hover(event),
       press: (event) => seekTo(this.instantUnder(event)),
     });
+    this.place();
+  }
+
+  place() {
+    const { way } = this;
     this.points = Array.from({ length: instants.count }, (_, i) => {
-      const [x, y] = way.columns.map((values) => values[i]);
+      const [x, y] = [way.columns[0][i], way.columns[1][i]];
       if (!way.body) return [x, y];
-      const [, e, n] = frameOf(way.body, i);
+      const [, e, n] = worked(way.body, i);
       return [x * e[0] + y * e[1], x * n[0] + y * n[1]];
     });
+  }
+
+  /** Take what the arrays hold now; the scale stays while the curve fits in. */
+  follow(width) {
+    this.place();
+    const most = this.most();
+    if (width !== this.sheet.width || !(most * this.scale <= this.reach && most * this.scale >= 0.5 * this.reach)) this.draw(width);
+    else this.curve.setAttribute("d", this.path());
+  }
+
+  /** The largest force. */
+  most() {
+    let found = 0;
+    for (const [x, y] of this.points) {
+      const size = Math.sqrt(x * x + y * y);
+      if (size > found) found = size;
+    }
+    return found || 1;
+  }
+
+  /** The curve; while a slider moves, without points that are next to those before. */
+  path() {
+    const [[cx, cy], { scale, points }] = [this.middle, this];
+    let [path, pen, before] = ["", "M", [Infinity, Infinity]];
+    const near = live.moving ? 2 : 0;
+    points.forEach(([x, y], i) => {
+      const at = [cx + x * scale, cy - y * scale];
+      if (i && i < points.length - 1 && Math.abs(at[0] - before[0]) + Math.abs(at[1] - before[1]) < near) return;
+      path += `${pen}${Math.round(10 * at[0]) / 10} ${Math.round(10 * at[1]) / 10}`;
+      [pen, before] = ["L", at];
+    });
+    return path;
   }
 
   draw(width) {
     const side = Math.min(width, 380);
     const half = side / 2;
     this.middle = [width / 2, half];
-    const most = Math.max(...this.points.map(([x, y]) => Math.hypot(x, y)).filter(Number.isFinite), 0) || 1;
+    const most = this.most();
     const { factor, unit } = scaleFor("N", most);
-    this.scale = (half - 30) / most;
+    this.reach = half - 30;
+    this.scale = this.reach / most;
     const rings = ticksBetween(0, most * factor, 3).filter((tick) => tick > 0).map((tick) => [((tick / factor) * this.scale), tick]);
     const [cx, cy] = this.middle;
     const [right, up] = this.way.pair;
-    const d = this.points.map(([x, y], i) => `${i ? "L" : "M"}${(cx + x * this.scale).toFixed(1)} ${(cy - y * this.scale).toFixed(1)}`).join("");
+    this.curve = drawn("path", { d: this.path(), class: "curve of-0" });
     this.sheet.fill(
       width, side,
       drawn("g", { class: "axes" },
@@ -62,7 +100,7 @@ class Polar {
         rings.map(([r, tick], k) => drawn("text", { x: cx + 0.707 * r + 3, y: cy - 0.707 * r - 3, class: "ring" }, `${format(tick, 3)}${k === rings.length - 1 ? ` ${unit}` : ""}`)),
         drawn("text", { x: cx + half - 18, y: cy + 4, class: "ring" }, right),
         drawn("text", { x: cx, y: 16, class: "x" }, up)),
-      drawn("path", { d, class: "curve of-0" }),
+      this.curve,
     );
     this.mark(player.instant);
   }
@@ -94,7 +132,7 @@ class Polar {
     const found = this.instantUnder(event);
     this.mark(found, this.sheet.pointer);
     const [x, y] = this.points[found];
-    const most = Math.max(...this.points.map(([px, py]) => Math.hypot(px, py)));
+    const most = this.most();
     const told = (value) => shown(value, "N", 5, most);
     const turn = ((Math.atan2(y, x) * 180) / Math.PI).toFixed(1);
     const [right, up] = this.way.pair;

@@ -20,7 +20,7 @@ const live = { engine: null, alarm: null, asked: null, moving: false, late: 0, f
 
 const LATE = 150; // After so many milliseconds without a change, what is slow follows: tables, fine maps, what is out of sight.
 
-const BUDGET = 9; // So many milliseconds of a picture of the screen are for this script while a slider moves; the rest is the browser's.
+const BUDGET = 7; // So many milliseconds of a picture of the screen are for this script while a slider moves; the rest is the browser's.
 
 /** What the page is about now: the file's own design, another one, or one that has no result. */
 function designState() {
@@ -111,6 +111,7 @@ function answer() {
   const values = live.asked;
   live.asked = null;
   live.moving = true;
+  document.documentElement.classList.add("moving");
   live.engine.show(values, chartsPlaces());
   renewAll();
   follow(end);
@@ -137,6 +138,7 @@ function follow(end) {
 /** When a slider rests: everything, in full. */
 function arrive() {
   live.moving = false;
+  document.documentElement.classList.remove("moving");
   live.engine.show(live.engine.values);
   renewAll();
   for (const fill of reading.tables) fill();

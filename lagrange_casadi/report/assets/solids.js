@@ -9,7 +9,7 @@ function bar(paper, start, stop, half, colour, within = false) {
   const [a, b] = [paper.on(start), paper.on(stop)];
   const width = Math.max(2.2, half * paper.camera.scale);
   const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
-  const count = contents.space ? Math.max(1, Math.min(16, Math.ceil(length / PIECE / 2))) : 1;
+  const count = contents.space ? Math.max(1, Math.min(live.moving ? 4 : 16, Math.ceil(length / PIECE / 2))) : 1;
   const at = (part) => [0, 1, 2].map((k) => a[k] + part * (b[k] - a[k]));
   for (let k = 0; k < count; k += 1) {
     const ends = [at(k / count), at((k + 1) / count)];

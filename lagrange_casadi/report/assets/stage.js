@@ -123,7 +123,7 @@ function netOfPlane(paper, context) {
 
 function floorOfSpace(paper, context) {
   const [right, away, up] = contents.upright;
-  const low = Math.min(...allPlaces.map((place) => dot(place, up))) - 0.06 * extent.size;
+  const low = extent.floor - 0.06 * extent.size;
   const step = roundDistance(extent.size / 8);
   const [a, b] = [right, away].map((axis) => Math.round(dot(extent.middle, axis) / step));
   const at = (i, j) => paper.on(plus(plus(times(right, (a + i) * step), away, (b + j) * step), up, low));

@@ -85,6 +85,8 @@ function factSections() {
     );
   }
   if (contents.strength.length) {
+    const ofFile = element("span", { class: "alarm", hidden: true }, "of the file's design");
+    reading.watchers.add(() => (ofFile.hidden = designState() === "file"));
     const used = (row) => row.used ?? Infinity;
     const words = (row) => (row.used === null ? "∞" : format(row.used, 4));
     const factor = (row) => (row.factor === null ? (row.used === 0 ? "∞" : "0") : format(row.factor, 4));
@@ -99,7 +101,7 @@ function factSections() {
           ["where", (row) => row.where],
         ],
         () => contents.strength,
-        { plain: [["part", (row) => row.part], ["against", (row) => row.against], ["factor", (row) => row.factor], ["utilisation", (row) => row.used], ["where", (row) => row.where]] },
+        { aside: ofFile, plain: [["part", (row) => row.part], ["against", (row) => row.against], ["factor", (row) => row.factor], ["utilisation", (row) => row.used], ["where", (row) => row.where]] },
       ).body,
     );
   }
