@@ -155,7 +155,9 @@ def _across(axis):
 
 
 def _turns(R):
-    """A rotation as turns in sequence."""
+    """A rotation as turns in sequence; as directions where the second would be a right angle."""
+    if math.hypot(R[0, 0], R[1, 0]) < 1e-3:
+        return tuple(map(float, R[:, 0])), tuple(map(float, R[:, 1]))
     yaw, pitch, roll = (
         math.atan2(R[1, 0], R[0, 0]),
         math.atan2(-R[2, 0], math.hypot(R[0, 0], R[1, 0])),

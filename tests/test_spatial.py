@@ -47,6 +47,12 @@ def arm(**kwargs):
             lambda m, a: m.link("b", between=((0, 0, 0), (0, 0, 0)), mass=1.0),
             "link 'b': the two places .* are one",
         ),
+        (
+            lambda m, a: m.link("b", between=((0, 0, 0), (1, 1, 0)), beside=(2, 2, 0), mass=1.0),
+            "link 'b': beside lies along the link",
+        ),
+        (lambda m, a: m.spherical("J", m.ground, a, second=Z), "joint 'J': second goes with axis, at right angles to it"),
+        (lambda m, a: m.free("J", m.ground, a, second=Z), "joint 'J': second goes with axis, at right angles to it"),
         (lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0)), "link 'b': centre and inertia go together"),
         (
             lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0), inertia=((1, 0.1, 0), (0, 1, 0), (0, 0, 1))),
@@ -61,6 +67,55 @@ def arm(**kwargs):
 def test_misuse_is_named(declare, says):
     with pytest.raises(DeclarationError, match=says):
         declare(*arm())
+
+
+@pytest.mark.parametrize(
+    ("of", "declare", "says"),
+    [
+        (
+            SpatialMechanism,
+            lambda m, a: m.prismatic("J", m.ground, a, axis=Z, angle=1.0),
+            "prismatic 'J': .*'angle'; in space it takes",
+        ),
+        (SpatialMechanism, lambda m, a: m.torque("T", a, 5.0), "torque 'T': .*; in space it takes name, point, x, y, z, against"),
+        (SpatialMechanism, lambda m, a: m.set_gravity((0, 0, -9.81)), "set_gravity: .*; in space it takes x, y, z"),
+        (
+            Mechanism,
+            lambda m, a: m.revolute("J", m.ground, a, axis=Z),
+            "revolute 'J': .*'axis'; in a plane it takes name, parent, child$",
+        ),
+        (Mechanism, lambda m, a: m.force("F", a, z=1.0), "force 'F': .*'z'; in a plane it takes name, point, x, y, turning"),
+        (Mechanism, lambda m, a: m.set_gravity(0, 0, -9.81), "set_gravity: .*; in a plane it takes x, y"),
+        (Mechanism, lambda m, a: m.prismatic("J", m.ground, a, axis=Z), "joint 'J': axis must be two components"),
+        (
+            Mechanism,
+            lambda m, a: m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0), inertia=1.0),
+            r"link 'b': centre must be two components \(x, y\)",
+        ),
+    ],
+)
+def test_what_is_for_the_other_kind_of_mechanism_is_named(of, declare, says):
+    m = of("m")
+    with pytest.raises(DeclarationError, match=says):
+        declare(m, m.link("a", length=1.0, mass=1.0))
+
+
+def test_a_hard_point_may_be_rounded():
+    """A bar is one though its ends are worked out twice; and moments of inertia are symmetric but for rounding."""
+    m, up = SpatialMechanism("m"), (0.1, 0.2, 0.1 + 0.2)
+    crank = m.link("crank", between=((0, 0, 0), up), mass=1.0)
+    rod = m.link("rod", between=(up, (1.0, 0.1, 0.6)), mass=1.0)
+    slider = m.link("slider", between=((1.0, 0.1, 0.6), (1.1, 0.1, 0.6)), mass=1.0)
+    m.revolute("O", m.ground, crank, at=(0, 0, 0), axis=Z)
+    first, last = m.spherical("A", crank, rod, at=(0.1, 0.2, 0.3)), m.spherical("B", rod, slider, at=(1.0, 0.1, 0.2 * 3))
+    m.prismatic("G", m.ground, slider, at=(1.0, 0.1, 0.6), axis=(1, 0, 0))
+    assert up[2] != 0.3
+    assert 0.2 * 3 != 0.6
+    assert (first.parent.end, first.child.end, last.parent.end, last.child.end) == ("tip", "base", "tip", "base")
+    weight = m.at(rod, 0.1 + 0.3 * 0.9, 0.2 - 0.3 * 0.1, 0.3 + 0.3 * 0.3)
+    assert (weight.y, weight.z) == (0.0, 0.0)
+    body = m.link("b", length=1.0, mass=1.0, centre=(0, 0, 0), inertia=((1, 0.1, 0), (0.1 + 1e-17, 1, 0), (0, 1e-17, 1)))
+    assert body.mass.inertia[1] == (0.1, 1.0, 0.0)
 
 
 def test_a_plane_has_no_z():

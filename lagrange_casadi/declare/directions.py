@@ -22,6 +22,9 @@ Checked = Callable[[str, Any], Expression]
 RIGHT = 1e-9
 """A cosine that is smaller is that of a right angle."""
 
+SAME = 1e-12
+"""Numbers that differ by less, over a size beside them, are one but for rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class Reference:
@@ -32,12 +35,15 @@ class Reference:
     tip: Vector | None = None
 
     def point(self, body: Body, place: Vector) -> Point:
-        """The body's point at a place; of a link its base or tip to the last digit, where that is the place."""
+        """The body's point at a place; of a link its base or tip to the last digit, where that is the place but for rounding."""
         if isinstance(body, Link) and self.tip is not None:
             for end, there in ((body.base, self.origin), (body.tip, self.tip)):
-                if all(_is_same(one, other) for one, other in zip(place, there, strict=True)):
+                if all(_is_same(one, other, body.length) for one, other in zip(place, there, strict=True)):
                     return end
         x, y, z = self.local(place)
+        if isinstance(body, Link):
+            # What lies on its axis lies there to the last digit.
+            x, y, z = (0.0 if _is_same(component, 0.0, body.length) else component for component in (x, y, z))
         return Point(body, x, y, z=z)
 
     def local(self, place: Vector) -> Vector:
@@ -68,6 +74,8 @@ def triad_of(what: str, axis: Any, second: Any, checked: Checked) -> Triad:
     Raises :class:`DeclarationError` for an axis of length zero, and for a second one that is not at right angles to it.
     """
     if axis is None:
+        if second is not None:
+            raise DeclarationError(f"{what}: second goes with axis, at right angles to it")
         return AXES
     u = _unit(f"{what}: axis", vector(f"{what}: axis", axis, checked))
     if second is None:
@@ -128,26 +136,34 @@ def between(what: str, places: Any, beside: Any, checked: Checked) -> tuple[Refe
     if beside is None:
         y = across(x)
     else:
-        aside = vector(f"{what}: beside", beside, checked)
-        y = _unit(f"{what}: beside", minus(aside, times(dot(aside, x), x)))
+        aside = _unit(f"{what}: beside", vector(f"{what}: beside", beside, checked))
+        part = minus(aside, times(dot(aside, x), x))
+        if all(isinstance(component, float) and abs(component) < RIGHT for component in part):
+            raise DeclarationError(f"{what}: beside lies along the link, and must tell which way its y axis is")
+        y = _unit(f"{what}: beside", part)
     return Reference(base, Rotation.of(x, y), tip), length
 
 
 def tensor(what: str, inertia: Any, checked: Checked) -> tuple[Vector, Vector, Vector]:
-    """Moments of inertia as three rows. Raises :class:`DeclarationError` for what is no symmetric matrix, or three moments."""
+    """Moments of inertia as three rows, symmetric to the last digit where they are but for rounding.
+
+    Raises :class:`DeclarationError` for what is no symmetric matrix, and are not three moments.
+    """
     told = f"{what}: inertia"
     if isinstance(inertia, (tuple, list)) and len(inertia) == 3 and not any(isinstance(row, (tuple, list)) for row in inertia):
         x, y, z = vector(told, inertia, checked)
         return (x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z)
     if not isinstance(inertia, (tuple, list)) or len(inertia) != 3:
         raise DeclarationError(f"{told} must be three moments, or a matrix of three rows, got {inertia!r}")
-    rows = tuple(vector(told, row, checked) for row in inertia)
+    rows = [list(vector(told, row, checked)) for row in inertia]
+    size = max((abs(entry) for row in rows for entry in row if isinstance(entry, float)), default=0.0)
     for i in range(3):
         for j in range(i):
-            one, other = rows[i][j], rows[j][i]
-            if not _is_same(one, other):
+            if not _is_same(rows[i][j], rows[j][i], size):
                 raise DeclarationError(f"{told} must be symmetric, and entries ({i + 1}, {j + 1}) and ({j + 1}, {i + 1}) differ")
-    return rows[0], rows[1], rows[2]
+            rows[i][j] = rows[j][i]
+    x, y, z = ((one, two, three) for one, two, three in rows)
+    return x, y, z
 
 
 def rotated(moments: tuple[Vector, Vector, Vector], reference: Reference) -> tuple[Vector, Vector, Vector]:
@@ -159,10 +175,10 @@ def rotated(moments: tuple[Vector, Vector, Vector], reference: Reference) -> tup
     return (x[0], x[1], x[2]), (x[1], y[1], y[2]), (x[2], y[2], z[2])
 
 
-def _is_same(one: Expression, other: Expression) -> bool:
-    """Whether two expressions are one, as they are written."""
+def _is_same(one: Expression, other: Expression, size: Expression) -> bool:
+    """Whether two expressions are one, as they are written; numbers but for rounding, beside a size."""
     if isinstance(one, float) and isinstance(other, float):
-        return one == other
+        return one == other or (isinstance(size, float) and abs(one - other) <= SAME * size)
     return bool(ca.is_equal(ca.SX(one), ca.SX(other), 9))
 
 

@@ -60,9 +60,12 @@ def laws_of(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]
 
 def _along_axes(joint: Joint, given: Sequence[Motion]) -> dict[str, Motion]:
     """The motions of a joint's several axes, in their sequence."""
-    names = [axis.coordinate for axis in joint.axes]
-    if len(given) != len(names) or not all(isinstance(law, Motion) for law in given):
-        raise DeclarationError(f"motion of joint '{joint.name}': expected {len(names)} laws, of {', '.join(names)}, got {given!r}")
+    names, what = [axis.coordinate for axis in joint.axes], f"motion of joint '{joint.name}'"
+    if len(given) != len(names):
+        raise DeclarationError(f"{what}: expected {len(names)} laws, of {', '.join(names)}, got {len(given)}")
+    for law in given:
+        if not isinstance(law, Motion):
+            raise DeclarationError(f"{what}: expected laws of lagrange_casadi.motion, got {law!r}")
     return dict(zip(names, given, strict=True))
 
 

@@ -50,6 +50,8 @@ def matter_of(
         if rigid is not None:
             place, moments = rigid(centre, inertia)
             return RigidMass(checked(f"{what}: mass", mass), place, moments)
+        if not isinstance(centre, (tuple, list)) or len(centre) != 2:
+            raise DeclarationError(f"{what}: centre must be two components (x, y), got {centre!r}")
         x, y = (checked(f"{what}: centre", c) for c in centre)
         return RigidMass(checked(f"{what}: mass", mass), (x, y), checked(f"{what}: inertia", inertia))
     return uniform(checked(f"{what}: mass", mass))

@@ -15,6 +15,7 @@ import casadi as ca
 
 from ..beams.beam import Beam
 from ..errors import DeclarationError
+from .arguments import told_arguments
 from .constraints import constraint, row
 from .density import Density
 from .expressions import check_line, check_name, typed
@@ -52,6 +53,7 @@ from .results import Asked, OwnOutput, Results
 _GROUND = "ground"
 
 
+@told_arguments
 @dataclass(eq=False)
 class Mechanism:
     """A planar mechanism under declaration: links and point masses in the x-y plane, joined to each other and to the ground.
@@ -164,9 +166,8 @@ class Mechanism:
     def point_mass(self, name: str, mass: Expression) -> PointMass:
         """Declare a mass [kg] without extent, at a point; welded to a link it moves with the link."""
         self.own.free("point mass", name, self.bodies)
-        body = PointMass(name, self.own.expression(f"point mass '{name}': mass", mass))
-        self.bodies[name] = body
-        return body
+        mass = self.own.expression(f"point mass '{name}': mass", mass)
+        return cast(PointMass, self.bodies.setdefault(name, PointMass(name, mass)))
 
     def revolute(self, name: str, parent: Body | Point, child: Body | Point) -> Joint:
         """Pin a point of ``child`` to a point of ``parent``; a link stands for its base, the ground for its origin."""
@@ -228,8 +229,7 @@ class Mechanism:
         if place.body is self.ground:
             raise DeclarationError(f"load '{name}': a force on the ground moves nothing; name a point of a link or a point mass")
         load = Force(name, place, self._load(name, x), self._load(name, y), turning)
-        self.loads[name] = load
-        return load
+        return cast(Force, self.loads.setdefault(name, load))
 
     def torque(self, name: str, point: Body | Point, value: Expression, *, against: Body | Point | None = None) -> Torque:
         """Apply a torque [N m], counter-clockwise, to a body at a point, and its opposite to another one (default: the ground).

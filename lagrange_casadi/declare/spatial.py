@@ -11,6 +11,7 @@ from ..beams.beam import Beam
 from ..errors import DeclarationError
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import times
+from .arguments import told_arguments
 from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
@@ -28,6 +29,7 @@ Or the directions of the child's x and y axes, in the parent's axes.
 """
 
 
+@told_arguments
 @dataclass(eq=False)
 class SpatialMechanism(Mechanism):
     """A mechanism under declaration whose links lie in space. What is common with :class:`.Mechanism` reads the same.
@@ -350,7 +352,8 @@ class SpatialMechanism(Mechanism):
             raise DeclarationError(f"{what}: turned goes with points of bodies; at says all in the reference posture")
         for body in (parent, child):
             if not isinstance(body, Body) or self.bodies.get(body.name) is not body:
-                raise DeclarationError(f"{what}: at goes with bodies of '{self.name}', whose points follow from it, got {body!r}")
+                got = f"a point of '{body.body.name}'" if isinstance(body, Point) else repr(body)
+                raise DeclarationError(f"{what}: at goes with bodies of '{self.name}', whose points follow from it, got {got}")
         assert isinstance(parent, Body)
         assert isinstance(child, Body)
         place = self._vector(f"{what}: at", at)

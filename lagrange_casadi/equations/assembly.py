@@ -63,8 +63,11 @@ def assemble(
     held += [part for graph in rows for part in held_by(resting, graph.row.name, graph.row.expression, graph)]
     velocities = Velocities()
     spun = {b.far.body for b in tree.branches if not b.joint.slides and (b.joint.name in driven or b.near.body is mechanism.ground)}
+    slid = {b.far.body for b in tree.branches if b.reverse and b.joint.slides}
     energies = [
-        kinetic_energy(body, felt.frames[body.name], velocities, space=mechanism.space, spun=body in spun and body.oriented)
+        kinetic_energy(
+            body, felt.frames[body.name], velocities, space=mechanism.space, spun=body in spun and body.oriented, slid=body in slid
+        )
         for body in mechanism.moving
     ]
     kinetic = sum(energies, ca.SX(0))

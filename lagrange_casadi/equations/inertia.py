@@ -19,11 +19,12 @@ from ..geometry.vectors import AXES, ZERO, minus, nil
 from .bars import BarFrame
 
 
-def kinetic_energy(body: Link | PointMass, frame: Frame, velocities: Velocities, *, space: bool, spun: bool) -> Any:
+def kinetic_energy(body: Link | PointMass, frame: Frame, velocities: Velocities, *, space: bool, spun: bool, slid: bool) -> Any:
     """The kinetic energy of a body that moves with a frame.
 
     Where a body of a plane is ``spun``, its velocities are split into that of its joint and that about it: else the square of its
-    rate, which bears on no effort, would leave there its rounding.
+    rate, which bears on no effort, would leave there its rounding. A body that is ``slid`` is held at another of its points at
+    every instant, whose velocity is the rate of no place.
     """
     if not (isinstance(body, Link) and isinstance(body.mass, Density)):
         assert not isinstance(body.mass, Density)
@@ -32,7 +33,7 @@ def kinetic_energy(body: Link | PointMass, frame: Frame, velocities: Velocities,
     points: list[tuple[Any, Vector]] = [(base, ZERO), (tip, (body.length, 0.0, 0.0))]
     if not space:
         return _flat(points, inertia, frame, velocities, spun=spun)
-    energy = _slender(points, inertia, frame, velocities)
+    energy = _slender(points, inertia, frame, velocities, slid=slid)
     return energy if body.mass.slices is None else energy + _turning(body.mass.slices.whole(body.length), frame, velocities)
 
 
@@ -58,10 +59,10 @@ def _rigid(matter: Any, frame: Frame, velocities: Velocities, *, space: bool, sp
     return energy
 
 
-def _slender(points: list[tuple[Any, Vector]], inertia: Any, frame: Frame, velocities: Velocities) -> Any:
+def _slender(points: list[tuple[Any, Vector]], inertia: Any, frame: Frame, velocities: Velocities, *, slid: bool) -> Any:
     """A slender link, by the velocity of one of its points and of its axis: of the joint that holds it, or of its base."""
     (x, y, z), frame = frame.anchor, frame.shortest
-    held = x if nil(y) and nil(z) else 0.0
+    held = x if nil(y) and nil(z) and not slid else 0.0
     base = velocities.vector(frame.motion_of((held, 0.0, 0.0)))
     axis = velocities.vector(frame.course if isinstance(frame, BarFrame) else _direction(frame, AXES[0]))
     first, second = ca.SX(0), ca.SX(inertia)
