@@ -12,7 +12,7 @@ import casadi as ca
 
 from ..declare.description import describe
 from ..declare.ends import beyond_ends
-from ..declare.held import effective_lengths
+from ..declare.held import effective_lengths, ends_of
 from ..declare.limits import told_parameters
 from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
@@ -25,6 +25,7 @@ from ..system import cache
 from . import kinematics
 from .assembly import assemble
 from .checks import Check, Column
+from .deflections import deflections
 from .drives import closure, pushed
 from .fingerprint import fingerprint
 from .kinematics import Start
@@ -187,16 +188,18 @@ def _derive(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGr
 
 
 def _strength(scene: Scene, want: Wanted, columns: Mapping[Column, Any]) -> dict[Column, Any]:
-    """Stresses and utilisation of the links of which they are wanted."""
+    """Stresses, utilisation and deflections of the links of which they are wanted."""
     found: dict[Column, Any] = {}
     for name in want.stressed:
         found |= stresses(scene.mechanism, name, columns)
-    if want.used:
+    if want.used or want.bent:
         told = describe(scene.mechanism, scene.mechanism.values(scene.assembly), scene.laws)
         for name in want.used:
             beam = scene.mechanism.links[name].beam
             assert beam is not None
             found |= utilisation(scene.mechanism, name, columns, beam.columns or effective_lengths(told, name))
+        for name in want.bent:
+            found |= deflections(scene.mechanism, name, columns, ends="free" not in ends_of(told, name))
     return found
 
 

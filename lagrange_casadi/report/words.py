@@ -19,6 +19,7 @@ GROUPS = {
     "section": "Section forces",
     "stress": "Stresses",
     "utilisation": "Utilisation",
+    "deflection": "Deflections",
     "output": "Own outputs",
     "motion": "Motion of joints",
     "load": "Loads",
