@@ -35,7 +35,7 @@ def panel(width, height, load):
     [
         # Hibbeler, Structural Analysis, 8th edition, example 10.7: 324 lb in the diagonal AC of a panel of 8 ft by 6 ft.
         pytest.param(8.0, 6.0, 400.0, 0.5, {"AC": 324.0}, id="Hibbeler"),
-        # Lecture notes of MIT 16.20, Structural Mechanics, by least work: -0.56 P in the diagonal BD of a square.
+        # "Statically Indeterminant Truss", studylib.net/doc/10653767, by least work: -0.56 P in the diagonal BD of a square.
         pytest.param(1.0, 1.0, 1.0, 0.005, {"BD": -0.56}, id="square"),
     ],
 )
