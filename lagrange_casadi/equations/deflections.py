@@ -18,9 +18,10 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..declare.mechanism import Mechanism
-from ..errors import DeclarationError
 from ..quantities import Output
 from .checks import Column
+from .multibody import column
+from .strains import moduli, strains
 from .strength import Loaded, Part, looked, most
 
 _MORE = 6
@@ -34,12 +35,8 @@ def deflections(mechanism: Mechanism, name: str, columns: Mapping[Column, Any], 
     :class:`.DeclarationError` where its material has no elasticity, or its cross-section in space no torsion constant.
     """
     link = Loaded(mechanism, mechanism.links[name], columns)
-    moduli = link.beam.material.needs(f"output 'deflection:{name}'", "elasticity", "shear_modulus")
-    if not link.told:
-        kind = next(shape.kind for shape in link.course.shapes() if shape.properties().torsion is None)
-        how = "give its properties by beams.given, with its torsion"
-        raise DeclarationError(f"output 'deflection:{name}': for torsion of a {kind} there is no formula; {how}")
-    curves = [_curve(link, shear, *moduli, ends=ends) for shear in _SHEARS[link.space]]
+    pair = moduli(link, f"output 'deflection:{name}'")
+    curves = [_curve(link, *plane, pair, ends=ends) for plane in _PLANES[link.space]]
     along = zip(*curves, strict=True)
     value = most([value for pieces in along for value in looked(partial(_size, pieces), len(pieces) * pieces[0].degree)])
     if link.space:
@@ -54,8 +51,8 @@ def _size(pieces: Sequence[_Piece], x: Any) -> Any:
     return ca.fabs(pieces[0].at(x)) if len(pieces) == 1 else sum(piece.at(x) ** 2 for piece in pieces)
 
 
-_SHEARS = {False: ("shear",), True: ("shear_y", "shear_z")}
-"""The shear forces: one for each plane of bending."""
+_PLANES = {False: (("bending", "shear", 1.0),), True: (("bending_z", "shear_y", 1.0), ("bending_y", "shear_z", -1.0))}
+"""Of each plane of bending the section forces, and the sign with which the first turns the link."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,15 +74,15 @@ class _Piece:
         return self.coefficients[0] + 0.5 * twice * last - before
 
 
-def _curve(link: Loaded, shear: str, elasticity: float, shear_modulus: float, *, ends: bool) -> list[_Piece]:
-    """The deflection in the plane of a shear force, part after part."""
+def _curve(link: Loaded, bending: str, shear: str, sign: float, pair: tuple[float, ...], *, ends: bool) -> list[_Piece]:
+    """The deflection in a plane, part after part."""
     found: list[tuple[Part, Any]] = []
     turn, across = ca.SX(0.0), ca.SX(0.0)
     for part in link.parts:
         first, last = link.course.cells[part.cell]
         nodes, once, twice = _integrals(link.degree + (0 if first is last else _MORE))
-        strains = [_strains(link, part, x, elasticity, shear_modulus)[shear] for x in nodes]
-        bent, sheared = (ca.vertcat(*(ca.SX(strain[k]) for strain in strains)) for k in (0, 1))
+        each = [strains(link, part, x, *pair) for x in nodes]
+        bent, sheared = sign * column(strain[bending] for strain in each), column(strain[shear] for strain in each)
         length = link.link.length * part.width
         curve = length * (length * ca.mtimes(twice, bent) + ca.vertcat(ca.mtimes(once, sheared), 0.0))
         curve[:2] += length * turn / 2
@@ -98,23 +95,6 @@ def _curve(link: Loaded, shear: str, elasticity: float, shear_modulus: float, *,
             curve[0] -= across * (part.low + part.width / 2)
             curve[1] -= across * part.width / 2
     return [_Piece(ca.vertsplit(curve)) for _, curve in found]
-
-
-def _strains(link: Loaded, part: Part, x: float, elasticity: float, shear_modulus: float) -> dict[str, tuple[Any, Any]]:
-    """By shear forces how a link turns for a unit of its length, and how it is sheared, at a place of a part."""
-    p = link.at(part, x)
-    forces = {name: part.force(name, x) for name in part.forces}
-    whole = elasticity * (p.iy * p.iz - p.iyz**2)
-    areas = {"shear": p.shear_y, "shear_y": p.shear_y, "shear_z": p.shear_z}
-    sheared = {name: 0.0 if areas[name] is None else forces[name] / (shear_modulus * areas[name]) for name in _SHEARS[link.space]}
-    if not link.space:
-        return {"shear": (forces["bending"] * p.iy / whole, sheared["shear"])}
-    about_y, about_z = forces["bending_y"], forces["bending_z"]
-    twist = (forces["torsion"] + p.centre_z * forces["shear_y"] - p.centre_y * forces["shear_z"]) / (shear_modulus * p.torsion)
-    return {
-        "shear_y": ((p.iyz * about_y + p.iy * about_z) / whole, sheared["shear_y"] + p.centre_z * twist),
-        "shear_z": (-(p.iz * about_y + p.iyz * about_z) / whole, sheared["shear_z"] - p.centre_y * twist),
-    }
 
 
 def _integrals(degree: int) -> tuple[list[float], Any, Any]:
