@@ -8,6 +8,7 @@ damping). What this changes is by how much the forces of rigid links are off.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -99,6 +100,15 @@ def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibrat
     swung = [_swung(force[:-1], cycle, plane.mode.upper / math.tau, whole) for force, plane in pairs]
     excess, harmonic, shares = max(swung, key=lambda one: one[0])
     return replace(found, cycle=cycle, harmonic=harmonic, excess=excess, harmonics=shares)
+
+
+def swinging(solution: Solution) -> Iterator[str]:
+    """In words the links of whose deflections a solution has series, and for which rigid links are not enough."""
+    for output in solution.outputs:
+        if output.group == "deflection" and solution.determined(output):
+            found = vibration(solution, output.part)
+            if found.enough is False:
+                yield f"link '{output.part}': {found.words}"
 
 
 @dataclass(frozen=True, eq=False)
