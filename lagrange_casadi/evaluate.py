@@ -113,6 +113,7 @@ def evaluate(
     checked_laws(scene, span, tuple(values.values()))
     ratios = checked_ratios(scene.xi if xi is None else xi)
     gives = scene.elastic if elastic is None else giving(scene.mechanism, elastic)
+    scene = scene if gives == scene.elastic else _giving(scene, gives)
     if gives and table is not None:
         raise DeclarationError("elastic: a table has no place for what equilibrium leaves open; evaluate without a table")
     names = scene.wanted if wanted is None else wanted
@@ -140,7 +141,7 @@ def evaluate(
     ordered = in_order(outputs, description)
     solution = Solution(scene.mechanism.name, times, places, ordered, description, provenance, left_open, over=instants.over)
     by = by_parameters(scene.mechanism, scene.wanted if wanted is None else wanted)
-    slopes = Derivatives(series_slopes(graph, solution, p, by, rung) if by else {})
+    slopes = Derivatives(_slopes(graph, solution, p, by, rung, None if done is None else asked) if by else {})
     solution = replace(solution, tolerance=tolerance(solution), sensitivities=slopes)
     if done is not None:
         solution = replace(solution, elasticity=Elasticity(done.told, done.reasons))
@@ -157,6 +158,24 @@ def evaluate(
     if solution.failed:
         warnings.warn(f"{failure(solution)}; the solution is not certified", CertificateWarning, stacklevel=2)
     return wanted_alone(solution, Wanted.of(scene.mechanism, names)) if gives else solution
+
+
+def _slopes(
+    graph: SceneGraph, solution: Solution, p: Array, by: Sequence[str], rung: Rung, asked: Sequence[str] | None
+) -> dict[str, dict[Output, Array]]:
+    """Derivatives by parameters; of a solution that elasticity completed by the graph of what was ``asked`` that tells it too."""
+    if asked is None:
+        return series_slopes(graph, solution, p, by, rung)
+    telling = derive(graph.scene, asked, iterate=rung.newton is not None)
+    _, left_open = determinate(telling, solution.t, p)
+    nothing = {output: np.full(solution.t.size, np.nan) for output in left_open}
+    known = replace(solution, outputs={**solution.outputs, **nothing}, left_open=(*solution.left_open, *left_open))
+    return series_slopes(telling, known, p, by, rung)
+
+
+@functools.lru_cache(maxsize=32)
+def _giving(scene: Scene, elastic: Elastic) -> Scene:
+    return replace(scene, elastic=elastic)
 
 
 def _announce(graph: SceneGraph, count: int, rung: Rung, threads: int) -> None:

@@ -60,7 +60,7 @@ class Quantity:
         return {"long_name": self.long_name} | ({"sign": self.sign} if self.sign else {})
 
 
-LARGEST = ("stress", "utilisation")
+LARGEST = ("stress", "utilisation", "deflection")
 """The groups of what is largest along a link at an instant."""
 
 ON_INBOARD = "action of the part towards the tip on the part towards the base"
@@ -98,6 +98,7 @@ _OTHERS = (
     Quantity("stress", "von_mises", ("t",), "Pa", "von Mises' stress, the largest along the link", "never negative"),
     Quantity("utilisation", "yield", ("t",), "1", "one over the factor of safety against yielding, by von Mises"),
     Quantity("utilisation", "buckling", ("t",), "1", "one over the factor of safety against buckling"),
+    Quantity("deflection", "across", ("t",), LENGTH, "deflection across the link, the largest along it", "never negative"),
     Quantity("certificate", "balance", ("t",), "1", "Newton-Euler balance of all bodies, over the largest force of the cycle"),
     Quantity("certificate", "power", ("t",), "1", "balance of power, over the largest force times speed of the cycle"),
     Quantity("certificate", "closure", ("t",), "1", "gaps of joints, and what users' equations miss, over the length of all links"),

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lagrange_casadi.declare.held import ENDS
 from lagrange_casadi.elastic.bending_modes import closed, first_mode
-from lagrange_casadi.elastic.ends import ENDS
 
 
 @pytest.mark.parametrize("ends", itertools.product(ENDS, ENDS), ids="-".join)

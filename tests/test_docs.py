@@ -95,6 +95,7 @@ def rows(quantities, *axes):
     places |= {"multiplier": "/multiplier/NAME", "load": "/load/NAME/", "friction": "/friction/NAME/", "output": "/output/NAME"}
     places |= {"certificate": "/certificate/", "stress": "/stress/LINK/", "utilisation": "/utilisation/LINK/"}
     places |= {
+        "deflection": "/deflection/LINK/",
         "section": "/section/LINK/",
         "law": "/section/LINK/law/",
         "station": "/section/LINK/NAME/",

@@ -75,11 +75,45 @@ def test_where_no_profile_is_safe(scene):
         size(scene, BARS, safety=50.0)
 
 
+def test_a_link_is_stiff(scene):
+    found = size(scene, BARS, links=["fore"], parameters={"d1": 0.02}, t=(0, 1 / 1.5, 5), deflection=1 / 350)
+    (fore,) = found.links
+    bent = abs(found.solution.deflection("fore").peak().value)
+    assert bent <= 0.4 / 350
+    assert fore.safety.governs.against == "deflection"
+    assert fore.safety.factor == pytest.approx(0.4 / 350 / bent, rel=1e-12)
+    assert fore.lighter[1].factor < 1.0
+
+
+@pytest.mark.long
+def test_every_link_is_stiff_and_none_alone_can_be_lighter(scene, sized):
+    """Where the deflection governs it is what the next lighter profile fails by; 1 is enough of it, of other factors 2."""
+    found = size(scene, BARS, safety=2.0, deflection=1 / 300)
+    upper, fore = found.links
+    assert all(one.mass > before.mass for one, before in zip(found.links, sized.links, strict=True))
+    for one in found.links:
+        allowed = (0.5 if one.link == "upper" else 0.4) / 300
+        bent = abs(found.solution.deflection(one.link).peak().value)
+        assert bent <= allowed
+        assert one.safety.against("deflection") == pytest.approx(allowed / bent, rel=1e-12)
+        _, lighter = one.lighter
+        assert lighter.governs.against == "deflection"
+        assert lighter.factor < 1.0
+    assert upper.safety.governs.against == "deflection"
+    assert upper.safety.against("fatigue") > 2.0 > upper.safety.factor
+    assert fore.safety.governs.against == "fatigue"
+    with pytest.raises(
+        NoDesignError, match=r"factor of 2, and a deflection of 0\.001 of its length at most; the most, 'bar 22', has"
+    ):
+        size(scene, BARS, deflection=1 / 1000)
+
+
 @pytest.mark.parametrize(
     ("arguments", "error", "says"),
     [
         ({"profiles": []}, DeclarationError, "expected at least one profile"),
         ({"safety": 0.0}, DeclarationError, r"expected a positive factor of safety, got 0\.0"),
+        ({"deflection": -0.1}, DeclarationError, r"expected a positive deflection over length, as 1/500, got -0\.1"),
         ({"links": ["leg"]}, UnknownNameError, "unknown link with a beam 'leg'"),
         ({"links": ["plate"]}, DeclarationError, "link 'plate': diameter is no dimension of its rectangle"),
         ({"profiles": [Profile("x", {"wall": 1.0})]}, DeclarationError, "no link; upper: wall is no dimension of its round_bar"),
@@ -157,5 +191,11 @@ def test_one_command_sizes(here, capsys, sized):
     run = capsys.readouterr().out
     for one in sized.links:
         assert f"  {one.link:<20} {one.safety.utilisation:>8.4g} |" in run
+    assert main(["size", "case.py", "--deflection", "1/300"]) == 0
+    out = capsys.readouterr().out
+    assert "a factor of safety of 2, or more, and a deflection of 0.00333333 of its length, or less:\n" in out
+    assert "| deflection governs\n" in out
+    assert main(["size", "case.py", "--deflection", "1/0"]) == 2
+    assert "expected a share of the length, as 1/500, got '1/0'" in capsys.readouterr().err
     assert main(["size", "case.py", "--profiles", "none.csv"]) == 2
     assert main(["size", "case.py", "--safety", "50"]) == 1

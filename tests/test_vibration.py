@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import strong
 
-from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate, vibration
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, evaluate, load, save, vibration
 from lagrange_casadi.elastic.bending_modes import closed
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import harmonic, polynomial
@@ -48,6 +48,18 @@ def test_a_bar_shaken_by_a_sine(part):
     assert found.excess == pytest.approx(abs(part**2 / (1 - part**2)), rel=1e-4)
     assert found.enough == (part in (0.05, 0.25))
     assert ("rigid links are not enough" in found.words) == (not found.enough)
+
+
+def test_a_result_says_that_rigid_links_are_not_enough(tmp_path):
+    """In its notes, which commands and pages show, where its deflection is wanted; a file that is read again says so too."""
+    slow, fast = (evaluate(shaken(part * natural()), wanted=["deflection:bar"], certificate=False) for part in (0.05, 0.8))
+    assert slow.notes == ()
+    (note,) = fast.notes
+    assert note == f"link 'bar': {vibration(fast, 'bar').words}"
+    assert "rigid links are not enough: by harmonic 1" in note
+    assert evaluate(shaken(0.8 * natural()), wanted=["section:bar"], certificate=False).notes == ()
+    save(fast, tmp_path / "fast.h5")
+    assert load(tmp_path / "fast.h5").notes == fast.notes
 
 
 def test_a_span_of_two_swings_has_the_second_harmonic():

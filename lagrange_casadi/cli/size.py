@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -15,9 +16,22 @@ from ..strength.critical_plane import FINDLEY
 from ..strength.fatigue import CRITERIA
 from ..strength.stress import KINDS
 from ..study.sizing import Sized, size
+from ..system.numerals import real
 from .options import EVEN_POINTS, even_points, parameters, setting
 from .options import over as by_drive
 from .strength_lines import safety_lines, told
+
+
+def share(text: str) -> float:
+    """A positive number, or one over another."""
+    above, _, below = text.partition("/")
+    try:
+        found = real(above) / real(below or "1")
+    except (ValueError, ZeroDivisionError):
+        found = math.nan
+    if not 0.0 < found < math.inf:
+        raise click.BadParameter(f"expected a share of the length, as 1/500, got {text!r}")
+    return found
 
 
 @click.command(name="size")
@@ -26,6 +40,12 @@ from .strength_lines import safety_lines, told
     "--profiles", type=click.Path(path_type=Path), metavar="FILE.csv", help="A column name, and one for each dimension [m]."
 )
 @click.option("--safety", type=float, default=2.0, show_default=True, metavar="FACTOR", help="The least factor of safety.")
+@click.option(
+    "--deflection",
+    type=share,
+    metavar="SHARE",
+    help="The largest deflection across a link over its length, as 1/500. Default: any.",
+)
 @click.option("--link", "links", multiple=True, metavar="LINK", help="Size this link; repeatable. Default: all that profiles fit.")
 @click.option(
     "--criterion", type=click.Choice((*CRITERIA, FINDLEY)), default="goodman", show_default=True, help="How a mean counts."
@@ -46,6 +66,7 @@ def size_command(
     case: Path,
     profiles: Path | None,
     safety: float,
+    deflection: float | None,
     links: Sequence[str],
     criterion: str,
     yielding: str,
@@ -69,8 +90,10 @@ def size_command(
         over=over,
         criterion=criterion,
         yielding=yielding,
+        deflection=deflection,
     )
-    click.echo(f"{loaded.name}: of {len(table)} profiles the lightest with a factor of safety of {safety:g}, or more:")
+    stiff = "" if deflection is None else f", and a deflection of {deflection:g} of its length, or less"
+    click.echo(f"{loaded.name}: of {len(table)} profiles the lightest with a factor of safety of {safety:g}, or more{stiff}:")
     for sized in found.links:
         for line in _lines(sized):
             click.echo(line)

@@ -1,11 +1,19 @@
-"""How joints hold the ends of a link, and what that makes of it as a column."""
+"""How joints hold the ends of a link, and what that makes of it as a column, and as a beam."""
 
 from __future__ import annotations
+
+from typing import Literal
 
 from .description import Description, in_space
 
 _END = 1e-9
 _SLIDING = ("prismatic", "slot", "cylindrical", "planar", "screw")
+
+End = Literal["pinned", "clamped", "free", "guided"]
+Ends = tuple[End, End]
+
+ENDS: tuple[End, ...] = ("pinned", "clamped", "free", "guided")
+"""How an end of a beam is held: its place, its place and slope, not at all, its slope alone."""
 
 
 def effective_lengths(description: Description, link: str) -> tuple[float, float]:
@@ -21,6 +29,23 @@ def effective_lengths(description: Description, link: str) -> tuple[float, float
         return (1.0, 1.0) if all(ends) else (2.0, 2.0)
     across = 0.5 if all(ends) else 2.0
     return (1.0 if ends[0] == ends[1] and ends[0] else 2.0), across
+
+
+def ends_of(description: Description, link: str) -> Ends:
+    """How base and tip are held, by the rule by which columns are."""
+    base, tip = held_ends(description, link)
+    space = in_space(description)
+    if not (base or tip):
+        return "free", "free"
+    if base and tip:
+        if space or (base == tip == "turns"):
+            return "pinned", "pinned"
+        if base == tip:
+            return "clamped", "guided"
+        return ("clamped", "free") if base == "held" else ("free", "clamped")
+    if space or "held" in (base, tip):
+        return ("clamped", "free") if base else ("free", "clamped")
+    return ("pinned", "free") if base else ("free", "pinned")
 
 
 def held_ends(description: Description, link: str) -> tuple[str, str]:

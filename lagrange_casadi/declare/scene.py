@@ -65,7 +65,7 @@ def checked_ratios(even: EvenPoints) -> EvenPoints:
 class Wanted:
     """Outputs by kind, each in the order of declaration whatever the order of wanting.
 
-    ``stressed`` are links whose stress is wanted at every instant, ``used`` those whose utilisation is: by name, or as a kind.
+    ``stressed``, ``used`` and ``bent`` are links whose stress, utilisation and deflection are wanted at every instant.
     """
 
     effort: bool
@@ -78,6 +78,7 @@ class Wanted:
     own: tuple[str, ...]
     stressed: tuple[str, ...] = ()
     used: tuple[str, ...] = ()
+    bent: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, mechanism: Mechanism, names: Sequence[str]) -> Wanted:
@@ -115,7 +116,7 @@ class Wanted:
             return tuple(name.partition(":")[2] for name in own)
 
         named = [name for name in names if name != "all"]
-        strength = (tuple(strength_of(mechanism, kind, named)) for kind in ("stress", "safety"))
+        strength = (tuple(strength_of(mechanism, kind, named)) for kind in ("stress", "safety", "deflection"))
         return cls("effort" in chosen, "motion" in chosen, *map(parts, _KINDS), *strength)
 
     @property

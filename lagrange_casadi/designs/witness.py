@@ -27,7 +27,7 @@ from ..judge.certificate import LOOSE, tolerance
 from ..quantities import Output
 
 INSTANTS = 5
-_WANTED = {"stress": "stress", "utilisation": "safety"}
+_WANTED = {"stress": "stress", "utilisation": "safety", "deflection": "deflection"}
 """What is to be wanted for what ``all`` does not have."""
 
 _ROUNDINGS = 10.0

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..declare.density import Array
-from .ends import Ends
+from ..declare.held import Ends
 
 ROOTS: dict[Ends, float] = {
     ("pinned", "pinned"): np.pi,
@@ -90,12 +90,14 @@ def first_mode(
     mode = np.zeros(size)
     mode[kept] = np.linalg.solve(lower.T, vectors[:, rigid])
     curvature = np.einsum("pi,ipn->pn", mode[at], curved)
+    # Rayleigh's quotient of any shape is above; the square of the matrices is off by what the highest modes are rounded by.
+    most = np.sum(weights * stiffness(u) * curvature**2) / np.sum(weights * mass(u) * np.einsum("pi,ipn->pn", mode[at], moved) ** 2)
     bound = None
     if not rigid:
         flexible = np.sum(weights * mass(u) * _sag(stiffness, length, edges, u, ends))
         rest = flexible - np.sum(1.0 / squares[1:])
-        bound = float(min(1.0 / np.sqrt(rest), np.sqrt(squares[0])))
-    return Mode(float(np.sqrt(squares[rigid])), bound, u.ravel(), weights.ravel(), curvature.ravel())
+        bound = float(min(1.0 / np.sqrt(rest), np.sqrt(most)))
+    return Mode(float(np.sqrt(most)), bound, u.ravel(), weights.ravel(), curvature.ravel())
 
 
 def _parts(width: float) -> int:

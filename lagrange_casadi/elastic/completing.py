@@ -60,6 +60,7 @@ def wanted_alone(solution: Solution, want: Wanted) -> Solution:
         outputs=outputs,
         errors={name: error for name, error in solution.errors.items() if name in names},
         left_open=tuple(output for output in solution.left_open if output in outputs),
+        sensitivities=solution.sensitivities.of(set(kept)),
         elasticity=replace(solution.elasticity, told=tuple(output for output in solution.elasticity.told if output in outputs)),
     )
 
@@ -78,6 +79,9 @@ def _wanted(output: Output, want: Wanted) -> bool:
         "load": want.loads,
         "friction": want.frictions,
         "output": want.own,
+        "stress": want.stressed,
+        "utilisation": want.used,
+        "deflection": want.bent,
     }
     return output.part in parts[output.group]
 

@@ -17,13 +17,13 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..declare.density import Array
+from ..declare.held import ends_of
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.solution import Solution
 from ..instants.turning import turns_between
 from ..strength.member import Member
 from ..summits.polynomials import interpolation
 from .compliance import Compliance, sorted_edges
-from .ends import by_joints
 
 Against = Literal["ends", "base"]
 
@@ -206,8 +206,8 @@ class Deflection:
 def deflection(solution: Solution, link: str, against: Against | None = None) -> Deflection:
     """How a link bends under its section forces, quasi-statically: see :class:`Deflection`.
 
-    By default deflections count from the line between the ends where joints hold both (:mod:`.ends`), else from the link's axes at
-    its base.
+    By default deflections count from the line between the ends where joints hold both (:func:`..declare.held.ends_of`), else from
+    the link's axes at its base.
 
     Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, its forces are open, its material
     has no elasticity, or there is no formula for the torsion of its cross-section.
@@ -215,7 +215,7 @@ def deflection(solution: Solution, link: str, against: Against | None = None) ->
     if against not in (None, "ends", "base"):
         raise DeclarationError(f"deflection of '{link}': expected against='ends' or 'base', got {against!r}")
     compliance = Compliance.of(Member.of(solution, link), f"deflection of '{link}'")
-    return Deflection(compliance, against or ("base" if "free" in by_joints(solution.description, link) else "ends"))
+    return Deflection(compliance, against or ("base" if "free" in ends_of(solution.description, link) else "ends"))
 
 
 def _plus(longer: Array, shorter: Array) -> Array:

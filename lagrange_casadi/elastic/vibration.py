@@ -8,6 +8,7 @@ damping). What this changes is by how much the forces of rigid links are off.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,12 +16,12 @@ import numpy as np
 
 from ..declare.density import Array
 from ..declare.description import Description, density_of
+from ..declare.held import ENDS, Ends, ends_of
 from ..errors import DeclarationError
 from ..instants.solution import Solution
 from ..strength.member import Member
 from .bending_modes import Mode, first_mode
 from .compliance import Compliance
-from .ends import ENDS, Ends, by_joints
 
 ENOUGH = 0.1
 """By how much bending may be off where rigid links are enough."""
@@ -84,7 +85,7 @@ def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibrat
     if ends is not None and (len(ends) != 2 or any(end not in ENDS for end in ends)):
         raise DeclarationError(f"vibration of '{link}': expected how base and tip are held, two of {', '.join(ENDS)}, got {ends!r}")
     compliance = Compliance.of(Member.of(solution, link), f"vibration of '{link}'")
-    held = ends or by_joints(solution.description, link)
+    held = ends or ends_of(solution.description, link)
     body = solution.description["bodies"][link]
     planes = [_Plane.of(compliance, body, held, k) for k in ((0, 1) if compliance.member.space else (0,))]
     softest = min(planes, key=lambda plane: plane.mode.upper)
@@ -99,6 +100,15 @@ def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibrat
     swung = [_swung(force[:-1], cycle, plane.mode.upper / math.tau, whole) for force, plane in pairs]
     excess, harmonic, shares = max(swung, key=lambda one: one[0])
     return replace(found, cycle=cycle, harmonic=harmonic, excess=excess, harmonics=shares)
+
+
+def swinging(solution: Solution) -> Iterator[str]:
+    """In words the links of whose deflections a solution has series, and for which rigid links are not enough."""
+    for output in solution.outputs:
+        if output.group == "deflection" and solution.determined(output):
+            found = vibration(solution, output.part)
+            if found.enough is False:
+                yield f"link '{output.part}': {found.words}"
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ import casadi as ca
 
 from ..declare.description import describe
 from ..declare.ends import beyond_ends
-from ..declare.held import effective_lengths
+from ..declare.held import effective_lengths, ends_of
 from ..declare.limits import told_parameters
 from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
@@ -25,9 +25,11 @@ from ..system import cache
 from . import kinematics
 from .assembly import assemble
 from .checks import Check, Column
+from .deflections import deflections
 from .drives import closure, pushed
 from .fingerprint import fingerprint
 from .kinematics import Start
+from .least_work import feeling, least_work
 from .mobility import internal_forces, needed_reactions
 from .multibody import Coordinate, Multibody, column, own_coordinate
 from .open_forces import open_forces
@@ -107,8 +109,9 @@ def _kept(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGrap
     return graph
 
 
-def _derive(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGraph:
+def _derive(scene: Scene, asked: Wanted, iterate: bool, elastic: bool) -> SceneGraph:
     mechanism = scene.mechanism
+    want = feeling(mechanism, asked) if scene.elastic and asked.forces else asked
     p = mechanism.symbols
     tree = span(scene.guided, scene.laws)
     borne = needed_reactions(mechanism, want.reactions, want.sections)
@@ -150,6 +153,11 @@ def _derive(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGr
     placed = solved.evaluate(ca.vertcat(ca.SX(0, 1), *columns.values()))
     columns = dict(zip(columns, ca.vertsplit(placed) if columns else (), strict=True))
     inputs = [mechanism.time, solved.driven, solved.driven_rate, solved.driven_acceleration, solved.iterated, p]
+    at_start = (start.t, *motion(start.t, values), solved.newton.guess if solved.newton else [], values)
+
+    def begins(expression: Any) -> Any:
+        return ca.Function("start", inputs, [expression])(*at_start)
+
     acting: dict[Column, Any] = {}
     free = ca.SX(0, 1)
     frictions: Mapping[str, Any] = {}
@@ -173,31 +181,43 @@ def _derive(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGr
         acting |= pressed
         # Beside the start of the motion, for a drive through a gear moves little of what it drives, and holds it all the same.
         for check in [check for check in acting if isinstance(check, Check) and check.kind == "hold"]:
-            there = ca.Function("start", inputs, [acting[check]])
-            at_start = (start.t, *motion(start.t, values), solved.newton.guess if solved.newton else [], values)
-            acting[check] = closure(acting[check], float(there(*at_start)))
+            acting[check] = closure(acting[check], float(begins(acting[check])))
     acting |= own_outputs(body, solved, columns | acting)
-    opened = open_forces(acting, free, inputs, frictions) if elastic and free.numel() else None
-    acting |= _strength(scene, want, columns | acting)
+    opened = open_forces(acting, free, inputs, frictions) if (elastic or scene.elastic) and free.numel() else None
+    least = least_work(mechanism, scene.elastic, columns | acting, free, begins) if opened else None
+    loaded = acting if least is None else least.completed(acting, free)
+    strength = _strength(scene, asked, columns | loaded)
+    acting = (acting if elastic else loaded) | strength | ({} if least is None else least.doubts(strength))
     columns |= _settled(acting, free)
+    columns = columns if want is asked else {key: value for key, value in columns.items() if not _felt_alone(key, asked)}
     out = ca.densify(ca.vertcat(ca.SX(0, 1), *columns.values()))
     names = ["t", "d", "d_rate", "d_acceleration", "z", "p"]
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
-    return SceneGraph(scene, want, driven, motion, instant, solved.newton, tuple(columns), loop_angles, opened)
+    opened = opened if elastic else None
+    return SceneGraph(scene, asked, driven, motion, instant, solved.newton, tuple(columns), loop_angles, opened)
 
 
 def _strength(scene: Scene, want: Wanted, columns: Mapping[Column, Any]) -> dict[Column, Any]:
-    """Stresses and utilisation of the links of which they are wanted."""
+    """Stresses, utilisation and deflections of the links of which they are wanted."""
     found: dict[Column, Any] = {}
     for name in want.stressed:
         found |= stresses(scene.mechanism, name, columns)
-    if want.used:
+    if want.used or want.bent:
         told = describe(scene.mechanism, scene.mechanism.values(scene.assembly), scene.laws)
         for name in want.used:
             beam = scene.mechanism.links[name].beam
             assert beam is not None
             found |= utilisation(scene.mechanism, name, columns, beam.columns or effective_lengths(told, name))
+        for name in want.bent:
+            found |= deflections(scene.mechanism, name, columns, ends="free" not in ends_of(told, name))
     return found
+
+
+def _felt_alone(key: Column, asked: Wanted) -> bool:
+    """Whether a column is there for strain energy alone."""
+    if not isinstance(key, Output):
+        return False
+    return (key.group == "reaction" and key.part not in asked.reactions) or (key.along and key.part not in asked.sections)
 
 
 def _settled(columns: dict[Column, Any], free: Any) -> dict[Column, Any]:

@@ -43,8 +43,8 @@ def declaration(scene: Scene, wanted: Wanted) -> str | None:
         wanted,
         list(scene.laws),
     ]
-    if scene.weights is not None:
-        content.append(scene.weights)
+    content += [scene.weights] if scene.weights is not None else []
+    content += [scene.elastic] if scene.elastic else []
     try:
         _spell(content, words, expressions)
     except _UntoldError:

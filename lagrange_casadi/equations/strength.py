@@ -121,10 +121,14 @@ class Loaded:
         (first, last), low, high = self.course.cells[cell], self.course.breaks[cell], self.course.breaks[cell + 1]
         return between(first, last, (u - low) / (high - low)).properties(space=self.space)
 
+    def at(self, part: Part, x: Any) -> Properties:
+        """The cross-section at a place of a part."""
+        first, last = self.course.cells[part.cell]
+        return self._constant[part.cell] if first is last else self.properties(part.cell, part.low + part.width * x)
+
     def square(self, part: Part, x: Any) -> Any:
         """The largest square of von Mises' stresses at a place of a part."""
-        first, last = self.course.cells[part.cell]
-        p = self._constant[part.cell] if first is last else self.properties(part.cell, part.low + part.width * x)
+        p = self.at(part, x)
         forces = {place: part.force(name, x) for name, place in FORCES[self.space].items()}
         found = []
         for fibre in self._needed[part.cell]:
@@ -132,7 +136,7 @@ class Loaded:
                 sum(number * forces[k] for k, number in enumerate(row) if k in forces) for row in p.rows(p.fibres[fibre])
             )
             found.append(normal * normal + 3.0 * sum(shear * shear for shear in shears))
-        return _most(found)
+        return most(found)
 
     @cached_property
     def _constant(self) -> list[Properties]:
@@ -206,7 +210,7 @@ def _buckling(link: Loaded, effective: tuple[float, float]) -> Any:
     share = compressed / ca.fmin(*critical)
     shares = [compressed / e for e in euler]
     moments = [b / (w * strength) for b, w in zip(bent, modulus, strict=False)]
-    found = _most([_alone(share, c, b) for c, b in zip(shares, moments, strict=False)] + shares)
+    found = most([_alone(share, c, b) for c, b in zip(shares, moments, strict=False)] + shares)
     if link.space:
         # From the left, where it is convex and falls, Newton's method rises to the solution.
         for _ in range(_ROUNDS):
@@ -254,11 +258,11 @@ def _largest(link: Loaded, value: Callable[[Part, Any], Any]) -> Any:
     found: list[Any] = []
     for part in link.parts:
         first, last = link.course.cells[part.cell]
-        found += _looked(partial(value, part), link.degree + (0 if first is last else _MORE))
-    return _most(found)
+        found += looked(partial(value, part), link.degree + (0 if first is last else _MORE))
+    return most(found)
 
 
-def _looked(value: Callable[[Any], Any], degree: int) -> list[Any]:
+def looked(value: Callable[[Any], Any], degree: int) -> list[Any]:
     """The values of a function of a degree at both ends of a part, between them, and beside its summits."""
     count = max(_LOOKS, degree + 4)
     places = [(1.0 - math.cos(math.pi * k / (count - 1))) / 2 for k in range(count)]
@@ -306,7 +310,8 @@ def _in_order(marks: Sequence[Any]) -> list[Any]:
     return found
 
 
-def _most(values: Sequence[Any]) -> Any:
+def most(values: Sequence[Any]) -> Any:
+    """The largest of values."""
     found = values[0]
     for value in values[1:]:
         found = ca.fmax(found, value)

@@ -59,14 +59,16 @@ def sourced(
     checked_span(scene, scene.timing(), values)
     instants = scene.instants(scene.timing(), values).t
     whole, (graph, left_open) = graph, determinate(graph, instants, p, telling=table is None)
-    exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm", newton=enough, elastic=False)
+    # What elasticity tells is in the graph whole, or not at all.
+    gives = scene.elastic and not left_open
+    exact = evaluate(scene, parameters=values, wanted=wanted, backend="vm", newton=enough, elastic=gives)
     if exact.failed:
         raise CertificateError(f"cannot export {name}: {failure(exact)}")
     solution = exact
     if newton != enough or table is not None:
         # It is held to the exact one, and as far off as that was asked for.
         words: dict[str, Any] = {"parameters": values, "wanted": wanted, "newton": newton, "table": table}
-        solution = evaluate(scene, **words, backend="vm", certificate=False, elastic=False)
+        solution = evaluate(scene, **words, backend="vm", certificate=False, elastic=gives)
     read = None if table is None else (drive_of(graph), table_of(graph, solution.t, p, rung))
     agreed = contract(graph, name, precision, solution, left_open, fixed=table is not None)
     emitted = program(graph, precision, newton, p, read)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -56,6 +56,10 @@ class Derivatives:
             for output, x in found.items():
                 if many := int((~np.isfinite(x.reshape(len(x), -1)).all(axis=1)).sum()):
                     yield f"the derivative of {output} by {name} is no number at {many} of {len(x)} instants"
+
+    def of(self, outputs: Container[Output]) -> Derivatives:
+        """Those of some outputs."""
+        return Derivatives({name: {o: x for o, x in found.items() if o in outputs} for name, found in self.by.items()})
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Derivatives:
         """The same at some of the instants."""

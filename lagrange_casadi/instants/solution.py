@@ -210,10 +210,14 @@ class Solution:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is worth a word though all is right: points that slide beyond the end of a link, joints that rub and are at rest."""
+        """What is worth a word though all is right: points beyond the end of a link, joints that rub at rest, links that swing."""
         known = {output: values for output, values in self.outputs.items() if output not in self.left_open}
         found = notes(self.t, known, self.description, self.resting)
         slopes = () if self.resting.any() else self.sensitivities.notes()  # at rest all that rubs is open
+        if any(output.group == "deflection" for output in self.outputs):
+            from ..elastic.vibration import swinging
+
+            slopes = (*slopes, *swinging(self))
         return (*found, *self.elasticity.notes, *slopes)
 
     @cached_property

@@ -32,7 +32,8 @@ from .words import GROUPS, what
 VERSION = 1
 """Of what a page holds."""
 
-_CHARTED = ("effort", "reaction", "stress", "utilisation", "output", "motion", "load", "friction", "multiplier", "pose")
+_LOADED = ("effort", "reaction", "stress", "utilisation", "deflection")
+_CHARTED = (*_LOADED, "output", "motion", "load", "friction", "multiplier", "pose")
 
 
 @dataclass(frozen=True)

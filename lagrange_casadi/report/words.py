@@ -20,6 +20,7 @@ GROUPS = {
     "section": "Section forces",
     "stress": "Stresses, largest along the link",
     "utilisation": "Utilisation",
+    "deflection": "Deflections",
     "output": "Own outputs",
     "motion": "Motion of joints",
     "load": "Loads",

@@ -45,7 +45,7 @@ those of 4 have no loads along links, those of 5 no rotary inertia of slices, th
 parameters, and nothing that elasticity tells; all are still written."""
 
 _WITHOUT_OVER, _PLANAR, _AT_POINTS, _LOADED, _THICK = 2, 3, 4, 5, 6
-_LATEST = ("friction", "stress", "utilisation")
+_LATEST = ("friction", "stress", "utilisation", "deflection")
 
 _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23

@@ -11,17 +11,45 @@ import casadi as ca
 
 from ..beams.profiles import Profile
 from ..declare.density import Density
+from ..declare.held import ends_of
 from ..declare.parts import Link
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
+from ..elastic.compliance import Compliance
+from ..elastic.deflection import Against, Deflection
 from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError
 from ..evaluate import evaluate
 from ..instants.solution import Solution
 from ..strength.member import Member
-from ..strength.safety import Safety, as_column, judged
+from ..strength.safety import Safety, Verdict, as_column, judged
 
 _TURNS = 100
 """How often loads are evaluated at most before what is found is taken for not to be found."""
+
+
+@dataclass(frozen=True)
+class StiffSafety(Safety):
+    """The factors of safety of a link, and against ``deflection``: what is allowed over the largest. Of that 1 is enough, of the
+    others ``enough``.
+    """
+
+    enough: float = 1.0
+
+    @property
+    def governs(self) -> Verdict:
+        """The one that is nearest to what is enough of it."""
+        return min(self.verdicts, key=self._share)
+
+    @property
+    def suffices(self) -> bool:
+        """Whether all are enough."""
+        return self._share(self.governs) >= 1.0
+
+    def _share(self, verdict: Verdict) -> float:
+        return verdict.factor / (1.0 if verdict.against == _BENT else self.enough)
+
+
+_BENT = "deflection"
 
 
 @dataclass(frozen=True)
@@ -67,8 +95,12 @@ def size(
     over: Over | None = None,
     criterion: str = "goodman",
     yielding: str = "von_mises",
+    deflection: float | None = None,
 ) -> Sizing:
     """Choose for each link the lightest of some profiles with a factor of safety, against yielding, buckling and fatigue.
+
+    Where a ``deflection`` is given, the largest deflection across a link over its length is at most that too, as 1/500; the factors
+    of safety are :class:`StiffSafety` then.
 
     Dimensions of a link's cross-section that are parameters take a profile's values. Links begin with their lightest profile. As
     long as one is not safe it takes the next that is under the loads as they are, and loads are evaluated anew. Then each link is
@@ -80,7 +112,9 @@ def size(
     """
     if not (isinstance(safety, (int, float)) and 0.0 < safety < math.inf):
         raise DeclarationError(f"size: expected a positive factor of safety, got {safety!r}")
-    search = _Search.of(scene, profiles, links, parameters or {}, float(safety), t, over, criterion, yielding)
+    if deflection is not None and (isinstance(deflection, bool) or not 0.0 < deflection < math.inf):
+        raise DeclarationError(f"size: expected a positive deflection over length, as 1/500, got {deflection!r}")
+    search = _Search.of(scene, profiles, links, parameters or {}, float(safety), t, over, criterion, yielding, deflection)
     choice = search.lightened(search.safe())
     return search.told(choice)
 
@@ -107,6 +141,7 @@ class _Search:
     left: Mapping[str, str]
     asked: dict[str, Any]
     judging: dict[str, Any]
+    bent: float | None = None
     evaluations: int = 0
 
     @classmethod
@@ -121,6 +156,7 @@ class _Search:
         over: Over | None,
         criterion: str,
         yielding: str,
+        bent: float | None,
     ) -> _Search:
         if not profiles:
             raise DeclarationError("size: expected at least one profile")
@@ -149,7 +185,7 @@ class _Search:
                     raise DeclarationError(f"size: links '{other}' and '{name}' share parameter '{parameter}'; give each its own")
         wants = [f"section:{name}" for name in having]
         asked: dict[str, Any] = {"t": t, "over": over, "wanted": wants, "certificate": False}
-        return cls(scene, slots, dict(parameters), wanted, left, asked, {"criterion": criterion, "yielding": yielding})
+        return cls(scene, slots, dict(parameters), wanted, left, asked, {"criterion": criterion, "yielding": yielding}, bent)
 
     def solve(self, choice: Mapping[str, int]) -> Solution:
         """The loads with profiles by their numbers."""
@@ -172,7 +208,19 @@ class _Search:
         numeric = slot.link.beam.mapped(lambda _, x: mechanism.number(x, values))
         other = replace(member, beam=numeric)
         enough = 0.0 if whole else self.wanted
-        return judged(other, as_column(solution.description, other), **self.judging, enough=enough)
+        found = judged(other, as_column(solution.description, other), **self.judging, enough=enough)
+        if self.bent is None or found.factor < enough:
+            return found
+        against: Against = "base" if "free" in ends_of(solution.description, name) else "ends"
+        peak = Deflection(Compliance.of(other, f"deflection of '{name}'"), against).peak()
+        allowed = self.bent * member.law.length
+        where = f"{abs(peak.value) * 1e3:.4g} of {allowed * 1e3:.4g} mm at t = {peak.t:.5g} s, xi/l = {peak.xi:.4f}"
+        verdict = Verdict(_BENT, allowed / abs(peak.value) if peak.value else math.inf, where)
+        return StiffSafety(found.link, (*found.verdicts, verdict), found.is_open, self.wanted)
+
+    def suffices(self, found: Safety) -> bool:
+        """Whether a link is safe, and stiff where that is asked for."""
+        return found.suffices if isinstance(found, StiffSafety) else found.factor >= self.wanted
 
     def safe(self) -> dict[str, int]:
         """Numbers of profiles that are safe under the loads that they bring, each the first that is from the lightest upward."""
@@ -181,7 +229,7 @@ class _Search:
             solution, changed = self.solve(choice), False
             for name, slot in self.slots.items():
                 tried = {k: self.judge(solution, name, k) for k in (choice[name],)}
-                while tried[choice[name]].factor < self.wanted:
+                while not self.suffices(tried[choice[name]]):
                     changed = True
                     if choice[name] + 1 == len(slot.profiles):
                         raise NoDesignError(self._told_none(solution, name, tried))
@@ -196,7 +244,8 @@ class _Search:
         best = max(whole, key=lambda k: whole[k].factor)
         profile, found = self.slots[name].profiles[best].name, whole[best]
         most = f"the most, '{profile}', has {found.factor:.4g} against {found.governs.against}"
-        return f"size: link '{name}': no profile has a factor of {self.wanted:g}; {most}"
+        stiff = "" if self.bent is None else f", and a deflection of {self.bent:g} of its length at most"
+        return f"size: link '{name}': no profile has a factor of {self.wanted:g}{stiff}; {most}"
 
     def lightened(self, choice: dict[str, int]) -> dict[str, int]:
         """The same, each link as light as the others allow."""
@@ -207,7 +256,7 @@ class _Search:
                 for k in range(choice[name]):
                     lighter = {**choice, name: k}
                     solution = self.solve(lighter)
-                    if all(self.judge(solution, other, n).factor >= self.wanted for other, n in lighter.items()):
+                    if all(self.suffices(self.judge(solution, other, n)) for other, n in lighter.items()):
                         choice, changed = lighter, True
                         break
         return choice
