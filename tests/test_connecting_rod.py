@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrange_casadi import evaluate, load_case
+from lagrange_casadi import evaluate, figures, load_case
 from lagrange_casadi.cli import main
 from lagrange_casadi.strength.member import Member
 from lagrange_casadi.strength.safety import as_column
@@ -91,6 +91,15 @@ def test_pressure_in_the_bearings(running):
         assert running.safety(joint).against("pressure") == pytest.approx(pressure * bore * 58 / force, rel=1e-12)
         # Inertia takes from the gas force when it is largest.
         assert running.safety(joint).factor > 1.0
+
+
+def test_bars_are_of_every_part(running):
+    (spec,) = (spec for spec in figures.default_figures(running) if spec.name == "utilisation")
+    assert (spec.links, spec.joints) == (("rod", "crank"), ("crankpin", "piston_pin"))
+    (axes,) = spec.draw(running).axes
+    words = [label.get_text() for label in axes.get_yticklabels()]
+    assert words[-2:] == ["crankpin, pressure", "piston_pin, pressure"]
+    assert [bar.get_width() for bar in axes.patches][-1] == 1.0 / running.safety("piston_pin").factor
 
 
 def test_what_governs(running, capsys):
