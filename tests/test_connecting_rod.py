@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrange_casadi import evaluate, load_case
+from lagrange_casadi import evaluate, figures, load_case
 from lagrange_casadi.cli import main
 from lagrange_casadi.strength.member import Member
 from lagrange_casadi.strength.safety import as_column
@@ -76,6 +76,32 @@ def test_bending_by_its_own_inertia(scene):
     assert abs(bending) == pytest.approx(abs(peak.value) / (419 / 30 * T**3), rel=1e-9)
 
 
+def test_the_bearings_bear_the_gas_force(scene):
+    """24 740 N over 1.3 d^2 and 2 d^2 at 10 and 15 N/mm^2: 43.6 and 28.7 mm, rounded upward to 44 and 29 mm, 58 mm wide."""
+    for joint, ratio, pressure in (("crankpin", 1.3, 10.0), ("piston_pin", 2.0, 15.0)):
+        bearing = scene.mechanism.fitted[joint]["plain"]
+        assert bearing.pressure == pressure * 1e6
+        assert 1e3 * bearing.bore == math.ceil(math.sqrt(24_740 / (ratio * pressure)))
+        assert 1e3 * bearing.width == math.ceil(1e3 * ratio * bearing.bore)
+
+
+def test_pressure_in_the_bearings(running):
+    for joint, bore, pressure in (("crankpin", 44, 10.0), ("piston_pin", 29, 15.0)):
+        force = np.hypot(running.reaction(joint).fx, running.reaction(joint).fy).max()
+        assert running.safety(joint).against("pressure") == pytest.approx(pressure * bore * 58 / force, rel=1e-12)
+        # Inertia takes from the gas force when it is largest.
+        assert running.safety(joint).factor > 1.0
+
+
+def test_bars_are_of_every_part(running):
+    (spec,) = (spec for spec in figures.default_figures(running) if spec.name == "utilisation")
+    assert (spec.links, spec.joints) == (("rod", "crank"), ("crankpin", "piston_pin"))
+    (axes,) = spec.draw(running).axes
+    words = [label.get_text() for label in axes.get_yticklabels()]
+    assert words[-2:] == ["crankpin, pressure", "piston_pin, pressure"]
+    assert [bar.get_width() for bar in axes.patches][-1] == 1.0 / running.safety("piston_pin").factor
+
+
 def test_what_governs(running, capsys):
     rod, crank = running.safety("rod"), running.safety("crank")
     assert running.certified
@@ -107,7 +133,8 @@ def _goodman(stress):
 def test_run_prints_every_part(here, capsys):
     assert main(["run", "connecting_rod", "--no-figures", "--no-certificate", "--backend", "vm"]) == 0
     out = capsys.readouterr().out
-    for part in ("rod", "crank"):
+    for part in ("rod", "crank", "crankpin", "piston_pin"):
         assert f"\n  {part:<20} " in out
     assert out.count("| fatigue governs\n") == 2
+    assert out.count("| pressure governs\n") == 2
     assert out.count("endless: no swing is above the endurance limit") == 2

@@ -4,7 +4,7 @@ from math import pi
 
 import casadi as ca
 
-from lagrange_casadi import Mechanism, Scene, beams, table
+from lagrange_casadi import Mechanism, Scene, beams, bearings, table
 from lagrange_casadi.motion import polynomial
 
 # Gauge pressure, over the largest one, over the crank's angle [deg] from the top dead centre at the start of the intake.
@@ -30,8 +30,9 @@ def scene() -> Scene:
     crank = m.link("crank", length=0.095, beam=beams.Beam(web, STEEL))
     piston = m.point_mass("piston", 2.25)
     main = m.revolute("main", m.ground, crank)
-    m.revolute("crankpin", crank.tip, rod)
-    m.revolute("piston_pin", rod.tip, piston)
+    crankpin, piston_pin = m.revolute("crankpin", crank.tip, rod), m.revolute("piston_pin", rod.tip, piston)
+    bearings.fit(m, crankpin, bearings.Plain(bore=0.044, width=0.058, pressure=10e6))
+    bearings.fit(m, piston_pin, bearings.Plain(bore=0.029, width=0.058, pressure=15e6))
     m.prismatic("bore", m.ground, piston, axis=(0, 1))
     turned = ca.fmod(m.coordinate(main) - pi / 2, 4 * pi) * 180 / pi
     m.force("gas", piston, y=-pressure / max(PRESSURES) * table(turned, ANGLES, PRESSURES) * pi / 4 * bore**2)

@@ -209,21 +209,23 @@ class StrengthPlot:
 
 @dataclass(frozen=True)
 class UtilisationPlot:
-    """How far links that have a beam are used, against each way to fail."""
+    """How far links that have a beam are used, and joints that have pins or bearings, against each way to fail."""
 
     kind: ClassVar[str] = "utilisation"
     name: str
     links: tuple[str, ...]
+    joints: tuple[str, ...] = ()
 
     def needs(self) -> tuple[str, ...]:
         """Full names of the quantities it draws."""
-        return tuple(name for link in self.links for name in SectionMaps(self.name, link).needs())
+        reactions = [str(Output("reaction", joint, member)) for joint in self.joints for member in ("fx", "fy")]
+        return (*(name for link in self.links for name in SectionMaps(self.name, link).needs()), *reactions)
 
     def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         from .strength_plot import draw_utilisation
 
-        return draw_utilisation(solution, self.links)
+        return draw_utilisation(solution, (*self.links, *self.joints))
 
 
 @dataclass(frozen=True)
@@ -276,11 +278,19 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
         if solution.determined(Output("section", link, "bending")):
             specs.append(SectionMaps(f"section_{link}", link))
     specs += [StrengthPlot(f"strength_{link}", link) for link in strong_of(solution)]
-    if links := strong_of(solution, "yield_strength", "elasticity"):
-        specs.append(UtilisationPlot("utilisation", links))
+    links, joints = strong_of(solution, "yield_strength", "elasticity"), fitted_in(solution)
+    if links or joints:
+        specs.append(UtilisationPlot("utilisation", links, joints))
     specs += [DeflectionPlot(f"deflection_{link}", link) for link in strong_of(solution, "elasticity")]
     overlay = () if solution.table is SPACE else (MechanismDrawing("postures", count=8, overlay=True),)
     return (*specs, *overlay, MechanismDrawing())
+
+
+def fitted_in(solution: Solution) -> tuple[str, ...]:
+    """The joints that have pins or bearings whose reactions are told."""
+    fitted = (name for name, joint in solution.description["joints"].items() if "fitted" in joint)
+    forces = {name: [o for o in solution.outputs if o.group == "reaction" and o.part == name] for name in fitted}
+    return tuple(name for name, own in forces.items() if own and all(map(solution.determined, own)))
 
 
 def strong_of(solution: Solution, *numbers: str) -> tuple[str, ...]:

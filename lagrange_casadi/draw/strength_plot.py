@@ -36,13 +36,13 @@ def draw_strength(solution: Solution, link: str, along: Array, label: str, si: b
     return figure
 
 
-def draw_utilisation(solution: Solution, links: Sequence[str]) -> Figure:
-    """How far every link is used against each way to fail: one over the factor of safety."""
+def draw_utilisation(solution: Solution, parts: Sequence[str]) -> Figure:
+    """How far every link and joint is used against each way to fail: one over the factor of safety."""
     from matplotlib.figure import Figure
 
-    found = {link: solution.safety(link) for link in links}
+    found = {part: solution.safety(part) for part in parts}
     rows = [
-        (f"{link}, {v.against}", 1.0 / v.factor, v is safety.governs) for link, safety in found.items() for v in safety.verdicts
+        (f"{part}, {v.against}", 1.0 / v.factor, v is safety.governs) for part, safety in found.items() for v in safety.verdicts
     ]
     figure = Figure(figsize=(7.0, 0.32 * len(rows) + 1.4), layout="constrained")
     axes = figure.subplots()
