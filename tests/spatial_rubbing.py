@@ -21,7 +21,9 @@ PASSES = 20000
 
 @dataclass(frozen=True)
 class Rub:
-    """Friction along a coordinate of a joint that turns about one axis, slides along it, or both, by what declares it."""
+    """Friction along a coordinate of a joint that turns about one axis, slides along it, or both; or in a spherical joint, against
+    the way in which it turns; by what declares it.
+    """
 
     joint: Joint
     index: int
@@ -34,17 +36,30 @@ class Rub:
     @property
     def along(self) -> str:
         """The coordinate's name, of a joint that has two."""
-        return "" if self.joint.count == 1 else "turn" if self.turns else "slide"
+        return "" if self.joint.count != 2 else "turn" if self.turns else "slide"
 
     @property
     def turns(self) -> bool:
         return self.index in self.joint.turning
 
     def axis(self, found: Result) -> np.ndarray:
-        """The joint's axis in ground axes."""
+        """The joint's axis in ground axes; of a spherical joint that about which it turns."""
+        if self.joint.kind == "spherical":
+            spin = self.spin(found)
+            return spin / np.linalg.norm(spin)
         R = np.eye(3) if self.joint.parent == GROUND else found.poses[self.joint.parent].R
         own = np.asarray(self.joint.axis, float)
         return R @ (own / np.linalg.norm(own))
+
+    def spin(self, found: Result) -> np.ndarray:
+        """The angular velocity of the child beside the parent."""
+        nil = np.zeros(3)
+        return found.poses[self.joint.child].w - (nil if self.joint.parent == GROUND else found.poses[self.joint.parent].w)
+
+    def rate(self, found: Result) -> float:
+        if self.joint.kind == "spherical":
+            return float(np.linalg.norm(self.spin(found)))
+        return found.coordinates[self.joint.name, self.index][1]
 
     def loads(self, found: Result, force: float) -> list[Load]:
         """What a force or couple along the coordinate does to both bodies."""
@@ -61,7 +76,7 @@ class Rub:
     def law(self, found: Result, reaction: np.ndarray) -> float:
         """What the law says of a reaction: bearings by statics, threads by the angles of lead and of friction."""
         n, kind, u = self.numbers, self.joint.kind, self.axis(found)
-        v, mu, radius = found.coordinates[self.joint.name, self.index][1], n.get("mu", 0.0), n.get("radius", 0.0)
+        v, mu, radius = self.rate(found), n.get("mu", 0.0), n.get("radius", 0.0)
         steady = -n.get("viscous", 0.0) * v
         force, moment = reaction[:3], reaction[3:]
         axial, torque = force @ u, moment @ u
@@ -70,11 +85,14 @@ class Rub:
             lifts = axial * self.joint.lead * v > 0.0
             angle, phi = math.atan(lead if lifts else -lead), math.atan(mu)
             return steady - math.copysign(radius * abs(axial) * (math.tan(angle + phi) - math.tan(angle)), v)
-        across, apart = force - axial * u, 2.0 / n["length"] * np.cross(moment, u)
-        pressed = np.linalg.norm(across + apart) / 2 + np.linalg.norm(across - apart) / 2
-        pressed += {"revolute": abs(axial), "prismatic": abs(torque) / radius, "cylindrical": 0.0}[kind]
-        slides = [found.coordinates[self.joint.name, k][1] * (radius if k in self.joint.turning else 1.0) for k in self.both]
-        speed = math.hypot(*slides)
+        if kind == "spherical":
+            pressed, speed = np.linalg.norm(force), radius * v
+        else:
+            across, apart = force - axial * u, 2.0 / n["length"] * np.cross(moment, u)
+            pressed = np.linalg.norm(across + apart) / 2 + np.linalg.norm(across - apart) / 2
+            pressed += {"revolute": abs(axial), "prismatic": abs(torque) / radius, "cylindrical": 0.0}[kind]
+            slides = [found.coordinates[self.joint.name, k][1] * (radius if k in self.joint.turning else 1.0) for k in self.both]
+            speed = math.hypot(*slides)
         if "static" in n:
             mu += (n["static"] - mu) * math.exp(-((speed / n["stribeck"]) ** 2))
         share = v * (radius if self.turns else 1.0) / speed

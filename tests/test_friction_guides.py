@@ -197,7 +197,7 @@ def test_at_rest_both_are_open_and_where_both_turn_back_they_go_on():
             {"mu": 0.1, "radius": 0.1, "length": 0.1, "along": "turn", "smooth": 0.1},
             "joint 'C' slides and turns at once, and has no smooth sign",
         ),
-        ("S", {"mu": 0.1, "radius": 0.1}, "in space these may rub: revolute, prismatic, cylindrical, screw"),
+        ("U", {"mu": 0.1, "radius": 0.1}, "in space these may rub: revolute, prismatic, cylindrical, screw, spherical"),
     ],
 )
 def test_mistakes_are_told(joint, numbers, says):
@@ -205,6 +205,6 @@ def test_mistakes_are_told(joint, numbers, says):
     a, b = m.link("a", length=0.1, mass=1.0), m.link("b", length=0.1, mass=1.0)
     m.prismatic("P", m.ground, a, axis=(1, 0, 0))
     m.cylindrical("C", a, b, axis=(1, 0, 0))
-    m.spherical("S", b.tip, m.link("c", length=0.1, mass=1.0))
+    m.universal("U", b.tip, m.link("c", length=0.1, mass=1.0), axis=(1, 0, 0), second=(0, 1, 0))
     with pytest.raises(DeclarationError, match=says):
         m.friction("rub", m.joints[joint], **numbers)

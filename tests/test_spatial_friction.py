@@ -10,12 +10,12 @@ from spatial_oracle import REACTION, SECTION
 from spatial_rubbing import Rub, solve_rubbing
 
 from lagrange_casadi import Scene, SpatialMechanism, evaluate
-from lagrange_casadi.errors import AssemblyError
+from lagrange_casadi.errors import AssemblyError, DeclarationError, MobilityError
 from lagrange_casadi.motion import harmonic, polynomial
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
-RUBBING = ("revolute", "prismatic", "cylindrical", "screw")
+RUBBING = ("revolute", "prismatic", "cylindrical", "screw", "spherical")
 CASES = [("tree", seed) for seed in range(40)] + [("loop", seed) for seed in range(16)]
 CASES += [(name, seed) for name in ("rsur", "rsup", "rssr", "rssp") for seed in range(3)]
 RATIOS = (0.1371, 0.7713, 2)
@@ -30,17 +30,19 @@ def rubbing(case):
     found, rubs = drawn.solve(t), []
     open_ = {joint for joint, _ in found.open}
     for joint in drawn.mechanism.joints:
-        rates = [found.coordinates[joint.name, k][1] for k in range(joint.count)] if joint.kind in RUBBING else [0.0]
-        if min(map(abs, rates)) < 1e-3 or joint.name in open_ or len(rubs) >= _RUBS:
+        own = [Rub(joint, k) for k in (range(1) if joint.kind == "spherical" else range(joint.count))]
+        if joint.kind not in RUBBING or joint.name in open_ or len(rubs) >= _RUBS or (drawn.idle and joint.kind == "spherical"):
+            continue
+        if min(abs(rub.rate(found)) for rub in own) < 1e-3:
             continue
         numbers = {"mu": rng.uniform(0.0, 0.15), "radius": found.size * rng.uniform(0.01, 0.05)}
-        if joint.kind != "screw":
+        if joint.kind != "screw" and rng.random() < 0.4:
+            numbers |= {"static": rng.uniform(0.05, 0.2), "stribeck": rng.uniform(0.05, 1.0)}
+        if joint.kind not in ("screw", "spherical"):
             numbers["length"] = found.size * rng.uniform(0.4, 0.9)
-            if rng.random() < 0.4:
-                numbers |= {"static": rng.uniform(0.05, 0.2), "stribeck": rng.uniform(0.05, 1.0)}
         if rng.random() < 0.3:
             numbers["viscous"] = rng.uniform(0.0, 2.0)
-        rubs += [Rub(joint, k, numbers) for k in range(joint.count)]
+        rubs += [Rub(joint, rub.index, numbers) for rub in own]
     return drawn, t, rubs
 
 
@@ -75,7 +77,7 @@ def compare(case):
                 size = force if member in ("axial", "shear_y", "shear_z") else moment
                 gaps.append(0.0 if is_open else abs(getattr(own, member)[0, k] - value) / size)
     for rub in rubs:
-        taken = -frictions[rub.name] * true.coordinates[rub.joint.name, rub.index][1]
+        taken = -frictions[rub.name] * rub.rate(true)
         assert solution.series[f"friction:{rub.name}:loss"][0] == pytest.approx(taken, rel=1e-9, abs=1e-10 * moment)
     return max(gaps)
 
@@ -136,3 +138,77 @@ def test_over_a_cycle_of_a_sleeve_both_drives_give_what_it_takes():
     given, taken = balanced(Scene(m, laws, t=(0, 1, 2)), 0.5)
     assert taken > 1.0
     assert given == pytest.approx(taken, rel=1e-10)
+
+
+def test_over_a_turn_the_drive_gives_what_a_ball_takes():
+    """The rod of a spatial slider-crank, whose spin a universal joint holds."""
+    m = SpatialMechanism("ball")
+    crank, rod = m.link("crank", length=0.1, mass=0.4), m.link("rod", length=0.4, mass=0.8)
+    slider = m.link("slider", length=0.05, mass=2.0, centre=(0.01, 0, 0.02), inertia=(1e-3, 1e-3, 1e-3))
+    m.revolute("O", m.ground, crank, axis=(0, 0, 1))
+    m.friction("rub", m.spherical("A", crank.tip, rod), mu=0.1, radius=0.02, viscous=1e-3)
+    m.universal("B", rod.tip, slider, axis=(0, 0, 1), second=(0, 1, 0))
+    m.prismatic("guide", m.ground.at(0.0, 0.05, 0.1), slider, axis=(1, 0, 0))
+    m.force("push", slider, x=-150.0)
+    posture = {"guide": 0.4, "B:turn_1": "-7 deg", "B:turn_2": "165 deg"}
+    given, taken = balanced(Scene(m, {"O": polynomial(0.0, 20.0)}, t=(0, 1, 2), posture=posture), math.tau / 20.0)
+    assert taken > 1.0
+    assert given == pytest.approx(taken, rel=1e-10)
+
+
+def on_a_ball(law):
+    """A wheel upright on a ball, which turns about the vertical line alone, loaded aside."""
+    m = SpatialMechanism("upright")
+    wheel = m.link("wheel", length=0.1, mass=7.0, centre=(0, 0, 0), inertia=(0.1, 0.1, 0.1))
+    ball = m.spherical("ball", m.ground, wheel, axis=(0, 0, 1), second=(0, 1, 0))
+    m.force("aside", wheel, x=30.0)
+    m.friction("rub", ball, mu=0.2, radius=0.03)
+    return Scene(m, {"ball:turn_1": law, "ball:turn_2": polynomial(0.0), "ball:turn_3": polynomial(0.0)}, t=(0, 1, 5))
+
+
+def test_a_ball_rubs_as_a_pin_where_it_turns_about_one_line():
+    """A couple mu r |F| against the turning: RecurDyn and Adams have the same, by the radius of the ball."""
+    couple = 0.2 * 0.03 * math.hypot(7.0 * 9.81, 30.0)
+    for speed in (4.0, -4.0):
+        solution = evaluate(on_a_ball(polynomial(0.1, speed)))
+        assert solution.certified
+        assert solution.effort("ball:turn_1") == pytest.approx(math.copysign(couple, speed), rel=1e-12)
+        assert solution.series["friction:rub:along"] == pytest.approx(-couple, rel=1e-12)
+        assert solution.series["friction:rub:loss"] == pytest.approx(4.0 * couple, rel=1e-12)
+        assert solution.series["load:rub:mz"] == pytest.approx(-math.copysign(couple, speed), rel=1e-12)
+
+
+def test_a_ball_at_rest_is_open_and_where_it_turns_back_it_goes_on():
+    still = evaluate(on_a_ball(polynomial(0.1)))
+    assert still.resting.all()
+    assert np.isnan(still.effort("ball:turn_1")).all()
+    assert "rub" in still.notes[0]
+    back = [(0.25 - 0.4 / math.tau + k / 2) for k in range(4)]
+    for k, top in enumerate(back):
+        solution = evaluate(on_a_ball(harmonic(0.1, 1.0, 1.0, 0.4)), t=(top, top, 1))
+        assert solution.certified
+        assert not solution.resting.any()
+        inertia = 0.1 * solution.motion("ball:turn_1").acceleration[0]
+        rubs = solution.effort("ball:turn_1")[0] - inertia
+        assert rubs == pytest.approx((-1) ** (k + 1) * 0.2 * 0.03 * math.hypot(7.0 * 9.81, 30.0), rel=1e-9)
+
+
+def test_what_a_ball_cannot_have_is_told():
+    m = SpatialMechanism("wrong")
+    m.spherical("ball", m.ground, m.link("wheel", length=0.1, mass=7.0, centre=(0, 0, 0), inertia=(0.1, 0.1, 0.1)))
+    told = {"mu": 0.1, "radius": 0.02}
+    for more, words in (
+        ({"along": "turn_1"}, "joint 'ball' rubs along the way in which it turns, and not along 'turn_1'"),
+        ({"length": 0.1}, "joint 'ball' turns and has no length of guidance; valid: radius"),
+        ({"radius": None}, "joint 'ball' turns; expected radius"),
+    ):
+        with pytest.raises(DeclarationError, match=f"friction 'more': {words}"):
+            m.friction("more", m.joints["ball"], **told | more)
+    two = SpatialMechanism("bar")
+    crank, rod, end = (two.link(name, length=0.2, mass=1.0) for name in ("crank", "rod", "end"))
+    two.revolute("O", two.ground, crank, axis=(0, 0, 1))
+    two.friction("rub", two.spherical("A", crank.tip, rod), mu=0.1, radius=0.01)
+    two.spherical("B", rod.tip, end.tip)
+    two.revolute("C", two.ground.at(0.2, 0.1, 0.0), end, axis=(0, 1, 0))
+    with pytest.raises(MobilityError, match="where one of them rubs, make the other one universal"):
+        evaluate(Scene(two, {"O": polynomial(0.3, 1.0)}, t=(0, 1, 3), posture={"C": 0.4}))

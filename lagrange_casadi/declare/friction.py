@@ -11,7 +11,7 @@ from .joints import Axis, Joint
 from .ownership import Ownership
 from .parts import POSITIVE, Expression, Friction
 
-_IN_PLANE, _IN_SPACE = ("revolute", "prismatic", "slot"), ("revolute", "prismatic", "cylindrical", "screw")
+_IN_PLANE, _IN_SPACE = ("revolute", "prismatic", "slot"), ("revolute", "prismatic", "cylindrical", "screw", "spherical")
 
 
 def friction(own: Ownership, name: str, joint: Joint, along: str, told: Mapping[str, Expression | None]) -> Friction:
@@ -59,6 +59,10 @@ def _axes(own: Ownership, what: str, joint: Joint, along: str) -> tuple[Axis, Ax
             f"{what}: joint '{joint.name}' has no angle, for '{points[0]}' is a point mass and has no direction; declare it "
             "as a link with mass, centre and inertia"
         )
+    if joint.kind == "spherical":
+        if along:
+            raise DeclarationError(f"{what}: joint '{joint.name}' rubs along the way in which it turns, and not along '{along}'")
+        return joint.axes[0], None
     names = [axis.name for axis in joint.axes if axis.name]
     if len(names) == 2:
         if along not in names:

@@ -285,6 +285,9 @@ class Friction:
         -sigma mu radius |R| - viscous v                    in a pin that bears the force R,
         -sigma mu (|N/2 + M/length| + |N/2 - M/length|) - viscous v   in a guide that bears N across its line and the moment M.
 
+    A spherical joint rubs as a pin about the axis about which its child turns on its parent at the moment: v is the size of their
+    relative angular velocity, which is never negative.
+
     ``static`` is the coefficient where sliding starts: mu + (static - mu) exp(-(speed/stribeck)^2), by the speed of sliding [m/s].
     In a joint that slides and turns at once, ``beside`` is its other coordinate: sigma is then the share of the speed of sliding
     that is along this one.
@@ -313,6 +316,11 @@ class Friction:
         """What is told of it, by the words that declare it."""
         words = ("mu", "radius", "length", "viscous", "static", "stribeck", "smooth")
         return {word: getattr(self, word) for word in words if getattr(self, word) is not None}
+
+    @property
+    def every_way(self) -> bool:
+        """Whether it acts along whatever way the joint turns, and not along a coordinate."""
+        return self.joint.kind == "spherical"
 
     @property
     def dry(self) -> bool:

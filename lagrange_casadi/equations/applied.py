@@ -14,6 +14,7 @@ from ..geometry.vectors import AXES, ZERO, cross, dot, minus, nil, plus, times
 from .growing import Grown
 from .joints import carried, gap_motion, reaction
 from .multibody import Applied, LoopEquations, RowGraph
+from .pressing import way_of
 
 
 def applied_by(load: Load, resting: Grown) -> list[Applied]:
@@ -31,6 +32,12 @@ def applied_by(load: Load, resting: Grown) -> list[Applied]:
         return [Applied(load.name, point, couple=value) for point, value in ends]
     if isinstance(load, LineLoad):
         return [_along(load, resting)]
+    if isinstance(load, Friction) and load.every_way:
+        couple = times(load.symbol, way_of(load.joint, resting))
+        return [
+            Applied(load.name, load.joint.child, couple=couple),
+            Applied(load.name, load.joint.parent, couple=times(-1, couple)),
+        ]
     if isinstance(load, Friction):
         return [*_along_coordinate(resting, load.name, load.joint, load.axis, load.symbol)]
     assert isinstance(load, Spring)

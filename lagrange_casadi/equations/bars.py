@@ -15,7 +15,7 @@ import casadi as ca
 from ..declare.density import Density
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
-from ..declare.parts import Body, Link, Point, Torque, Vector
+from ..declare.parts import Body, Friction, Link, Point, Torque, Vector
 from ..geometry.frames import Frame
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import ZERO, cross, dot, minus, nil, plus, times
@@ -77,6 +77,7 @@ def bars_of(mechanism: Mechanism, driven: Collection[str]) -> tuple[Bar, ...]:
         for body in joint.bodies:
             ends.setdefault(body, []).append(joint)
     seen = {measure.of.name for measure in mechanism.measures.asked if isinstance(measure.of, Joint)}
+    seen |= {load.joint.name for load in mechanism.loads.values() if isinstance(load, Friction)}
     told = {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
     for link in mechanism.links.values():
         joints = ends.get(link, [])
@@ -107,7 +108,7 @@ def idle_spins(mechanism: Mechanism, driven: Collection[str]) -> list[str]:
             first, second = (joint.name for joint in own)
             found.append(
                 f"the spin of link '{link.name}' about the line from '{first}' to '{second}' is idle: give one of their turns a "
-                "motion, or the link its mass alone, so that it is a bar"
+                "motion, or the link its mass alone, so that it is a bar; where one of them rubs, make the other one universal"
             )
     return found
 

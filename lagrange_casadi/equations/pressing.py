@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import casadi as ca
 
+from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.meshes import Loss, Transmission
 from ..declare.parts import Friction, Vector
-from ..geometry.vectors import dot
+from ..geometry.frames import Frame
+from ..geometry.vectors import dot, minus, times
 from .gaps import reach
+from .growing import Grown
 from .multibody import Multibody, rates_along
 
 _REST = 1e-12
 """Of the fastest motion in the mechanism: a rate below is that of rest, but for rounding."""
+
+
+_TINY = 1e-30
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +99,10 @@ def frictions_of(mechanism: Mechanism) -> dict[str, Friction]:
 def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vector) -> Rubbing:
     """A friction in a joint whose parent does this to its child, in ground axes, the couple about the child's point."""
     joint, coordinates = friction.joint, multibody.coordinates
-    rate, acceleration = rates_along(joint, friction.axis, multibody.frames, coordinates)
+    if friction.every_way:
+        rate, acceleration = (_size(x) for x in turning(joint, multibody.frames))
+    else:
+        rate, acceleration = rates_along(joint, friction.axis, multibody.frames, coordinates)
     contacts: tuple[Contact, ...] = ()
     if friction.dry and multibody.mechanism.space:
         contacts = _in_space(multibody, friction, force, couple)
@@ -114,7 +123,25 @@ def rubbing(multibody: Multibody, friction: Friction, force: Vector, couple: Vec
     return Rubbing(friction, contacts, rate, acceleration, slowest, beside)
 
 
-def slowest_of(multibody: Multibody, *, slides: bool) -> tuple[Any, Any]:
+def turning(joint: Joint, frames: Mapping[str, Frame]) -> tuple[Vector, Vector]:
+    """The angular velocity and acceleration of a joint's child beside its parent, in ground axes."""
+    parent, child = (frames[body.name] for body in joint.bodies)
+    return minus(child.rate, parent.rate), minus(child.angular, parent.angular)
+
+
+def way_of(joint: Joint, grown: Grown) -> Vector:
+    """The axis about which a joint's child turns on its parent, or is about to where it turns back; any at rest."""
+    spin, change = turning(joint, grown.frames)
+    moves = _size(spin) > slowest_of(grown, slides=False)[0]
+    x, y, z = (ca.if_else(moves, now, soon) for now, soon in zip(spin, change, strict=True))
+    return times(1 / ca.fmax(_size((x, y, z)), _TINY), (x, y, z))
+
+
+def _size(vector: Vector) -> Any:
+    return ca.sqrt(ca.SX(dot(vector, vector)))
+
+
+def slowest_of(multibody: Multibody | Grown, *, slides: bool) -> tuple[Any, Any]:
     """The rate below which a coordinate rests, and the change of rate below which it goes on to: beside those of the drives."""
     unit, fastest, quickest = reach(multibody.mechanism), ca.SX(0), ca.SX(0)
     for own in (coordinate for coordinate in multibody.coordinates if coordinate.driven):
@@ -136,6 +163,8 @@ def _in_space(multibody: Multibody, friction: Friction, force: Vector, couple: V
     """
     joint, rotation = friction.joint, multibody.frames[friction.joint.parent.body.name].rotation
     u, v, w = (rotation.apply(direction) for direction in joint.triad)
+    if friction.every_way:
+        return (Contact(friction.radius, force),)
     along, (one, other) = dot(force, u), (dot(force, v), dot(force, w))
     if joint.kind == "screw":
         radius: Any = friction.radius

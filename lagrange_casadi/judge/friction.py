@@ -20,10 +20,13 @@ Pressing = Callable[[Array], Array]
 """What mu is multiplied by, for signs of the rate."""
 
 
-def law_gaps(solution: Solution, bodies: Mapping[str, Moving] | None = None) -> tuple[Array, float] | None:
+def law_gaps(
+    solution: Solution, bodies: Mapping[str, Moving] | None = None, spins: Mapping[str, Array] | None = None
+) -> tuple[Array, float] | None:
     """How far frictions are from what their laws say (t,), over what they would be under the largest reaction of the cycle.
 
-    ``bodies`` are those of a planar mechanism. None where there is no friction, or what it takes is not among the outputs. What is
+    ``bodies`` are those of a planar mechanism; ``spins`` in space the angular velocities (t, 3) of the children of spherical joints
+    beside their parents, in ground axes. None where there is no friction, or what it takes is not among the outputs. What is
     open at rest is no gap.
     """
     worst, found = np.zeros_like(solution.t), False
@@ -34,6 +37,9 @@ def law_gaps(solution: Solution, bodies: Mapping[str, Moving] | None = None) -> 
         holder = joint.partition(":")[0]
         outputs = (Output("friction", name, "along"), Output("motion", joint, "rate"))
         value, rate = (solution.outputs.get(output) for output in outputs)
+        spin = (spins or {}).get(holder)
+        if spin is not None:
+            rate = np.linalg.norm(spin, axis=1)
         if value is None or rate is None or Output("reaction", holder, "fx") not in solution.outputs:
             continue
         found = True
@@ -58,10 +64,21 @@ def law_gaps(solution: Solution, bodies: Mapping[str, Moving] | None = None) -> 
             ends = [np.abs(value - steady + one * mu * pressing(one * np.ones_like(rate))) for one in (1.0, -1.0)]
             # Where it slides and turns, and both turn back at once, some share of it is along this coordinate.
             slow = np.minimum(*ends) if share is None else np.maximum(np.abs(value - steady) - mu * pressing(np.sign(rate)), 0.0)
-            gap = np.where(speed > _SLOW * max(float(np.max(speed)), lever * _quick(solution, joint, turns)), gap, slow)
+            moves = speed > _SLOW * max(float(np.max(speed)), lever * _quick(solution, joint, turns))
+            gap = np.where(moves, gap if spin is None else np.maximum(gap, _aside(solution, name, value, spin)), slow)
         scale = float(np.max(mu)) * lever * _most(solution, numbers) + float(np.max(np.abs(steady)))
         worst = np.fmax(worst, np.divide(gap, scale, out=gap.copy(), where=scale > 0.0))
     return (worst, 1.0) if found else None
+
+
+def _aside(solution: Solution, name: str, value: Array, spin: Array) -> Array:
+    """How far the couple of a spherical joint's friction is from one of that size about the axis of turning."""
+    couple = [solution.outputs.get(Output("load", name, member)) for member in ("mx", "my", "mz")]
+    if any(component is None for component in couple):
+        return np.zeros_like(value)
+    size = np.linalg.norm(spin, axis=1)[:, None]
+    way = np.divide(spin, size, out=np.zeros_like(spin), where=size > 0.0)
+    return np.asarray(np.linalg.norm(np.stack(couple, axis=1) - value[:, None] * way, axis=1))  # type: ignore[arg-type]
 
 
 def _quick(solution: Solution, joint: str, turns: bool) -> float:
@@ -117,6 +134,9 @@ def _in_space(solution: Solution, name: str, numbers: Mapping[str, float], turns
             return np.asarray(((1 + np.abs(sign)) * whole + (1 - np.abs(sign)) * half) / (2.0 * numbers["mu"] or 1.0))
 
         return pressing
+    if joint["kind"] == "spherical":
+        force = radius * np.sqrt(sum((solution.outputs[Output("reaction", name, f"f{x}")] ** 2 for x in "xyz"), nothing))
+        return lambda _: force
     arm = numbers.get("length", np.inf)
     sides = (np.hypot(v / 2 + k * mw / arm, w / 2 - k * mv / arm) for k in (1, -1))
     size = sum(sides, nothing)

@@ -75,7 +75,9 @@ def residuals(solution: Solution, turned: Solution, equations: Sequence[Written]
     if len(bodies) < len(description["bodies"]) + 1:
         return {}
     found = {"closure": (_closure(reported, bodies, equations or ()), digits.size(solution))}
-    if (rubbed := law_gaps(solution)) is not None:
+    balls = {name: joint for name, joint in description["joints"].items() if joint["kind"] == "spherical"}
+    spins = {name: bodies[j["child"]["body"]].rate - bodies[j["parent"]["body"]].rate for name, j in balls.items()}
+    if (rubbed := law_gaps(solution, spins=spins)) is not None:
         found["friction"] = rubbed
     wanted = [Output("reaction", name, "fx") for name in description["joints"]]
     wanted += [output for output in solution.outputs if output.group in ("reaction", "load")]
