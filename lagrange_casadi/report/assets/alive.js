@@ -12,7 +12,7 @@ class Alive {
     this.why = null;
     this.read();
     const kept = [...this.targets, ...this.paths, ...this.curves.flatMap((curve) => [...curve.series.values()].flat())].map((one) => one.array);
-    this.unknown = contents.series.filter((one) => one.group === "certificate").map((one) => array(one.values));
+    this.unknown = contents.series.filter((one) => ["certificate", "sensitivity"].includes(one.group)).map((one) => array(one.values));
     this.shown = [...kept, ...this.unknown];
     const rows = contents.sections.flatMap((entry) => entry.forces.flatMap((force) => force.terms.map(([, row]) => array(row))));
     this.kept = [...new Set([instants.t, ...(over ? [array(over.values)] : []), ...this.shown, ...rows])].map((values) => [values, values.slice()]);
