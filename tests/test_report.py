@@ -78,6 +78,16 @@ def test_rows_are_the_solutions_peaks_means_and_errors(name):
         assert row["error"] == pytest.approx(solution.errors[name]) if name in solution.errors else True
 
 
+def test_sensitivities_are_charted_in_their_units():
+    scene = load_case("slider_crank").scene
+    solution = evaluate(scene, wanted=["motion", "effort", "sensitivity:l"], t=(0, 0.08, 5), backend="vm")
+    found, array = held(page(solution))
+    series = {one["name"]: one for one in found["series"] if one["group"] == "sensitivity"}
+    assert series["sensitivity:l:effort:O"]["unit"] == "N m/m"
+    exact = solution.sensitivities.array("effort:O", "l")
+    np.testing.assert_array_equal(array(series["sensitivity:l:effort:O"]["values"]), exact)
+
+
 def test_what_is_open_is_said_and_has_no_number():
     solution = solved("bricard", 9)
     assert solution.undetermined

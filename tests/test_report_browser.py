@@ -239,6 +239,19 @@ def test_a_mechanism_in_space_is_turned_and_seen_from_the_front(page):
     quiet(one)
 
 
+def test_two_fingers_move_and_zoom(page):
+    one = page(press())
+    picture = "document.querySelector('.picture').toDataURL()"
+    left, top = (one.run(f"document.querySelector('.picture').getBoundingClientRect().{side}") for side in ("left", "top"))
+    before = one.run(picture)
+    for kind, *spots in (("Start", 100, 200), ("Move", 80, 240), ("Move", 60, 280), ("End",)):
+        one.call("Input.dispatchTouchEvent", type=f"touch{kind}", touchPoints=[{"x": left + x, "y": top + 120} for x in spots])
+    assert one.run(picture) != before
+    one.run("[...document.querySelectorAll('.views button')].find((one) => one.textContent === 'Fit').click()")
+    assert one.run(picture) == before
+    quiet(one)
+
+
 def test_names_are_texts_and_never_markup(page):
     one = page(hostile())
     assert one.run("window.told === undefined && document.images.length === 0")

@@ -73,13 +73,19 @@ def test_what_has_no_beam_has_no_map():
 @pytest.mark.long
 @alive.NEEDS_BROWSER
 @alive.NEEDS_ENGINE
-def test_of_another_design_stress_is_evaluated_and_its_map_says_that_it_is_not(chromium, scene, solution, tmp_path):
-    text = page(solution, Live(scene, scene.timing(), WANTED, "run"))
+def test_of_another_design_stress_is_evaluated_and_what_is_not_says_so(chromium, scene, tmp_path):
+    wanted = [*WANTED, "sensitivity:r"]
+    solution = evaluate(scene, wanted=wanted, backend="vm", certificate=False)
+    text = page(solution, Live(scene, scene.timing(), wanted, "run"))
     alive.opened(chromium, tmp_path / "live.html", text)
     rows = chromium.run(
         f"(() => {{ window.page.live.engine.show({json.dumps([0.09, 0.4, 0.02])}); return window.page.contents.rows; }})()"
     )
     (row,) = [row for row in rows if row["group"] == "stress"]
+    slopes = "page.contents.series.filter((one) => one.group === 'sensitivity').map((one) => [...page.array(one.values)])"
+    unknown = chromium.run(slopes)
+    assert unknown
+    assert {value for values in unknown for value in values} == {None}
     true = evaluate(scene, parameters={"r": 0.09}, wanted=WANTED, backend="vm", certificate=False)
     assert row["peak"]["value"] == pytest.approx(true.peak("stress:rod:von_mises").value, rel=1e-12)
     chromium.run(

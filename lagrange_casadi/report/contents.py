@@ -15,6 +15,7 @@ from ..draw.shapes import joint_shapes, load_shapes, path_spots, shapes
 from ..draw.solid import COLOURS
 from ..draw.views import upright
 from ..errors import DeclarationError
+from ..instants.derivatives import derivatives
 from ..instants.solution import Solution
 from ..instants.statistics import Extreme
 from ..instants.told import error_of, told
@@ -164,6 +165,10 @@ def _series(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) ->
         along = None if places is None else arrays.add(places[chosen])
         of = map(str, solution.made_of(output)) if places is None else ()
         yield Series(str(output), output.group, output.part, words, unit, arrays.add(values[chosen], *of), along)
+    for slope in derivatives(solution):
+        if slope.values.ndim == 1 and slope.output.group in _CHARTED:
+            words = f"{what(slope.output, solution.table) or slope.output.part}, by {slope.name.split(':')[1]}"
+            yield Series(slope.name, "sensitivity", slope.output.part, words, slope.unit, arrays.add(slope.values[chosen]))
     for output, values in _residuals(solution):
         yield Series(str(output), output.group, "", what(output, solution.table), "1", arrays.add(values[chosen]))
 

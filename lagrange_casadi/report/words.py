@@ -27,6 +27,7 @@ GROUPS = {
     "friction": "Friction",
     "multiplier": "Multipliers",
     "pose": "Places of bodies",
+    "sensitivity": "Sensitivities",
     "certificate": "Certificate",
 }
 """The kinds of quantities, in the order in which they are offered."""

@@ -12,7 +12,11 @@ class Alive {
     this.why = null;
     this.read();
     const kept = [...this.targets, ...this.paths, ...this.curves.flatMap((curve) => [...curve.series.values()].flat())].map((one) => one.array);
-    this.unknown = contents.series.filter((one) => one.group === "certificate").map((one) => array(one.values));
+    // What the module does not tell, as residuals, is of the file's design alone.
+    const toldOf = new Set(told.of.map(([number]) => number));
+    this.unknown = contents.series.filter((one) => one.group !== "section" && !toldOf.has(one.values)).map((one) => array(one.values));
+    const rowsTold = new Set([...this.targets.map((target) => target.row), ...this.curves.flatMap((curve) => [...curve.rowOf.values()])]);
+    this.untold = contents.rows.filter((row) => !row.open && !rowsTold.has(row));
     this.shown = [...kept, ...this.unknown];
     const rows = contents.sections.flatMap((entry) => entry.forces.flatMap((force) => force.terms.map(([, row]) => array(row))));
     this.kept = [...new Set([instants.t, ...(over ? [array(over.values)] : []), ...this.shown, ...rows])].map((values) => [values, values.slice()]);
@@ -98,6 +102,7 @@ class Alive {
     for (const [row, tally] of tallies) Object.assign(row, tally.told(times, this.coordinates));
     for (const bar of this.bars) complete(bar);
     for (const values of this.unknown) values.fill(NaN);
+    for (const row of this.untold) lose(row);
   }
 
   /** Put values of instants, the first of which has a number, where they are shown. */

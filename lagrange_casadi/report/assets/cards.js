@@ -62,7 +62,7 @@ class Card {
     if (!this.plot || !this.seen) return;
     if (this.plot.across || this.plot.middle) this.plot.mark(instant);
     this.values?.forEach(([curve, place]) => {
-      say(place, shown(curve.values[instant], curve.unit, 5, largestOf(curve.values)));
+      say(place, shownOf(curve.values[instant], curve.unit, largestOf(curve.values)));
     });
   }
 

@@ -107,7 +107,7 @@ class Chart {
 
   /** What a curve is at an instant, in words. */
   reads(curve, instant) {
-    const value = shown(curve.values[instant], curve.unit, 5, largestOf(curve.values));
+    const value = shownOf(curve.values[instant], curve.unit, largestOf(curve.values));
     return curve.places ? `${value} at ξ/l = ${format(curve.places[instant], 3)}` : value;
   }
 }

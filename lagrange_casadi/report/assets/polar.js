@@ -133,7 +133,7 @@ class Polar {
     this.mark(found, this.sheet.pointer);
     const [x, y] = this.points[found];
     const most = this.most();
-    const told = (value) => shown(value, "N", 5, most);
+    const told = (value) => shownOf(value, "N", most);
     const turn = ((Math.atan2(y, x) * 180) / Math.PI).toFixed(1);
     const [right, up] = this.way.pair;
     showTip(event, whenIs(found), [[right, told(x)], [up, told(y)], ["size", told(Math.hypot(x, y))], ["direction", `${minus(turn)} deg`]]);

@@ -73,6 +73,13 @@ function shown(value, unit, digits = 5, size = Math.abs(value)) {
   return `${format(value * scale.factor, digits)}${scale.unit ? `\u00a0${scale.unit}` : ""}`;
 }
 
+const UNSEEN = 1e-12; // Over the largest value: what is smaller is the rounding of nothing.
+
+/** A value of a curve with its unit, by the largest of all; the rounding of nothing is nothing. */
+function shownOf(value, unit, most) {
+  return shown(Math.abs(value) < UNSEEN * most ? 0 : value, unit, 5, most);
+}
+
 /** What stands at an axis: words, and the unit in brackets. */
 function labelled(words, unit) {
   return unit ? `${words} [${unit}]` : words;
