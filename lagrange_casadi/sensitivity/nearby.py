@@ -22,33 +22,42 @@ _NEAR_T, _NEAR_XI = 1e-2, 1e-5
 
 
 def at_peaks(
-    slopes: Slopes, instants: Array, p: Array, chosen: Numbers, peaks: tuple[Array, Array, Array], step: float
+    slopes: Slopes,
+    instants: Array,
+    p: Array,
+    chosen: Numbers,
+    peaks: tuple[Array, Array, Array],
+    step: float,
+    stay: npt.NDArray[np.bool_],
 ) -> tuple[AtPoints, Array, Array]:
     """What is at peaks (value, t, xi), what its slopes lack to those at the smooth peaks, and the iterated coordinates there.
 
-    The peaks are in the span of the ``instants``, a ``step`` apart.
+    The peaks are in the span of the ``instants``, a ``step`` apart. What is known to ``stay`` (q,) where it is lacks nothing.
     """
     value, t, xi = peaks
-    q, inner = t.size, ((xi > _NUDGE_XI) & (xi < 1.0 - _NUDGE_XI)).nonzero()[0]
+    q, inner, moving = t.size, ((xi > _NUDGE_XI) & (xi < 1.0 - _NUDGE_XI)).nonzero()[0], (~stay).nonzero()[0]
     nudge = _NUDGE_T * step
     later = np.where(t + nudge <= instants[-1], nudge, -nudge)
-    times, places = np.concatenate([t, t + later]), np.concatenate([xi, xi, xi[inner] + _NUDGE_XI, xi[inner] - _NUDGE_XI])
+    times = np.concatenate([t, (t + later)[moving]])
+    places = np.concatenate([xi, xi[moving], xi[inner] + _NUDGE_XI, xi[inner] - _NUDGE_XI])
     z = slopes.iterated(instants, p, times)
     own = np.arange(q)
-    of = np.concatenate([own, own, inner, inner])
-    where = np.concatenate([own, own + q, inner, inner])
+    of = np.concatenate([own, moving, inner, inner])
+    where = np.concatenate([own, q + np.arange(moving.size), inner, inner])
     found = slopes.at(times[where], z[where], p, chosen[of], places, value[of])
-    ends = (0, q, 2 * q, 2 * q + inner.size, of.size)
+    ends = np.cumsum([0, q, moving.size, inner.size, inner.size]).tolist()
     here, after, further, nearer = (
         AtPoints(found.value[a:b], found.rate[a:b], found.slopes[a:b]) for a, b in itertools.pairwise(ends)
     )
+    lacking = np.zeros_like(here.slopes)
     if not step > 0.0:
-        return here, np.zeros_like(here.slopes), z[:q]
+        return here, lacking, z[:q]
+    tt = np.full(q, np.nan)
     with np.errstate(all="ignore"):
-        tt = (after.rate - here.rate) / later
+        tt[moving] = (after.rate - here.rate[moving]) / later[moving]
         by_t = -here.rate / tt
         by_xi = _along(here, further, nearer, inner, tt, by_t, np.sign(value)) if inner.size else None
-        lacking = (after.slopes - here.slopes) * (by_t / later)[:, None]
+        lacking[moving] = (after.slopes - here.slopes[moving]) * (by_t / later)[moving, None]
         if by_xi is not None:
             lacking[inner] += (further.slopes - nearer.slopes) * (by_xi / (2.0 * _NUDGE_XI))[:, None]
         sound = (value * tt < 0.0) & (np.abs(by_t) <= _NEAR_T * step) & np.isfinite(lacking.sum(axis=1))

@@ -80,10 +80,10 @@ def peak_slopes(
         return PeakSlopes(found, kinds, moved, switch)
     first, last = instants[0], instants[-1]
     step = (last - first) / max(instants.size - 1, 1)
-    here, lacking, z = at_peaks(slopes, instants, p, chosen, (value, t, xi), step)
     near = _near(step, instants)
     at_first, at_last = t - first <= near, last - t <= near
     going = at_first | at_last
+    here, lacking, z = at_peaks(slopes, instants, p, chosen, (value, t, xi), step, going | nothing)
     steep = (np.abs(here.rate) * step > _STEEP * np.abs(value)) & ~(going | nothing)
     kinds = np.where((xi <= SAME_PLACE) | (xi >= 1.0 - SAME_PLACE), _LINK_END, _SMOOTH).astype(np.int8)
     kinds[going] = _END
