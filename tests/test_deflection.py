@@ -105,6 +105,42 @@ def test_a_tapered_link_by_fine_sums():
     assert found.tip["across"] == pytest.approx(bent + sheared, rel=1e-9)
 
 
+def test_a_wedge_in_closed_form():
+    """Of a height that is linear: M/EI = 12 F y/(E w (h + c y)^3) with y from the tip; its integrals have logarithms."""
+    force, e, width, thick, thin = -100.0, E, 0.02, 0.06, 0.02
+    found = cantilever(beams.tapered(beams.rectangle(thick, width), beams.rectangle(thin, width)), y=force).deflection("arm")
+    c = (thick - thin) / LENGTH
+
+    def sag(u):
+        return (math.log(u) + 2 * thin / u - thin**2 / (2 * u**2)) / c**3
+
+    def slope(u):
+        return (-1 / u + thin / (2 * u**2)) / c**2
+
+    shear = force * math.log(thick / thin) / (c * G * width * 10 * 1.3 / (12 + 11 * 0.3))
+    assert found.tip["across"] == pytest.approx(12 * force / (e * width) * (sag(thick) - sag(thin)) + shear, rel=1e-11)
+    assert found.tip["turn"] == pytest.approx(12 * force / (e * width) * (slope(thick) - slope(thin)), rel=1e-11)
+
+
+def test_a_tube_in_space_is_twisted_stretched_and_bent():
+    """T l/GIt, N l/EA, M l/EI and M l^2/2EI, about both axes."""
+    m = SpatialMechanism("tube")
+    m.set_gravity(0.0, 0.0, 0.0)
+    arm = m.link("arm", length=LENGTH, beam=beams.Beam(SHAPES[2], STEEL))
+    m.weld("wall", m.ground, arm)
+    m.force("pull", arm.tip, x=3e3)
+    m.torque("couple", arm.tip, x=20.0, y=30.0, z=-40.0)
+    found = evaluate(Scene(m, {}, t=(0, 0, 1))).deflection("arm").tip
+    outer, inner = 0.02, 0.017
+    i = math.pi / 4 * (outer**4 - inner**4)
+    bent = {"turn_y": 30.0, "turn_z": -40.0}
+    assert found["twist"] == pytest.approx(20.0 * LENGTH / (G * 2 * i), rel=1e-12)
+    assert found["along"] == pytest.approx(3e3 * LENGTH / (E * math.pi * (outer**2 - inner**2)), rel=1e-12)
+    assert {name: found[name][0] for name in bent} == pytest.approx({k: v * LENGTH / (E * i) for k, v in bent.items()}, rel=1e-12)
+    assert found["across_y"] == pytest.approx(-40.0 * LENGTH**2 / (2 * E * i), rel=1e-12)
+    assert found["across_z"] == pytest.approx(-30.0 * LENGTH**2 / (2 * E * i), rel=1e-12)
+
+
 def test_a_stepped_link():
     """Half of it twice as high: by moment areas."""
     shape = beams.stepped([0.5], [beams.rectangle(0.08, 0.02), beams.rectangle(0.04, 0.02)])

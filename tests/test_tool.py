@@ -38,6 +38,27 @@ def test_two_arms_that_hold_a_load():
     assert found.largest == pytest.approx(np.hypot(*moved["fore", 0.4][:2]))
 
 
+def test_two_arms_on_a_line_by_hand():
+    """A load at the tip of two links without mass, their drives locked: what bends each, and how the first turns the second."""
+    m = Mechanism("arms")
+    light = STEEL.but(density=1e-9)
+    a, b, force = 0.5, 0.4, -60.0
+    upper = m.link("upper", length=a, beam=beams.Beam(beams.rectangle(0.03, 0.01), light))
+    fore = m.link("fore", length=b, beam=beams.Beam(beams.rectangle(0.02, 0.01), light))
+    m.revolute("shoulder", m.ground, upper)
+    m.revolute("elbow", upper.tip, fore)
+    m.force("load", fore.tip, y=force)
+    found = tool_deflection(Scene(m, {"shoulder": polynomial(0.0), "elbow": polynomial(0.0)}, t=(0, 0, 1)), fore.tip)
+    e, ga = STEEL.elasticity, STEEL.shear_modulus * 0.01 * 10 * 1.3 / (12 + 11 * 0.3)
+    first, second = e * 0.01 * 0.03**3 / 12, e * 0.01 * 0.02**3 / 12
+    sag = force * (a**3 / 3 + a**2 * b / 2) / first + force * a / (0.03 * ga)
+    turn = force * (a**2 / 2 + a * b) / first
+    own = force * b**3 / (3 * second) + force * b / (0.02 * ga)
+    assert found.by_link["upper"][0][1] == pytest.approx(sag + turn * b, rel=1e-8)
+    assert found.by_link["fore"][0][1] == pytest.approx(own, rel=1e-8)
+    assert found.moved[0][1] == pytest.approx(sag + turn * b + own, rel=1e-8)
+
+
 def test_an_over_constrained_loop_in_space():
     """A four-bar of pins in space at rest, loaded aside: a place of its coupler moves as a frame's does."""
     m = SpatialMechanism("four_bar")

@@ -6,13 +6,14 @@ import math
 from collections.abc import Iterator
 
 from ..quantities import Output
+from ..tables import LARGEST
 from .solution import Solution
 
-_GROUPS = ("effort", "reaction", "friction", "section", "output")
+_GROUPS = ("effort", "reaction", "friction", "section", *LARGEST, "output")
 
 
 def told(solution: Solution) -> Iterator[Output]:
-    """Efforts, reactions, section forces and own outputs: a reaction's resultants after its components."""
+    """Efforts, reactions with their resultants, section forces, what is largest along links, and own outputs."""
     for output in solution.quantities():
         if output.group in _GROUPS:
             yield output

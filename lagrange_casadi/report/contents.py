@@ -177,7 +177,7 @@ def _rows(solution: Solution) -> Iterator[Row]:
     def marked(extreme: Extreme) -> Mark:
         return mark(solution, extreme.value, extreme.t, extreme.xi)
 
-    for output in (*told(solution), *(output for output in solution.quantities() if output.group == "stress")):
+    for output in told(solution):
         words = str(output), output.group, output.part, what(output, solution.table), solution.unit(output)
         if not solution.determined(output):
             yield Row(*words, open=True)

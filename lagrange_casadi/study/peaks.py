@@ -34,6 +34,7 @@ from ..instants.solution import Peak, Solution
 from ..quantities import Output
 from ..summits.search import Peaks
 from ..summits.sharpness import Sharpness
+from ..tables import LARGEST
 
 _SAME = 1e-6
 """How closely a graph must give what a solution has, over the largest value of the same unit."""
@@ -129,8 +130,10 @@ def resultants(solution: Solution) -> list[str]:
 
 
 def forces(solution: Solution) -> list[str]:
-    """The full names of a solution's efforts, reactions, section forces and own outputs that equilibrium determines."""
-    wanted = (output for output in solution.quantities() if output.group in ("effort", "reaction", "section", "output"))
+    """The full names of a solution's efforts, reactions, section forces, what is largest along links, and own outputs: those that
+    equilibrium determines.
+    """
+    wanted = (output for output in solution.quantities() if output.group in ("effort", "reaction", "section", *LARGEST, "output"))
     return [str(output) for output in wanted if solution.determined(output)]
 
 
