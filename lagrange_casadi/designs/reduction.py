@@ -87,7 +87,6 @@ class KeptOutputs:
         if not names:
             raise DeclarationError("designs: nothing is wanted that has a peak")
         units = tuple(output.unit(mechanism) for output in names)
-        numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
         efforts = tuple(name for name in names if name.group in AVERAGED)
 
         efforts = tuple(name for name in names if name.group in ("effort", "friction", "output"))
