@@ -8,13 +8,13 @@ in the package takes a name apart.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from .tables import ANGLE, CONVENTIONS, LENGTH, MOMENT, PLANE, QUANTITIES, SPACE, Quantity, Table, table_of
 
-__all__ = ["ANGLE", "AVERAGED", "CONVENTIONS", "LENGTH", "MOMENT", "QUANTITIES", "Declared", "Output", "quantity_of"]
+__all__ = ["ANGLE", "AVERAGED", "CONVENTIONS", "LENGTH", "MOMENT", "QUANTITIES", "Declared", "Output", "compared", "quantity_of"]
 
 LAW, STATION, FORCES, PLACE_FIRST = PLANE.law, PLANE.station, PLANE.forces, PLANE.place_first
 """Those of planar mechanisms."""
@@ -43,6 +43,19 @@ def own_members(*, moment: bool = True) -> tuple[str, ...]:
 
 AVERAGED = ("effort", "friction", "output")
 """Groups whose outputs have means over time beside their peaks."""
+
+_LIKE = {"m": "rad", "m/s": "rad/s", "m/s^2": "rad/s^2", "N m": "N"}
+
+
+def compared(units: Sequence[str]) -> list[int]:
+    """Of each unit the number of those among which a size is large or small: lengths beside angles, moments beside forces.
+
+    Of a mechanism all of whose slides stand still, lengths are nothing but rounding, which angles tell.
+    """
+    kinds = [_LIKE.get(unit, unit) for unit in units]
+    numbers = {kind: k for k, kind in enumerate(dict.fromkeys(kinds))}
+    return [numbers[kind] for kind in kinds]
+
 
 _LAWS = {*PLANE.law, *SPACE.law}
 _SPREAD = re.compile(rf"(?:({'|'.join((*PLANE.spread, *SPACE.spread, *SPACE.couples))})(0|[1-9]\d*)|(width|end))")

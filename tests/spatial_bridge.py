@@ -37,7 +37,7 @@ def plain(drawn: Drawn) -> Drawn:
     for joint in drawn.mechanism.joints:
         x, y, z = map(float, joint.at_child)
         at_child = (abs(x) if joint.child in rods else x, y, z)
-        frame = _across(joint.axis) if joint.kind == "slot" else joint.frame
+        frame = across_axis(joint.axis) if joint.kind == "slot" and not drawn.is_hard(joint) else joint.frame
         joints.append(dataclasses.replace(joint, at_child=at_child, frame=frame))
     return dataclasses.replace(drawn, mechanism=dataclasses.replace(drawn.mechanism, joints=joints))
 
@@ -47,13 +47,17 @@ def declared(drawn: Drawn, t: float = 0.0, rubs: Sequence[Rub] = (), **options) 
     one = drawn.mechanism
     m = SpatialMechanism("drawn")
     m.set_gravity(*map(float, one.gravity))
-    parts = {GROUND: m.ground} | {b.name: _body(m, b) for b in one.bodies}
+    parts = {GROUND: m.ground} | {b.name: _body(m, b, drawn.guess[b.name] if b.name in drawn.hard else None) for b in one.bodies}
 
     def at(body, point):
         return parts[body].at(*map(float, point))
 
     for joint in one.joints:
-        _join(m, joint, at(joint.parent, joint.at_parent), at(joint.child, joint.at_child))
+        if drawn.is_hard(joint):
+            pose = drawn.guess.get(joint.parent, (np.zeros(3), np.eye(3)))
+            _join_at(m, joint, parts[joint.parent], parts[joint.child], *pose)
+        else:
+            _join(m, joint, at(joint.parent, joint.at_parent), at(joint.child, joint.at_child))
     for k, load in enumerate(one.loads):
         for kind, vector in (("force", load.force), ("torque", load.torque)):
             given = dict(zip("xyz", map(float, vector), strict=True))
@@ -74,6 +78,8 @@ def declared(drawn: Drawn, t: float = 0.0, rubs: Sequence[Rub] = (), **options) 
     drives = None if drawn.pushed is None or one.rows else [coordinate(one.joint(name), k) for name, k in drawn.pushed]
     posture = postures(drawn, t)
     rough = {name: posture[name] for name in m.coordinates if name in posture and name not in laws}
+    if drawn.hard:
+        rough = {name: value for name, value in rough.items() if not drawn.is_hard(one.joint(name.partition(":")[0]))}
     return Scene(m, laws, **{"t": (t, t + drawn.span, 9), "posture": rough, "drives": drives, **options})
 
 
@@ -108,10 +114,13 @@ def instants(scene: Scene, times, wanted=None):
     return dict(zip(graph.names, np.array(rows).T, strict=True))
 
 
-def _body(m, body):
+def _body(m, body, pose=None):
     if isinstance(body, Rigid):
-        rows = tuple(tuple(map(float, row)) for row in body.inertia)
-        return m.link(body.name, length=_SIZE, mass=float(body.mass), centre=tuple(map(float, body.centre)), inertia=rows)
+        rows, centre, told = np.array(body.inertia, float), np.array(body.centre, float), {"length": _SIZE}
+        if pose is not None:
+            rows, centre, told = pose[1] @ rows @ pose[1].T, pose[0] + pose[1] @ centre, _lying(*pose, _SIZE)
+        told |= {"centre": tuple(map(float, centre)), "inertia": tuple(tuple(map(float, row)) for row in rows)}
+        return m.link(body.name, mass=float(body.mass), **told)
     length, law = float(body.length), body.density
     matter = density.polynomial(float(law(0.5))) if callable(law) else density.polynomial(*map(float, law))
     if body.polar:
@@ -122,7 +131,13 @@ def _body(m, body):
             for name, of in told.items()
         }
         matter = density.thick(matter, **{name: density.polynomial(a, b - a) for name, (a, b) in ends.items()})
-    return m.link(body.name, length=length, density=matter)
+    return m.link(body.name, density=matter, **({"length": length} if pose is None else _lying(*pose, length)))
+
+
+def _lying(r, R, length):
+    """Where a link lies whose axes are the columns of a matrix; what tells its y axis is neither a unit nor at a right angle."""
+    base, tip, aside = (tuple(map(float, place)) for place in (r, r + R @ [length, 0.0, 0.0], R @ [0.3, 3.0, 0.0]))
+    return {"between": (base, tip), "beside": aside}
 
 
 def _join(m, joint, start, end) -> None:
@@ -145,7 +160,26 @@ def _join(m, joint, start, end) -> None:
             getattr(m, kind)(joint.name, start, end, axis=axis, turned=turned)
 
 
-def _across(axis):
+def _join_at(m, joint, parent, child, r, R) -> None:
+    """By its place and directions in ground axes, which are not of length one."""
+    at = tuple(map(float, r + R @ np.array(joint.at_parent, float)))
+    axis, second = (None if x is None else 7.0 * (R @ np.array(x, float)) for x in (joint.axis, joint.axis2))
+    told = {"axis": axis}
+    match joint.kind:
+        case "weld":
+            told = {}
+        case "spherical" | "free":
+            told = {"axis": R @ joint.frame[0], "second": R @ joint.frame[1]}
+        case "universal":
+            told |= {"second": second}
+        case "planar":
+            told = {"axis": np.cross(axis, second), "second": axis}
+    told = {name: tuple(map(float, vector)) for name, vector in told.items()}
+    lead = {"lead": float(joint.lead)} if joint.kind == "screw" else {}
+    getattr(m, joint.kind)(joint.name, parent, child, at=at, **told, **lead)
+
+
+def across_axis(axis):
     """The triad that the package completes an axis to."""
     u = np.array(axis, float) / np.linalg.norm(np.array(axis, float))
     v = np.eye(3)[np.argmin(np.abs(u))]
@@ -169,7 +203,7 @@ def _turns(R):
 def _coordinates(joint, turned, apart):
     """A joint's coordinates from how its child is turned, and where its point is, on the parent's axes."""
     u = np.array(joint.axis, float) / np.linalg.norm(np.array(joint.axis, float))
-    v = np.array(joint.axis2, float) if joint.axis2 is not None else np.array(_across(u)[1])
+    v = np.array(joint.axis2, float) if joint.axis2 is not None else np.array(across_axis(u)[1])
     v = v - u * (v @ u)
     v /= np.linalg.norm(v)
     w = np.cross(u, v)

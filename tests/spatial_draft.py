@@ -49,7 +49,8 @@ class Drawn:
 
     It moves from 0 to ``span``, and is followed there in ``steps``. Numbers of the mechanism are doubles, or of mpmath where a
     loop closes only by exact ones. A planar mechanism lies in the ``plane`` of the first two columns of that matrix. So
-    many spins are ``idle``: nothing holds them.
+    many spins are ``idle``: nothing holds them. ``hard`` are bodies that are told by places: of the posture that is guessed, in
+    which all coordinates are zero.
     """
 
     mechanism: Mechanism
@@ -60,6 +61,11 @@ class Drawn:
     steps: int = 8
     idle: int = 0
     plane: np.ndarray | None = None
+    hard: frozenset[str] = frozenset()
+
+    def is_hard(self, joint: Joint) -> bool:
+        """Whether a joint is told by its place: both its bodies are."""
+        return {joint.parent, joint.child} <= self.hard
 
     def drives(self, t, digits=None) -> dict:
         """(q, q', q'') by (joint, index)."""

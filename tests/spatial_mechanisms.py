@@ -29,8 +29,8 @@ def steady(draw: Callable[[np.random.Generator], Drawn]) -> Callable[[int], Draw
     @functools.cache
     def of(seed: int) -> Drawn:
         for attempt in range(100):
-            drawn = draw(np.random.default_rng([seed, attempt]))
             try:
+                drawn = draw(np.random.default_rng([seed, attempt]))
                 slopes = [slope for _, slope in drawn.traced(drawn.span)]
             except OpenLoopError:
                 continue

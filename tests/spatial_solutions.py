@@ -2,6 +2,7 @@
 
 import functools
 
+from spatial_anyhow import anyhow
 from spatial_bridge import declared, plain
 from spatial_mechanisms import FAMILIES
 
@@ -13,7 +14,7 @@ RATIOS = 5
 @functools.cache
 def evaluated(name, seed):
     """What was drawn, and its solution."""
-    drawn = plain(FAMILIES[name](seed))
+    drawn = plain((FAMILIES | {"anyhow": anyhow})[name](seed))
     return drawn, evaluate(declared(drawn), xi=(0, 1, RATIOS))
 
 

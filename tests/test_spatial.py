@@ -181,6 +181,17 @@ def test_a_body_that_hangs_on_bars_alone_is_named():
         derive(Scene(m, {"O": polynomial(0, 1)}))
 
 
+def test_a_loop_that_drives_leave_nothing_to_close_is_named():
+    m = SpatialMechanism("m")
+    a, b = m.link("a", length=1.0, mass=1.0), m.link("b", length=1.0, mass=1.0)
+    m.cylindrical("A", m.ground, a, axis=Z)
+    m.cylindrical("B", a.tip, b, axis=(1, 0, 0))
+    m.planar("C", m.ground.at(1, 1, 1), b, axis=(0, 1, 0))
+    says = "joint 'B': of every joint of its loop some motion is given, .* and A:turn, C:slide_2, C:turn, B:turn cannot follow"
+    with pytest.raises(DeclarationError, match=says):
+        derive(Scene(m, {"A:slide": polynomial(0, 1), "B:slide": polynomial(0, 1), "C:slide_1": polynomial(0)}))
+
+
 def test_what_an_idle_spin_makes_of_the_freedoms_is_said():
     m = SpatialMechanism("m")
     crank, rod = m.link("crank", length=0.1, mass=1.0), m.link("rod", length=0.3, mass=1.0, centre=(0, 0, 0), inertia=(1, 1, 1))

@@ -10,10 +10,11 @@ import pytest
 from compiled import cc
 from spatial_scenes import beams
 
-from lagrange_casadi import evaluate, load, refine, save
+from lagrange_casadi import Scene, SpatialMechanism, evaluate, load, motion, refine, save
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.draw.figures import MechanismDrawing, SectionMaps, default_figures
 from lagrange_casadi.export import export
+from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.store.runs import SCHEMA, check
 from lagrange_casadi.sweep.columns import Harvest
@@ -197,3 +198,21 @@ def test_exported_c_gives_the_section_forces(scene, precision, no_certificate, t
     told = subprocess.run([tmp_path / "out" / "program"], capture_output=True, text=True, check=False)
     assert told.returncode == 0, told.stdout
     assert "resultant bending moment" in (tmp_path / "out" / "selftest.c").read_text()
+
+
+def test_slides_that_stand_still_are_rounding_beside_what_turns():
+    """A loop that cannot move is carried about: no length changes, so no other length tells how little rounding is."""
+    m = SpatialMechanism("carried")
+    a, b = m.link("a", length=0.5, mass=1.0), m.link("b", length=0.4, mass=2.0, centre=(0.1, 0.2, 0.0), inertia=(0.1, 0.1, 0.15))
+    m.universal("U", m.ground, a, axis=(0.3, 0.5, 1.0), second=(1.0, 0.4, -0.5))
+    m.cylindrical("C", a.tip, b, axis=(0.2, 1.0, -0.4))
+    m.planar("P", a.at(0.1, 0.2, 0.1), b.at(0.3, 0.1, -0.2), axis=(1.0, -0.3, 0.5))
+    laws = {"U": (motion.polynomial(0.0, 0.7, 0.2), motion.polynomial(0.0, -0.5, 0.1))}
+    scene = Scene(m, laws, t=(0, 0.3, 9), posture={"C:slide": 0.0, "C:turn": 0.0})
+    found = {peak.name: abs(peak.value) for peak in refine(scene, evaluate(scene, wanted=["motion"]))}
+    designs = DesignEngine.of(scene, ["motion"], rung=Rung("vm"))
+    outcome = designs.evaluate(np.zeros((1, 0)))
+    assert outcome.status.tolist() == [Status.OK]
+    for name, value in zip(designs.quantities, outcome.value[0], strict=True):
+        if name.startswith(("motion:C:slide_", "motion:P:slide_")) and name.endswith(("rate", "acceleration")):
+            assert max(abs(value), found[name]) < 1e-13, name

@@ -25,6 +25,9 @@ RIGHT = 1e-9
 SAME = 1e-12
 """Numbers that differ by less, over a size beside them, are one but for rounding."""
 
+FAINT = 1e-15
+"""A component of a direction that is smaller is rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class Reference:
@@ -52,7 +55,7 @@ class Reference:
 
     def directions(self, triad: Triad) -> Triad:
         """Directions in ground axes on the body's axes."""
-        u, v, w = (self.rotation.resolve(one) for one in triad)
+        u, v, w = (_settled(self.rotation.resolve(one)) for one in triad)
         return u, v, w
 
     def seen(self, other: Reference) -> tuple[Vector, Vector]:
@@ -188,8 +191,14 @@ def _unit(what: str, value: Vector) -> Vector:
         raise DeclarationError(f"{what} must not be of length zero")
     if isinstance(size, float):
         x, y, z = (component / size for component in value)
-        return x, y, z
+        return _settled((x, y, z))
     return times(1 / size, value)
+
+
+def _settled(direction: Vector) -> Vector:
+    """A direction whose components are nothing where they are rounding: so what slides across a link stays at its end."""
+    x, y, z = (0.0 if isinstance(component, float) and abs(component) < FAINT else component for component in direction)
+    return x, y, z
 
 
 def _size(value: Vector) -> Expression:

@@ -34,7 +34,7 @@ from ..instants.laws import made_of
 from ..instants.refusal import WITH_SERIES, Status
 from ..instants.rung import Rung
 from ..instants.solution import Provenance
-from ..quantities import Output
+from ..quantities import Output, compared
 from ..sensitivity.curvatures import Curvatures
 from ..sensitivity.peaks import PeakSlopes
 from ..sensitivity.slopes import Slopes
@@ -152,8 +152,7 @@ class DesignEngine:
     @cached_property
     def _unit_numbers(self) -> npt.NDArray[np.intp]:
         """The number of the unit of each of the quantities."""
-        numbers = {unit: k for k, unit in enumerate(dict.fromkeys(self.units))}
-        return np.array([numbers[unit] for unit in self.units], np.intp)
+        return np.array(compared(self.units), np.intp)
 
     @property
     def efforts(self) -> tuple[str, ...]:

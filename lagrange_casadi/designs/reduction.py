@@ -27,7 +27,7 @@ from ..instants.laws import made_of
 from ..instants.refusal import Status
 from ..instants.rules import rules
 from ..instants.rung import Rung
-from ..quantities import AVERAGED, Output
+from ..quantities import AVERAGED, Output, compared
 from ..summits.sharpness import Sharpness
 from ..tables import Table, table_of
 
@@ -87,8 +87,9 @@ class KeptOutputs:
         if not names:
             raise DeclarationError("designs: nothing is wanted that has a peak")
         units = tuple(output.unit(mechanism) for output in names)
-        numbers = {unit: k for k, unit in enumerate(dict.fromkeys(units))}
         efforts = tuple(name for name in names if name.group in AVERAGED)
+
+        efforts = tuple(name for name in names if name.group in ("effort", "friction", "output"))
         along = tuple(_along(mechanism, link, at, table) for link in links)
         matter, positive, margins = _matter(graph.scene, links, along, rung.precision)
         columns = {column for columns in chosen.values() for column in columns}
@@ -102,7 +103,7 @@ class KeptOutputs:
         reduction = Reduction(
             quantities=tuple(chosen.values()),
             links=along,
-            units=tuple(numbers[unit] for unit in units),
+            units=tuple(compared(units)),
             efforts=tuple(names.index(name) for name in efforts),
             checks=tuple(checks),
             doubts=tuple(doubts),

@@ -8,7 +8,7 @@ line last, since opening it leaves a single equation.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from ..declare.joints import Axis, Joint
@@ -67,7 +67,7 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
     bars = bars_of(mechanism, driven)
     barred = {joint for bar in bars for joint in bar.joints}
     waiting = [joint for joint in mechanism.joints.values() if joint not in barred]
-    driven = {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
+    given, driven = driven, {joint.name for name, (joint, _) in mechanism.coordinates.items() if name in driven}
     while reachable := [
         Branch(joint, joint.parent.body not in depth)
         for joint in waiting
@@ -98,6 +98,11 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
             )
     for joint in waiting:
         if joint.name in driven:
+            if follow := [c for one in _around(joint, branches) for c in _coordinates(one) if mechanism.space and c not in given]:
+                raise DeclarationError(
+                    f"joint '{joint.name}': of every joint of its loop some motion is given, so none is left to close it, and "
+                    f"{', '.join(follow)} cannot follow; give one of them no motion, and say by drives=[...] what bears efforts"
+                )
             if joint.kind == "slot" and joint.child.body.oriented:
                 raise DeclarationError(f"joint '{joint.name}' cannot be driven: it is a slot, drive another joint of its loop")
             raise DeclarationError(
@@ -110,6 +115,22 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
                 "itself, or let it go and tie their coordinates by a constraint"
             )
     return Tree(tuple(branches), tuple(waiting), bars)
+
+
+def _around(joint: Joint, branches: Sequence[Branch]) -> list[Joint]:
+    """The joints of the loop that a joint closes, itself the last."""
+    led = {branch.far.body: branch for branch in branches}
+    ways: list[list[Joint]] = []
+    for body in joint.bodies:
+        ways.append([])
+        while body in led:
+            ways[-1].append(led[body].joint)
+            body = led[body].near.body
+    return [*(one for k, way in enumerate(ways) for one in way if one not in ways[1 - k]), joint]
+
+
+def _coordinates(joint: Joint) -> list[str]:
+    return [axis.coordinate for axis in joint.axes]
 
 
 def _can_carry(joint: Joint, reverse: bool) -> bool:

@@ -31,7 +31,7 @@ from ..instants.section_law import SectionLaw, Side
 from ..instants.signals import Quantity, SectionForce, Signals
 from ..instants.sizes import size_of
 from ..instants.solution import Peak, Solution
-from ..quantities import Output
+from ..quantities import Output, compared
 from ..summits.search import Peaks
 from ..summits.sharpness import Sharpness
 from ..tables import LARGEST
@@ -273,13 +273,13 @@ class ContinuousSolution:
     def scales(self, names: Sequence[Output]) -> tuple[list[int], list[float]]:
         """The units of quantities, by number, and the largest size of anything that has each."""
         solution = self.solution
-        units = {unit: k for k, unit in enumerate(dict.fromkeys(map(solution.unit, names)))}
-        scales = [0.0] * len(units)
-        for output in solution.quantities():
-            if output in solution.outputs and solution.determined(output) and solution.unit(output) in units:
-                k = units[solution.unit(output)]
+        others = [output for output in solution.quantities() if output in solution.outputs and solution.determined(output)]
+        units = compared([solution.unit(output) for output in (*names, *others)])
+        scales = [0.0] * (max(units[: len(names)]) + 1)
+        for output, k in zip(others, units[len(names) :], strict=True):
+            if k < len(scales):
                 scales[k] = max(scales[k], float(np.abs(solution.outputs[output]).max()))
-        return [units[solution.unit(name)] for name in names], scales
+        return units[: len(names)], scales
 
     def timed(self, signals: Signals, names: Sequence[Output], peaks: Peaks) -> tuple[Array, Array, Array]:
         """Values, times and ratios of peaks, the smooth ones at the times where their derivative is zero, by the secant method."""
