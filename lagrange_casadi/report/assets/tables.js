@@ -73,6 +73,25 @@ function resultTables(show) {
   return tables.map((table) => table.body);
 }
 
+/** How far each part is used, and what governs: of links that have a beam, of joints with pins or bearings. */
+function strengthTables() {
+  if (!contents.strength.length) return [];
+  const ofFile = element("span", { class: "alarm", hidden: true }, "of the file's design");
+  reading.watchers.add(() => (ofFile.hidden = designState() === "file"));
+  const used = (row) => row.used ?? Infinity;
+  const words = (row) => (row.used === null ? "∞" : format(row.used, 4));
+  const factor = (row) => (row.factor === null ? (row.used === 0 ? "∞" : "0") : format(row.factor, 4));
+  const heads = [
+    ["part", (row) => row.part],
+    ["against", (row) => row.against],
+    ["factor of safety", factor, (row) => 1 / used(row)],
+    ["utilisation", (row) => `${words(row)}${used(row) > 1 ? ", FAILS" : row.governs ? ", governs" : ""}`, used],
+    ["where", (row) => row.where],
+  ];
+  const plain = [["part", (row) => row.part], ["against", (row) => row.against], ["factor", (row) => row.factor], ["utilisation", (row) => row.used], ["where", (row) => row.where]];
+  return [sortedTable("Strength", heads, () => contents.strength, { aside: ofFile, plain }).body];
+}
+
 /** The smaller tables and texts: parameters, parts, the certificate, what is open, how the numbers were made. */
 function factSections() {
   const found = [];
@@ -82,27 +101,6 @@ function factSections() {
       sortedTable("Parameters", [["name", (row) => row.name], ["value", (row) => shown(row.value, row.unit, 7), (row) => row.value], ["range", range]], () => contents.parameters, {
         plain: [["name", (row) => row.name], ["value", (row) => row.value], ["unit", (row) => row.unit]],
       }).body,
-    );
-  }
-  if (contents.strength.length) {
-    const ofFile = element("span", { class: "alarm", hidden: true }, "of the file's design");
-    reading.watchers.add(() => (ofFile.hidden = designState() === "file"));
-    const used = (row) => row.used ?? Infinity;
-    const words = (row) => (row.used === null ? "∞" : format(row.used, 4));
-    const factor = (row) => (row.factor === null ? (row.used === 0 ? "∞" : "0") : format(row.factor, 4));
-    found.push(
-      sortedTable(
-        "Strength",
-        [
-          ["part", (row) => row.part],
-          ["against", (row) => row.against],
-          ["factor of safety", factor, (row) => 1 / used(row)],
-          ["utilisation", (row) => `${words(row)}${used(row) > 1 ? ", FAILS" : row.governs ? ", governs" : ""}`, used],
-          ["where", (row) => row.where],
-        ],
-        () => contents.strength,
-        { aside: ofFile, plain: [["part", (row) => row.part], ["against", (row) => row.against], ["factor", (row) => row.factor], ["utilisation", (row) => row.used], ["where", (row) => row.where]] },
-      ).body,
     );
   }
   const length = (body) => (body.length === null ? "point mass" : shown(body.length, "m", 6));
