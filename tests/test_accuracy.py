@@ -34,7 +34,7 @@ def case(name):
     return scene, exactly(scene)
 
 
-@pytest.mark.sampled(51)
+@pytest.mark.sampled(97)
 @pytest.mark.parametrize("rung", RUNGS)
 @pytest.mark.parametrize("name", PLANAR)
 def test_cases(name, rung):

@@ -134,6 +134,7 @@ def test_several_builds_at_once(fresh_cache):
     assert sorted(path.suffix for path in fresh_cache.iterdir()) == [".c", ".graph", ".sha256", ".so"]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seal", [b"", bytes(range(128, 192))])
 def test_a_damaged_seal_is_as_a_damaged_library(fresh_cache, seal):
     evaluate(slider_crank(), backend="c")

@@ -26,7 +26,7 @@ SCENES = cases(PLANAR) | {
 SCENES |= cases(SPATIAL)
 
 
-@pytest.mark.sampled(21)
+@pytest.mark.sampled(37)
 @pytest.mark.parametrize("precision", ["double", "single"])
 @pytest.mark.parametrize("name", SCENES)
 def test_a_c99_program_has_the_numbers_of_the_api(name, precision, tmp_path):

@@ -14,7 +14,7 @@ PAIRS = [(name, "single") for name in CASES] + [(name, TABLE) for name in TABLED
 pytestmark = pytest.mark.skipif(missing() != "", reason=missing())
 
 
-@pytest.mark.sampled(29)
+@pytest.mark.sampled(97)
 @pytest.mark.parametrize(("name", "rung"), PAIRS)
 def test_the_selftest_passes_on_the_machine(name, rung, tmp_path):
     assert re.search(r": \d+ numbers at 9 instants, .*; 0 wrong$", exported(name, rung, tmp_path / name).selftest())

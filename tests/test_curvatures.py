@@ -69,6 +69,7 @@ def test_a_level_peak():
             assert bends[one][other] == pytest.approx(MOMENT * value, rel=1e-13)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("asked", ["times", "over", "samples"])
 def test_a_peak_at_an_end_that_moves(asked):
     """The rate is 20 T at the last instant T, which goes with the speed, or with its root."""

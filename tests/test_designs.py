@@ -125,6 +125,7 @@ def test_every_value_is_written_or_is_nan(backend):
     assert all(np.isnan(array[2]).all() for name, array in results.items() if name != "status")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", ["slider_crank", "four_bar", "rrr3", "quick_return"])
 def test_histories_are_the_series_of_an_evaluation(name):
     scene = declared(CASES / name)

@@ -134,7 +134,7 @@ def test_two_summits_between_the_same_instants(backend):
 @pytest.mark.parametrize("seed", [1, 2])
 def test_random_curves_have_the_peaks_of_the_reference(seed, backend):
     """The search in C against the one in ``summits/search.py``, which designs without a compiler take."""
-    generator, many = np.random.default_rng(seed), 24
+    generator, many = np.random.default_rng(seed), 16
     m = Mechanism("wave")
     names = ["a", "v", "start", "b", "w", "then", "height", "place", "width"]
     a, v, start, b, w, then, height, place, width = (m.parameter(name, 1.0) for name in names)

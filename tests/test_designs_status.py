@@ -37,6 +37,7 @@ def statuses(scene, p, rung, instants=None):
 both = pytest.mark.parametrize("backend", ["lanes", "vm"])
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("backend", ["lanes", "c", pytest.param("vm", marks=pytest.mark.long)])
 def test_lengths_about_a_dead_centre(backend):
     """A crank as long as its rod, all but, and longer; on the instants of dead centres and beside them."""

@@ -22,7 +22,7 @@ P = np.array([[600.0, 0.5], [45.0, 0.4], [0.0, 0.5], [-60.0, 0.5], [3000.0, 0.3]
 FAILS = {2: Status.NO_INSTANTS, 3: Status.NO_INSTANTS, 5: Status.INVALID}
 
 
-@pytest.mark.sampled(11)
+@pytest.mark.sampled(19)
 @pytest.mark.parametrize("backend", ["lanes", "c", "vm"])
 @pytest.mark.parametrize("law", [motion.polynomial, uneven])
 @pytest.mark.parametrize("asked", ASKED)
@@ -51,6 +51,7 @@ def test_designs_are_their_own_evaluations(asked, law, backend):
     assert np.isnan(outcome.times[3]).all()
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("law", [motion.polynomial, uneven])
 def test_means_are_over_the_time_of_a_whole_turn(law):
     """The mean power of a drive without losses is zero, whatever its speed; the mean of a square is that of many more instants."""
@@ -65,6 +66,7 @@ def test_means_are_over_the_time_of_a_whole_turn(law):
             assert found == pytest.approx(mean, abs=1e-6 * np.abs(values).max())
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("rung", [Rung("lanes"), Rung("c", "single")], ids=lambda rung: rung.options)
 def test_a_row_has_the_same_bytes_whatever_stands_beside_it(rung, monkeypatch):
     scene = press(uneven, wanted=["effort", "section:rod"], over=("O", 0, TURN, 41))

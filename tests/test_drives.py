@@ -194,6 +194,7 @@ def test_a_four_bar_driven_by_its_coupler():
     assert_balanced(other)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("drives", [["A", "P"], {"O": 1.0, "C": 2.0, "P": 3.0}], ids=["two", "three"])
 def test_sweeps_have_the_peaks_of_the_api(drives):
     scene = five_bar(drives, t=(0, 1, 64))
@@ -212,6 +213,7 @@ def test_sweeps_refuse_what_the_api_refuses():
         assert outcome.status.tolist() in ([Status.DEAD_CENTRE], [Status.PASSES_DEAD_CENTRE])
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_exported_c_has_the_efforts(precision, tmp_path):
     scene = five_bar({"O": 1.0, "C": 2.0, "P": 3.0})

@@ -73,6 +73,7 @@ def rotor():
     return Scene(m, {"O": polynomial(0.2, speed, speed / 3)}, t=(0, 0.2, 9))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("make", "parameters", "by"),
     [

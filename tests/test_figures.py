@@ -150,7 +150,7 @@ def test_only_declared_points_leave_their_ways():
     assert [line.get_color() for line in ways] == [PATH]
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("count", [1, 2, 3])
 @pytest.mark.parametrize("name", ["connecting_rod", "engine"])
 def test_titles_are_whole(name, count):

@@ -79,7 +79,7 @@ def test_model_exchange_gives_the_numbers_of_the_api(unit, name):
     assert_alike(simulated(path, solution), solution, outputs(path))
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("name", SCENES)
 def test_co_simulation_gives_the_numbers_of_the_api(unit, name):
     """What FMPy reads after a step is of the inputs that it set before: they are given one step early."""

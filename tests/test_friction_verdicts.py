@@ -166,6 +166,7 @@ def test_a_design_at_rest_has_its_status(backend):
     assert moving.evaluate(np.array([[0.1]])).status.tolist() == [Status.OK]
 
 
+@pytest.mark.sampled(3)
 @every
 def test_prepared_scenes_and_designs_tell_the_series_of_what_comes_to_rest(backend):
     """As a single evaluation does: numbers where it moves, none where it rests. Peaks are refused in words that help."""

@@ -52,6 +52,7 @@ def the_same(scene, k, motors):
     return found, Scene(scene.mechanism, laws, posture=posture, t=(0, 0, 1))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("scene", "motors", "loads"),
     [(guided, ["O", "C"], [lambda place: [(("c", 0.5, 0), -20.0, 5.0, 0.0)]]), (platform, ["M0", "M1", "M2"], [])],
@@ -120,6 +121,7 @@ def test_sweeps_and_exported_c_have_it(tmp_path):
     compare(by_c99(tmp_path, told, instants(solution.t, "double")), expected(scene, told, solution), told, made, solution)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("rung", [Rung("lanes"), Rung("c", "single")], ids=["lanes", "single"])
 def test_a_quantity_that_is_zero_where_it_is_looked_at_condemns_no_design(rung):
     """The power of a tool that goes to and fro is rounding at each of the instants of the witness."""

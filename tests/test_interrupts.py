@@ -95,7 +95,7 @@ WAITS = {
 }
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
 @pytest.mark.parametrize("text", WAITS.values(), ids=WAITS)
 def test_an_interrupt_in_a_case_is_one_line(here, tmp_path_factory, text, number):

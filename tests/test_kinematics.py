@@ -190,6 +190,7 @@ def test_a_jump_of_branch_is_named(backend):
         evaluate(double_crank(2.3), backend=backend)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("keywords", [{"backend": "c"}, {"backend": "vm"}, {"backend": "vm", "newton": 4}])
 @pytest.mark.parametrize("begin", [2.4, 3.5])
 def test_a_part_of_the_motion_is_on_the_branch_of_the_whole(begin, keywords):

@@ -75,6 +75,7 @@ def test_sums_of_decimals(parts):
         assert law.at("shear", np.ones((3, 1)))[0, 0] == pytest.approx(-20.62)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("x", "misses"), [(0.3 + 1e-9, True), (-1e-9, True), (0.3 + 1e-14, False), (-1e-14, False)])
 def test_all_programs_draw_the_line_at_the_same_place(x, misses, tmp_path):
     """The API, sweeps and exported C: a part in 1e9 beyond the end is beyond it."""

@@ -105,6 +105,7 @@ def worm(mu, driven, speed=3.0, hand="right", moment=-50.0):
     return Scene(m, {driven: polynomial(0.0, speed)}, t=(0, 1, 3)), math.atan(4 * r2 / (z * r1))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("mu", [0.0, 0.03, 0.1])
 @pytest.mark.parametrize("hand", ["right", "left"])
 def test_a_worm_drives_its_wheel(mu, hand):

@@ -82,7 +82,7 @@ def along(values, at):
     return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(at)))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("title", BESIDE)
 def test_against_newton_euler(title):
     """The machines that are no cases; at instants of the page's own."""

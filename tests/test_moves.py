@@ -74,6 +74,7 @@ def test_the_timetable_tells_times_peaks_and_jumps():
     assert [jump.where for jump in table.jumps][:3] == ["where 'out' begins", "from 'out' to 'load'", "from 'load' to 'half'"]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("law", ["trapezoid", "simple_harmonic", "s_curve", s_curve(0.5, 1.0), "cycloidal", "modified_trapezoid"])
 @pytest.mark.parametrize("cyclic", [False, True])
 def test_jumps_are_where_the_motion_has_them_and_nowhere_else(law, cyclic):

@@ -39,7 +39,7 @@ def gaps(f, parameters=None, **at):
     return found, gradient
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", ["slider_crank", "quick_return", "beam_pump", "excavator", "cardan_shaft", "arm6"])
 def test_slopes_of_peaks_are_those_of_their_differences(name):
     """Smooth ones, at ends, and at kinks and jumps, whose times change with the parameters."""

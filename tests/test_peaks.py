@@ -146,7 +146,7 @@ def test_angles_that_a_loop_sets_keep_their_turns():
     assert coarse.peak(name).value - peak.value > 1e-6
 
 
-@pytest.mark.sampled(15)
+@pytest.mark.sampled(29)
 @pytest.mark.parametrize("name", [*PLANAR, "rssr", "spatial_slider_crank"])
 def test_peaks_are_those_of_far_finer_instants(name):
     """To rounding: an ulp of the largest quantity of the same unit, from which small ones are left over."""

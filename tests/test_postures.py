@@ -49,6 +49,7 @@ def test_a_joints_coordinate_chooses_the_branch(joint, rocker):
         assert same(moved(scene, posture={joint: rough})[0], poses)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("case", ["six_bar", "andrews_squeezer", "rrr3", "engine", "quick_return"])
 def test_all_joints_serve_as_well_as_directions(case):
     """Loops that are iterated get the directions of their links from the joints' coordinates, one after another."""
@@ -62,6 +63,7 @@ def test_all_joints_serve_as_well_as_directions(case):
     assert same(moved(scene, posture=posture)[0], poses)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("case", CLOSED)
 def test_what_is_open_is_told_at_once_in_lines_to_paste(case):
     scene = load_case(case).scene

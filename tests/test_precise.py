@@ -63,7 +63,7 @@ def test_double_graphs_agree_with_50_digits(name):
             assert max(map(abs, gaps)) < 1e-12 * size[kind(quantity)], quantity
 
 
-@pytest.mark.sampled(9)
+@pytest.mark.sampled(19)
 @pytest.mark.parametrize("name", PLANAR)
 def test_30_digits_are_the_first_of_50(name):
     solution, instants = solved(name)

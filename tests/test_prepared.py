@@ -41,6 +41,7 @@ def test_series_are_those_of_evaluate(name):
         np.testing.assert_allclose(found[output], solution.array(output), rtol=0, atol=1e-12 * size, err_msg=output)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("backend", ["auto", "c", "vm"])
 def test_calls_are_the_rows_of_designs_to_the_last_byte(backend):
     """Whatever was asked for before, and by name or in a mapping; parameters that are not told have their defaults."""

@@ -16,7 +16,7 @@ from random_verdict import compare, is_regular, judge
 from lagrange_casadi import evaluate
 from lagrange_casadi.quantities import Output
 
-QUICK, LONG = range(14), range(14, 1000)
+QUICK, LONG = range(10), range(10, 1000)
 REFUSED = 0.02
 """How many of the regular mechanisms may be refused."""
 

@@ -48,6 +48,7 @@ def test_each_knows_of_the_other(many):
             assert set(belonging["dimension"]) == {["t", "xi"].index(name)}
 
 
+@pytest.mark.long
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("engine", ["h5netcdf", "netcdf4"])
 def test_xarray_finds_them(many, engine):

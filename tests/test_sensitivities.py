@@ -78,6 +78,7 @@ def test_where_friction_rests_there_are_no_numbers():
     np.testing.assert_allclose(found, exact, rtol=0, atol=1e-8 * np.nanmax(np.abs(exact)))
 
 
+@pytest.mark.sampled(2)
 def test_means_and_peaks():
     scene = load_case(CASES / "four_bar").scene
     solution = evaluate(scene, t=(*scene.t[:2], 101), certificate=False)

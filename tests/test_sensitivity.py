@@ -70,7 +70,7 @@ def unit(name):
     return (group, *(m for m in member if group in ("reaction", "section")))
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(11)
 @pytest.mark.parametrize("name", PLANAR)
 def test_slopes_are_those_of_differences_in_50_digits(name):
     """Of every force and every place, by numbers of the declaration: lengths, masses, densities, places, gravity."""

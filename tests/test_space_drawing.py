@@ -108,6 +108,7 @@ def test_numbers_on_an_axis_that_runs_backward_are_those_of_its_coordinate():
         assert float(told) == pytest.approx(-1e3 * tick, abs=1e-9)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("count", "faint"), [(1, 0), (2, 1), (4, 3)])
 def test_as_many_instants_as_asked_for(count, faint):
     solution = moved("rssr")
@@ -124,6 +125,7 @@ def test_one_instant_is_drawn_once():
     assert len([line for line in figure.axes[0].get_lines() if line.get_linewidth() == 3.2]) == 3
 
 
+@pytest.mark.long
 def test_the_same_solution_gives_the_same_bytes():
     assert drawn(every_kind())[1] == drawn(every_kind())[1]
 

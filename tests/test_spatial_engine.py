@@ -16,7 +16,7 @@ ROUNDING = 1e-12
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, case)))
-@pytest.mark.sampled(19)
+@pytest.mark.sampled(37)
 def test_efforts_reactions_and_sections(case):
     name, seed = case
     drawn = plain((FAMILIES | {"wheel": wheel})[name](seed))

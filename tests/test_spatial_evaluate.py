@@ -195,6 +195,7 @@ def test_a_table_of_the_cycle_gives_the_same(made, values):
             assert np.abs(found.array(name) - exact.array(name)).max() <= 2e-6 * size + 1e-12, name
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("options", "limit"), [({"newton": 3}, 1e-9), ({"backend": "vm"}, 1e-12), ({"precision": "single"}, 1e-3)])
 def test_other_ways_to_evaluate_are_certified_too(options, limit):
     drawn = plain(FAMILIES["rsup"](1))

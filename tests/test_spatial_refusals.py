@@ -28,6 +28,7 @@ def ball(start, speed=1.0, **scene):
     return Scene(m, {"A": laws}, **{"t": (0, 1, 101), **scene})
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("start", "speed", "count", "says"),
     [
@@ -136,6 +137,7 @@ def leaning(second):
     return Scene(m, {"J": motion.polynomial(0, 1)}, t=(0, 1, 5))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("second", "what"), [(True, ""), (False, " turned:")])
 def test_axes_that_parameters_set_are_at_right_angles(second, what, tmp_path):
     """Where an evaluation refuses, a sweep and exported C do."""
@@ -178,6 +180,7 @@ def platform(aside, *, bars):
     return Scene(m, {"pose": laws}, t=(0, 1, 21), posture=posture, drives=[f"M{k}" for k in range(6)])
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("bars", "says"),
     [

@@ -27,7 +27,7 @@ def both(name, seed):
 
 @pytest.mark.parametrize("name", PLANAR)
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.sampled(15)
+@pytest.mark.sampled(29)
 def test_a_planar_mechanism_is_the_same_in_space(name, seed):
     """What is in the plane is known and as it was; what is out of it is nothing, or open and not told."""
     flat, scene, R = both(name, seed)

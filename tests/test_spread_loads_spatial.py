@@ -85,6 +85,7 @@ def test_every_way_of_evaluating_agrees(tmp_path):
         assert again.array(force).tolist() == expected_.section("boom").array(force).tolist()
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_exported_c_has_the_numbers_of_the_api(precision, tmp_path):
     one = scene(t=(0.0, 1.0, 41))

@@ -54,7 +54,7 @@ BUILT += [(case, "slopes", name) for case in ("slider_crank", "v_twin", "excavat
 BUILT += [(case, "table", name) for case in ("slider_crank", "six_bar") for name in COMPILERS]
 
 
-@pytest.mark.sampled(97)
+@pytest.mark.sampled(197)
 @pytest.mark.parametrize(("case", "rung", "compiler"), BUILT)
 def test_the_stack_that_the_header_states_is_never_exceeded(case, rung, compiler, sources, tmp_path):
     command = (*COMPILERS[compiler], *FLAGS)

@@ -96,7 +96,7 @@ def test_doubles_after_days(name, rung, later):
     assert gap(graph, t, rung, truth) < 1e-13
 
 
-@pytest.mark.sampled(27)
+@pytest.mark.sampled(41)
 @pytest.mark.parametrize("rung", SINGLE, ids=lambda rung: rung.backend)
 @pytest.mark.parametrize("name", [name for name in NAMES if name != "andrews_squeezer"])
 def test_singles_after_hours(name, rung):
@@ -181,6 +181,7 @@ def geared(ratio):
     return Scene(m, {"O": RAMP}, posture={"rod": 0.1}, t=(0.0, 0.1, 11))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("ratio", [-0.5, 7.0 / 3.0])
 def test_gears(ratio):
     graph = derive(geared(ratio), ["all"])

@@ -286,6 +286,7 @@ def given(scene, parameters, **rung):
     return found
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("rung", [{"backend": b} for b in ("vm", "c", "lanes")] + [{"precision": "single"}], ids=str)
 def test_what_acts_beyond_the_ends_is_felt_as_a_sum(rung):
     scene = rail()
@@ -304,6 +305,7 @@ def test_the_oracle_says_the_same_beyond_the_ends():
         unique(rail(), {"x": x})
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("length", [0.3, 1.0, 3.0])
 def test_guides_that_pass_before_the_base_are_not_felt(length):
     """A bar carries the line of two guides, both always before its base or past its tip; it is held by both."""

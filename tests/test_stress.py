@@ -171,6 +171,7 @@ def test_a_file_gives_the_same(tmp_path, solutions):
     assert again.safety("rod") == solutions["even"].safety("rod")
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("degree", [1, 3, 5, 17])
 def test_summits_are_found_where_the_highest_powers_are_nothing_too(degree):
     """Random polynomials of any lower degree, with rounding in the place of what is not there, against a fine grid."""

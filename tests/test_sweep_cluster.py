@@ -142,6 +142,7 @@ def test_ctrl_c_comes_through_while_there_is_no_worker(slider_crank, tmp_path):
     assert not (tmp_path / "x.h5").exists()
 
 
+@pytest.mark.long
 def test_a_worker_that_is_killed_is_done_without(slider_crank, whole, tmp_path):
     path, killed = tmp_path / "x.h5", []
     with started(tmp_path, 2) as (address, _, workers):

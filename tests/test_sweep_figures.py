@@ -41,6 +41,7 @@ def test_the_usual_figures(swept, tmp_path):
     assert [path.read_bytes() for path, _ in draw_sweep(swept, default_plots(swept, over=["m1"]), tmp_path)] == before
 
 
+@pytest.mark.long
 def test_a_list_is_drawn_over_each_parameter(listed, tmp_path):
     specs = default_plots(listed)
     assert [spec.name for spec in specs if isinstance(spec, Scatter)] == ["peak_effort", "peak_reactions", "peak_section_rod"]

@@ -42,6 +42,7 @@ def test_other_bounds_than_the_scenes_are_expressions_too():
     np.testing.assert_allclose(found.motion("O").value, np.linspace(0.5, 3.0, 5), rtol=1e-15)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("law", [motion.polynomial, uneven])
 @pytest.mark.parametrize("rpm", [600.0, 77.0])
 def test_instants_over_a_drive_are_equal_steps_of_it(law, rpm):

@@ -95,6 +95,7 @@ def agree(found, told, share):
         assert gap <= share * largest[told.unit(name)], (name, gap)
 
 
+@pytest.mark.sampled(2)
 def test_it_is_certified_kept_and_shown(both, tmp_path):
     _, solution = both
     assert solution.certified

@@ -166,6 +166,7 @@ def test_a_table_serves_what_comes_round_and_says_what_does_not():
         evaluate(sprung("C", **DRAG_LINK), table=64, wanted=["effort"])
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("backend", ["auto", "c", "vm"])
 def test_sweeps_count_the_same_and_refuse_by_name(backend):
     """Among them a crank-rocker where the defaults are a drag link: its turns are others."""
