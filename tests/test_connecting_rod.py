@@ -131,7 +131,8 @@ def _goodman(stress):
 
 
 def test_run_prints_every_part(here, capsys):
-    assert main(["run", "connecting_rod", "--no-figures", "--no-certificate", "--backend", "vm"]) == 0
+    few = ["--over", "main=90deg:810deg:121"]
+    assert main(["run", "connecting_rod", "--no-figures", "--no-certificate", "--backend", "vm", *few]) == 0
     out = capsys.readouterr().out
     for part in ("rod", "crank", "crankpin", "piston_pin"):
         assert f"\n  {part:<20} " in out

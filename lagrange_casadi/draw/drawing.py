@@ -10,7 +10,7 @@ import numpy as np
 
 from ..declare.density import Array
 from ..instants.solution import Solution
-from .labels import apart
+from .labels import apart, tell_bodies
 from .labels import placed as labelled
 from .places import drawn_spots, placed
 from .readable import scale_for
@@ -95,7 +95,7 @@ def draw_into(axes: Any, solution: Solution) -> None:
     _draw_instant(axes, solution, 0, size)
     _frame(axes, box, False)
     axes.set(xlabel=f"x [{scale_for('m', size).unit}]", ylabel=f"y [{scale_for('m', size).unit}]")
-    axes.legend(frameon=False, fontsize=8)
+    tell_bodies(axes.figure, *axes.get_legend_handles_labels())
     axes.figure.draw_without_rendering()
     _name(axes, solution, 0, size)
 

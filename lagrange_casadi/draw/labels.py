@@ -1,9 +1,10 @@
-"""Names beside their points, where they hide neither each other nor more of the picture than they must."""
+"""Names beside their points, where they hide neither each other nor more of the picture than they must; and those of colours."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -58,3 +59,9 @@ def _cost(at: Array, k: int, anchors: Array, sizes: Array, things: Array, found:
     )
     outside = np.sum(np.maximum([box[0] - low[0], box[1] - low[1], high[0] - box[2], high[1] - box[3]], 0.0))
     return float(_OVERLAP * overlaps + _HIDDEN * hidden + _OUTSIDE * outside + _FAR * apart(at, sizes[k], anchors[k]))
+
+
+def tell_bodies(figure: Any, handles: Sequence[Any], names: Sequence[str]) -> None:
+    """Which body has which colour, once below all drawings of a figure whose layout is constrained."""
+    if not figure.legends:
+        figure.legend(handles, names, loc="outside lower center", ncols=6, frameon=False, fontsize=8)

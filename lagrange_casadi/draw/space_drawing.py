@@ -10,7 +10,7 @@ import numpy as np
 
 from ..declare.density import Array
 from ..instants.solution import Solution
-from .labels import apart, placed
+from .labels import apart, placed, tell_bodies
 from .readable import Scale, scale_for
 from .solid import (
     BLOCK,
@@ -104,7 +104,7 @@ def draw_into(axes: Any, solution: Solution, azimuth: float = AZIMUTH, elevation
     scale = 72.0 * min(4.6 / (box[1] - box[0]), 3.4 / (box[3] - box[2]))
     _tell(axes, one, now, solution, size, box, scale)
     named = [(name, handle) for name, handle in _entries(solution) if name in solution.description["bodies"]]
-    axes.legend([handle for _, handle in named], [name for name, _ in named], frameon=False, fontsize=8)
+    tell_bodies(axes.figure, [handle for _, handle in named], [name for name, _ in named])
 
 
 def _size(cloud: Array) -> float:
