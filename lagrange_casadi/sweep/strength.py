@@ -42,7 +42,7 @@ WAYS = ("yield", "buckling", "fatigue")
 _MEANT = {way: f"against {'yielding' if way == 'yield' else way}" for way in WAYS}
 _MOVING = "NaN for designs of which it is not known"
 _NEAR = 1e-9
-_FEW = 8
+_FEW = 16
 """Designs whose stresses are at hand at once."""
 
 _EVENLY = 33
@@ -56,14 +56,16 @@ _ROOT = math.sqrt(3.0)
 class Fatigue:
     """The stresses of a link's fibres as a function of what its law is made of.
 
-    ``rows(members, p)`` is their matrix: the normal stresses of all places and fibres, then the shear stresses along y and along z
-    of those that are ``sheared``; ``still`` are the members that it depends on.
+    ``rows(members, p)`` is their matrix: the normal stresses of all places and fibres, then the shear stresses of those that are
+    ``sheared``, along one of ``axes`` after the other (0 is y, 1 is z), for in a plane there are none along z; ``still`` are the
+    members that it depends on.
     """
 
     members: tuple[Output, ...]
     still: npt.NDArray[np.intp]
     rows: Any
     sheared: npt.NDArray[np.intp]
+    axes: tuple[int, ...]
 
     @classmethod
     def of(cls, mechanism: Mechanism, link: Link, members: Sequence[Output]) -> Fatigue:
@@ -82,24 +84,25 @@ class Fatigue:
                 normal.append(values[0])
                 shears.append(values[1:])
         sheared = [k for k, pair in enumerate(shears) if not (pair[0].is_zero() and pair[1].is_zero())]
-        every = ca.vertcat(*normal, *(shears[k][axis] for axis in (0, 1) for k in sheared))
+        axes = tuple(axis for axis in (0, 1) if not all(shears[k][axis].is_zero() for k in sheared))
+        every = ca.vertcat(*normal, *(shears[k][axis] for axis in axes for k in sheared))
         slopes = ca.jacobian(every, symbols)
         still = [k for k in range(len(members)) if ca.depends_on(slopes, symbols[k])]
         # Rows of the matrix one after another, as numbers lie in memory.
         found = ca.Function("rows", [symbols, mechanism.symbols], [ca.vec(ca.densify(slopes.T))], {"cse": True})
-        return cls(tuple(members), np.array(still, np.intp), found, np.array(sheared, np.intp))
+        return cls(tuple(members), np.array(still, np.intp), found, np.array(sheared, np.intp), axes)
 
     def stands(self, members: Array) -> npt.NDArray[np.bool_]:
         """Of which designs, whose members are (n, members, t), the matrix is the same at all instants."""
         return np.asarray((np.ptp(members[:, self.still], axis=2) <= _NEAR).all(axis=1))
 
     def stresses(self, members: Array, p: Array) -> tuple[Array, Array]:
-        """Of designs whose members are (n, members, t): normal stresses (n, places, t), and shear stresses (n, 2, sheared, t)."""
+        """Of designs whose members are (n, members, t): normal stresses (n, places, t), shear stresses (n, axes, sheared, t)."""
         n, k, t = members.shape
         matrix = self._matrices(members[:, :, 0], p).reshape(n, -1, k)
         found = np.matmul(matrix, np.ascontiguousarray(members))
-        first = found.shape[1] - 2 * self.sheared.size
-        return found[:, :first], found[:, first:].reshape(n, 2, -1, t)
+        first = found.shape[1] - len(self.axes) * self.sheared.size
+        return found[:, :first], found[:, first:].reshape(n, len(self.axes), self.sheared.size, t)
 
     def _matrices(self, members: Array, p: Array) -> Array:
         """The numbers of ``rows`` for designs (n, ...), through memory that CasADi itself reads and writes: by far the fastest."""
@@ -193,7 +196,7 @@ class Kept:
         some, standing = there[stands], members[stands]
         for start in range(0, some.size, _FEW):
             few = slice(start, start + _FEW)
-            share[some[few]] = worst(*fatigue.stresses(standing[few], p[some[few]]), fatigue.sheared, beam.material)
+            share[some[few]] = worst(*fatigue.stresses(standing[few], p[some[few]]), fatigue.sheared, fatigue.axes, beam.material)
         for i in there.tolist():
             endless = share[i] <= 1.0 and beam.material.endless
             if np.isnan(share[i]) or (link in self.life and not endless):
@@ -239,7 +242,7 @@ def tires(material: Material) -> bool:
     return material.endurance is not None and material.ultimate is not None
 
 
-def worst(normal: Array, shears: Array, sheared: npt.NDArray[np.intp], material: Material) -> Array:
+def worst(normal: Array, shears: Array, sheared: npt.NDArray[np.intp], axes: Sequence[int], material: Material) -> Array:
     """Utilisation against fatigue of designs (n,), one over the least factor by Goodman: see :meth:`Fatigue.stresses`."""
     bound, known = bounds(normal, shears, sheared, material)
     best = known.max(axis=1)
@@ -249,7 +252,9 @@ def worst(normal: Array, shears: Array, sheared: npt.NDArray[np.intp], material:
             if bound[i, k] <= best[i]:
                 break
             if k in columns:
-                swings = loaded(np.vstack([normal[i, k], shears[i, :, columns[k]]]))
+                history = np.zeros((3, normal.shape[2]))
+                history[0], history[[1 + axis for axis in axes]] = normal[i, k], shears[i, :, columns[k]]
+                swings = loaded(history)
                 best[i] = max(best[i], float(np.max(1.0 / factor(swings.amplitude, swings.mean, material, _CRITERION))))
     return np.asarray(best)
 
