@@ -42,8 +42,8 @@ WAYS = ("yield", "buckling", "fatigue")
 _MEANT = {way: f"against {'yielding' if way == 'yield' else way}" for way in WAYS}
 _MOVING = "NaN for designs of which it is not known"
 _NEAR = 1e-9
-_FEW = 16
-"""Designs whose stresses are at hand at once."""
+_NUMBERS = 1 << 19
+"""Stresses that are at hand at once, of as many designs as have no more: so many stay in the memory next to a processor."""
 
 _EVENLY = 33
 """Ratios that are looked at: half as many as of one solution."""
@@ -194,8 +194,9 @@ class Kept:
         members = series[there][:, chosen]
         stands = fatigue.stands(members)
         some, standing = there[stands], members[stands]
-        for start in range(0, some.size, _FEW):
-            few = slice(start, start + _FEW)
+        many = max(1, _NUMBERS // (fatigue.rows.nnz_out(0) // len(fatigue.members) * members.shape[2]))
+        for start in range(0, some.size, many):
+            few = slice(start, start + many)
             share[some[few]] = worst(*fatigue.stresses(standing[few], p[some[few]]), fatigue.sheared, fatigue.axes, beam.material)
         for i in there.tolist():
             endless = share[i] <= 1.0 and beam.material.endless
