@@ -76,10 +76,11 @@ def test_bounds_leave_out_no_swing():
         normal = rng.normal(size=(1, 6, 30)).cumsum(axis=2) * 1e7
         sheared = np.array([1, 3, 4])
         shears = rng.normal(size=(1, 2, 3, 30)) * 10.0 ** rng.uniform(5, 8)
-        axes = [[0, 1], [0], [1]][trial % 3]
+        axes = ((0, 1), (0,), (1,))[trial % 3]
         shears[:, [axis for axis in (0, 1) if axis not in axes]] = 0.0
         material = STEEL.but(endurance=200e6 if trial % 2 else 600e6)
-        found = strength.worst(normal, shears[:, axes], sheared, axes, material)[0]
+        fatigue = strength.Fatigue((), np.arange(0), None, sheared, axes)
+        found = strength.worst(fatigue, normal, shears[:, list(axes)], material)[0]
         every = []
         for k in range(6):
             own = shears[0, :, list(sheared).index(k)] if k in sheared else np.zeros((2, 30))

@@ -52,11 +52,6 @@ class Tired:
         members = [output for output in self.graph.outputs if output.along and output.part == self.link]
         return Fatigue.of(mechanism, mechanism.links[self.link], members)
 
-    @property
-    def places(self) -> int:
-        """How many places and fibres are looked at."""
-        return int(self.fatigue.rows.numel_out(0) // len(self.fatigue.members) - 2 * self.fatigue.sheared.size)
-
     def points(self, look: Look) -> list[Point]:
         """The worst swings of a design, one a place, the worst first: a point's ``xi`` is the share of the swing's other instant.
 
@@ -68,14 +63,12 @@ class Tired:
             raise DeclarationError(f"a load travels along link '{self.link}': its fatigue is followed by sweeps alone")
         normal, shears = fatigue.stresses(members[None], look.p[None])
         bound, _ = bounds(normal, shears, fatigue.sheared, self.material)
-        column = {int(k): number for number, k in enumerate(fatigue.sheared)}
         found: list[Point] = []
         best = 0.0
         for k in np.argsort(-bound[0], kind="stable").tolist():
             if bound[0, k] <= best and len(found) >= _FEW:
                 break
-            own = shears[0, :, column[k]] if k in column else np.zeros((2, look.t.size))
-            swings = loaded(np.vstack([normal[0, k], own]))
+            swings = loaded(fatigue.history(normal[0], shears[0], k))
             used = 1.0 / factor(swings.amplitude, swings.mean, self.material, "goodman")
             worst = int(np.argmax(used))
             first, last = (look.instant(i) for i in swings.instants[worst])
@@ -85,19 +78,19 @@ class Tired:
 
     def stresses(self, out: Any, p: Any) -> Any:
         """Normal stresses of all places, then their shear stresses along y and along z, of columns at an instant: expressions."""
-        fatigue, count = self.fatigue, self.places
+        fatigue, count = self.fatigue, self.fatigue.places
         members = ca.vertcat(*(out[self.graph.outputs[member]] for member in fatigue.members))
         found = ca.mtimes(ca.reshape(fatigue.rows(members, p), members.numel(), -1).T, members)
         shears = ca.SX(2 * count, 1)
-        for axis in (0, 1):
-            for number, k in enumerate(fatigue.sheared.tolist()):
-                shears[axis * count + k] = found[count + axis * fatigue.sheared.size + number]
+        for number, axis in enumerate(fatigue.axes):
+            first = count + number * fatigue.sheared.size
+            shears[[axis * count + k for k in fatigue.sheared.tolist()]] = found[first : first + fatigue.sheared.size]
         return ca.densify(ca.vertcat(found[:count], shears))
 
     def swing(self, at_time: Any) -> Any:
         """``value(share, guess, p, xi, place)``: a swing's utilisation, by stresses at a time; ``place`` names the place by a 1."""
         kind = ca.SX if at_time.is_a("SXFunction") else ca.MX
-        nz, count = at_time.numel_in(1), self.places
+        nz, count = at_time.numel_in(1), self.fatigue.places
         sizes: Sequence[int] = (1, nz, at_time.numel_in(2), 1, count + nz)
         given: list[Any] = [kind.sym(name, n) for name, n in zip(("share", "guess", "p", "xi", "place"), sizes, strict=True)]
         share, guess, p, xi, place = given

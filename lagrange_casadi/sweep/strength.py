@@ -104,6 +104,19 @@ class Fatigue:
         first = found.shape[1] - len(self.axes) * self.sheared.size
         return found[:, :first], found[:, first:].reshape(n, len(self.axes), self.sheared.size, t)
 
+    @property
+    def places(self) -> int:
+        """How many places and fibres there are."""
+        return int(self.rows.numel_out(0) // len(self.members) - len(self.axes) * self.sheared.size)
+
+    def history(self, normal: Array, shears: Array, place: int) -> Array:
+        """Normal stress, shear along y and along z (3, t) at a place, of a design's (places, t) and (axes, sheared, t)."""
+        found = np.zeros((3, normal.shape[1]))
+        found[0] = normal[place]
+        for column in np.flatnonzero(self.sheared == place):
+            found[[1 + axis for axis in self.axes]] = shears[:, column]
+        return found
+
     def _matrices(self, members: Array, p: Array) -> Array:
         """The numbers of ``rows`` for designs (n, ...), through memory that CasADi itself reads and writes: by far the fastest."""
         buffer, evaluate = self.rows.buffer()
@@ -197,7 +210,7 @@ class Kept:
         many = max(1, _NUMBERS // (fatigue.rows.nnz_out(0) // len(fatigue.members) * members.shape[2]))
         for start in range(0, some.size, many):
             few = slice(start, start + many)
-            share[some[few]] = worst(*fatigue.stresses(standing[few], p[some[few]]), fatigue.sheared, fatigue.axes, beam.material)
+            share[some[few]] = worst(fatigue, *fatigue.stresses(standing[few], p[some[few]]), beam.material)
         for i in there.tolist():
             endless = share[i] <= 1.0 and beam.material.endless
             if np.isnan(share[i]) or (link in self.life and not endless):
@@ -243,19 +256,16 @@ def tires(material: Material) -> bool:
     return material.endurance is not None and material.ultimate is not None
 
 
-def worst(normal: Array, shears: Array, sheared: npt.NDArray[np.intp], axes: Sequence[int], material: Material) -> Array:
+def worst(fatigue: Fatigue, normal: Array, shears: Array, material: Material) -> Array:
     """Utilisation against fatigue of designs (n,), one over the least factor by Goodman: see :meth:`Fatigue.stresses`."""
-    bound, known = bounds(normal, shears, sheared, material)
+    bound, known = bounds(normal, shears, fatigue.sheared, material)
     best = known.max(axis=1)
-    columns = {int(k): number for number, k in enumerate(sheared)}
     for i in np.flatnonzero(bound.max(axis=1) > best):
         for k in np.argsort(-bound[i], kind="stable").tolist():
             if bound[i, k] <= best[i]:
                 break
-            if k in columns:
-                history = np.zeros((3, normal.shape[2]))
-                history[0], history[[1 + axis for axis in axes]] = normal[i, k], shears[i, :, columns[k]]
-                swings = loaded(history)
+            if k in fatigue.sheared:
+                swings = loaded(fatigue.history(normal[i], shears[i], k))
                 best[i] = max(best[i], float(np.max(1.0 / factor(swings.amplitude, swings.mean, material, _CRITERION))))
     return np.asarray(best)
 
