@@ -9,14 +9,14 @@ import numpy as np
 
 from ..declare.density import Array
 from ..instants.solution import Solution
-from ..strength.fatigue import factor, loaded
+from ..strength.fatigue import Loaded, factor, factor_score, loaded, places, worst
 from ..strength.stress import Stress
 from .readable import Scale
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_MEGA, _PIXELS, _PLACES = 1e6, 1600, 33
+_MEGA, _PIXELS = 1e6, 1600
 
 
 def draw_strength(solution: Solution, link: str, along: Array, label: str, si: bool = False) -> Figure:
@@ -72,25 +72,29 @@ def _map(figure: Figure, axes: Any, stress: Stress, along: Array, label: str, un
 def _goodman(axes: Any, stress: Stress, unit: Scale) -> None:
     material = stress.member.beam.material
     endurance, ultimate = (strength / _MEGA for strength in material.needs("Goodman's diagram", "endurance", "ultimate"))
-    means, amplitudes = [], []
-    for xi in np.linspace(0.0, 1.0, _PLACES).tolist():
-        values = stress.at(xi)
-        for k in range(values.shape[1]):
-            swings = loaded(values[:, k])
-            means += (swings.mean / _MEGA).tolist()
-            amplitudes += (swings.amplitude / _MEGA).tolist()
+    swings: dict[str, list[Loaded]] = {"swings, every fibre": [], "in notches": []}
+    for place in places(stress):
+        values = stress.at(place.xi, place.side, place.notch)
+        swings["in notches" if place.notch else "swings, every fibre"] += [loaded(values[:, k]) for k in range(values.shape[1])]
+    (least,), place, fibre, most = worst(stress, factor_score(material, "goodman"))
     axes.plot([0.0, ultimate], [endurance, 0.0], color="#b2182b", label="Goodman")
     if material.yield_strength is not None:
         strength = material.yield_strength / _MEGA
         axes.plot([0.0, strength], [strength, 0.0], color="0.6", linestyle="--", label="yield")
-    axes.plot(means, amplitudes, ".", markersize=3, color="#2166ac", label="swings, every fibre")
-    k = int(np.argmin(factor(np.array(amplitudes) * _MEGA, np.array(means) * _MEGA, material)))
-    axes.plot(means[k], amplitudes[k], "k+", markersize=13, markeredgewidth=1.8)
+    top = endurance
+    for (label, found), color in zip(swings.items(), ("#2166ac", "#e08214"), strict=True):
+        if found:
+            means, amplitudes = (np.concatenate([getattr(one, name) for one in found]) / _MEGA for name in ("mean", "amplitude"))
+            axes.plot(means, amplitudes, ".", markersize=3, color=color, label=label)
+            top = max(top, float(amplitudes.max()))
+    k = int(np.argmin(factor(most.amplitude, most.mean, material)))
+    axes.plot(most.mean[k] / _MEGA, most.amplitude[k] / _MEGA, "k+", markersize=13, markeredgewidth=1.8)
     axes.set_xlim(left=0.0)
-    axes.set_ylim(0.0, 1.05 * max(endurance, *amplitudes))
+    axes.set_ylim(0.0, 1.05 * top)
     axes.set_xlabel(f"mean [{unit.unit}]")
     axes.set_ylabel(f"amplitude [{unit.unit}]")
     unit.put(axes.xaxis)
     unit.put(axes.yaxis)
-    axes.set_title("without the factors of notches", fontsize=10)
+    where = "in the notch at " if place.notch else "at "
+    axes.set_title(f"fatigue: least factor {least:.4g} {where}" + rf"$\xi/l$ = {place.xi:.3f}, {fibre}", fontsize=10)
     axes.legend(frameon=False, fontsize=9)

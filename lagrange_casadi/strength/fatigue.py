@@ -216,7 +216,7 @@ def worst(stress: Stress, score: Score) -> tuple[tuple[float, ...], Place, str, 
 
 def sought(stress: Stress, look: Callable[[Iterable[Place]], Place]) -> None:
     """Look at the places of a link, and then around the one that ``look`` says is the worst so far, finer and finer."""
-    place, step = look(_places(stress)), 1.0 / (FEW - 1)
+    place, step = look(places(stress)), 1.0 / (FEW - 1)
     for _ in range(_ROUNDS):
         if place.notch is not None:
             return
@@ -224,7 +224,8 @@ def sought(stress: Stress, look: Callable[[Iterable[Place]], Place]) -> None:
         place, step = look(Place(x, "tip", None) for x in around if 0.0 <= x <= 1.0), step * 2 / (_ZOOM - 1)
 
 
-def _places(stress: Stress) -> Iterator[Place]:
+def places(stress: Stress) -> Iterator[Place]:
+    """Where along a link fatigue is looked at first: evenly, at both sides of stations and steps, and at notches."""
     member = stress.member
     still = [float(mark[0]) for mark in member.marks if np.ptp(mark) == 0.0]
     steps = {*still, *(cell.low for cell in member.cells), *(cell.high for cell in member.cells)}
