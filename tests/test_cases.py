@@ -38,8 +38,10 @@ def test_certificate_is_at_rounding_level(name):
     certificate = evaluate(load_case(CASES / name).scene).certificate
     expected = {"closure", "balance", "power"}
     assert expected <= set(certificate)
+    # A lead of 6 mm makes of a rounding of lengths, 1 m times 1e-16, one of 1e-13 in the angle.
+    level = {"closure": 1e-12} if name == "screw_lift" else {}
     for residual in expected:
-        assert np.max(certificate[residual]) < 1e-13, residual
+        assert np.max(certificate[residual]) < level.get(residual, 1e-13), residual
 
 
 @pytest.mark.long
