@@ -20,8 +20,9 @@ from ..declare.scene import Scene, Wanted
 from ..declare.spatial import reference_posture
 from ..errors import AssemblyError, MobilityError, PostureError
 from ..geometry.vectors import ZERO
-from ..quantities import ANGLE, Output, force_members
+from ..quantities import Output, force_members
 from ..system import cache
+from ..tables import ANGLE
 from . import kinematics
 from .assembly import assemble
 from .checks import Check, Column
