@@ -12,12 +12,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from .tables import ANGLE, CONVENTIONS, LENGTH, MOMENT, PLANE, QUANTITIES, SPACE, Quantity, Table, table_of
+from .tables import PLANE, SPACE, Quantity, Table, table_of
 
-__all__ = ["ANGLE", "AVERAGED", "CONVENTIONS", "LENGTH", "MOMENT", "QUANTITIES", "Declared", "Output", "compared", "quantity_of"]
-
-LAW, STATION, FORCES, PLACE_FIRST = PLANE.law, PLANE.station, PLANE.forces, PLANE.place_first
-"""Those of planar mechanisms."""
+FORCES = PLANE.forces
+"""The section forces of planar mechanisms."""
 
 
 def law_members(space: bool) -> tuple[str, ...]:
@@ -164,11 +162,3 @@ class Output:
 def quotient(unit: str, by: str) -> str:
     """The unit of a derivative: ``N m/m``, and ``N/(kg/m)`` of what is itself one."""
     return unit if by == "1" else f"{unit}/{by}" if by.isalnum() else f"{unit}/({by})"
-
-
-def quantity_of(name: str, space: bool = False) -> Quantity:
-    """The table's row for a full name such as ``motion:O_rate`` or ``section:rod:law:n0``.
-
-    Raises ``KeyError`` for a name that is none of the table's.
-    """
-    return Output.of(name).meant(table_of(space))

@@ -10,9 +10,8 @@ import lagrange_casadi
 from lagrange_casadi import export, load_case
 from lagrange_casadi.cli import program
 from lagrange_casadi.codegen import find_compiler
-from lagrange_casadi.quantities import QUANTITIES
 from lagrange_casadi.store.runs import SCHEMA_VERSION
-from lagrange_casadi.tables import SPATIAL_QUANTITIES
+from lagrange_casadi.tables import QUANTITIES, SPATIAL_QUANTITIES
 
 pytestmark = pytest.mark.quick
 

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lagrange_casadi.quantities import QUANTITIES, Output, quantity_of
-from lagrange_casadi.tables import PLANE, SPACE, SPATIAL_QUANTITIES
+from lagrange_casadi.quantities import Output
+from lagrange_casadi.tables import PLANE, QUANTITIES, SPACE, SPATIAL_QUANTITIES
 
 pytestmark = pytest.mark.quick
 
@@ -25,14 +25,14 @@ pytestmark = pytest.mark.quick
     ],
 )
 def test_every_name_has_one_row(name, key, unit):
-    quantity = quantity_of(name)
+    quantity = Output.of(name).meant(PLANE)
     assert (quantity.group, quantity.member) == key
     assert quantity.unit_for("angle") == unit
 
 
 def test_units_follow_the_coordinate():
-    assert quantity_of("effort:P").unit_for("slide") == "N"
-    assert quantity_of("motion:P_rate").unit_for("slide") == "m/s"
+    assert Output.of("effort:P").meant(PLANE).unit_for("slide") == "N"
+    assert Output.of("motion:P_rate").meant(PLANE).unit_for("slide") == "m/s"
 
 
 def test_the_table_is_complete():
@@ -43,7 +43,7 @@ def test_the_table_is_complete():
 @pytest.mark.parametrize("name", ["torsion:rod", "section:rod:torsion", "reaction:O:fz", "reaction:O"])
 def test_other_names_are_refused(name):
     with pytest.raises(KeyError):
-        quantity_of(name)
+        Output.of(name).meant(PLANE)
 
 
 @pytest.mark.parametrize(
@@ -95,7 +95,6 @@ def test_no_two_outputs_have_one_name_in_space(part, station, power, quantity):
     output = drawn(part, station, power, quantity)
     assert Output.of(str(output)) == output
     assert output.meant(SPACE) is quantity
-    assert quantity_of(str(output), space=True) is quantity
 
 
 def test_axes_and_units_are_the_same_in_the_plane_and_in_space():
@@ -144,6 +143,6 @@ def test_of_what_resultants_are_the_size(output, table, components):
 @pytest.mark.parametrize("name", ["section:rod:law:mx0", "section:law:law:fz2", "section:rod:A:mz", "section:rod:bending_y"])
 def test_names_of_space_are_none_of_the_plane(name):
     assert str(Output.of(name)) == name
-    assert quantity_of(name, space=True).unit
+    assert Output.of(name).meant(SPACE).unit
     with pytest.raises(KeyError):
-        quantity_of(name)
+        Output.of(name).meant(PLANE)

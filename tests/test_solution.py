@@ -7,7 +7,7 @@ import pytest
 
 from lagrange_casadi import Mechanism, evaluate
 from lagrange_casadi.errors import UnknownNameError
-from lagrange_casadi.quantities import quantity_of
+from lagrange_casadi.quantities import Output
 
 pytestmark = pytest.mark.quick
 
@@ -16,7 +16,7 @@ def test_names_lead_to_arrays(solution):
     for name in solution.names():
         array = solution.array(name)
         shape = {"t": solution.t.size, "xi": solution.xi.size}
-        assert array.shape == tuple(shape[axis] for axis in quantity_of(name).axes), name
+        assert array.shape == tuple(shape[axis] for axis in Output.of(name).quantity.axes), name
         assert np.isfinite(array).all()
     assert solution.reaction("guide").fy is solution.array("reaction:guide:fy")
     assert solution.reaction("guide").mz is None

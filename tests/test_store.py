@@ -17,8 +17,8 @@ from forging import edit, flip
 
 from lagrange_casadi import check, evaluate, load, save
 from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoreError
-from lagrange_casadi.quantities import CONVENTIONS
 from lagrange_casadi.store import runs as store
+from lagrange_casadi.tables import CONVENTIONS
 
 pytestmark = pytest.mark.quick
 

@@ -9,8 +9,8 @@ import sweeps
 import xarray
 
 from lagrange_casadi.errors import DeclarationError
-from lagrange_casadi.quantities import CONVENTIONS
 from lagrange_casadi.sweep import Listed, sweep
+from lagrange_casadi.tables import CONVENTIONS
 
 pytestmark = pytest.mark.quick
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from lagrange_casadi.export.units import BASE, base_unit
-from lagrange_casadi.quantities import QUANTITIES
+from lagrange_casadi.tables import QUANTITIES
 
 pytestmark = pytest.mark.quick
 

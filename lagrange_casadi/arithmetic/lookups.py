@@ -18,7 +18,6 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-Array = npt.NDArray[Any]
 Kind = Literal["cell", "entry"]
 
 _PREFIX = "lagrange_casadi"
@@ -39,7 +38,7 @@ class Lookup:
     """
 
     kind: Kind
-    numbers: Array
+    numbers: npt.NDArray[Any]
     function: Any
     ends: bool = False
 

@@ -8,13 +8,11 @@ from importlib import resources
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ..declare.density import Array
 from .calls import Call
 from .compiler import Compiler, broken, loaded
 from .emit import LANES_PLACE, START, dump, work
-
-Array = npt.NDArray[np.float64]
 
 _ENTRY = "lagrange_casadi_batch"
 

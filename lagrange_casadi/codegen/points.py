@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from importlib import resources
 from typing import Any
 
-import numpy as np
 import numpy.typing as npt
 
+from ..declare.density import Array
 from .calls import Call
 from .compiler import Compiler, broken, loaded
 from .emit import LANES_PLACE, START, WIDE, dump, work
-
-Array = npt.NDArray[np.float64]
 
 POINTS = Call(
     "lagrange_casadi_points",

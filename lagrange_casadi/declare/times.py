@@ -16,8 +16,8 @@ import casadi as ca
 import numpy as np
 
 from ..errors import AngleError, DeclarationError, UnknownNameError
-from ..quantities import ANGLE, LENGTH
 from ..system.numerals import real
+from ..tables import ANGLE, LENGTH
 from .angles import angle
 from .density import Array
 from .even_points import EvenPoints, checked, points

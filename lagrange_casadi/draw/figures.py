@@ -1,6 +1,6 @@
 """Pictures of a solution: what is drawn is declared as frozen specs, which a case may give and a file keeps.
 
-Nothing here is imported before a figure is asked for, nor is matplotlib.
+Specs are known wherever cases are; matplotlib is imported when something is drawn.
 """
 
 from __future__ import annotations

@@ -30,8 +30,6 @@ Against = Literal["ends", "base"]
 MOVES = {False: ("along", "across", "turn"), True: ("along", "across_y", "across_z", "twist", "turn_y", "turn_z")}
 """What is told of a place of a link, in the plane and in space."""
 
-_TURNS = ("turn", "twist", "turn_y", "turn_z")
-
 
 @dataclass(frozen=True)
 class DeflectionPeak:

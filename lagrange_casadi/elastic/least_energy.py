@@ -28,8 +28,9 @@ from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError, one_line
 from ..instants.laws import law_of
 from ..instants.section_law import SectionLaw
-from ..quantities import MOMENT, Output
+from ..quantities import Output
 from ..strength.member import FORCES, Member
+from ..tables import MOMENT
 from .compliance import Compliance, Nodes, nodes, sorted_edges
 
 _NONE = 1e-9

@@ -125,8 +125,8 @@ def refusal(graph: SceneGraph, evaluated: Evaluated, t: Array, p: Array, rung: R
     driven = np.atleast_1d(graph.motion(t[i], p)[0].full().ravel())
     at = where((name, coordinates[name][1].kind, value) for name, value in zip(graph.driven, driven, strict=True))
     at = f"at t = {t[i]:.6g} s{at}"
-    left = functools.partial(_left_open, graph, evaluated.iterated[:, i], float(t[i]), p)
-    status, why = _why(graph, evaluated, held, i, at, [rule for rule in passed if passed[rule][i]], extent, left)
+    bad_one = _Bad(graph, evaluated, held, i, at, [rule for rule in passed if passed[rule][i]], extent)
+    status, why = bad_one.why(functools.partial(_left_open, graph, evaluated.iterated[:, i], float(t[i]), p))
     return Refusal(status, _beyond(graph, p, evaluated.stages.precision, at) or why)
 
 
@@ -141,19 +141,14 @@ def resting(graph: SceneGraph, out: Array) -> npt.NDArray[np.bool_]:
 def broken(rule: Rule, out: Array, extent: float) -> npt.NDArray[np.bool_]:
     """At which instants of the columns ``out`` (columns, t) a rule is broken; what is open is no reason to refuse the rest."""
     column = np.asarray(out[rule.column], float)
-    if rule.kind in ("CLOSURE", "BRANCH"):
+    if rule.kind in ("CLOSURE", "BRANCH", "JAM"):
         return np.asarray(~(column > rule.limit))
     if rule.kind == "GAP":
         return np.asarray(~(np.abs(column) <= rule.limit * extent))
     if rule.kind == "MISFIT":
         return np.asarray(~(column <= rule.limit))
-    if rule.kind == "BEYOND":
-        # Where a loop is open it is no number, and the loop says why.
-        return np.asarray(column > rule.limit)
-    if rule.kind == "JAM":
-        return np.asarray(~(column > rule.limit))
-    if rule.kind == "SLIP":
-        # At rest it is no number, and a rule of its own says so.
+    if rule.kind in ("BEYOND", "SLIP"):
+        # No number where a loop is open, or at rest: rules of their own say so.
         return np.asarray(column > rule.limit)
     if rule.kind == "ROW":
         # Where all stands still, what rounding leaves of rates violates nothing.
@@ -216,67 +211,96 @@ def _left_open(graph: SceneGraph, start: Array, t: float, p: Array) -> str:
     return ", ".join(left) if 0 < len(left) < len(gaps) else graph.newton.joints
 
 
-def _why(
-    graph: SceneGraph,
-    evaluated: Evaluated,
-    held: Sequence[Rule],
-    i: int,
-    at: str,
-    passed: Sequence[Rule],
-    extent: float,
-    still_open: Callable[[], str],
-) -> tuple[Status, str]:
-    for rule in held:
-        if rule.kind == "BEYOND" and broken(rule, evaluated.out, extent)[i]:
-            far = f"by {share_beyond(float(evaluated.out[rule.column, i])):.3g} of what is between them"
-            return Status.BEYOND_ENDS, f"the {rule.part}: what is put into its curve is beyond the curve's ends {at}, {far}"
-    if evaluated.status[i] == NOT_CONVERGED:
-        cause = "their links do not reach, or the instant before is too far off"
-        return Status.NOT_CONVERGED, f"the loops closed by {still_open()} did not converge {at}: {cause}"
-    for rule in (rule for rule in held if rule.kind != "BEYOND"):
-        part, value = str(rule.part), float(evaluated.out[rule.column, i])
-        closed = _closing(graph, part)
-        drives = f"the drives {part}" if rule.column in graph.checks("hold").values() else ""
-        if rule.kind not in ("CLOSURE", "BRANCH"):
-            if evaluated.status[i] == SLOW:
-                break
-            if not broken(rule, evaluated.out, extent)[i]:
+@dataclass(frozen=True, eq=False)
+class _Bad:
+    """The instant ``i`` that has no result; ``at`` says in words when it is, ``passed`` are the loops' rules broken after it."""
+
+    graph: SceneGraph
+    evaluated: Evaluated
+    held: Sequence[Rule]
+    i: int
+    at: str
+    passed: Sequence[Rule]
+    extent: float
+
+    def why(self, still_open: Callable[[], str]) -> tuple[Status, str]:
+        """Why it has none: what the first rule that is broken says; ``still_open`` names what iteration left open."""
+        ends = [rule for rule in self.held if rule.kind == "BEYOND"]
+        for rule in ends:
+            if self._breaks(rule):
+                return self._beyond_ends(rule)
+        if self._status == NOT_CONVERGED:
+            cause = "their links do not reach, or the instant before is too far off"
+            return Status.NOT_CONVERGED, f"the loops closed by {still_open()} did not converge {self.at}: {cause}"
+        for rule in self.held:
+            if rule in ends:
                 continue
-        elif value < -rule.limit:
+            if rule.kind in ("CLOSURE", "BRANCH"):
+                found = self._loop(rule)
+            elif self._status == SLOW:
+                break
+            else:
+                found = self._other(rule) if self._breaks(rule) else None
+            if found is not None:
+                return found
+        return self._slow() if self._status == SLOW else self._not_finite()
+
+    @property
+    def _status(self) -> int:
+        return int(self.evaluated.status[self.i])
+
+    def _value(self, rule: Rule) -> float:
+        return float(self.evaluated.out[rule.column, self.i])
+
+    def _breaks(self, rule: Rule) -> bool:
+        return bool(broken(rule, self.evaluated.out, self.extent)[self.i])
+
+    def _beyond_ends(self, rule: Rule) -> tuple[Status, str]:
+        far = f"by {share_beyond(self._value(rule)):.3g} of what is between them"
+        return Status.BEYOND_ENDS, f"the {rule.part}: what is put into its curve is beyond the curve's ends {self.at}, {far}"
+
+    def _loop(self, rule: Rule) -> tuple[Status, str] | None:
+        """What is wrong with a loop, with three turns, or with what drives hold; None where nothing is."""
+        value, closed = self._value(rule), _closing(self.graph, str(rule.part))
+        if value < -rule.limit:
             if rule.kind == "BRANCH":
-                return Status.JUMPED, f"the loop closed by {closed} has jumped to another branch {at}: take more instants"
-            return Status.OUT_OF_REACH, f"the loop closed by {closed} cannot be closed {at}: its links do not reach"
-        elif rule.column in graph.checks("gimbal").values() and (rule in passed or not value > rule.limit):
-            passes = value > rule.limit
-            lock = f"passes gimbal lock after {at.removeprefix('at ')}" if passes else f"is in gimbal lock {at}"
+                return Status.JUMPED, f"the loop closed by {closed} has jumped to another branch {self.at}: take more instants"
+            return Status.OUT_OF_REACH, f"the loop closed by {closed} cannot be closed {self.at}: its links do not reach"
+        passes = value > rule.limit
+        if passes and rule not in self.passed:
+            return None
+        status = Status.PASSES_DEAD_CENTRE if passes else Status.DEAD_CENTRE
+        after = f"after {self.at.removeprefix('at ')}"
+        if rule.column in self.graph.checks("gimbal").values():
+            lock = f"passes gimbal lock {after}" if passes else f"is in gimbal lock {self.at}"
             why = "its third axis comes to lie along its first; choose axis and second so that turn_2 keeps away from 90 deg"
-            return Status.PASSES_DEAD_CENTRE if passes else Status.DEAD_CENTRE, f"joint '{part}' {lock}: {why}"
-        elif drives and (rule in passed or not value > rule.limit):
-            where_to = f"after {at.removeprefix('at ')}" if value > rule.limit else at
-            status = Status.PASSES_DEAD_CENTRE if value > rule.limit else Status.DEAD_CENTRE
-            return status, f"{drives} cannot make the motion {where_to}: it can go on there without moving them; drive other joints"
-        elif not value > rule.limit:
-            why = f"the loop closed by {closed} is at a dead centre {at}, within rounding: its forces are not determined there"
-            return Status.DEAD_CENTRE, why
-        elif rule in passed:
-            near = "; if it only comes near one, take more instants" if graph.newton is not None else ""
-            passing = f"the loop closed by {closed} passes a dead centre after {at.removeprefix('at ')}"
-            return Status.PASSES_DEAD_CENTRE, f"{passing}, and can go on in two ways{near}"
+            return status, f"joint '{rule.part}' {lock}: {why}"
+        if rule.column in self.graph.checks("hold").values():
+            where_to = f"cannot make the motion {after if passes else self.at}"
+            return status, f"the drives {rule.part} {where_to}: it can go on there without moving them; drive other joints"
+        if not passes:
+            why = f"the loop closed by {closed} is at a dead centre {self.at}, within rounding: its forces are not determined there"
+            return status, why
+        near = "; if it only comes near one, take more instants" if self.graph.newton is not None else ""
+        return status, f"the loop closed by {closed} passes a dead centre {after}, and can go on in two ways{near}"
+
+    def _other(self, rule: Rule) -> tuple[Status, str] | None:
+        """What a broken rule says; None where its column is no number, and a later one says why."""
+        part, value, at = str(rule.part), self._value(rule), self.at
         if rule.kind == "GAP" and math.isfinite(value):
-            gap = f"a gap of {abs(value):.3g} m"
-            return Status.NOT_CLOSED, f"what was found for the loop closed by {closed} does not close it {at}: {gap}"
+            what = f"what was found for the loop closed by {_closing(self.graph, part)} does not close it"
+            return Status.NOT_CLOSED, f"{what} {at}: a gap of {abs(value):.3g} m"
         if rule.kind == "MISFIT" and math.isfinite(value):
             gap = f"a gap of {value:.3g} of the links' length"
+            closed = _closing(self.graph, part)
             return Status.MISFIT, f"the loops closed by {closed} are over-constrained and do not fit {at}: {gap}"
         if rule.kind == "TURNED":
             what = f"the angle of '{part}', which a load sees with its turns,"
             if abs(value) <= rule.limit:
                 return Status.TURNED, f"{what} goes most of a turn from the instant {at} to the next: take more instants"
             swing = f"swings {math.degrees(value):.3g} deg from the middle of its swing over the scene's motion {at}"
-            return (
-                Status.TURNED,
-                f"{what} {swing}: it might be a turn further; take defaults and a motion that show how far it goes",
-            )
+            further = "it might be a turn further; take defaults and a motion that show how far it goes"
+            return Status.TURNED, f"{what} {swing}: {further}"
         if rule.kind == "JAM":
             what = "frictions" if ", " in part else "friction"
             return Status.JAMS, f"{what} '{part}': the mechanism jams {at}: {_JAM}"
@@ -284,10 +308,14 @@ def _why(
             return Status.JAMS, f"the laws of friction '{part}' are not met {at}, by {value:.3g} of its size: it nearly jams"
         if rule.kind == "ROW":
             return Status.ROW_VIOLATED, f"the motion violates the non-holonomic constraint '{part}' by {value:.6g} {at}"
-    if evaluated.status[i] == SLOW:
-        assert graph.newton is not None
+        return None
+
+    def _slow(self) -> tuple[Status, str]:
+        assert self.graph.newton is not None
         cause = "they are near a dead centre, or the instant before is too far off"
-        return Status.SLOW, f"the loops closed by {graph.newton.joints} converge slowly {at}: {cause}"
-    values = zip(graph.columns, evaluated.out[:, i], strict=True)
-    name = next(column for column, value in values if not math.isfinite(value))
-    return Status.NOT_FINITE, f"'{name}' is not finite {at}: the mechanism is singular there, or its numbers overflow"
+        return Status.SLOW, f"the loops closed by {self.graph.newton.joints} converge slowly {self.at}: {cause}"
+
+    def _not_finite(self) -> tuple[Status, str]:
+        values = zip(self.graph.columns, self.evaluated.out[:, self.i], strict=True)
+        name = next(column for column, value in values if not math.isfinite(value))
+        return Status.NOT_FINITE, f"'{name}' is not finite {self.at}: the mechanism is singular there, or its numbers overflow"

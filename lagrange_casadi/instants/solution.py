@@ -74,7 +74,7 @@ class Peak:
 class Solution:
     """The outputs of a scene over its instants.
 
-    ``outputs`` holds every array over time, each of shape (t,); :mod:`.quantities` says what each means, its unit and its sign.
+    ``outputs`` holds every array over time, each of shape (t,); :mod:`.tables` says what each means, its unit and its sign.
     ``t`` are the instants [s], ``xi`` the ratios xi/l of the section grids. ``left_open`` are outputs that equilibrium does not
     determine, because the mechanism is over-constrained: their values are NaN. :attr:`series` and :attr:`undetermined` are the same
     by full names. ``certificate`` holds the residuals of :mod:`.certificate`, each (t,), and how near the loops are to a dead

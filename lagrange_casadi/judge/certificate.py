@@ -9,13 +9,13 @@ Each residual is relative, (t,).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.description import Description, density_of, drives_of
+from ..declare.description import Description, density_of
 from ..instants.solution import Solution
 from ..quantities import FORCES, Output
 from ..tables import SPACE
@@ -26,37 +26,16 @@ from .digits import blur as blur
 from .friction import law_gaps
 from .placing import Complex, Moving, axis_of, measured, oriented, place
 from .spatial_certificate import residuals as spatial_residuals
+from .tally import EDGE, Tally, forces_told, law_at_base
 from .touching import Placed, actions, idle
 from .written import Written
 
 NEAR = 1e3
-_EDGE = 1e-9
 _BLOCK = 1 << 14
 _Matter = tuple[float, complex, float]
 _Action = tuple[str, Complex, Any, Any, bool]
 
 _TURNED = 100.0
-
-
-@dataclass(eq=False)
-class _Tally:
-    """Forces on the bodies: what they sum to, about each centre, their power, and how large all these are.
-
-    ``pushes`` and ``twists`` are all forces and couples added up, ``flow`` the powers, none against another.
-    """
-
-    force: dict[str, Complex] = field(default_factory=dict)
-    moment: dict[str, Array] = field(default_factory=dict)
-    size: Array | float = 0.0
-    pushes: Array | float = 0.0
-    twists: Array | float = 0.0
-    power: Array | float = 0.0
-    flow: Array | float = 0.0
-
-    def bear(self, push: Array, twist: Array, size: float) -> None:
-        """Take a force and a couple into the sizes; ``size`` is the mechanism's."""
-        self.size = np.maximum(self.size, push + twist / size)
-        self.pushes, self.twists = self.pushes + push, self.twists + twist
 
 
 def certify(
@@ -109,13 +88,7 @@ def _residuals(solution: Solution, turned: Solution, equations: Sequence[Written
     found = {"closure": (_closure(solution, bodies, equations or ()), digits.size(solution))}
     if (rubbed := law_gaps(solution, bodies)) is not None:
         found["friction"] = rubbed
-    wanted = [Output("reaction", name, "fx") for name in joints] + [Output("load", name, "fx") for name in description["loads"]]
-    wanted += [output for output in solution.outputs if output.group in ("reaction", "load")]
-    wanted += [Output("effort", name) for name in drives_of(description)]
-    wanted += [Output("multiplier", name) for name in (*description["constraints"], *description["rows"])]
-    told = equations is not None or not (description["constraints"] or description["rows"])
-    known = (output in solution.outputs and np.isfinite(solution.outputs[output]).all() for output in wanted)
-    if told and all(known):
+    if forces_told(solution, equations):
         matter = {name: _matter(body) for name, body in description["bodies"].items()}
         acting = [*_acting(solution, bodies), *(push for e in equations or () for push in _held(solution, bodies, e))]
         tally = _tally(solution, bodies, acting, matter)
@@ -248,8 +221,8 @@ def _held(solution: Solution, bodies: dict[str, Moving], equation: Written) -> I
             yield parent, at, -push, -twist, True
 
 
-def _tally(solution: Solution, bodies: dict[str, Moving], acting: Sequence[_Action], matter: Mapping[str, _Matter]) -> _Tally:
-    tally = _Tally()
+def _tally(solution: Solution, bodies: dict[str, Moving], acting: Sequence[_Action], matter: Mapping[str, _Matter]) -> Tally:
+    tally = Tally()
     for body, at, force, couple, works in acting:
         if body == "ground":
             continue
@@ -275,13 +248,9 @@ def _weight(solution: Solution, motion: Moving, mass: float, reach: float) -> Ar
 
 
 def _balance(
-    solution: Solution, bodies: dict[str, Moving], tally: _Tally, matter: Mapping[str, _Matter]
+    solution: Solution, bodies: dict[str, Moving], tally: Tally, matter: Mapping[str, _Matter]
 ) -> tuple[tuple[Array, float], tuple[Array, float]]:
-    """Newton-Euler for every body, beside the largest force; and power, beside all that flows.
-
-    And beside what reported digits leave open: those of places, which give arms, and of the joints' rates, of which the rates of
-    bodies are sums and differences.
-    """
+    """Newton-Euler for every body, beside the largest force; and power, beside all that flows."""
     gravity, size = complex(*solution.description["gravity"]), digits.size(solution)
     worst, power = np.zeros_like(solution.t), np.zeros_like(solution.t)
     for name, body in solution.description["bodies"].items():
@@ -298,10 +267,8 @@ def _balance(
         power = power + (np.conj(speed) * inertial).real + turning * motion.rate
         tally.flow = tally.flow + np.abs(speed) * weight + np.abs(turning * motion.rate)
     turned, fastest = _rates(solution, bodies)
-    least, part = digits.least(solution), digits.coarseness(solution)
-    largest = tally.size * (1.0 + part * digits.extent(solution) / size)
-    flow = tally.flow + least * fastest + part * (tally.pushes * fastest + tally.twists * turned)
-    return (worst, max(float(np.max(largest)), least)), (np.abs(tally.power - power), float(np.max(flow)))
+    largest, flow = tally.scales(solution, turned, fastest)
+    return (worst, largest), (np.abs(tally.power - power), flow)
 
 
 def _rates(solution: Solution, bodies: dict[str, Moving]) -> tuple[Array, Array]:
@@ -325,12 +292,10 @@ def _ends(
     size, blurred = digits.size(solution), digits.coarseness(solution) * digits.extent(solution)
     base = np.zeros((solution.t.size, 1))
     for link in solution.links_with_sections:
-        law = solution.section(link).law
-        # What slides over the base just now counts as at the base, here and there.
-        law = replace(law, loads=tuple(replace(x, station=np.where(np.abs(x.station) < _EDGE, 0.0, x.station)) for x in law.loads))
+        law = law_at_base(solution, link)
         axial, shear, bending = (law.at(force, base)[:, 0] for force in FORCES)
         own = [part for part in acting if part[0] == link]
-        force, moment = _before(bodies[link], own, _EDGE * law.length)
+        force, moment = _before(bodies[link], own, EDGE * law.length)
         flow = _weight(solution, bodies[link], matter[link][0], law.length)
         for _, _, push, couple, _ in own:
             flow = np.maximum(flow, np.abs(push) + np.abs(couple) / size)

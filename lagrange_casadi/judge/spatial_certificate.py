@@ -7,12 +7,12 @@ one of several axes a couple at right angles to the other axes. Multipliers act 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.description import Description, density_of, drives_of, measured_of, slices_of
+from ..declare.description import Description, density_of, measured_of, slices_of
 from ..instants.solution import Solution
 from ..quantities import Output, force_members
 from . import digits
@@ -20,10 +20,10 @@ from .friction import law_gaps
 from .locked import without_locked
 from .spatial_placing import Moving, Reported, cross, measured, oriented, relative, resolve, spot, told, turn
 from .spatial_rest import axes_of, gaps_of, place_all
+from .tally import EDGE, Tally, forces_told, law_at_base
 from .touching import Placed, actions, idle
 from .written import Written
 
-_EDGE = 1e-9
 _FORCES, _MOMENTS = ("axial", "shear_y", "shear_z"), ("torsion", "bending_y", "bending_z")
 _Matter = tuple[float, Array, Array]
 
@@ -44,24 +44,6 @@ class _Action:
         return _size(self.force), _size(self.couple)
 
 
-@dataclass(eq=False)
-class _Tally:
-    """What forces sum to by body, and about its centre, their power, and how large all these are, none against another."""
-
-    force: dict[str, Array] = field(default_factory=dict)
-    moment: dict[str, Array] = field(default_factory=dict)
-    size: Array | float = 0.0
-    pushes: Array | float = 0.0
-    twists: Array | float = 0.0
-    power: Array | float = 0.0
-    flow: Array | float = 0.0
-
-    def bear(self, push: Array, twist: Array, size: float) -> None:
-        """Take a force and a couple into the sizes; ``size`` is the mechanism's."""
-        self.size = np.maximum(self.size, push + twist / size)
-        self.pushes, self.twists = self.pushes + push, self.twists + twist
-
-
 def residuals(solution: Solution, turned: Solution, equations: Sequence[Written] | None) -> dict[str, tuple[Array, float]]:
     """Each residual, and the largest of what it is to be compared with; ``turned`` has angles without their turns."""
     description = solution.description
@@ -79,13 +61,7 @@ def residuals(solution: Solution, turned: Solution, equations: Sequence[Written]
     spins = {name: bodies[j["child"]["body"]].rate - bodies[j["parent"]["body"]].rate for name, j in balls.items()}
     if (rubbed := law_gaps(solution, spins=spins)) is not None:
         found["friction"] = rubbed
-    wanted = [Output("reaction", name, "fx") for name in description["joints"]]
-    wanted += [output for output in solution.outputs if output.group in ("reaction", "load")]
-    wanted += [Output("load", name, "fx") for name in description["loads"]]
-    wanted += [Output("effort", name) for name in drives_of(description)]
-    wanted += [Output("multiplier", name) for name in (*description["constraints"], *description["rows"])]
-    known = equations is not None or not (description["constraints"] or description["rows"])
-    if known and all(output in solution.outputs and np.isfinite(solution.outputs[output]).all() for output in wanted):
+    if forces_told(solution, equations):
         matter = {name: _matter(body) for name, body in description["bodies"].items()}
         acting = [*_acting(reported, bodies)]
         acting += [push for equation in equations or () for push in _held(reported, bodies, equation)]
@@ -243,8 +219,8 @@ def _held(reported: Reported, bodies: Mapping[str, Moving], equation: Written) -
             yield _Action(entry.part, bodies[entry.part].point(np.array(entry.point))[0], push, np.zeros_like(push), True)
 
 
-def _tally(solution: Solution, bodies: Mapping[str, Moving], acting: Sequence[_Action], matter: Mapping[str, _Matter]) -> _Tally:
-    tally = _Tally()
+def _tally(solution: Solution, bodies: Mapping[str, Moving], acting: Sequence[_Action], matter: Mapping[str, _Matter]) -> Tally:
+    tally = Tally()
     for act in acting:
         if act.body == "ground":
             continue
@@ -269,9 +245,9 @@ def _weight(solution: Solution, motion: Moving, mass: float, reach: float) -> Ar
 
 
 def _balance(
-    solution: Solution, bodies: Mapping[str, Moving], tally: _Tally, matter: Mapping[str, _Matter]
+    solution: Solution, bodies: Mapping[str, Moving], tally: Tally, matter: Mapping[str, _Matter]
 ) -> tuple[tuple[Array, float], tuple[Array, float]]:
-    """Newton-Euler for every body, beside the largest force; and power, beside all that flows, and what digits leave open."""
+    """Newton-Euler for every body, beside the largest force; and power, beside all that flows."""
     gravity, size = np.array(solution.description["gravity"]), digits.size(solution)
     worst, power = np.zeros_like(solution.t), np.zeros_like(solution.t)
     for name in solution.description["bodies"]:
@@ -291,10 +267,8 @@ def _balance(
         tally.flow = tally.flow + _size(speed) * weight + _size(motion.rate) * _size(turning)
     worst = np.maximum(worst, _unlike(solution, bodies))
     turned, fastest, _ = _rates(solution, bodies)
-    least, part = digits.least(solution), digits.coarseness(solution)
-    largest = tally.size * (1.0 + part * digits.extent(solution) / size)
-    flow = tally.flow + least * fastest + part * (tally.pushes * fastest + tally.twists * turned)
-    return (worst, max(float(np.max(largest)), least)), (np.abs(tally.power - power), float(np.max(flow)))
+    largest, flow = tally.scales(solution, turned, fastest)
+    return (worst, largest), (np.abs(tally.power - power), flow)
 
 
 def _unlike(solution: Solution, bodies: Mapping[str, Moving]) -> Array:
@@ -336,12 +310,10 @@ def _ends(
     size, blurred = digits.size(solution), digits.coarseness(solution) * digits.extent(solution)
     base = np.zeros((solution.t.size, 1))
     for link in solution.links_with_sections:
-        law = solution.section(link).law
-        # What slides over the base just now counts as at the base, here and there.
-        law = replace(law, loads=tuple(replace(x, station=np.where(np.abs(x.station) < _EDGE, 0.0, x.station)) for x in law.loads))
+        law = law_at_base(solution, link)
         inside, twisted = (np.concatenate([law.at(name, base) for name in names], axis=1) for names in (_FORCES, _MOMENTS))
         own = [act for act in acting if act.body == link]
-        force, moment = _before(bodies[link], own, _EDGE * law.length)
+        force, moment = _before(bodies[link], own, EDGE * law.length)
         flow = _weight(solution, bodies[link], matter[link][0], law.length)
         for act in own:
             push, twist = act.pushes

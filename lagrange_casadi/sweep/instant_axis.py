@@ -11,7 +11,7 @@ from ..declare.density import Array
 from ..declare.even_points import points
 from ..declare.scene import Scene
 from ..declare.times import Timing
-from ..quantities import ANGLE, LENGTH
+from ..tables import ANGLE, LENGTH
 
 OVER, CYCLE = "over", "cycle"
 """Axes beside ``t``: the coordinate of a drive that all designs have in common; and from 0 to 1, where they have none."""

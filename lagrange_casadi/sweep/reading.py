@@ -18,9 +18,9 @@ import numpy.typing as npt
 from ..declare.density import Array
 from ..declare.description import coordinates_of
 from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, one_line
-from ..quantities import ANGLE, LENGTH
 from ..store.opening import opened_file, schema_of
 from ..system.seal import Seen, verify
+from ..tables import ANGLE, LENGTH
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
 from .columns import STATUS

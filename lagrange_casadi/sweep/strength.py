@@ -40,7 +40,6 @@ LEAST, LIFE, MASS = "least", "life", "mass"
 
 WAYS = ("yield", "buckling", "fatigue")
 _MEANT = {way: f"against {'yielding' if way == 'yield' else way}" for way in WAYS}
-_MOVING = "NaN for designs of which it is not known"
 _NEAR = 1e-9
 _NUMBERS = 1 << 19
 """Stresses that are at hand at once, of as many designs as have no more: so many stay in the memory next to a processor."""
@@ -49,7 +48,6 @@ _EVENLY = 33
 """Ratios that are looked at: half as many as of one solution."""
 
 _CRITERION = "goodman"
-_ROOT = math.sqrt(3.0)
 
 
 @dataclass(frozen=True, eq=False)
