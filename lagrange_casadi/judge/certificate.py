@@ -327,10 +327,10 @@ def _ends(
     for link in solution.links_with_sections:
         law = solution.section(link).law
         # What slides over the base just now counts as at the base, here and there.
-        law = replace(law, loads=tuple(replace(x, station=np.where(np.abs(x.station) < _EDGE, 0.0, x.station)) for x in law.loads))
+        law = replace(law, slack=max(_EDGE, law.slack))
         axial, shear, bending = (law.at(force, base)[:, 0] for force in FORCES)
         own = [part for part in acting if part[0] == link]
-        force, moment = _before(bodies[link], own, _EDGE * law.length)
+        force, moment = _before(bodies[link], own, law.slack * law.length)
         flow = _weight(solution, bodies[link], matter[link][0], law.length)
         for _, _, push, couple, _ in own:
             flow = np.maximum(flow, np.abs(push) + np.abs(couple) / size)

@@ -338,10 +338,10 @@ def _ends(
     for link in solution.links_with_sections:
         law = solution.section(link).law
         # What slides over the base just now counts as at the base, here and there.
-        law = replace(law, loads=tuple(replace(x, station=np.where(np.abs(x.station) < _EDGE, 0.0, x.station)) for x in law.loads))
+        law = replace(law, slack=max(_EDGE, law.slack))
         inside, twisted = (np.concatenate([law.at(name, base) for name in names], axis=1) for names in (_FORCES, _MOMENTS))
         own = [act for act in acting if act.body == link]
-        force, moment = _before(bodies[link], own, _EDGE * law.length)
+        force, moment = _before(bodies[link], own, law.slack * law.length)
         flow = _weight(solution, bodies[link], matter[link][0], law.length)
         for act in own:
             push, twist = act.pushes
