@@ -20,6 +20,7 @@ SWEEPS = """#include <math.h>
 #define DESIGNS_FABS fabs
 #define DESIGNS_ROOT sqrt
 #define DESIGNS_CLOSE 1e-15
+#define DESIGNS_END 1e-12
 """
 EXPORTED = """
 #define SEAL 1u
@@ -42,7 +43,7 @@ def drawn(generator):
     many = int(generator.integers(1, 4))
     breaks = (0.0, *sorted(generator.choice([0.2, 0.25, 0.5, 0.7], many - 1, replace=False)), 1.0)
     cells = tuple(tuple(generator.uniform(0.1, 2.0, int(generator.integers(1, 5)))) for _ in range(many))
-    stations = generator.choice([0.0, 0.25, 0.3, 0.75, 0.8, 1.0], int(generator.integers(0, 4)), replace=False)
+    stations = generator.choice([0.0, 1e-15, 0.25, 0.3, 0.75, 0.8, 1.0 - 1e-15, 1.0], int(generator.integers(0, 4)), replace=False)
     loads = [(x, *generator.normal(size=3)) for x in stations]
     return float(generator.uniform(0.1, 3.0)), tuple(map(float, breaks)), cells, generator.normal(size=7), loads
 
@@ -56,7 +57,7 @@ def forces(link, u):
     arm = length * (1 - u)
     found.append(law[6] + law[3] * arm + law[4] * length * T[1] + law[5] * length**2 * (u * T[1] + T[2]))
     for x, n, f, m in loads:
-        if u < x or u == x == 1.0:
+        if x > 1e-12 and (u < x or x >= 1.0 - 1e-12):
             found = [found[0] + n, found[1] + f, found[2] + m + f * length * (x - u)]
     return found
 
@@ -98,6 +99,7 @@ def program(links):
         sizes=", ".join(map(str, sizes)),
         shapes=",\n".join(shapes),
         loads=4 * max(len(link[-1]) for link in links),
+        slack="1e-12",
         laws=cases,
         declared="",
         spread="",

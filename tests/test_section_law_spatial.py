@@ -56,7 +56,8 @@ class Link:
             force += pull.sum(axis=0)
             moment += np.cross(v[:, None] * l * X - here, pull).sum(axis=0)
         for station, pull, couple in self.stations:
-            if u < station or (side == "base" and u == station) or u >= 1.0 <= station:
+            at_base, at_tip = station <= 1e-12, station >= 1.0 - 1e-12
+            if at_tip or (not at_base and (u < station or (side == "base" and u == station))):
                 force += pull
                 moment += couple + np.cross(station * l * X - here, pull)
         found = dict(zip(NAMES, (*force, moment[0], moment[1], moment[2]), strict=True))

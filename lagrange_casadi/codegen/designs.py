@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..arithmetic.compensated import DTYPES, Precision
+from ..declare.limits import END
 from ..equations.scene_graph import SceneGraph
 from ..equations.turns import LEAP
 from ..summits import between, panels
@@ -208,6 +209,7 @@ def _numbers(precision: Precision) -> dict[str, float]:
         "ROUNDING": ROUNDING[precision],
         "NOISE": NOISE[precision],
         "LAST": _LAST[precision],
+        "END": END[precision],
         "STRETCH": _STRETCH[precision],
         "BESIDE": summits.BESIDE,
         "NOTHING": summits.NOTHING,

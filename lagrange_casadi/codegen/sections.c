@@ -22,6 +22,12 @@ DESIGNS_INLINE casadi_real designs_larger(casadi_real x, casadi_real y) { return
 /* A ratio on the link; 0 for what is none. */
 DESIGNS_INLINE casadi_real designs_on_link(casadi_real u) { return lanes_less(0, u, lanes_less(u, 1, u, 1), 0); }
 
+/* From where on sections at a ratio see what acts at stations: see sight in instants/grids.py. */
+DESIGNS_INLINE casadi_real designs_sight(casadi_real u) {
+  const casadi_real inside = lanes_less(u, 1 - DESIGNS_END, u, 1 - DESIGNS_END);
+  return lanes_less(DESIGNS_END, inside, inside, DESIGNS_END);
+}
+
 /* Of a uniform link without stations, whose matter is its length and its mass. */
 DESIGNS_INLINE void designs_uniform(const casadi_real* matter, const casadi_real* law, casadi_real* value, casadi_real* place) {
   const casadi_real l = matter[0], m = matter[1];
@@ -153,21 +159,22 @@ static inline void designs_act(const designs_link* link, int station, casadi_rea
 
 /* All forces at a ratio, as they are on the tip's side of a station that is there, and on the base's. */
 static inline void designs_beside(const designs_link* link, casadi_real u, casadi_real sides[2][3]) {
-  casadi_real station, at_tip;
+  const casadi_real near = designs_sight(u);
+  casadi_real station;
   int k, s;
   designs_smooth(link, u, sides[0]);
   for (k = 0; k < 3; ++k) sides[1][k] = sides[0][k];
   for (s = 0; s < link->stations; ++s) {
     station = link->loads[4*s];
-    at_tip = lanes_less(u, 1, 0, lanes_less(station, 1, 0, 1));
-    designs_act(link, s, u, lanes_less(u, station, 1, at_tip), sides[0]);
-    designs_act(link, s, u, lanes_less(station, u, at_tip, 1), sides[1]);
+    designs_act(link, s, u, lanes_less(near, station, 1, 0), sides[0]);
+    designs_act(link, s, u, lanes_less(station, near, 0, 1), sides[1]);
   }
 }
 
 /* All forces at a ratio between two stations, of which the middle is told. */
 static inline void designs_within(const designs_link* link, casadi_real u, casadi_real middle, casadi_real* force) {
   int s;
+  middle = designs_sight(middle);
   designs_smooth(link, u, force);
   for (s = 0; s < link->stations; ++s) designs_act(link, s, u, lanes_less(middle, link->loads[4*s], 1, 0), force);
 }
@@ -259,7 +266,7 @@ static inline void designs_along(const designs_link* link, casadi_real* marks, c
     if (s < count) high = marks[s];
     middle = DESIGNS_HALF*(low + high);
     acting = 0;
-    for (k = 0; k < count; ++k) acting = acting + lanes_less(middle, link->loads[4*k], link->loads[4*k + 2], 0);
+    for (k = 0; k < count; ++k) acting = acting + lanes_less(designs_sight(middle), link->loads[4*k], link->loads[4*k + 2], 0);
     for (k = 0; k < 2; ++k) {
       u = place[k*parts + s] = lanes_less(turn[k], low, low, lanes_less(high, turn[k], high, turn[k]));
       designs_within(link, u, middle, force);

@@ -64,12 +64,11 @@ static inline void designs_along_in_space(const designs_link* link, const design
   for (k = 0; k < 2; ++k) designs_of_plane(values[k] + many + turns, places[k] + turns, many, turns, 1, &value, &place);
   if (link->couple) designs_of_plane(values[2], places[2], many, turns, 1, &value, &place);
   for (s = -2; !link->couple && s < 2*count; ++s) {
-    const casadi_real u = s == -2 ? 0 : s == -1 ? 1 : designs_on_link(link->loads[7*(s/2)]);
+    const casadi_real u = s == -2 ? 0 : s == -1 ? 1 : designs_on_link(link->loads[7*(s/2)]), near = designs_sight(u);
     torsion = law[11];
     for (j = 0; j < count; ++j) {
       station = link->loads[7*j];
-      at_tip = lanes_less(u, 1, 0, lanes_less(station, 1, 0, 1));
-      seen = s < 0 || s % 2 == 0 ? lanes_less(u, station, 1, at_tip) : lanes_less(station, u, at_tip, 1);
+      seen = s < 0 || s % 2 == 0 ? lanes_less(near, station, 1, 0) : lanes_less(station, near, 0, 1);
       torsion = torsion + lanes_less(0, seen, link->loads[7*j + 4], 0);
     }
     *value++ = torsion;

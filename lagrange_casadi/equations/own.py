@@ -7,7 +7,9 @@ from typing import Any
 
 import casadi as ca
 
+from ..arithmetic.compensated import Precision
 from ..declare.density import Density
+from ..declare.limits import END
 from ..declare.parts import Link
 from ..declare.results import Asked
 from ..errors import DeclarationError
@@ -44,6 +46,11 @@ def _value(links: Mapping[str, Link], asked: Asked, found: Mapping[Column, Any],
     return found[asked.output]
 
 
+def sight(ratio: Any, precision: Precision) -> Any:
+    """From where on a section sees what acts at stations: see :func:`.grids.sight`, which has it in numbers."""
+    return ca.fmin(ca.fmax(ratio, END[precision]), 1.0 - END[precision])
+
+
 def section_force(link: Link, force: str, ratio: Any, found: Mapping[Column, Any], table: Table, middle: Any | None = None) -> Any:
     """A force of a link's law (:mod:`.mobility`) at a ratio; at a station, on its tip's side, or on that of a ``middle``."""
     assert isinstance(link.mass, Density)
@@ -67,6 +74,7 @@ def section_force(link: Link, force: str, ratio: Any, found: Mapping[Column, Any
             across = found[Output("station", link.name, table.sections[terms.shear].acting, name)]
             load = load + across * (terms.arm * (l * (place - ratio)))
         at = ca.SX(ratio if middle is None else middle)
-        seen = ca.logic_or(at < place, ca.logic_and(at >= 1, place >= 1) if middle is None else place >= 1)
+        # One graph serves both precisions.
+        seen = sight(at, "single") < place
         total += ca.SX(load) if seen.is_one() else ca.SX(0) if seen.is_zero() else ca.if_else(seen, load, 0)
     return sum(felt_along(found, link, terms, ratio), total)

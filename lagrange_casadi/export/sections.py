@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from ..declare.density import Density
+from ..declare.limits import END
 from ..quantities import Output
 from ..tables import ON_INBOARD, PLANE, Table
 from .contract import Contract, LinkContract
@@ -74,6 +75,7 @@ def functions(c: Contract, program: Program, number: Callable[[float], str], roo
         "sections.c" if c.table is PLANE else "sections_in_space.c",
         **words,
         **({} if c.table is PLANE else {"root": root}),
+        slack=number(END[c.precision]),
         loads=len(c.table.place_first) * max(1, *(len(link.stations) for link in c.links)),
         **_spreads(c, words),
         laws="\n".join(laws),

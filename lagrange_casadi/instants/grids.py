@@ -21,6 +21,7 @@ from ..codegen import find_compiler
 from ..codegen.calls import Call
 from ..codegen.compiler import loaded
 from ..declare.density import Array
+from ..declare.limits import END
 from ..errors import CompilerError, DeclarationError
 from ..system.room import require
 
@@ -49,6 +50,7 @@ _SUM = {
     "loads": "int",
     "acting": "const double* const*",
     "u": "const double*",
+    "near": "const double*",
     "out": "double*",
 }
 GRID = Call("lagrange_casadi_grid_call", {"n": "long long", "k": "long long", **_SUM, "streams": "int"})
@@ -59,32 +61,49 @@ Load = tuple[Array, Array, Array]
 """Station, constant and slope of what acts there: sections on its base side feel constant + slope (station - u)."""
 
 
+def sight(u: Array, slack: float) -> Array:
+    """From where on sections at ratios see what acts at stations: each sees what is beyond it.
+
+    A section at the tip is just inside it, and sees what acts at the tip; what acts at the base no section sees. What moves
+    along, and is at an end, misses that by rounding, by ``slack`` at most: no section looks from nearer to an end than that.
+    """
+    return np.clip(u, slack, 1.0 - slack)
+
+
 def fill(
-    columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array, threads: int = 1, planes: int = 1
+    columns: Sequence[Array],
+    basis: Array,
+    loads: Sequence[Load],
+    u: Array,
+    out: Array,
+    threads: int = 1,
+    planes: int = 1,
+    slack: float = END["double"],
 ) -> None:
     """Fill ``out`` (t, xi) with the sum of columns (t) times basis functions (xi), and with what acts at stations.
 
     The rows of ``basis`` are one or more, and ``columns`` as many; ``u`` are the ratios. With two ``planes`` there are as many
-    columns for each, one plane's after the other's, as loads are, and ``out`` is the size of both sums. Raises
-    :class:`DeclarationError` for an ``out`` of another shape.
+    columns for each, one plane's after the other's, as loads are, and ``out`` is the size of both sums. ``slack`` is that of
+    :func:`sight`. Raises :class:`DeclarationError` for an ``out`` of another shape.
     """
     if out.shape != (columns[0].size, u.size):
         raise DeclarationError(f"out: expected an array of shape {(columns[0].size, u.size)}, got {out.shape}")
     plain = out.flags.c_contiguous and out.dtype == np.float64
     library = _compiled() if plain and out.size >= WORTH_COMPILING and len(columns) <= _MOST else None
     if library is None:
-        _fill_in_blocks(columns, basis, loads, u, out, planes)
+        _fill_in_blocks(columns, basis, loads, u, out, planes, slack)
         return
     n, k = out.shape
     functions = empty("the functions along a link", (len(basis), -(-k // _LINE) * _LINE))
     functions[:, :k], functions[:, k:] = basis, 0.0
     flat, ratios = _flat(columns, loads), np.ascontiguousarray(u, dtype=np.float64)
+    near = sight(ratios, slack)
     shares = max(1, min(threads, out.size // _SHARE, n))
     size = -(-n // shares)
 
     def run(start: int) -> None:
         rows = (ctypes.c_void_p * len(flat))(*(row.ctypes.data + start * row.itemsize for row in flat))
-        here = _sum(len(columns), planes, rows, functions, ratios) | {"out": out[start:].ctypes.data}
+        here = _sum(len(columns), planes, rows, functions, ratios, near) | {"out": out[start:].ctypes.data}
         library.lagrange_casadi_grid(GRID.made(n=min(size, n - start), k=k, streams=int(out.nbytes >= _STREAMING), **here))
 
     if shares == 1:
@@ -96,7 +115,9 @@ def fill(
         list(others)
 
 
-def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, planes: int = 1) -> Array:
+def largest(
+    columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, planes: int = 1, slack: float = END["double"]
+) -> Array:
     """Over the instants of n designs the value largest in size at each ratio, with its sign: (n, xi).
 
     ``columns`` and what ``loads`` consist of are (n, t), ``basis`` is (terms, n, xi); see :func:`fill`. Of values of one size the
@@ -110,7 +131,7 @@ def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
         for i in range(n):
             grid = np.empty((t, u.size))
             acting = [(a[i], b[i], c[i]) for a, b, c in loads]
-            _fill_in_blocks([column[i] for column in columns], basis[:, i], acting, u, grid, planes)
+            _fill_in_blocks([column[i] for column in columns], basis[:, i], acting, u, grid, planes, slack)
             high, low = grid.max(axis=0), grid.min(axis=0)
             out[i] = np.where(high >= -low, high, low)
         out[~finite] = np.nan
@@ -118,7 +139,8 @@ def largest(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Ar
     flat, ratios = _flat(columns, loads), np.ascontiguousarray(u, dtype=np.float64)
     functions = np.ascontiguousarray(basis, dtype=np.float64).reshape(len(basis), -1)
     rows = (ctypes.c_void_p * len(flat))(*(array.ctypes.data for array in flat))
-    whole = _sum(len(columns), planes, rows, functions, ratios) | {"out": out.ctypes.data}
+    near = sight(ratios, slack)
+    whole = _sum(len(columns), planes, rows, functions, ratios, near) | {"out": out.ctypes.data}
     library.lagrange_casadi_largest(LARGEST.made(designs=n, n=t, k=u.size, **whole))
     out[~finite] = np.nan
     return out
@@ -142,7 +164,7 @@ def _flat(columns: Sequence[Array], loads: Sequence[Load]) -> list[Array]:
     return [np.ascontiguousarray(row, dtype=np.float64) for row in (*columns, *(row for load in loads for row in load))]
 
 
-def _sum(columns: int, planes: int, rows: Any, functions: Array, ratios: Array) -> dict[str, int]:
+def _sum(columns: int, planes: int, rows: Any, functions: Array, ratios: Array, near: Array) -> dict[str, int]:
     """What a call takes: ``rows`` are the addresses of the columns, so many, and of the loads' parts; functions have a row each."""
     first = ctypes.addressof(rows)
     return {
@@ -154,10 +176,13 @@ def _sum(columns: int, planes: int, rows: Any, functions: Array, ratios: Array) 
         "loads": (len(rows) - columns) // (3 * planes),
         "acting": first + columns * ctypes.sizeof(ctypes.c_void_p),
         "u": ratios.ctypes.data,
+        "near": near.ctypes.data,
     }
 
 
-def _fill_in_blocks(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array, planes: int) -> None:
+def _fill_in_blocks(
+    columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, out: Array, planes: int, slack: float
+) -> None:
     height = max(1, _BLOCK // max(1, out.shape[1]))
     terms, many = len(columns) // planes, len(loads) // planes
     for start in range(0, out.shape[0], height):
@@ -166,7 +191,7 @@ def _fill_in_blocks(columns: Sequence[Array], basis: Array, loads: Sequence[Load
         for plane in range(planes):
             values = np.empty(rows.shape) if plane else rows
             own = [column[block] for column in columns[plane * terms : (plane + 1) * terms]]
-            _sum_up(own, basis, [_cut(load, block) for load in loads[plane * many : (plane + 1) * many]], u, values)
+            _sum_up(own, basis, [_cut(load, block) for load in loads[plane * many : (plane + 1) * many]], u, values, slack)
             if plane:
                 np.sqrt(rows * rows + values * values, out=rows)
 
@@ -176,14 +201,13 @@ def _cut(load: Load, block: slice) -> Load:
     return station[block], constant[block], slope[block]
 
 
-def _sum_up(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, rows: Array) -> None:
+def _sum_up(columns: Sequence[Array], basis: Array, loads: Sequence[Load], u: Array, rows: Array, slack: float) -> None:
     np.multiply(columns[0][:, None], basis[0], out=rows)
     for column, function in zip(columns[1:], basis[1:], strict=True):
         rows += column[:, None] * function
     for station, constant, slope in loads:
         at = station[:, None]
-        seen = (u < at) | ((u >= 1.0) & (at >= 1.0))
-        rows += np.where(seen, constant[:, None] + slope[:, None] * (at - u), 0.0)
+        rows += np.where(sight(u, slack) < at, constant[:, None] + slope[:, None] * (at - u), 0.0)
 
 
 @functools.cache

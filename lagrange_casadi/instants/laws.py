@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ..declare.density import Array, NumericDensity
+from ..declare.limits import END
 from ..quantities import Output
 from ..tables import PLANE, Table
 from .section_law import SectionLaw
@@ -13,8 +14,10 @@ from .spread_loads import spread_load
 from .station_loads import station_load
 
 
-def law_of(link: str, outputs: Mapping[Output, Array], length: Any, density: NumericDensity) -> SectionLaw:
-    """The law of a link of a length [m] and a density, by those of ``outputs`` that go into it.
+def law_of(
+    link: str, outputs: Mapping[Output, Array], length: Any, density: NumericDensity, precision: str = "double"
+) -> SectionLaw:
+    """The law of a link of a length [m] and a density, by those of ``outputs`` that go into it, evaluated in a precision.
 
     Raises ``ValueError`` where a load along the link is not whole.
     """
@@ -35,7 +38,7 @@ def law_of(link: str, outputs: Mapping[Output, Array], length: Any, density: Num
             terms.setdefault(output.station, {}).setdefault(output.member, {})[output.power] = values
     loads = tuple(station_load(name, members) for name, members in stations.items())
     spreads = tuple(spread_load(name, ends.get(name, {}), found) for name, found in terms.items())
-    return SectionLaw(length, density, law, loads, spreads)
+    return SectionLaw(length, density, law, loads, spreads, END["single" if precision == "single" else "double"])
 
 
 def made_of(outputs: Iterable[Output], link: str, force: str, table: Table = PLANE) -> list[Output]:

@@ -17,6 +17,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ..declare.density import Array, NumericDensity
+from ..declare.limits import END
 from ..quantities import Output
 from ..system.room import cores, require
 from ..tables import PLANE, SPACE, Table
@@ -39,7 +40,8 @@ _BLOCK = 1 << 15
 class SectionLaw:
     """The law of one link: ``coefficients`` by name, each (t,); length [m], density, loads at stations, and ``spreads`` along it.
 
-    The coefficients are the seven of a planar mechanism or the twelve of a spatial one; :attr:`table` says which.
+    The coefficients are the seven of a planar mechanism or the twelve of a spatial one; :attr:`table` says which. What misses an
+    end by no more than ``slack``, a ratio, acts at that end: see :func:`.sight`.
     """
 
     length: float
@@ -47,6 +49,7 @@ class SectionLaw:
     coefficients: Mapping[str, Array]
     loads: tuple[AnyStationLoad, ...] = ()
     spreads: tuple[SpreadLoad, ...] = ()
+    slack: float = END["double"]
 
     @cached_property
     def table(self) -> Table:
@@ -73,7 +76,7 @@ class SectionLaw:
         basis = xi if isinstance(xi, Basis) else self.basis(xi)
         out = grids.empty(f"a grid of {force}", size) if out is None else out
         columns, rows, acting, planes = self._planes(force, basis)
-        grids.fill(columns, rows, acting, basis.u, out, threads or cores(), planes)
+        grids.fill(columns, rows, acting, basis.u, out, threads or cores(), planes, self.slack)
         return out
 
     def largest(self, force: str, basis: Basis) -> Array:
@@ -82,7 +85,7 @@ class SectionLaw:
         It has its sign, the positive one where both are as large, and is NaN of a law that is not finite throughout.
         """
         columns, rows, acting, planes = self._planes(force, basis)
-        return grids.largest(columns, rows, acting, basis.u, planes)
+        return grids.largest(columns, rows, acting, basis.u, planes, self.slack)
 
     def during(self, instants: slice) -> SectionLaw:
         """The law at some of the instants."""
@@ -99,7 +102,7 @@ class SectionLaw:
         values = self._smooth(force, u)
         for load in self.loads:
             station = _column(load.station, u)
-            values = values + self._beyond(force, load, u, _seen(u, station, side))
+            values = values + self._beyond(force, load, u, self._seen(u, station, side))
         return values
 
     def of(self, link: str, outputs: Mapping[Output, Array]) -> SectionLaw:
@@ -120,7 +123,7 @@ class SectionLaw:
         """
         stations = [np.clip(load.station, 0.0, 1.0) for load in self.loads]
         u = np.stack([*(np.full_like(self.coefficients["n0"], ratio) for ratio in xi), *stations], axis=-1)
-        seen = [[_seen(u, load.station[:, None], side) for side in _SIDES] for load in self.loads]
+        seen = [[self._seen(u, load.station[:, None], side) for side in _SIDES] for load in self.loads]
         basis, found = self.basis(u), {}
         for force in self.table.sections:
             columns, rows = self._terms(force, basis)
@@ -190,7 +193,7 @@ class SectionLaw:
             station, _, slope = (_column(values, u) for values in self._acting(force, load))
             going, more, steeper = (_column(values, u) for values in self._acting(force, change))
             # A station that moves takes its force's arm with it.
-            seen = _seen(u, station, side)
+            seen = self._seen(u, station, side)
             values = values + np.where(seen, more + slope * going + steeper * (station - u), 0.0)
             passing = passing + np.where(u == station, going, 0.0)
         return values + passing * self.along(force, u, side) if self.loads else values
@@ -258,8 +261,7 @@ class SectionLaw:
         values[:, 3::2] = self.at(force, places[:, 3::2], side="base")
         inner = np.sort(np.stack([still, *stations, still + 1.0], axis=1), axis=1)
         low, high = inner[:, :-1], inner[:, 1:]
-        acting = [np.clip(load.station, 0.0, 1.0)[:, None] for load in self.loads]
-        seen = [(low + high < 2 * station) | ((low >= 1.0) & (station >= 1.0)) for station in acting]
+        seen = [self._seen((low + high) / 2, load.station[:, None], "tip") for load in self.loads]
 
         def within(name: str, u: Array) -> Array:
             if len(parts := self._parts(name)) > 1:
@@ -316,6 +318,11 @@ class SectionLaw:
         plain = [self.coefficients[name] for name in terms.coefficients]
         matter = by_force(u, self.length, *self.density.tails(u, 2)) if len(plain) > 1 else [np.ones_like(u)]
         return np.asarray(sum(_column(column, u) * row for column, row in zip(plain, matter, strict=True)))
+
+    def _seen(self, u: Array, station: Array, side: Side) -> Any:
+        """Whether a section sees what acts at a station."""
+        near = grids.sight(u, self.slack)
+        return near < station if side == "tip" else near <= station
 
     def _acting(self, force: str, load: AnyStationLoad) -> grids.Load:
         terms = self.table.sections[force]
@@ -383,11 +390,6 @@ class SectionLaw:
     def _highest(self) -> int:
         """The degree of the slope of a shear force, between two stations and in a cell of the density."""
         return max(*map(len, self.density.cells), *(spread.powers - 1 for spread in self.spreads), 0)
-
-
-def _seen(u: Array, station: Array, side: Side) -> Any:
-    """Whether a section sees what acts at a station: from its base side, and at the very tip always."""
-    return ((u < station) if side == "tip" else (u <= station)) | ((u >= 1.0) & (station >= 1.0))
 
 
 def _column(values: Array, like: Array) -> Array:

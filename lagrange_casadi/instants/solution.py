@@ -367,7 +367,8 @@ class Solution:
 
     def _section(self, link: str) -> Section:
         body = self.description["bodies"][link]
-        return Section(law_of(link, self.outputs, body["length"], density_of(body)), self.xi)
+        law = law_of(link, self.outputs, body["length"], density_of(body), self.provenance.precision)
+        return Section(law, self.xi)
 
     def _output(self, name: str | Output) -> Output:
         with suppress(KeyError):

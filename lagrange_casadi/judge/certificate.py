@@ -26,7 +26,7 @@ from .digits import blur as blur
 from .friction import law_gaps
 from .placing import Complex, Moving, axis_of, measured, oriented, place
 from .spatial_certificate import residuals as spatial_residuals
-from .tally import EDGE, Tally, forces_told, law_at_base
+from .tally import Tally, forces_told, law_at_base
 from .touching import Placed, actions, idle
 from .written import Written
 
@@ -295,7 +295,7 @@ def _ends(
         law = law_at_base(solution, link)
         axial, shear, bending = (law.at(force, base)[:, 0] for force in FORCES)
         own = [part for part in acting if part[0] == link]
-        force, moment = _before(bodies[link], own, EDGE * law.length)
+        force, moment = _before(bodies[link], own, law.slack * law.length)
         flow = _weight(solution, bodies[link], matter[link][0], law.length)
         for _, _, push, couple, _ in own:
             flow = np.maximum(flow, np.abs(push) + np.abs(couple) / size)

@@ -20,7 +20,7 @@ from .friction import law_gaps
 from .locked import without_locked
 from .spatial_placing import Moving, Reported, cross, measured, oriented, relative, resolve, spot, told, turn
 from .spatial_rest import axes_of, gaps_of, place_all
-from .tally import EDGE, Tally, forces_told, law_at_base
+from .tally import Tally, forces_told, law_at_base
 from .touching import Placed, actions, idle
 from .written import Written
 
@@ -313,7 +313,7 @@ def _ends(
         law = law_at_base(solution, link)
         inside, twisted = (np.concatenate([law.at(name, base) for name in names], axis=1) for names in (_FORCES, _MOMENTS))
         own = [act for act in acting if act.body == link]
-        force, moment = _before(bodies[link], own, EDGE * law.length)
+        force, moment = _before(bodies[link], own, law.slack * law.length)
         flow = _weight(solution, bodies[link], matter[link][0], law.length)
         for act in own:
             push, twist = act.pushes

@@ -16,7 +16,7 @@ from ..quantities import Output
 from . import digits
 from .written import Written
 
-EDGE = 1e-9
+_EDGE = 1e-9
 """Of a link's length: what is as near to its base is at the base."""
 
 
@@ -68,4 +68,4 @@ def forces_told(solution: Solution, equations: Sequence[Written] | None) -> bool
 def law_at_base(solution: Solution, link: str) -> SectionLaw:
     """The law of a link, for its section at the base: what slides over the base just now counts as at the base."""
     law = solution.section(link).law
-    return replace(law, loads=tuple(replace(x, station=np.where(np.abs(x.station) < EDGE, 0.0, x.station)) for x in law.loads))
+    return replace(law, slack=max(_EDGE, law.slack))

@@ -16,6 +16,7 @@ from ..declare.mechanism import Mechanism
 from ..declare.parts import Link
 from ..equations.checks import Column
 from ..equations.mobility import stations_of
+from ..equations.own import sight
 from ..equations.spreads import felt_along, spreads_of
 from ..quantities import Output
 from ..tables import Terms, table_of
@@ -71,10 +72,8 @@ class Along:
         if terms.arm:
             across = self._of("station", self.table.sections[terms.shear].acting, station)
             value = value + terms.arm * self.link.length * across * (at - u)
-        if station == place.station:
-            # At the tip there is no section beyond.
-            return value if place.seen else ca.if_else(at >= 1.0, value, 0.0)
-        return ca.if_else(ca.logic_or(u < at, ca.logic_and(u >= 1.0, at >= 1.0)), value, 0.0)
+        near = sight(u, "double")
+        return ca.if_else(near <= at if station == place.station and place.seen else near < at, value, 0.0)
 
     def _of(self, group: str, member: str, station: str) -> Any:
         return self.columns[Output(group, self.link.name, member, station)]

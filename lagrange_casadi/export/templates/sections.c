@@ -3,7 +3,7 @@ static void no_forces(${p}_forces* forces) {
 }
 
 ${p}_status ${p}_section(const ${p}_model* model, const ${p}_outputs* outputs, ${p}_link link, ${p}_real xi, ${p}_forces* forces) {
-  casadi_real law[7], acting[$loads], T[3], l, first, axial, shear, bending;$declared
+  casadi_real law[7], acting[$loads], T[3], l, first, near, axial, shear, bending;$declared
   const casadi_real* matter_of;
   int k, stations = 0;
   no_forces(forces);
@@ -20,9 +20,11 @@ $laws
   axial = law[0] + law[1]*T[0] + law[2]*first;
   shear = law[3] + law[4]*T[0] + law[5]*first;
   bending = law[6] + law[3]*(l*(1 - xi)) + law[4]*(l*T[1]) + law[5]*(l*l*(xi*T[1] + T[2]));
-  /* What acts at a station is seen by the sections on its base side, and at the very tip always. */
+  /* What acts at a station is seen by the sections on its base side; at the tip all see it, at the base none, though it may miss these
+     by rounding. */
+  near = xi < $slack ? $slack : xi > 1 - $slack ? 1 - $slack : xi;
   for (k = 0; k < 4*stations; k += 4) {
-    if (xi < acting[k] || (xi >= 1 && acting[k] >= 1)) {
+    if (near < acting[k]) {
       axial = axial + acting[k + 1];
       shear = shear + acting[k + 2];
       bending = bending + (acting[k + 3] + acting[k + 2]*l*(acting[k] - xi));

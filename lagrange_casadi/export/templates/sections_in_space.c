@@ -4,7 +4,7 @@ static void no_forces(${p}_forces* forces) {
 }
 
 ${p}_status ${p}_section(const ${p}_model* model, const ${p}_outputs* outputs, ${p}_link link, ${p}_real xi, ${p}_forces* forces) {
-  casadi_real law[12], acting[$loads], T[3], l, first, arm, axial, shear_y, shear_z, torsion, bending_y, bending_z, shear, bending;$declared
+  casadi_real law[12], acting[$loads], T[3], l, first, near, arm, axial, shear_y, shear_z, torsion, bending_y, bending_z, shear, bending;$declared
   const casadi_real* matter_of;
   int k, stations = 0;
   no_forces(forces);
@@ -24,9 +24,11 @@ $laws
   torsion = law[11];
   bending_z = law[6] + law[3]*(l*(1 - xi)) + law[4]*(l*T[1]) + law[5]*(l*l*(xi*T[1] + T[2]));
   bending_y = law[10] - law[7]*(l*(1 - xi)) - law[8]*(l*T[1]) - law[9]*(l*l*(xi*T[1] + T[2]));
-  /* What acts at a station is seen by the sections on its base side, and at the very tip always. */
+  /* What acts at a station is seen by the sections on its base side; at the tip all see it, at the base none, though it may miss these
+     by rounding. */
+  near = xi < $slack ? $slack : xi > 1 - $slack ? 1 - $slack : xi;
   for (k = 0; k < 7*stations; k += 7) {
-    if (xi < acting[k] || (xi >= 1 && acting[k] >= 1)) {
+    if (near < acting[k]) {
       arm = acting[k] - xi;
       axial = axial + acting[k + 1];
       shear_y = shear_y + acting[k + 2];

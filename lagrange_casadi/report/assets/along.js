@@ -138,8 +138,6 @@ class Along {
       }
       this.look(piece, low, piece.high, (low + piece.high) / 2, place, whole);
     }
-    // What acts at the very base is seen by the section there from its base side alone.
-    if (cuts.includes(0)) this.look(this.pieces[0], 0, 0, -1, place, whole);
     return tallies;
   }
 
@@ -202,7 +200,7 @@ class Along {
     const across = this.across[k];
     for (let l = 0; l < stations.length; l += 1) {
       const station = held[place + stations[l]];
-      if (!(middle < station)) continue;
+      if (!(sight(middle) < station)) continue;
       c[0] += held[place + acting[l]];
       if (!across) continue;
       const slope = this.plain[k].arm * this.length * held[place + across[l]];

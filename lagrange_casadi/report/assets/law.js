@@ -11,6 +11,12 @@ const sections = contents.sections.map((entry) => {
 
 const sectionByLink = new Map(sections.map((section) => [section.link, section]));
 
+/** From where on a section at a ratio sees what acts at stations. A section at the tip is just inside it, and what acts at the base no
+ *  section sees; what is at an end may miss it by rounding. */
+function sight(xi) {
+  return Math.max(1e-12, Math.min(1 - 1e-12, xi));
+}
+
 /** A force at an instant, at the ratio with a number, on the tip's side of a station. */
 function sectionForce(section, name, instant, ratio) {
   return forceAt(section, section.forces.get(name), instant, section.xi[ratio], (row) => row[ratio], "tip");
@@ -31,10 +37,10 @@ function forceAt(section, force, instant, xi, along, side) {
   }
   let sum = 0;
   for (const [coefficient, row, sign] of force.terms) sum += sign * array(coefficient)[instant] * along(array(row));
+  const near = sight(xi);
   for (const load of section.loads) {
     const station = load.station[instant];
-    const seen = side === "tip" ? xi < station : xi <= station;
-    if (seen || (xi >= 1 && station >= 1)) {
+    if (side === "tip" ? near < station : near <= station) {
       sum += load[force.acting][instant];
       if (force.arm) sum += force.arm * section.length * load[force.across][instant] * (station - xi);
     }
@@ -63,7 +69,7 @@ function sectionForces(section, name, instant, found, step = 1) {
   for (const load of section.loads) {
     const [station, acts] = [load.station[instant], load[force.acting][instant]];
     const lever = force.arm ? force.arm * section.length * load[force.across][instant] : 0;
-    for (let k = 0; k < found.length; k += step) if (xi[k] < station || (xi[k] >= 1 && station >= 1)) found[k] += acts + lever * (station - xi[k]);
+    for (let k = 0; k < found.length; k += step) if (sight(xi[k]) < station) found[k] += acts + lever * (station - xi[k]);
   }
   return found;
 }
