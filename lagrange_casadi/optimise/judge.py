@@ -81,8 +81,9 @@ class Judge:
             points[term] = tuple(own)
             if term.output is None:
                 values[term] = float(term.of_parameters(self.engine.scene.mechanism)(p))
-            elif tired_link(term.output):
-                values[term] = own[0][0].value
+            elif link := tired_link(term.output):
+                forces = [k for k, name in enumerate(self.engine.quantities) if name.startswith(f"section:{link}:")]
+                values[term] = own[0][0].value if np.isfinite(found.value[row, forces]).all() else math.nan
             elif term.kind == "peak":
                 values[term] = abs(float(found.value[row, self.engine.quantities.index(term.name)]))
             elif term.averaged:
