@@ -6,6 +6,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from casadi import sqrt
 from compiled import cc, compilers, present
 from mechanisms import slider_crank, truss_platform
 
@@ -131,6 +132,17 @@ def test_it_is_clean_and_its_self_test_passes(make, tmp_path):
     ran = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=False)
     assert ran.returncode == 1
     assert " by " in ran.stdout
+
+
+def test_what_does_not_change_may_be_rounded(tmp_path):
+    """The derivative of l/l is a difference of what is as large as 1/l; compilers round it otherwise."""
+    m = Mechanism("still")
+    l = m.parameter("l", 0.3, "m")
+    m.revolute("O", m.ground, m.link("arm", length=l, mass=1.0))
+    m.output("same", sqrt(l * l * (1.0 + m.time)) / l)
+    export(Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 9)), tmp_path, wanted=["output:same", "sensitivity"])
+    (off,) = re.findall(r"slopes_off\[1\] = \{(.*)\};", (tmp_path / "selftest.c").read_text())
+    assert 1e-12 / 0.3 < float(off) < 1e-9 / 0.3
 
 
 def test_the_folder_says_what_it_has(tmp_path):

@@ -1,12 +1,15 @@
 """Fatigue as a limit and as an objective of a search, against solutions and sweeps of the designs that it finds."""
 
 import casadi as ca
+import numpy as np
 import pytest
 from strong import STEEL, press, robot, slider
 
 from lagrange_casadi import Mechanism, Scene, beams, evaluate, optimise, sweep
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.motion import polynomial
+from lagrange_casadi.optimise.finder import Finder
+from lagrange_casadi.optimise.problem import Question
 
 
 def used(scene, link, values):
@@ -70,6 +73,20 @@ def test_as_an_objective_in_space_where_stresses_are_out_of_phase():
     assert found.objective == pytest.approx(here, rel=1e-9)
     assert pull == pytest.approx(200.0, rel=1e-6)
     assert found.bounds["pull"] == pytest.approx(-(high - here) / 0.02, rel=1e-3)
+
+
+def test_it_is_that_of_the_instants_that_are_asked_for():
+    """Of a crank that speeds up, equal steps of its angle are none of time; the worst place is its base."""
+    m = Mechanism("crank")
+    h = m.parameter("h", 0.02, "m", low=0.0)
+    bar = beams.Beam(beams.rectangle(h, 0.012), STEEL.but(endurance=80e6))
+    m.revolute("O", m.ground, m.link("crank", length=0.3, beam=bar))
+    scene = Scene(m, {"O": polynomial(0, 2.0, 30.0)}, over=("O", 0.0, 6.2, 9))
+    words = {"transmission": 0.05, "t": None, "parameters": None, "backend": "vm"}
+    question = Question.of(scene, "peak:utilisation:crank:fatigue", {"h": (0.01, 0.03)}, (), **words)
+    judged = Finder.of(scene, question).judge.look(np.array([0.015]))
+    (value,) = judged.values.values()
+    assert value == pytest.approx(used(scene, "crank", {"h": 0.015}), rel=1e-9)
 
 
 @pytest.mark.parametrize(

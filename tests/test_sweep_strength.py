@@ -7,11 +7,15 @@ import pytest
 from click.testing import CliRunner
 from strong import STEEL, press, robot, slider
 
-from lagrange_casadi import Mechanism, Scene, beams, best, evaluate, sweep
+from lagrange_casadi import Mechanism, Scene, beams, best, evaluate, optimise, sweep
 from lagrange_casadi.cli import program
+from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.motion import harmonic
 from lagrange_casadi.peaks import refine_safety
 from lagrange_casadi.sweep import strength
+from lagrange_casadi.sweep.axes import designs_of
+from lagrange_casadi.sweep.plan import Plan
 
 
 @pytest.fixture(scope="module")
@@ -107,3 +111,37 @@ def test_a_parameter_may_be_called_as_a_column_is_where_there_is_none():
     m.revolute("O", m.ground, m.link("arm", length=0.4, mass=mass))
     found = sweep(Scene(m, {"O": harmonic(0.0, 0.6, 2.0)}, t=(0, 0.5, 21)), {"mass": [1.0, 2.0]}, wanted=["effort"])
     assert found["mass"].tolist() == [1.0, 2.0]
+
+
+def test_strength_is_kept_beside_all():
+    """As evaluations tell it: ``all`` leaves out what is wanted by name, unless it is."""
+    m = Mechanism("arm")
+    m.revolute("O", m.ground, m.link("arm", length=m.parameter("l", 0.4, "m"), beam=beams.Beam(beams.rectangle(0.02, 0.01), STEEL)))
+    scene = Scene(m, {"O": harmonic(0.0, 0.6, 2.0)}, t=(0, 0.5, 9), wanted=["all", "safety", "deflection:arm"])
+    kept = {column.name for column in Plan.of(scene, designs_of({"l": [0.4]}), rung=Rung("vm")).columns}
+    for name in evaluate(scene, backend="vm", certificate=False).names():
+        assert (f"peak:{name}" in kept) == (not name.startswith(("motion:", "pose:"))), name
+    assert "least:yield:arm" in kept
+
+
+def test_strength_that_is_open_is_left_out():
+    """Of bars side by side equilibrium leaves the axial forces open, as evaluations say; one that nothing holds is told."""
+    m = Mechanism("bars")
+    beam = beams.Beam(beams.rectangle(0.02, 0.01), STEEL.but(endurance=200e6))
+    bar = m.link("bar", length=m.parameter("l", 1.0, "m"), mass=1.0)
+    arm = m.link("arm", length=0.3, beam=beam)
+    for k, place in enumerate((bar.base, bar.at(0.5), bar.at(0.9))):
+        m.revolute(f"G{k}", m.ground.at((0.0, 0.5, 0.9)[k], 0.0), one := m.link(f"a{k}", length=0.2, beam=beam))
+        m.revolute(f"B{k}", one.tip, place)
+    m.weld("held", bar.tip, arm)
+    posture = {"a0": 1.2, "a1": 1.2, "a2": 1.2, "bar": 0.0, "arm": 0.0}
+    scene = Scene(m, {"G0": harmonic(1.2, 0.3, 1.0)}, t=(0, 1, 5), posture=posture, wanted=["safety:a0", "life:a1", "section:arm"])
+    with pytest.raises(DeclarationError, match="equilibrium does not determine axial, so its strength is open"):
+        evaluate(scene, backend="vm", certificate=False).safety("a0")
+    found = sweep(scene, {"l": [1.0, 1.1]}, backend="vm")
+    assert [name for name in found.columns if name.startswith(("least", "life"))] == []
+    assert np.isfinite(found["peak:section:arm:bending"]).all()
+    with pytest.raises(DeclarationError, match="link 'a0': equilibrium does not determine axial, so its strength is open"):
+        optimise(scene, minimise="peak:utilisation:a0:fatigue", over={"l": (0.95, 1.1)}, backend="vm")
+    assert "peak:section:arm:bending" in found
+    assert "life:a1" not in found

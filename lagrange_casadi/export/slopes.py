@@ -24,7 +24,8 @@ FUNCTION = "slopes_of"
 """What CasADi's function is called in C."""
 
 _ROUNDING, _FAINT = 1e-9, 1e-11
-"""How far a derivative may be off, of its largest over the cycle, and of the largest of its unit by the same parameter."""
+"""How far a derivative may be off, of its largest over the cycle, and of what is large of its unit: the derivatives by the same
+parameter, and the outputs over it. Of the latter are the terms of a derivative that is nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,12 +47,14 @@ def exported_slopes(graph: SceneGraph, contract: Contract, by: Sequence[str], p:
     rows = [Output.of(member.source) for member in contract.outputs]
     numbers = [list(graph.scene.mechanism.parameters).index(name) for name in by]
     function = total(graph, [graph.outputs[output] for output in rows], numbers)
-    found = at_instants(graph, rows, t, p, numbers, Rung("vm"))[:, :, 1:]
-    largest = np.abs(found).max(axis=0)
+    both = at_instants(graph, rows, t, p, numbers, Rung("vm"))
+    found, largest = both[:, :, 1:], np.abs(both).max(axis=0)
+    values, largest = largest[:, :1], largest[:, 1:]
     off = _ROUNDING * largest
+    over = np.divide(1.0, np.abs(p[numbers]), out=np.zeros(len(numbers)), where=p[numbers] != 0.0)
     for unit in contract.units:
         same = [k for k, member in enumerate(contract.outputs) if member.unit == unit]
-        off[same] += _FAINT * largest[same].max(axis=0)
+        off[same] += _FAINT * (largest[same].max(axis=0) + values[same].max() * over)
     settings = tuple(setting for setting in contract.settings if setting.source in by)
     return ExportedSlopes(settings, function, found[np.searchsorted(t, chosen)], off)
 

@@ -81,8 +81,9 @@ class Judge:
             points[term] = tuple(own)
             if term.output is None:
                 values[term] = float(term.of_parameters(self.engine.scene.mechanism)(p))
-            elif tired_link(term.output):
-                values[term] = own[0][0].value
+            elif link := tired_link(term.output):
+                forces = [k for k, name in enumerate(self.engine.quantities) if name.startswith(f"section:{link}:")]
+                values[term] = own[0][0].value if np.isfinite(found.value[row, forces]).all() else math.nan
             elif term.kind == "peak":
                 values[term] = abs(float(found.value[row, self.engine.quantities.index(term.name)]))
             elif term.averaged:
@@ -100,11 +101,16 @@ class Judge:
         """The local peaks of a term, the largest first, with the signs by which they count."""
         assert term.output is not None
         if link := tired_link(term.output):
-            return [(point, 1.0) for point in self.values.tired(link).points(look)]
+            return [(point, 1.0) for point in self.values.tired(link).points(self._as_asked(look))]
         if term.kind != "peak":
             sign = -1.0 if term.kind == "min" else 1.0
             return [(point, sign) for point in look.points(term.output, sign)]
         return [(point, math.copysign(1.0, point.value)) for point in look.points(term.output, 0.0)]
+
+    def _as_asked(self, look: Look) -> Look:
+        """A design over the instants that are asked for, of which fatigue is, where these are not in equal steps of time."""
+        asked = self.engine.times.of(look.p[None])[1][0]
+        return look if np.array_equal(asked, look.t) else Look.at(self.engine.graph, asked, look.p, self.engine.rung)
 
     def drifting(self, term: Term, point: Point, p: Array, box: Box) -> Point:
         """A peak at a kink or a jump that goes with the chosen parameters, seen by designs beside this one.

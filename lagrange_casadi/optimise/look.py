@@ -111,7 +111,7 @@ class Look:
         return self._point(k, 0.0, 0, 0.0)
 
     def _point(self, k: int, xi: float, place: int, value: float) -> Point:
-        return Point(k * self.step, xi, place, value, tuple(self.found.iterated[:, k].tolist()))
+        return Point(self.share(float(self.t[k])), xi, place, value, tuple(self.found.iterated[:, k].tolist()))
 
     def _curves(self, output: Output) -> tuple[Sequence[Array], Sequence[Array]]:
         """Ratios and values of a quantity's curves, (t,) each."""

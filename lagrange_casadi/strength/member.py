@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -28,6 +28,11 @@ _EXACT, _DEGREES, _NARROW = 1e-13, (0, 4, 8, 12), 2.0**-12
 """How closely a polynomial must give what forces are multiplied by, its degrees, and a part of a link too short to cut."""
 
 _TWIST = 1e-9
+
+
+def strength_open(link: str, forces: Sequence[str]) -> str:
+    """Why nothing is told of how strong a link is of which some forces are open."""
+    return f"link '{link}': equilibrium does not determine {' and '.join(forces)}, so its strength is open"
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +82,7 @@ class Member:
             raise DeclarationError(f"link '{link}' has no beam, which says what it is made of; links with one: {having or 'none'}")
         space = in_space(solution.description)
         if open_ := [force for force in FORCES[space] if not solution.determined(f"section:{link}:{force}")]:
-            raise DeclarationError(f"link '{link}': equilibrium does not determine {' and '.join(open_)}, so its strength is open")
+            raise DeclarationError(strength_open(link, open_))
         member = cls(link, beam_told(body["beam"]), law, solution.t, solution.xi, space)
         member._check_torsion()
         return member

@@ -262,14 +262,15 @@ def _assembly(
 
 def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
     """Output names; ``all`` are all but the motion, whose peaks size nothing, and strength, which is wanted by name."""
+    Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted)
     names = tuple(scene.wanted if wanted is None else wanted)
-    Wanted.of(scene.mechanism, names)
     without_fitted(scene.mechanism, names, "sweeps")
     if "all" not in names or "motion" in names:
         return names
     own = (name for name in outputs(scene.mechanism) if name.partition(":")[0] not in (*STRENGTH, SENSITIVITY))
+    strength = (name for name in names if name.partition(":")[0] in STRENGTH)
     slopes = (f"{SENSITIVITY}:{name}" for name in by_parameters(scene.mechanism, names))
-    return (*(name for name in own if name not in ("all", "motion")), *slopes)
+    return (*(name for name in own if name not in ("all", "motion")), *strength, *slopes)
 
 
 def signature(scene: Scene, task: Task, provenance: Provenance) -> dict[str, Any]:

@@ -120,6 +120,10 @@ class Sweep:
                 return _taken(file[name])
             return self._cut(file[name.replace(":", "/")], (*self.dimensions, *self.columns[name].axes))
 
+    def __contains__(self, name: object) -> bool:
+        """Whether it has something of a name: what ``self[name]`` gives."""
+        return name in self.parameters or name in self._over or name in self.columns
+
     def column(self, name: str) -> KeptColumn:
         """What a column is. Raises :class:`UnknownNameError`."""
         if name not in self.columns:

@@ -154,13 +154,13 @@ class Kept:
     def columns(self) -> tuple[Dataset, ...]:
         """The columns, in the order of :meth:`evaluate`."""
         found = []
-        for link in self.safety:
+        for link in self._judged:
             ways = self._ways(link)
             words = {"long_name": f"least factor of safety, the smallest of those {', '.join(_MEANT[way] for way in ways)}"}
             found.append(Dataset(f"{LEAST}:safety:{link}", "1", words))
             for way in ways:
                 found.append(Dataset(f"{LEAST}:{way}:{link}", "1", {"long_name": f"least factor of safety {_MEANT[way]}"}))
-        for link in self.life:
+        for link in self._lives:
             found.append(Dataset(f"{LIFE}:{link}", "1", {"long_name": "life in cycles, each the whole span"}))
         for link in self.links:
             found.append(Dataset(f"{MASS}:{link}", "kg", {"long_name": "mass of the link"}))
@@ -173,14 +173,14 @@ class Kept:
         there = np.flatnonzero(status == 0)
         tired = {link: self._tired(link, there, series, times, p) for link in self.links if self._tires(link)}
         found: list[Array] = []
-        for link in self.safety:
+        for link in self._judged:
             kept = [f"utilisation:{link}:{way}" for way in self._ways(link) if way != "fatigue"]
             shares = [np.abs(value[:, self.quantities.index(name)]) for name in kept]
             shares += [tired[link][0]] if link in tired else []
             with np.errstate(divide="ignore"):
                 found.append(1.0 / np.max(shares, axis=0))
                 found += [1.0 / share for share in shares]
-        found += [tired[link][1] for link in self.life]
+        found += [tired[link][1] for link in self._lives]
         masses = np.atleast_2d(self._masses(p.T).full())
         return found + [np.where(status == 0, row, np.nan) for row in masses]
 
@@ -188,9 +188,18 @@ class Kept:
         known = [way for way in WAYS[:2] if f"utilisation:{link}:{way}" in self.quantities]
         return known + (["fatigue"] if self._tires(link) else [])
 
+    @property
+    def _judged(self) -> list[str]:
+        """The links of which something is known that may fail."""
+        return [link for link in self.safety if self._ways(link)]
+
+    @property
+    def _lives(self) -> list[str]:
+        return [link for link in self.life if self._tires(link)]
+
     def _tires(self, link: str) -> bool:
         beam = self.mechanism.links[link].beam
-        return beam is not None and tires(beam.material)
+        return beam is not None and tires(beam.material) and not open_forces(self.mechanism, link, self.quantities)
 
     def _tired(self, link: str, there: Any, series: Array | None, times: Array, p: Array) -> tuple[Array, Array]:
         """Utilisation against fatigue, and the life in cycles, of every design."""
@@ -203,6 +212,8 @@ class Kept:
         names = {name: k for k, name in enumerate(self.series)}
         chosen = [names[str(member)] for member in fatigue.members]
         members = series[there][:, chosen]
+        whole = np.isfinite(members).all(axis=(1, 2))
+        there, members = there[whole], members[whole]
         stands = fatigue.stands(members)
         some, standing = there[stands], members[stands]
         many = max(1, _NUMBERS // (fatigue.rows.nnz_out(0) // len(fatigue.members) * members.shape[2]))
@@ -247,6 +258,11 @@ class Kept:
         mechanism = self.mechanism
         found = [mass_of(mechanism, part) for part in (*self.links, ALL)]
         return ca.Function("masses", [mechanism.symbols], [ca.densify(ca.vertcat(*found))])
+
+
+def open_forces(mechanism: Mechanism, link: str, quantities: Sequence[str]) -> list[str]:
+    """The forces inside a link that equilibrium leaves open: those that are not among the ``quantities`` of an engine."""
+    return [force for force in FORCES[mechanism.space] if f"section:{link}:{force}" not in quantities]
 
 
 def tires(material: Material) -> bool:
