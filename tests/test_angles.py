@@ -195,7 +195,7 @@ def test_the_command_line_takes_degrees(here, capfd):
     assert main(["run", "case.py", "--set", "l=30deg"]) == 2
     assert "error: parameter 'l' must be a number [m], got '30deg'" in capfd.readouterr().err
     assert main(["run", "case.py", "--set", "tilt=30grad"]) == 2
-    assert "expected NAME=VALUE with a number, as in l=0.25 or phi=30deg, got" in capfd.readouterr().err
+    assert "expected NAME=VALUE with a number in SI units, as in l=0.25 or phi=30deg, got" in capfd.readouterr().err
     sweep = ["sweep", "case.py", "--grid", "tilt=0:1:3", "--grid", "l=0.2:0.4:3", "--quiet", "--want", "effort", "--out", "s.h5"]
     assert main(sweep) == 0
     assert main([*sweep[:4], *sweep[6:-1], "t.h5", "--set", "l=2deg"]) == 2

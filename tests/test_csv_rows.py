@@ -74,7 +74,7 @@ def test_what_is_no_text_is_told(here):
     for encoding in ("utf-16", "latin-1"):
         with pytest.raises(PathError, match=r"table\.csv: cannot be read as text: "):
             rows(here, "größe\n", encoding)
-    with pytest.raises(PathError, match=r"none\.csv: cannot be read as text: "):
+    with pytest.raises(PathError, match=r"none\.csv: no such file$"):
         read_rows(here / "none.csv", "some rows")
-    with pytest.raises(PathError, match="cannot be read as text: "):
+    with pytest.raises(PathError, match=r"is a folder, not a file$"):
         read_rows(here, "some rows")

@@ -55,8 +55,27 @@ def test_every_case_is_counted():
     assert sorted(INSTANT) == sorted(path.parent.name for path in CASES.glob("*/case.py"))
 
 
-def test_the_efforts_of_a_slender_arm_of_six_turns():
-    assert derive(load_case(CASES / "arm6").scene, ["effort"]).instructions["instant"] <= 423
+def told():
+    """Of each case in the tables of docs/speed.md: everything, efforts, and a step."""
+    for line in (CASES.parent / "docs" / "speed.md").read_text().splitlines():
+        name, *cells = (cell.strip().replace("*", "") for cell in line.strip("|").split("|"))
+        if name in INSTANT and len(cells) in (3, 4) and cells[0][:1].isdigit() and "." not in "".join(cells):
+            everything, efforts = (cells[1], cells[3]) if len(cells) == 4 else cells[:2]
+            step = everything.partition("+")[2].removesuffix("a step") if len(cells) == 4 else cells[2]
+            yield pytest.param(name, int(everything.split()[0]), int(efforts.split()[0]), int(step or 0), id=name)
+
+
+@pytest.mark.sampled(6)
+@pytest.mark.parametrize(("name", "everything", "efforts", "step"), told())
+def test_the_counts_that_speed_tells(name, everything, efforts, step):
+    scene = load_case(CASES / name).scene
+    count = derive(scene, ["all"]).instructions
+    assert (count["instant"], count.get("loops", 0)) == (pytest.approx(everything, rel=0.01), step)
+    assert derive(scene, ["effort"]).instructions["instant"] == pytest.approx(efforts, rel=0.01)
+
+
+def test_speed_tells_the_counts_of_many_cases():
+    assert len(list(told())) == 17
 
 
 def chain(links):

@@ -106,6 +106,15 @@ def test_an_active_limit_has_the_multiplier_of_its_slope():
     assert (found.objective - more.objective) / 0.0012 == pytest.approx(limit.multiplier, rel=2e-2)
 
 
+def test_what_seems_better_by_the_violation_that_passes_is_not_taken_for_what_converged():
+    """A program's design may be a little beyond a limit, and gain much by it where the limit costs much."""
+    limits, starts = ["peak:section:rod:bending <= 0.745724140959767"], [{"l": 0.2}, {"l": 0.8}]
+    found = optimise(case("slider_crank"), minimise="peak:effort:O", over={"l": (0.12, 0.8)}, subject_to=limits, starts=starts)
+    assert found.limits[0].multiplier > 500.0
+    assert [start.ending for start in found.starts] == ["converged", "converged"]
+    assert found.converged
+
+
 def test_the_search_stays_away_from_dead_centres():
     """The shortest rod: the sine of its transmission angle at its worst is the root of 1 - (r/l)^2."""
     scene = case("slider_crank")

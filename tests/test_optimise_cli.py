@@ -93,6 +93,8 @@ def test_an_interrupt_leaves_the_best_so_far(here, capfd, monkeypatch):
         (["--over", "k=0.1:0.2"], "unknown parameter 'k'; valid: r, l"),
         (["--subject-to", "peak:effort:O"], "expected a constraint such as"),
         (["--figure", "x.txt"], "expected a name that ends in .png or .pdf or .svg"),
+        (["--set", "l=0.2"], "over: parameter 'l' is chosen, and set to a value as well"),
+        (["--out", "notes.txt"], "--out notes.txt: expected a name that ends in .h5 or .hdf5"),
         (["--out", "nowhere/x.h5"], "folder nowhere does not exist"),
     ],
 )

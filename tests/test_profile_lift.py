@@ -179,7 +179,7 @@ def test_a_follower_that_is_none_is_told():
         ("x [in],y\n1,2\n", DeclarationError, r"p\.csv, line 1: column 'x' cannot be in 'in'; valid: m, mm, um"),
         ("# cam\nx,y\n1,2\n1\n", DeclarationError, r"p\.csv, line 4: expected a finite number for y, got ''"),
         ("x,y\n1,two\n", DeclarationError, r"p\.csv, line 2: expected a finite number for y, got 'two'"),
-        (None, PathError, r"p\.csv: cannot be read as text"),
+        (None, PathError, r"p\.csv: no such file"),
     ],
 )
 def test_a_file_that_is_no_profile_is_told(here, text, error, says):

@@ -63,7 +63,11 @@ MISTAKES = [
     (["--grid", "l=0.1,,0.2"], 2, "l: expected a number for each value, got nothing in 0.1,,0.2"),
     (["--grid", "l=1_0"], 2, "l: expected a number for each value, got '1_0' in 1_0"),
     (["--grid", "l=0.1:0.4:1_0"], 2, "l: expected a whole number for COUNT, got '1_0'"),
-    (["--grid", "l=0.1", "--set", "r=1_0"], 2, "expected NAME=VALUE with a number, as in l=0.25 or phi=30deg, got 'r=1_0'"),
+    (
+        ["--grid", "l=0.1", "--set", "r=1_0"],
+        2,
+        "a number in SI units, as in l=0.25 or phi=30deg, got 'r=1_0'",
+    ),
     (["--grid", "l=0.1", "--t", "0:1_0:5"], 2, "expected START:STOP:COUNT, as in 0:0.08:801, got '0:1_0:5'"),
     (["--grid", "l=0.1:0.4"], 2, "expected NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,..."),
     (

@@ -96,13 +96,12 @@ def drive_command(
     given = parameters(settings)
     wanted = ["effort", "motion", *(kind for kind in kinds(scene.mechanism) if kind in _FORCES)]
     solution = evaluate(scene, parameters=given, t=t, over=over, wanted=wanted)
-    click.echo(f"{loaded.name}: {solution.t.size} instants from {solution.t[0]:.5g} to {solution.t[-1]:.5g} s")
+    lines = [f"{loaded.name}: {solution.t.size} instants from {solution.t[0]:.5g} to {solution.t[-1]:.5g} s"]
     failed: LagrangeCasadiError | None = None
     for name in chosen:
         carried = inertia_at(scene, name, parameters=given, t=t, over=over)
         load = duty_of(solution, name, linear=slides(solution, name), carried=carried)
-        for line in _load_lines(load):
-            click.echo(line)
+        lines += _load_lines(load)
         found: Duty | Choice = load
         if catalogue:
             try:
@@ -110,17 +109,16 @@ def drive_command(
             except LagrangeCasadiError as error:
                 if error.exit_status == 2:
                     raise
-                click.echo(f"  none serves: {error}")
+                lines.append(f"  none serves: {error}")
                 failed = failed or error
                 continue
-            for line in _choice_lines(found, len(catalogue)):
-                click.echo(line)
+            lines += _choice_lines(found, len(catalogue))
         if plot is not None:
             plot_duty(*((found.duty, plot, found.motor) if isinstance(found, Choice) else (found, plot)))
-            click.echo(f"wrote {plot}")
-    for note in solution.notes:
-        click.echo(f"note: {note}")
-    click.echo(summary(solution.certificate))
+            lines.append(f"wrote {plot}")
+    lines += (f"note: {note}" for note in solution.notes)
+    for line in (*lines, summary(solution.certificate)):
+        click.echo(line)
     if solution.failed:
         raise CertificateError(failure(solution))
     if failed is not None:

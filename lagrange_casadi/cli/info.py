@@ -83,7 +83,7 @@ def _describe_file(solution: Solution) -> None:
         click.echo(f"in equal steps of {solution.over.label}: {first:.6g} to {last:.6g}")
     click.echo(f"xi/l: {solution.xi[0]:g} to {solution.xi[-1]:g}, {solution.xi.size} points")
     click.echo(f"backend: {provenance.backend}, {provenance.precision} {provenance.compiler} {provenance.flags}".rstrip())
-    click.echo(f"rung: {provenance.rung}")
+    click.echo(f"method: {provenance.rung}")
     click.echo(f"versions: {', '.join(f'{name} {version}' for name, version in provenance.versions.items())}")
     for note in solution.notes:
         click.echo(f"note: {note}")
@@ -104,7 +104,7 @@ def _describe_sweep(identity: Mapping[str, Any]) -> None:
     if xi:
         click.echo(f"xi/l: {xi[0]:g} to {xi[1]:g}, {xi[2]} points")
     click.echo(f"backend: {identity['backend']}, {identity['precision']} {identity['compiler']} {identity['flags']}".rstrip())
-    click.echo(f"rung: {identity['rung']}")
+    click.echo(f"method: {identity['rung']}")
     click.echo(f"versions: {', '.join(f'{name} {version}' for name, version in identity['versions'].items())}")
 
 

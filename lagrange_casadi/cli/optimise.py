@@ -99,6 +99,8 @@ def optimise(
         raise DeclarationError("over: a parameter has bounds twice")
     loaded = load_case(case)
     out, figure = out or Path(f"{loaded.name}_optimum.h5"), figure or Path(f"{loaded.name}_optimum.png")
+    if out.suffix not in (".h5", ".hdf5"):
+        raise click.UsageError(f"--out {out}: expected a name that ends in .h5 or .hdf5")
     check_writable(out, hdf5=True)
     if figure.suffix not in PICTURES:
         raise click.UsageError(f"--figure {figure}: expected a name that ends in {' or '.join(PICTURES)}")

@@ -76,7 +76,7 @@ def setting(text: str) -> tuple[str, float | str]:
         if equals:
             angle(value)
             return name, value
-    raise click.BadParameter(f"expected NAME=VALUE with a number, as in l=0.25 or phi=30deg, got '{text}'")
+    raise click.BadParameter(f"expected NAME=VALUE with a number in SI units, as in l=0.25 or phi=30deg, got '{text}'")
 
 
 def place(text: str) -> tuple[str, float | str]:

@@ -11,11 +11,15 @@ from ..instants.solution import Peak, Solution
 from ..instants.statistics import Statistics
 from ..instants.told import error_of, told
 
+_NOTHING = 1e-37
+"""What is smaller is zero, in single precision too."""
+
 
 def peak_line(solution: Solution, peak: Peak) -> str:
     """A peak with its place, and how far it may be off where that is estimated; of one that is not told, what was found."""
     error = error_of(solution, peak.name)
-    off = "" if error is None else f" +- {error:.0e}"
+    # Of an exact zero the estimate is the least number there is, which tells nobody anything.
+    off = "" if error is None else f"{'' if abs(peak.value) + error < _NOTHING else f' +- {error:.0e}':<9}"
     where = f"t = {peak.t:.5g} s" + ("" if peak.xi is None else f", xi/l = {peak.xi:.4f}")
     if peak.over is not None and solution.over:
         where = f"{solution.over.shown(peak.over)}, {where}"

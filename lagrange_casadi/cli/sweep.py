@@ -95,8 +95,8 @@ def sweep(
 ) -> None:
     """Evaluate CASE for every design of a grid or a list, and write one HDF5 file.
 
-    CASE is a folder with a case.py, or a Python file. Of each design the peaks of what is wanted are kept, with their instants and
-    places, and means of efforts. A stopped sweep goes on with --resume. best, table and plot read the file.
+    CASE is a folder with a case.py, a Python file, or one that cases lists. Of each design the peaks of what is wanted are kept,
+    with their instants and places, and means of efforts. A stopped sweep goes on with --resume. best, table and plot read the file.
 
     \b
     lagrange-casadi sweep cases/slider_crank --grid l=0.12:0.4:57 --grid m3=0.1,0.5

@@ -41,6 +41,9 @@ _STEPS = (0.1, 0.03, 0.01, 0.003)
 _SAME = 1e-6
 """Of a step between instants: how near two points are that are one."""
 
+_SOLVED = "Solve_Succeeded"
+"""What IPOPT says of a program that it solved."""
+
 Told = Callable[[float, float], None]
 """Hears the objective and the worst excess of each design on the way."""
 
@@ -76,7 +79,7 @@ class Descent:
             stopped = True
         except AssemblyError as error:
             self.seen.append(_Seen(first, None, str(error)))
-        best = min(reversed(self.seen), key=lambda one: self._merit(one.judged)) if self.seen else _Seen(first, None, "")
+        best = self._best() if self.seen else _Seen(first, None, "")
         found = best.by
         return Trail(
             start=tuple(first.p.tolist()),
@@ -92,6 +95,18 @@ class Descent:
             curvature=found.conditions.curvature if found else math.nan,
             evaluations=self.judge.evaluations - before,
         )
+
+    def _best(self) -> _Seen:
+        """The best design on the way; of those that are as good, as far as limits that hold tell, the one that converged."""
+        best = min(reversed(self.seen), key=lambda one: self._merit(one.judged))
+        excess, objective = self._merit(best.judged)
+        for one in reversed(self.seen):
+            if one.ending == CONVERGED and one.by is not None:
+                # Another one may seem better by a violation that passes as none.
+                gains = sum(abs(gain) * scale for gain, scale in zip(one.by.multipliers, self.scales[1:], strict=True))
+                if self._merit(one.judged) <= (excess, objective + HOLDS * (self.scales[0] + gains)):
+                    return one
+        return best
 
     def _merit(self, judged: Judged) -> tuple[float, float]:
         """A merit less its last digits, so that of designs as good the one that converged is taken."""
@@ -150,8 +165,8 @@ class Descent:
                 self._learn(held, closures, lower, everything=True)
                 current = lower
                 continue
-            self._better(following, found if not back else None, CONVERGED if done else f"IPOPT: {found.status}")
-            if done and found.status == "Solve_Succeeded":
+            self._better(following, found if not back else None, CONVERGED if done else _unsettled(found))
+            if done and found.status == _SOLVED:
                 return
             tried = tried + 1 if moved <= 1e-9 and not added else 0
             current = following
@@ -211,3 +226,8 @@ class Descent:
                 closures.append(point)
                 added = True
         return added
+
+
+def _unsettled(found: Found) -> str:
+    """Why a program's solution is none of the problem."""
+    return "the peaks of its last design are not those of the program" if found.status == _SOLVED else f"IPOPT: {found.status}"

@@ -57,6 +57,8 @@ class Box:
                 raise DeclarationError(f"over: of '{name}' the least value {a:g} must be below the largest, {b:g}")
             low.append(a)
             high.append(b)
+            if name in (parameters or {}):
+                raise DeclarationError(f"over: parameter '{name}' is chosen, and set to a value as well")
         values = scene.mechanism.values(parameters)
         places = tuple(list(declared).index(name) for name in names)
         return cls(names, places, np.array(low), np.array(high), np.array(list(values.values())))

@@ -46,6 +46,10 @@ def read_rows(path: str | os.PathLike[str], expected: str) -> list[Row]:
     path = Path(path)
     try:
         lines = path.read_text(encoding="utf-8-sig").split("\n")
+    except FileNotFoundError:
+        raise PathError(f"{path}: no such file") from None
+    except IsADirectoryError:
+        raise PathError(f"{path}: is a folder, not a file") from None
     except (OSError, UnicodeDecodeError) as error:
         raise PathError(f"{path}: cannot be read as text: {one_line(error)}") from None
     kept = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
