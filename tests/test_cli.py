@@ -199,11 +199,7 @@ def scene():
     ("arguments", "status", "says"),
     [
         (["run", "CASE", "--set", "R=1"], 2, "unknown parameter 'R'; valid: r, l, m1, m2, m3"),
-        (
-            ["run", "CASE", "--set", "r=big"],
-            2,
-            "a number in SI units, as in l=0.25 or phi=30deg, got 'r=big'",
-        ),
+        (["run", "CASE", "--set", "r=big"], 2, "a number in SI units, as in l=0.25 or phi=30deg, got 'r=big'"),
         (["run", "CASE", "--set", "r"], 2, "expected NAME=VALUE"),
         (["run", "CASE", "--set", "r=nan"], 2, "parameter 'r' must be a finite number, got nan"),
         (["run", "CASE", "--set", "r=0.1", "--set", "r=0.2"], 2, "parameter 'r' is set twice"),
