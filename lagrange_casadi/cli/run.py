@@ -29,7 +29,7 @@ from ..system.room import MOST_THREADS
 from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
 from .elastic_lines import elastic_lines
-from .options import EVEN_POINTS, even_points, parameters, rung, separated, setting
+from .options import EVEN_POINTS, even_points, instants, parameters, rung, settings_by, wanted
 from .options import over as by_drive
 from .replaced import figures_in, replaced_lines
 from .report import report_lines
@@ -40,19 +40,11 @@ from .strength_lines import strength_lines
 
 @click.command()
 @click.argument("case", type=click.Path(path_type=Path))
-@click.option(
-    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
-)
-@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@settings_by()
+@instants()
 @by_drive
 @click.option("--xi", type=even_points, metavar=EVEN_POINTS, help="Section ratios xi/l, within 0 and 1; default: the case's.")
-@click.option(
-    "--want",
-    multiple=True,
-    callback=separated,
-    metavar="OUTPUT",
-    help="effort, reaction:JOINT, section:LINK, motion, sensitivity:PARAMETER, a kind such as section, or all; repeatable.",
-)
+@wanted("effort, reaction:JOINT, section:LINK, motion, sensitivity:PARAMETER, a kind such as section, or all; repeatable.")
 @rung
 @click.option("--threads", type=click.IntRange(1, MOST_THREADS), metavar="N", help="Threads; default: one a core.")
 @click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>.h5 here.")
