@@ -13,11 +13,12 @@ from tqdm import tqdm
 from ..case import load_case
 from ..declare.angles import typed
 from ..declare.even_points import EvenPoints
+from ..draw.pictures import PICTURES
 from ..errors import DeclarationError
 from ..instants.rung import BACKENDS, Backend
 from ..optimise import Front, Optimum
 from ..optimise import optimise as search
-from ..optimise.figure import PICTURES, draw_optimum
+from ..optimise.figure import draw_optimum
 from ..optimise.front import POINTS
 from ..optimise.front_figure import draw_front
 from ..system.numerals import real

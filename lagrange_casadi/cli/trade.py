@@ -12,7 +12,8 @@ from tqdm import tqdm
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
-from ..draw.trade_plot import PICTURES, draw_trade
+from ..draw.pictures import PICTURES
+from ..draw.trade_plot import draw_trade
 from ..errors import DeclarationError
 from ..instants.rung import Rung
 from ..study.trade import RUNGS, Trade
