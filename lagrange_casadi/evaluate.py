@@ -20,7 +20,7 @@ from .declare.scene import Scene, Wanted, checked_ratios
 from .declare.times import Over, Times, Timing, span_of
 from .declare.wanted_slopes import by_parameters
 from .elastic.completing import told_errors, wanted_alone
-from .elastic.least_energy import complete
+from .elastic.least_energy import Completed, complete
 from .equations.checks import Check
 from .equations.derive import assembled, derive
 from .equations.described import described
@@ -135,7 +135,7 @@ def evaluate(
     description = described(scene, values)
     done = complete(graph, out, np.asarray(found.iterated, float), times, p, description, left_open, gives) if gives else None
     if done is not None:
-        before, out, left_open = out, done.out, done.left_open
+        out, left_open = done.out, done.left_open
     within = phases(graph, out, times, p) if certificate else {}
     outputs = outputs_of(graph, out) | {output: np.full(times.size, np.nan) for output in left_open}
     ordered = in_order(outputs, description)
@@ -145,19 +145,31 @@ def evaluate(
     solution = replace(solution, tolerance=tolerance(solution), sensitivities=slopes)
     if done is not None:
         solution = replace(solution, elasticity=Elasticity(done.told, done.reasons))
-    if not certificate:
-        return wanted_alone(solution, Wanted.of(scene.mechanism, names)) if gives else solution
-    residuals = _closed(graph, out, p) | residuals_of(solution, graph, out, p, within)
-    estimated = estimate(graph, found, solution, p)
-    if done is not None and done.told:
-        residuals["elasticity"] = done.residual
-        estimated = told_errors(estimated, solution, {output: before[k] for output, k in graph.outputs.items()}, done)
-    errors = explained(solution, residuals, estimated)
-    named = {str(output): error for output, error in errors.items()}
-    solution = replace(solution, certificate=residuals | _condition(graph, found), errors=named)
-    if solution.failed:
-        warnings.warn(f"{failure(solution)}; the solution is not certified", CertificateWarning, stacklevel=2)
+    if certificate:
+        solution = _certified(graph, found, solution, out, p, within, done)
+        if solution.failed:
+            warnings.warn(f"{failure(solution)}; the solution is not certified", CertificateWarning, stacklevel=2)
     return wanted_alone(solution, Wanted.of(scene.mechanism, names)) if gives else solution
+
+
+def _certified(
+    graph: SceneGraph,
+    found: Evaluated,
+    solution: Solution,
+    out: Array,
+    p: Array,
+    within: Mapping[Output, Array],
+    done: Completed | None,
+) -> Solution:
+    """The solution with its certificate and its errors; it was made of the columns ``out``, which ``done`` has completed."""
+    residuals = _closed(graph, out, p) | residuals_of(solution, graph, out, p, within)
+    errors = estimate(graph, found, solution, p)
+    if done is not None and done.told:
+        before = np.asarray(found.out, float)
+        residuals["elasticity"] = done.residual
+        errors = told_errors(errors, solution, {output: before[k] for output, k in graph.outputs.items()}, done)
+    named = {str(output): error for output, error in explained(solution, residuals, errors).items()}
+    return replace(solution, certificate=residuals | _condition(graph, found), errors=named)
 
 
 def _slopes(

@@ -5,7 +5,6 @@ import math
 import os
 import re
 import resource
-import shutil
 import signal
 import subprocess
 import sys
@@ -390,10 +389,3 @@ def test_help_and_version(capsys):
     out = capsys.readouterr().out
     assert "lagrange-casadi, version" in out
     assert "--set NAME=VALUE" in out
-
-
-def test_the_module_runs_as_a_program(here):
-    command = [sys.executable, "-m", "lagrange_casadi", "--version"]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert done.stdout.startswith("lagrange-casadi, version")
-    assert shutil.which("lagrange-casadi")

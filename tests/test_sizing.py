@@ -36,8 +36,9 @@ def test_every_link_is_safe_and_none_alone_can_be_lighter(scene, sized):
     assert sized.solution.certified
     assert safe(scene, *chosen.values())
     diameters = [profile.dimensions["diameter"] for profile in BARS]
-    assert not any(safe(scene, d, chosen["fore"]) for d in diameters if d < chosen["upper"])
-    assert not any(safe(scene, chosen["upper"], d) for d in diameters if d < chosen["fore"])
+    upper, fore = (max(d for d in diameters if d < chosen[link]) for link in ("upper", "fore"))
+    assert not safe(scene, upper, chosen["fore"])
+    assert not safe(scene, chosen["upper"], fore)
     for one in sized.links:
         assert one.safety == sized.solution.safety(one.link)
         assert one.mass == pytest.approx(
@@ -165,7 +166,7 @@ def test_a_bad_line_is_named(here, text, says):
 
 
 def test_a_table_that_is_not_there(here):
-    with pytest.raises(PathError, match=r"bars\.csv: cannot be read as text: "):
+    with pytest.raises(PathError, match=r"bars\.csv: no such file"):
         read_profiles("bars.csv")
     (here / "bars.csv").write_bytes(b"\xff\xfe\x00name")
     with pytest.raises(PathError, match="cannot be read as text"):

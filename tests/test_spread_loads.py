@@ -20,7 +20,7 @@ from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.judge.certificate import certify
 
-pytestmark = pytest.mark.quick
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
 LENGTH = 3.0
 

@@ -1,7 +1,8 @@
-"""The program where its standard streams are closed, broken or full: it does its work, and nothing goes into its files."""
+"""The program: as a module; where its streams are closed, broken or full it does its work, and nothing goes into its files."""
 
 import os
 import shlex
+import shutil
 import subprocess
 import sys
 
@@ -110,3 +111,10 @@ def test_what_a_case_raises_later_is_one_line(here, tmp_path_factory, capfd, rai
     assert err.endswith(": gone\n")
     assert err.count("\n") == 1
     assert not list(here.iterdir())
+
+
+def test_the_module_runs_as_a_program():
+    command = [sys.executable, "-m", "lagrange_casadi", "--version"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("lagrange-casadi, version")
+    assert shutil.which("lagrange-casadi")

@@ -103,7 +103,7 @@ def test_mistakes():
 
 def test_the_command_ranks_and_writes(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
-    asked = ["tolerances", str(CASES / "slider_crank"), "--want", "effort", "--want", "section:rod", "--samples", "100"]
+    asked = ["tolerances", str(CASES / "slider_crank"), "--want", "effort,section:rod", "--samples", "100"]
     assert main([*asked, "--tolerance", "l=0.1mm", "--tolerance", "m3=1%", "--csv", "x.csv"]) == 0
     out, err = capfd.readouterr()
     assert err == ""

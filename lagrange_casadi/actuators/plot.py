@@ -7,20 +7,18 @@ from pathlib import Path
 
 import numpy as np
 
+from ..draw.pictures import PICTURES, save
 from ..errors import DeclarationError
 from ..system.publish import check_writable, writing
 from .catalogue import Motor
 from .duty import Duty
 
-_PICTURES: dict[str, dict[str, None]] = {".png": {"Software": None}, ".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
-"""What pictures end in, and what they must not hold, so that the same duty gives the same bytes."""
-
 
 def check_picture(path: str | Path) -> None:
     """Raise :class:`.DeclarationError` for a name that ends in none of .png, .pdf and .svg, and :class:`.PathError`."""
     target = Path(path)
-    if target.suffix not in _PICTURES:
-        raise DeclarationError(f"{target}: expected a name that ends in {', '.join(_PICTURES)}")
+    if target.suffix not in PICTURES:
+        raise DeclarationError(f"{target}: expected a name that ends in {', '.join(PICTURES)}")
     check_writable(target)
 
 
@@ -31,7 +29,6 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
     """
     check_picture(path)
     target = Path(path)
-    from matplotlib import rc_context
     from matplotlib.figure import Figure
 
     turns = 1.0 if duty.linear else 60.0 / math.tau
@@ -48,5 +45,5 @@ def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
     axes.set(xlabel=speed, ylabel=pull, xlim=(0, None), ylim=(0, None))
     axes.grid(True, color="0.92")
     figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
-    with writing(target) as (file,), rc_context({"svg.hashsalt": "duty"}):
-        figure.savefig(file, format=target.suffix.removeprefix("."), dpi=150, metadata=_PICTURES[target.suffix])
+    with writing(target) as (file,):
+        save(figure, file, target.suffix)

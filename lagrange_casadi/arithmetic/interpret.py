@@ -33,6 +33,10 @@ class Step:
     looked_up: Lookup | None = None
 
 
+REMAINDERS = {ca.OP_FMOD, ca.OP_REMAINDER}
+"""Operations that take whole multiples of their second operand from the first."""
+
+
 @dataclass(frozen=True, eq=False)
 class Arithmetic:
     """``constant`` makes a number of a double; ``operations`` are functions of one or two numbers by CasADi's ``OP_`` code.

@@ -18,7 +18,7 @@ from ..judge.certificate import failure
 from ..store.runs import load
 from ..store.untrusted import told_as
 from ..system.publish import check_writable
-from .options import EVEN_POINTS, even_points, parameters, setting
+from .options import instants, parameters, settings_by
 from .options import over as by_drive
 
 _FILES = (".h5", ".hdf5")
@@ -39,10 +39,8 @@ _PLAIN = Film()
 @click.option("--width", type=int, default=_PLAIN.width, show_default=True, metavar="PIXELS", help="Width of the picture.")
 @click.option("--rate", type=float, default=_PLAIN.rate, show_default=True, metavar="NUMBER", help="Frames a second.")
 @click.option("--seconds", type=float, default=_PLAIN.seconds, show_default=True, metavar="NUMBER", help="What a cycle takes.")
-@click.option(
-    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Of a case: give a parameter another value."
-)
-@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Of a case: instants [s]; default: its own.")
+@settings_by("Of a case: give a parameter another value.")
+@instants("Of a case: instants [s]; default: its own.")
 @by_drive
 def animate(
     target: Path,

@@ -21,7 +21,7 @@ from ..evaluate import evaluate
 from ..instants.solution import Solution
 from ..judge.certificate import failure, summary
 from ..system.numerals import real
-from .options import EVEN_POINTS, even_points, parameters, separated, setting
+from .options import instants, parameters, separated, settings_by
 from .options import over as by_drive
 
 _BAR = 40
@@ -57,10 +57,8 @@ def _ratios(context: click.Context, option: click.Parameter, words: Sequence[str
 @click.option("--lead", type=float, metavar="LENGTH", help="Of a drive that slides by a screw or belt: its way in a turn [m].")
 @click.option("--efficiency", type=float, default=1.0, show_default=True, metavar="SHARE", help="That of the gearbox.")
 @click.option("--inertia", type=float, default=0.0, metavar="NUMBER", help="What turns with the motor's shaft [kg m^2].")
-@click.option(
-    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
-)
-@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s], over a whole cycle; default: the case's.")
+@settings_by()
+@instants("Instants [s], over a whole cycle; default: the case's.")
 @by_drive
 @click.option("--plot", type=click.Path(path_type=Path), metavar="FILE.png", help="Draw torque over speed; also .pdf, .svg.")
 def drive_command(

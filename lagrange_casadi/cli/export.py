@@ -11,23 +11,15 @@ import click
 from ..arithmetic.compensated import Precision
 from ..case import load_case
 from ..export import export as write
-from .options import arithmetic, parameters, separated, setting
+from .options import arithmetic, parameters, settings_by, wanted
 
 
 @click.command()
 @click.argument("case", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), required=True, metavar="DIR", help="The folder to write.")
 @click.option("--name", metavar="NAME", help="What it is called in C; default: the case's name.")
-@click.option(
-    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another default; repeatable."
-)
-@click.option(
-    "--want",
-    multiple=True,
-    callback=separated,
-    metavar="OUTPUT",
-    help="effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; repeatable.",
-)
+@settings_by("Give a parameter another default; repeatable.")
+@wanted()
 @arithmetic
 @click.option(
     "--largest", type=click.IntRange(0), metavar="BYTES", help="Most bytes of a table; default: 16 MB, in single precision 64 kB."

@@ -13,17 +13,18 @@ from tqdm import tqdm
 from ..case import load_case
 from ..declare.angles import typed
 from ..declare.even_points import EvenPoints
+from ..draw.pictures import PICTURES
 from ..errors import DeclarationError
 from ..instants.rung import BACKENDS, Backend
 from ..optimise import Front, Optimum
 from ..optimise import optimise as search
-from ..optimise.figure import PICTURES, draw_optimum
+from ..optimise.figure import draw_optimum
 from ..optimise.front import POINTS
 from ..optimise.front_figure import draw_front
 from ..system.numerals import real
 from ..system.publish import check_writable, writing
 from .optimum_lines import front_lines, optimum_lines
-from .options import EVEN_POINTS, even_points, parameters, setting
+from .options import instants, parameters, settings_by
 
 _BOUNDS = "NAME=LEAST:LARGEST"
 
@@ -61,10 +62,8 @@ def _bounds(text: str) -> tuple[str, tuple[float, float]]:
 @click.option(
     "--transmission", type=float, default=0.05, show_default=True, metavar="SINE", help="Least sine of transmission angles."
 )
-@click.option(
-    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give another parameter a value; repeatable."
-)
-@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@settings_by("Give another parameter a value; repeatable.")
+@instants()
 @click.option("--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="What evaluates designs.")
 @click.option("--dask", metavar="ADDRESS", help="Search on a cluster: its Dask scheduler, as tcp://HOST:8786.")
 @click.option("--resume", is_flag=True, help="Go on with a search that was stopped; start where there is nothing.")

@@ -149,6 +149,24 @@ _NEWTON = click.option(
 _TABLE = click.option("--table", type=table, metavar="NODES|ACCURACY", help="Read outputs from a table over a turn.")
 _FLAGS = click.option("--flags", default="", metavar="FLAGS", help="Further flags of the compiler, as one word.")
 
+Option = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+def settings_by(says: str = "Give a parameter another value; repeatable.") -> Option:
+    """Values of parameters: ``settings``, to be read by :func:`parameters`."""
+    return click.option("--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help=says)
+
+
+def instants(says: str = "Instants [s]; default: the case's.") -> Option:
+    """Instants by their times: ``t``."""
+    return click.option("--t", type=even_points, metavar=EVEN_POINTS, help=says)
+
+
+def wanted(says: str = "effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; repeatable.") -> Option:
+    """Names of outputs: ``want``."""
+    return click.option("--want", multiple=True, callback=separated, metavar="OUTPUT", help=says)
+
+
 over = click.option(
     "--over",
     type=steps_over,

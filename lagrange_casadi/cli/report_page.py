@@ -23,7 +23,7 @@ from ..store.untrusted import told_as
 from ..sweep import Sweep, is_sweep
 from ..sweep.page import is_of, write_sweep_report
 from ..system.publish import check_writable
-from .options import EVEN_POINTS, even_points, parameters, separated, setting
+from .options import instants, parameters, settings_by, wanted
 from .options import over as by_drive
 
 _FILES = (".h5", ".hdf5")
@@ -33,18 +33,10 @@ _UNSHOWN = "cannot be shown"
 @click.command()
 @click.argument("target", metavar="FILE.h5|CASE", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), metavar="REPORT.html", help="The page; default: <name>.html here.")
-@click.option(
-    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Of a case: give a parameter another value."
-)
-@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Of a case: instants [s]; default: its own.")
+@settings_by("Of a case: give a parameter another value.")
+@instants("Of a case: instants [s]; default: its own.")
 @by_drive
-@click.option(
-    "--want",
-    multiple=True,
-    callback=separated,
-    metavar="OUTPUT",
-    help="Of a case: what is shown besides motion; default: what it wants.",
-)
+@wanted("Of a case: what is shown besides motion; default: what it wants.")
 @click.option(
     "--live", is_flag=True, help="Of a case: put the engine into the page, with sliders for the parameters; needs ziglang."
 )

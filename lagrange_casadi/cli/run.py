@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
@@ -15,12 +15,14 @@ from ..arithmetic.compensated import Precision
 from ..case import load_case
 from ..declare import turned
 from ..declare.even_points import EvenPoints
-from ..declare.times import Over
+from ..declare.scene import Scene
+from ..declare.times import Over, Timing
 from ..draw.kept import dump_specs
 from ..errors import CertificateError
 from ..evaluate import evaluate
 from ..instants.frames import TIME, columns
 from ..instants.rung import Backend
+from ..instants.solution import Solution
 from ..judge.certificate import failure, summary
 from ..store.runs import check_target, save
 from ..study.peaks import forces, refine, resultants
@@ -29,7 +31,7 @@ from ..system.room import MOST_THREADS
 from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
 from .elastic_lines import elastic_lines
-from .options import EVEN_POINTS, even_points, parameters, rung, separated, setting
+from .options import EVEN_POINTS, even_points, instants, parameters, rung, settings_by, wanted
 from .options import over as by_drive
 from .replaced import figures_in, replaced_lines
 from .report import report_lines
@@ -40,19 +42,11 @@ from .strength_lines import strength_lines
 
 @click.command()
 @click.argument("case", type=click.Path(path_type=Path))
-@click.option(
-    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
-)
-@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@settings_by()
+@instants()
 @by_drive
 @click.option("--xi", type=even_points, metavar=EVEN_POINTS, help="Section ratios xi/l, within 0 and 1; default: the case's.")
-@click.option(
-    "--want",
-    multiple=True,
-    callback=separated,
-    metavar="OUTPUT",
-    help="effort, reaction:JOINT, section:LINK, motion, sensitivity:PARAMETER, a kind such as section, or all; repeatable.",
-)
+@wanted("effort, reaction:JOINT, section:LINK, motion, sensitivity:PARAMETER, a kind such as section, or all; repeatable.")
 @rung
 @click.option("--threads", type=click.IntRange(1, MOST_THREADS), metavar="N", help="Threads; default: one a core.")
 @click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>.h5 here.")
@@ -91,15 +85,7 @@ def run(
     loaded = load_case(case)
     out = out or Path(f"{loaded.name}.h5")
     folder = None if no_figures else figures or Path(f"{loaded.name}_figures")
-    check_target(out)
-    if folder:
-        if os.path.realpath(folder) == os.path.realpath(out):
-            raise click.UsageError(f"--figures {folder}: expected another place than the file's")
-        check_writable(folder, folder=True)
-    if csv:
-        if os.path.realpath(csv) in [os.path.realpath(other) for other in (out, folder) if other]:
-            raise click.UsageError(f"--csv {csv}: expected another place than the file's and the figures'")
-        check_writable(csv)
+    _check_places(out, folder, csv)
     solution = evaluate(
         loaded.scene,
         parameters=parameters(settings),
@@ -128,21 +114,8 @@ def run(
     if csv:
         write_csv([TIME, *(heads := columns(solution))], rows_of([solution.t, *heads.values()]), csv)
     say = partial(click.echo, err=csv is not None and is_standard_output(csv))
-    what = "peaks, refined between the instants" if refine_peaks else "peaks"
-    backend_used = solution.provenance.backend
-    say(f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {backend_used}; {what}:")
-    names = [*forces(solution), *resultants(solution)]
-    for line in report_lines(solution, refine(loaded.scene, solution, names) if refine_peaks else ()):
+    for line in _report(loaded.scene, solution, want or loaded.scene.wanted, loaded.scene.timing(t, over), backend, refine_peaks):
         say(line)
-    for line in slope_lines(solution, loaded.scene, backend):
-        say(line)
-    asked = (solution, loaded.scene.mechanism, want or loaded.scene.wanted)
-    for line in (*strength_lines(*asked, loaded.scene if refine_peaks else None), *elastic_lines(*asked)):
-        say(line)
-    told = np.array([[parameter["value"] for parameter in solution.description["parameters"].values()]])
-    for note in (*solution.notes, turned.note(loaded.scene, loaded.scene.timing(t, over), told)):
-        if note:
-            say(f"note: {note}")
     if not no_certificate:
         say(summary(solution.certificate))
     for line in replaced_lines(out, replaced, place, before if replaced else before & drawn, drawn):
@@ -150,3 +123,32 @@ def run(
     say(f"wrote {out}" + (f" and the figures in {folder}/" if folder else "") + (f", and {csv}" if csv else ""))
     if solution.failed:
         raise CertificateError(f"{failure(solution)}; {out} is marked as not certified")
+
+
+def _check_places(out: Path, folder: Path | None, csv: Path | None) -> None:
+    """Raise ``click.UsageError`` for places that are the same, and what says that one cannot be written."""
+    check_target(out)
+    if folder:
+        if os.path.realpath(folder) == os.path.realpath(out):
+            raise click.UsageError(f"--figures {folder}: expected another place than the file's")
+        check_writable(folder, folder=True)
+    if csv:
+        if os.path.realpath(csv) in [os.path.realpath(other) for other in (out, folder) if other]:
+            raise click.UsageError(f"--csv {csv}: expected another place than the file's and the figures'")
+        check_writable(csv)
+
+
+def _report(
+    scene: Scene, solution: Solution, want: Sequence[str], timing: Timing, backend: Backend, refined: bool
+) -> Iterator[str]:
+    """Peaks, slopes, strength and what elasticity tells, in lines; and notes."""
+    what = "peaks, refined between the instants" if refined else "peaks"
+    used = solution.provenance.backend
+    yield f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {used}; {what}:"
+    names = [*forces(solution), *resultants(solution)]
+    yield from report_lines(solution, refine(scene, solution, names) if refined else ())
+    yield from slope_lines(solution, scene, backend)
+    yield from strength_lines(solution, scene.mechanism, want, scene if refined else None)
+    yield from elastic_lines(solution, scene.mechanism, want)
+    told = np.array([[parameter["value"] for parameter in solution.description["parameters"].values()]])
+    yield from (f"note: {note}" for note in (*solution.notes, turned.note(scene, timing, told)) if note)

@@ -17,7 +17,7 @@ from ..strength.fatigue import CRITERIA
 from ..strength.stress import KINDS
 from ..study.sizing import Sized, size
 from ..system.numerals import real
-from .options import EVEN_POINTS, even_points, parameters, setting
+from .options import instants, parameters, settings_by
 from .options import over as by_drive
 from .strength_lines import safety_lines, told
 
@@ -57,10 +57,8 @@ def share(text: str) -> float:
     show_default=True,
     help="The stress that yields.",
 )
-@click.option(
-    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
-)
-@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@settings_by()
+@instants()
 @by_drive
 def size_command(
     case: Path,

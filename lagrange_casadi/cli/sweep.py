@@ -20,7 +20,7 @@ from ..sweep import sweep as carry_out
 from ..sweep.axes import counted, grouped
 from ..sweep.turning import turning_note
 from ..system.room import MOST_THREADS
-from .options import AXIS, EVEN_POINTS, axis, even_points, parameters, separated, setting, untabled_rung
+from .options import AXIS, EVEN_POINTS, axis, even_points, instants, parameters, settings_by, untabled_rung, wanted
 from .options import over as by_drive
 from .progress import shown
 
@@ -36,26 +36,13 @@ from .progress import shown
     metavar="FILE.csv",
     help="Sweep a list: a line of names, then one line for each design.",
 )
-@click.option(
-    "--set",
-    "settings",
-    type=setting,
-    metavar="NAME=VALUE",
-    multiple=True,
-    help="Give a parameter that is not swept another value; repeatable.",
-)
-@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@settings_by("Give a parameter that is not swept another value; repeatable.")
+@instants()
 @by_drive
 @click.option(
     "--xi", type=even_points, metavar=EVEN_POINTS, help="Keep section forces at these ratios xi/l too, each the largest over time."
 )
-@click.option(
-    "--want",
-    multiple=True,
-    callback=separated,
-    metavar="OUTPUT",
-    help="An output that info CASE lists; all leaves out the motion; repeatable.",
-)
+@wanted("An output that info CASE lists; all leaves out the motion; repeatable.")
 @click.option(
     "--keep",
     type=click.Choice(KEEPS),

@@ -18,7 +18,7 @@ from ..instants.rung import BACKENDS, Backend
 from ..study.tolerances import SAMPLES, Spreads
 from ..study.tolerances import tolerances as spreads_of
 from ..system.publish import check_writable, writing
-from .options import EVEN_POINTS, even_points, parameters, setting
+from .options import instants, parameters, settings_by, wanted
 from .options import over as by_drive
 
 _FEW = 3
@@ -38,12 +38,10 @@ def _tolerance(text: str) -> tuple[str, str]:
 @click.option(
     "--tolerance", "within", type=_tolerance, multiple=True, required=True, metavar="NAME=VALUE", help="Plus or minus; repeatable."
 )
-@click.option(
-    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
-)
-@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@settings_by()
+@instants()
 @by_drive
-@click.option("--want", multiple=True, metavar="OUTPUT", help="As in run; default: the case's; repeatable.")
+@wanted("As in run; default: the case's; repeatable.")
 @click.option("--samples", type=int, default=SAMPLES, show_default=True, metavar="NUMBER", help="Designs drawn at random.")
 @click.option("--backend", type=click.Choice(BACKENDS), default="auto", show_default=True, help="What evaluates designs.")
 @click.option("--csv", "out", type=click.Path(path_type=Path), metavar="FILE.csv", help="All peaks, a row each.")

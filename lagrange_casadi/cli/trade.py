@@ -12,30 +12,23 @@ from tqdm import tqdm
 from ..case import load_case
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
-from ..draw.trade_plot import PICTURES, draw_trade
+from ..draw.pictures import PICTURES
+from ..draw.trade_plot import draw_trade
 from ..errors import DeclarationError
 from ..instants.rung import Rung
 from ..study.trade import RUNGS, Trade
 from ..study.trade import trade as measure
 from ..system.publish import check_writable, writing
-from .options import EVEN_POINTS, even_points, parameters, separated, setting
+from .options import instants, parameters, settings_by, wanted
 from .options import over as by_drive
 
 
 @click.command()
 @click.argument("case", type=click.Path(path_type=Path))
-@click.option(
-    "--set", "settings", type=setting, metavar="NAME=VALUE", multiple=True, help="Give a parameter another value; repeatable."
-)
-@click.option("--t", type=even_points, metavar=EVEN_POINTS, help="Instants [s]; default: the case's.")
+@settings_by()
+@instants()
 @by_drive
-@click.option(
-    "--want",
-    multiple=True,
-    callback=separated,
-    metavar="OUTPUT",
-    help="effort, reaction:JOINT, section:LINK, motion, a kind such as section, or all; repeatable.",
-)
+@wanted()
 @click.option("--accuracy", type=float, metavar="ERROR", help="Recommend the fastest method within this error of the peak.")
 @click.option("--out", type=click.Path(path_type=Path), help="The numbers, as JSON; default: <case>_trade.json here.")
 @click.option("--figure", type=click.Path(path_type=Path), help="The picture; default: <case>_trade.png here.")

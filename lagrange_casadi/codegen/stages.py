@@ -21,7 +21,7 @@ import casadi as ca
 import numpy as np
 
 from ..arithmetic.compensated import Pair, Pairs, Precision
-from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic
+from ..arithmetic.interpret import REMAINDERS, Arithmetic, followable, interpret, numpy_arithmetic
 from ..arithmetic.lookups import Lookup
 from ..declare.density import Array
 from ..declare.motion import Laws
@@ -146,7 +146,7 @@ def _largest(graph: SceneGraph, instants: tuple[float, ...], p: tuple[float, ...
     known = numpy_arithmetic().operations
 
     def measured(code: int, *values: Any) -> Any:
-        if np.ndim(values[0]) and code in _PHASES | _REMAINDERS | {ca.OP_FLOOR}:
+        if np.ndim(values[0]) and code in _PHASES | REMAINDERS | {ca.OP_FLOOR}:
             angles.append(float(np.max(np.abs(values[0]))) * (math.tau if code == ca.OP_FLOOR else 1.0))
         return known[code](*values)
 
@@ -211,7 +211,7 @@ class _Counting:
             return _Value(self._plain(code, values), self.pairs.operations[code](*pairs), fixed=True)
         if code in _FOLLOWED:
             return _Value(pair=self.pairs.operations[code](*pairs))
-        if code in _REMAINDERS:
+        if code in REMAINDERS:
             return _Value(self.settled(_Value(pair=self.pairs.operations[code](*pairs))))
         if code in _PHASES:
             return _Value(ca.SX.unary(code, self._symbol("angle", pairs[0], self.pairs.reduced)))
@@ -243,7 +243,6 @@ class _Counting:
 
 
 _PHASES = {ca.OP_SIN, ca.OP_COS, ca.OP_TAN}
-_REMAINDERS = {ca.OP_FMOD, ca.OP_REMAINDER}
 _FOLLOWED = {
     *(ca.OP_ADD, ca.OP_SUB, ca.OP_NEG, ca.OP_MUL, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV),
     *(ca.OP_INV, ca.OP_SQRT, ca.OP_FABS, ca.OP_FLOOR, ca.OP_CEIL),

@@ -82,6 +82,11 @@ def density_of(body: Description) -> NumericDensity:
     return _density(body["density"])
 
 
+def oriented(description: Description, body: str) -> bool:
+    """Whether a body has a direction, as a point mass has not."""
+    return body == "ground" or description["bodies"][body]["length"] is not None
+
+
 def slices_of(body: Description) -> tuple[float, float, float]:
     """The second moments yy, zz, yz of all slices of a described link [kg m^2]."""
     slices = body["density"].get("slices")

@@ -91,3 +91,8 @@ def unit_vector(what: str, axis: Any, component: Callable[[Any], Expression]) ->
     if norm == 0.0:
         raise DeclarationError(f"{what}: axis must not be (0, 0)")
     return x / norm, y / norm
+
+
+def plain(value: Any) -> Expression:
+    """A number where an expression is one."""
+    return float(value) if isinstance(value, ca.SX) and value.is_constant() else value

@@ -12,11 +12,11 @@ import casadi as ca
 
 from ..errors import DeclarationError
 from ..system.numerals import readable
-from .expressions import check_name, scalar, sound, typed
+from .expressions import check_name, plain, scalar, sound, typed
 from .motion import Motion
 from .parts import Expression
 from .possible import Demand, Evaluator
-from .rest_laws import Limits, RestLaw, plain, rest_law, s_curve_within, trapezoid_within
+from .rest_laws import Limits, RestLaw, rest_law, s_curve_within, trapezoid_within
 from .stretches import Stretch
 
 _FORGIVEN = 1e-9

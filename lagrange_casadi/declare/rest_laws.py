@@ -15,6 +15,7 @@ from typing import Any
 import casadi as ca
 
 from ..errors import DeclarationError, UnknownNameError
+from .expressions import plain
 from .parts import Expression
 
 _CUBE = 1.0 / 3.0
@@ -251,8 +252,3 @@ def rest_law(what: str, law: object) -> RestLaw:
     if law not in _LAWS:
         raise UnknownNameError("law", law, LAWS, place=what)
     return _LAWS[law]
-
-
-def plain(value: Any) -> Expression:
-    """A number where an expression is one."""
-    return float(value) if isinstance(value, ca.SX) and value.is_constant() else value

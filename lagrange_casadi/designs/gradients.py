@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.density import Array, Density
-from ..instants.signals import SectionForce
+from ..declare.density import Array
+from ..instants.signals import section_forces
 from ..instants.sizes import size_of
 from ..instants.statistics import shares
 from ..quantities import Output
@@ -92,19 +92,12 @@ def tied(
     values = dict(zip(mechanism.parameters, p.tolist(), strict=True))
     nowhere = np.full(instants.size, np.nan)
 
-    def number(expression: Any) -> float:
-        return mechanism.number(expression, values)
-
     def curves(k: int) -> Sequence[Curve]:
         quantity = slopes.points.quantities[k]
         if quantity.group != "section":
             parts = [series[rows[part]] for part in quantity.components(table) if part in rows]
             return [(nowhere, parts[0] if len(parts) == 1 else size_of(parts))]
-        link = mechanism.links[quantity.part]
-        assert isinstance(link.mass, Density)
-        length = number(link.length)
-        own = {output: row for output, row in rows.items() if output.along and output.part == link.name}
-        force = SectionForce(quantity.member, link.name, own, length, link.mass.at(number, length))
+        force = section_forces(mechanism, quantity.part, rows, values)[quantity.member]
         return list(zip(*force.curves(series), strict=True))
 
     chosen, ends = np.arange(value.size, dtype=np.intc), _ends(slopes, times, instants, p)

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from ..declare.density import Array, Density, NumericDensity
-from ..declare.mechanism import Mechanism
+from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import Evaluated, run
 from ..instants.determinacy import undetermined
 from ..instants.refusal import Status, refusal, resting
 from ..instants.rung import Rung
-from ..instants.signals import Quantity, SectionForce, Signals
-from ..tables import table_of
+from ..instants.signals import Quantity, Signals, section_forces
 from .reduction import KeptOutputs
 
 
@@ -85,28 +82,7 @@ def _signals(
 ) -> Signals:
     """Some quantities that are kept of a design, as curves over time."""
     mechanism, reduction = graph.scene.mechanism, kept.reduction
-    table = table_of(mechanism.space)
-    columns = [{o: k for o, k in graph.outputs.items() if o.along and o.part == link} for link in kept.links]
-    matter = _matter(kept, mechanism, dict(zip(mechanism.parameters, p.tolist(), strict=True)))
-    sections = [
-        SectionForce(force, link, own, length, density)
-        for link, own, (length, density) in zip(kept.links, columns, matter, strict=True)
-        for force in table.forces
-    ]
+    values = dict(zip(mechanism.parameters, p.tolist(), strict=True))
+    sections = [one for link in kept.links for one in section_forces(mechanism, link, graph.outputs, values).values()]
     quantities: list[Quantity] = [*reduction.quantities, *sections]
     return Signals(graph, evaluated.stages, kept.sharpness, [quantities[k] for k in some], t, p, evaluated.iterated, newton)
-
-
-def _matter(kept: KeptOutputs, mechanism: Mechanism, values: Mapping[str, float]) -> list[tuple[float, NumericDensity]]:
-    """Lengths and densities of the links that have section forces."""
-
-    def number(expression: Any) -> float:
-        return mechanism.number(expression, values)
-
-    links = [mechanism.links[name] for name in kept.links]
-    lengths = [number(link.length) for link in links]
-    return [
-        (length, link.mass.at(number, length))
-        for link, length in zip(links, lengths, strict=True)
-        if isinstance(link.mass, Density)
-    ]

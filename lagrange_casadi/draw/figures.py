@@ -20,6 +20,7 @@ from ..errors import DeclarationError, UnknownNameError
 from ..instants.solution import Peak, Solution
 from ..quantities import Output
 from ..tables import PLANE, SPACE
+from .pictures import save
 from .readable import scale_for
 from .views import AZIMUTH, ELEVATION
 
@@ -324,8 +325,7 @@ def draw(solution: Solution, specs: Sequence[Spec], folder: Path, si: bool = Fal
             yield spec, None
             continue
         path = folder / f"{spec.name}.png"
-        # No program's name and no clock, so that the same solution gives the same bytes.
-        spec.draw(solution, si).savefig(path, dpi=120, metadata={"Software": None})
+        save(spec.draw(solution, si), path, dpi=120)
         yield spec, path
 
 

@@ -11,6 +11,7 @@ from ..declare.scene import Scene
 from ..errors import AssemblyError, PostureError
 from ..evaluate import evaluate
 from ..instants.solution import Solution
+from .pictures import draw_into, save
 
 _MOST, _LARGE = 8, 40
 """How many ways are drawn, and of how many bodies a mechanism may be: each way is derived."""
@@ -23,9 +24,6 @@ def draw_postures(scene: Scene, file: BinaryIO) -> int:
     """
     from matplotlib.figure import Figure
 
-    from . import drawing, space_drawing
-
-    draw_into = space_drawing.draw_into if scene.mechanism.space else drawing.draw_into
     found = list(assemblies(scene)) if len(scene.mechanism.moving) <= _LARGE else []
     if not found:
         return 0
@@ -39,7 +37,7 @@ def draw_postures(scene: Scene, file: BinaryIO) -> int:
     for axes in panels[len(found) :]:
         axes.set_axis_off()
     figure.suptitle(f"{scene.mechanism.name} at t = {scene.t[0]:g} s", fontsize=11)
-    figure.savefig(file, format="png", dpi=110, metadata={"Software": None})
+    save(figure, file, dpi=110)
     return len(found)
 
 

@@ -89,9 +89,9 @@ def draw_in_space(solution: Solution, count: int, azimuth: float, elevation: flo
     return figure
 
 
-def draw_into(axes: Any, solution: Solution, azimuth: float = AZIMUTH, elevation: float = ELEVATION) -> None:
+def draw_into(axes: Any, solution: Solution) -> None:
     """The mechanism at its first instant, into axes of a figure, from one side."""
-    one = view(upright(solution.description["gravity"]), azimuth, elevation)
+    one = view(upright(solution.description["gravity"]), AZIMUTH, ELEVATION)
     now, cloud = solution.during(slice(0, 1)), cloud_of(solution)
     size, flat = _size(cloud), one.on_page(cloud)
     low, high = flat.min(axis=0) - 0.14 * size, flat.max(axis=0) + 0.14 * size

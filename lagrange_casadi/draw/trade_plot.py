@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import BinaryIO
 
 from ..study.trade import Trade
-
-PICTURES = (".png", ".pdf", ".svg")
-"""Kinds of pictures, by the name's ending."""
+from .pictures import save
 
 _OFFSETS = ((0, 6), (0, -14), (0, 17), (0, -25))
 _LEAST = 1e-17
@@ -37,4 +35,4 @@ def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
     for line, (text, colour) in enumerate(words):
         key.text(0.0, 0.98 - line / max(len(words), 20), text, va="top", fontsize=9, color=colour, family="monospace")
     key.set_title("red: nothing is faster and more accurate", fontsize=9, color="tab:red", loc="left")
-    figure.savefig(file, format=ending.removeprefix("."), dpi=150)
+    save(figure, file, ending)

@@ -12,11 +12,11 @@ from ..declare.density import Array
 from ..declare.scene import Wanted
 from ..instants.laws import law_of
 from ..instants.solution import Solution
+from ..judge.accuracy import ALONG, most
 from ..quantities import Output
 from ..tables import FORCE, MOMENT
 from .least_energy import Completed
 
-_ALONG = np.linspace(0.0, 1.0, 5)
 _ROUNDINGS = 8.0
 
 
@@ -32,21 +32,21 @@ def told_errors(
     part = _ROUNDINGS * ROUNDING["double"]
     for unit in (FORCE, MOMENT):
         own = [output for output in before if output in errors and output.quantity.unit == unit]
-        size, worst = max(map(_largest, (before[o] for o in own)), default=0.0), max((errors[o] for o in own), default=0.0)
+        size, worst = max(map(most, (before[o] for o in own)), default=0.0), max((errors[o] for o in own), default=0.0)
         part = max(part, worst / size if size > 0.0 else 0.0)
     part *= 2.0 * done.magnified  # the equilibrium is off, and so is what is put to it
     found = dict(errors)
     for output in done.told:
         if output in found:
-            found[output] += part * _largest(solution.outputs[output] - before[output])
+            found[output] += part * most(solution.outputs[output] - before[output])
     for link in solution.links_with_sections:
         law = solution.section(link).law
         old = law_of(link, before, law.length, law.density)
-        u = np.broadcast_to(_ALONG, (solution.t.size, _ALONG.size))
+        u = np.broadcast_to(ALONG, (solution.t.size, ALONG.size))
         for force in solution.table.forces:
             output = Output("section", link, force)
             if output in found:
-                found[output] += part * max(_largest(law.at(force, u, side) - old.at(force, u, side)) for side in ("base", "tip"))
+                found[output] += part * max(most(law.at(force, u, side) - old.at(force, u, side)) for side in ("base", "tip"))
     return found
 
 
@@ -84,7 +84,3 @@ def _wanted(output: Output, want: Wanted) -> bool:
         "deflection": want.bent,
     }
     return output.part in parts[output.group]
-
-
-def _largest(values: Array) -> float:
-    return float(np.fmax.reduce(np.abs(values), axis=None, initial=0.0))

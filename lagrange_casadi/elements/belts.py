@@ -14,10 +14,8 @@ Source: J. E. Shigley, C. R. Mischke, *Mechanical Engineering Design*, chapter 1
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import casadi as ca
 
@@ -27,6 +25,7 @@ from ..declare.parts import Body, Constraint, Expression, Point
 from ..errors import DeclarationError
 from ..geometry.vectors import cross, dot, minus, times
 from .courses import Numbers, along, courses_on, fits_of, length
+from .pitch import root
 from .ranges import positive, share
 
 
@@ -98,7 +97,7 @@ def belt(
     # The sine of the angle between a strand and the line of the centres, where the strands lead apart.
     lean = (-(r1 + r2) if crossed else r2 - r1) / distance
     across = times(-lean, cross(u, e))
-    both = times(_root(1 - lean * lean), e)
+    both = times(root(1 - lean * lean), e)
     mesh = Mesh(*ends, one.carrier, one.place, away, Wrench(across, times(r1, u)), Wrench(both))
     sense = 1 if (numbers.of(dot(u, v)) > 0.0) != crossed else -1
     other = -sense * r2
@@ -123,7 +122,3 @@ def belt(
         rate = sum((sign * mechanism.rate(joint) for sign, joint in loss.turns), ca.SX(0))
         mechanism.output(f"{name}_loss", 2 * r1 * loss.arm * force * ca.fabs(rate), unit="W")
     return Belt(constraint, -(r1 / other))
-
-
-def _root(value: Any) -> Any:
-    return ca.sqrt(value) if isinstance(value, ca.SX) else math.sqrt(value)

@@ -116,7 +116,7 @@ def _bevel(what: str, numbers: Numbers, first: Course, second: Course, teeth: Te
     far2 = (dot(away, v) - slope * dot(away, u)) / steep
     one, two = (_sign(numbers, far) for far in (far1, far2))
     w1, w2, cosine = times(one, u), times(two, v), one * two * slope
-    sine = _root(1 - cosine * cosine)
+    sine = root(1 - cosine * cosine)
     heights = (r2 + r1 * cosine) / sine, (r1 + r2 * cosine) / sine
     fits = []
     for number, (far, height) in enumerate(zip((one * far1, two * far2), heights, strict=True), 1):
@@ -129,7 +129,7 @@ def _bevel(what: str, numbers: Numbers, first: Course, second: Course, teeth: Te
     fits.append(Fit("the axes of its gears are {got} m apart; expected {meant} m", dot(away, cross(u, v)) / sine, 0.0, r1 + r2))
     e = along(minus(w2, times(cosine, w1)), sine)
     t = cross(u, e)
-    slant = _root(heights[0] * heights[0] + r1 * r1)
+    slant = root(heights[0] * heights[0] + r1 * r1)
     generator = along(plus(times(heights[0], w1), times(r1, e)), slant)
     force = minus(t, times(_tan(teeth.helix) * one, generator))
     size = _tan(teeth.pressure) / _cos(teeth.helix)
@@ -165,7 +165,7 @@ def _crossed(what: str, numbers: Numbers, first: Course, second: Course, teeth: 
     way = 1 if right[0] == teeth.right else -1
     lean = leans[0] if way == 1 else leans[1]
     force = plus(t, times(lean, u))
-    apart = times(-(_tan(teeth.pressure) * _root(1 + lean * lean)), e)
+    apart = times(-(_tan(teeth.pressure) * root(1 + lean * lean)), e)
     other = way * teeth.ratio * r1
     sliding = minus(times(r1, t), times(r1 * r2 / other, cross(v, e)))
     return Pitch("crossed", times(r1, e), force, apart, away, other, e, u, sliding, tuple(fits))
@@ -206,7 +206,8 @@ def _sign(numbers: Numbers, value: Expression) -> int:
     return 1 if numbers.of(value) > 0.0 else -1
 
 
-def _root(value: Any) -> Any:
+def root(value: Any) -> Any:
+    """The square root of a number or an expression."""
     return ca.sqrt(value) if isinstance(value, ca.SX) else math.sqrt(value)
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..declare.expressions import plain
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression, Link, Point
 from ..errors import DeclarationError
@@ -68,7 +69,7 @@ def plate(
     farthest = ca.SX(0)
     for corner in places:
         farthest = ca.fmax(farthest, ca.sqrt(ca.SX(corner[0]) ** 2 + ca.SX(corner[1]) ** 2))
-    link = mechanism.link(name, length=_plain(farthest), mass=_plain(whole), centre=(x, y), inertia=_plain(whole * second))
+    link = mechanism.link(name, length=plain(farthest), mass=plain(whole), centre=(x, y), inertia=plain(whole * second))
     link = replace(link, outline=tuple(places))
     mechanism.bodies[name] = link
     return Plate(link, tuple(link.at(*corner) for corner in places))
@@ -91,10 +92,6 @@ def area_of(places: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
         return 0.0, x0, y0, 0.0
     x, y = first_x / area, first_y / area
     return area, x0 + x, y0 + y, second / area - x * x - y * y
-
-
-def _plain(value: Any) -> Expression:
-    return float(value) if isinstance(value, ca.SX) and value.is_constant() else value
 
 
 def _refuse_crossing(what: str, places: Sequence[Any]) -> None:

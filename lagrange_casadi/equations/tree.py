@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import NoReturn
 
 from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
@@ -86,28 +87,10 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
         depth[best.far.body] = depth[best.near.body] + 1
         branches.append(best)
         waiting.remove(best.joint)
-    lying = {bar.link for bar in bars}
-    for body in mechanism.moving:
-        if body not in depth and mechanism.space and body not in lying:
-            raise DeclarationError(
-                f"'{body.name}' hangs on bars alone; declare a free() joint from the ground to it, which holds nothing"
-            )
-        if body not in depth and body not in lying:
-            raise DeclarationError(
-                f"link '{body.name}' only slides on a point; pin it to a point mass (of mass 0 if need be) that slides in its stead"
-            )
+    _refuse_unplaced(mechanism, depth, bars)
     for joint in waiting:
         if joint.name in driven:
-            if follow := [c for one in _around(joint, branches) for c in _coordinates(one) if mechanism.space and c not in given]:
-                raise DeclarationError(
-                    f"joint '{joint.name}': of every joint of its loop some motion is given, so none is left to close it, and "
-                    f"{', '.join(follow)} cannot follow; give one of them no motion, and say by drives=[...] what bears efforts"
-                )
-            if joint.kind == "slot" and joint.child.body.oriented:
-                raise DeclarationError(f"joint '{joint.name}' cannot be driven: it is a slot, drive another joint of its loop")
-            raise DeclarationError(
-                f"the drive of joint '{joint.name}' is redundant: the motions of the other driven joints already place its bodies"
-            )
+            _refuse_driven(mechanism, joint, branches, given)
         if joint.kind == "screw":
             # Where its bodies are does not tell how often it has turned.
             raise DeclarationError(
@@ -115,6 +98,36 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
                 "itself, or let it go and tie their coordinates by a constraint"
             )
     return Tree(tuple(branches), tuple(waiting), bars)
+
+
+def _refuse_unplaced(mechanism: Mechanism, placed: Collection[Body], bars: Sequence[Bar]) -> None:
+    """Raise :class:`DeclarationError` for a body that neither the tree nor a bar has a place for."""
+    lying = {bar.link for bar in bars}
+    for body in mechanism.moving:
+        if body in placed or body in lying:
+            continue
+        if mechanism.space:
+            raise DeclarationError(
+                f"'{body.name}' hangs on bars alone; declare a free() joint from the ground to it, which holds nothing"
+            )
+        raise DeclarationError(
+            f"link '{body.name}' only slides on a point; pin it to a point mass (of mass 0 if need be) that slides in its stead"
+        )
+
+
+def _refuse_driven(mechanism: Mechanism, joint: Joint, branches: Sequence[Branch], given: Collection[str]) -> NoReturn:
+    """Raise :class:`DeclarationError` for a driven joint that closes a loop; ``given`` are the coordinates that have a motion."""
+    following = [c for one in _around(joint, branches) for c in _coordinates(one) if mechanism.space and c not in given]
+    if following:
+        raise DeclarationError(
+            f"joint '{joint.name}': of every joint of its loop some motion is given, so none is left to close it, and "
+            f"{', '.join(following)} cannot follow; give one of them no motion, and say by drives=[...] what bears efforts"
+        )
+    if joint.kind == "slot" and joint.child.body.oriented:
+        raise DeclarationError(f"joint '{joint.name}' cannot be driven: it is a slot, drive another joint of its loop")
+    raise DeclarationError(
+        f"the drive of joint '{joint.name}' is redundant: the motions of the other driven joints already place its bodies"
+    )
 
 
 def _around(joint: Joint, branches: Sequence[Branch]) -> list[Joint]:

@@ -215,32 +215,22 @@ class Source:
         return "model->parameters" if self.program.sizes["p"] else "0"
 
     def _motion(self) -> Iterable[str]:
-        c, P, sizes = self.contract, self._upper, self.program.sizes
-        smooth, rests = sizes["smooth"], c.rests
-        values = 2 * smooth if rests else smooth
-        moment = "time + time_rest" if rests else "time"
+        c, P, smooth = self.contract, self._upper, self.program.sizes["smooth"]
+        ends = self.program.functions.get("beyond")
         if smooth:
-            yield f"casadi_real at[{1 + rests}], d[{max(1, values)}], rate[{smooth}], acceleration[{smooth}];"
+            values = max(1, 2 * smooth if c.rests else smooth)
+            yield f"casadi_real at[{1 + c.rests}], d[{values}], rate[{smooth}], acceleration[{smooth}];"
             yield "const casadi_real* arg[2];"
             yield "casadi_real* res[3];"
         for k, _ in enumerate(self.program.samples):
             yield f"casadi_real sample_{k}[4];"
-        ends = self.program.functions.get("beyond")
         if ends is not None:
             yield f"casadi_real far[{ends.size1_out(0)}];"
-        yield "if (model->seal != SEAL) {"
-        yield from _spoiled(c, f"{P}_NOT_PREPARED")
-        yield "}"
-        low, high = self.span
-        bad = f"!is_finite({moment})"
-        if math.isfinite(low):
-            bad += f" || {moment} < {self._number(low)} || {moment} > {self._number(high)}"
-        yield f"if ({bad}) {{"
-        yield from _spoiled(c, f"{P}_BAD_TIME")
-        yield "}"
+        yield from self._refused("model->seal != SEAL", "NOT_PREPARED")
+        yield from self._refused(self._untimely(), "BAD_TIME")
         if smooth:
             yield "at[0] = time;"
-            if rests:
+            if c.rests:
                 yield "at[1] = time_rest;"
             yield "arg[0] = at;"
             yield f"arg[1] = {self._p};"
@@ -252,14 +242,34 @@ class Source:
             limit = self._number(BEYOND[self.contract.precision])
             yield "res[0] = far;"
             yield "beyond(arg, res);"
-            yield f"if ({' || '.join(f'!(far[{k}] <= {limit})' for k in range(ends.size1_out(0)))}) {{"
-            yield from _spoiled(c, f"{P}_BAD_TIME")
-            yield "}"
+            yield from self._refused(" || ".join(f"!(far[{k}] <= {limit})" for k in range(ends.size1_out(0))), "BAD_TIME")
         for k, _ in enumerate(self.program.samples):
-            yield f"sample_of_{k}(time, {'time_rest' if rests else '0'}, sample_{k});"
+            yield f"sample_of_{k}(time, {'time_rest' if c.rests else '0'}, sample_{k});"
+        yield from self._driven()
+        yield f"return {P}_OK;"
+
+    def _refused(self, condition: str, status: str) -> Iterable[str]:
+        """Give nothing but a status, where a condition holds."""
+        yield f"if ({condition}) {{"
+        yield from (f"  inputs->{m.name} = nothing;" for m in self.contract.inputs)
+        yield f"  return {self._upper}_{status};"
+        yield "}"
+
+    def _untimely(self) -> str:
+        """Whether a time is none that the motion has."""
+        moment = "time + time_rest" if self.contract.rests else "time"
+        low, high = self.span
+        bad = [f"!is_finite({moment})"]
+        bad += [f"{moment} < {self._number(low)}"] if math.isfinite(low) else []
+        bad += [f"{moment} > {self._number(high)}"] if math.isfinite(high) else []
+        return " || ".join(bad)
+
+    def _driven(self) -> Iterable[str]:
+        """Time, where it counts, and the motion of each drive, put into the inputs."""
+        c, smooth = self.contract, self.program.sizes["smooth"]
         if c.timed:
             yield f"inputs->{c.input_of('time')} = time;"
-            if rests:
+            if c.rests:
                 yield f"inputs->{c.input_of(f'{REST}time')} = time_rest;"
         for drive, place in zip(c.drives, self.program.order, strict=True):
             terms = (
@@ -268,11 +278,10 @@ class Source:
                 else [f"sample_{place - smooth}[{k}]" for k in (0, 3, 1, 2)]
             )
             yield f"inputs->{c.input_of(f'motion:{drive}')} = {terms[0]};"
-            if rests:
+            if c.rests:
                 yield f"inputs->{c.input_of(f'{REST}motion:{drive}')} = {terms[1]};"
             yield f"inputs->{c.input_of(f'motion:{drive}_rate')} = {terms[2]};"
             yield f"inputs->{c.input_of(f'motion:{drive}_acceleration')} = {terms[3]};"
-        yield f"return {P}_OK;"
 
     def _instant(self) -> Iterable[str]:
         c, P, sizes = self.contract, self._upper, self.program.sizes
@@ -366,8 +375,3 @@ class Source:
             yield f"if (closed != {P}_OK) return closed;"
         rows = len(self.program.columns)
         yield f"if (!all_finite(y, {rows})) return {P}_NOT_FINITE;"
-
-
-def _spoiled(c: Contract, status: str) -> Iterable[str]:
-    yield from (f"  inputs->{m.name} = nothing;" for m in c.inputs)
-    yield f"  return {status};"

@@ -12,13 +12,15 @@ import numpy.typing as npt
 
 from ..codegen.emit import NOT_CONVERGED
 from ..codegen.stages import Stages
-from ..declare.density import Array, NumericDensity
+from ..declare.density import Array, Density, NumericDensity
+from ..declare.mechanism import Mechanism
 from ..equations.scene_graph import SceneGraph
 from ..quantities import Output
 from ..summits.between import Flags
 from ..summits.panels import Samples
 from ..summits.search import Curves, Peaks, peaks
 from ..summits.sharpness import Sharpness, bent
+from ..tables import table_of
 from .backends import follow
 from .laws import law_of
 from .sizes import size_of
@@ -52,6 +54,18 @@ class SectionForce:
         outputs = {output: columns[k] for output, k in self.columns.items()}
         places, values = law_of(self.link, outputs, self.length, self.density).curves(self.force)
         return places.T, values.T
+
+
+def section_forces(
+    mechanism: Mechanism, link: str, rows: Mapping[Output, int], values: Mapping[str, float]
+) -> dict[str, SectionForce]:
+    """The section forces of a link by name, for ``values`` of the parameters; ``rows`` are those of all outputs."""
+    part = mechanism.links[link]
+    assert isinstance(part.mass, Density)
+    length = mechanism.number(part.length, values)
+    density = part.mass.at(lambda expression: mechanism.number(expression, values), length)
+    own = {output: k for output, k in rows.items() if output.along and output.part == link}
+    return {force: SectionForce(force, link, own, length, density) for force in table_of(mechanism.space).forces}
 
 
 Quantity: TypeAlias = "tuple[int, ...] | Along"

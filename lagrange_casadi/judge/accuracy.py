@@ -34,7 +34,8 @@ _DEAD: tuple[Kind, ...] = ("closure", "gimbal", "hold")
 _FORCES = ("effort", "reaction", "multiplier", "friction", "section", "law", "station", "spread", "output")
 _UNEXPLAINED = 100.0
 _SUMS = 64.0
-_ALONG = np.linspace(0.0, 1.0, 5)
+ALONG = np.linspace(0.0, 1.0, 5)
+"""Ratios xi/l at which errors of section forces are looked at."""
 
 
 def estimate(graph: SceneGraph, evaluated: Evaluated, solution: Solution, p: Array) -> dict[Output, float]:
@@ -63,16 +64,17 @@ def _worst(graph: SceneGraph, solution: Solution, changes: Array, columns: Array
     A trial that came to nothing, as a root of less than zero does, says nothing.
     """
     change, at = ({output: rows[k] for output, k in graph.outputs.items()} for rows in (changes, columns))
-    errors = {output: _largest(values) for output, values in change.items()}
+    errors = {output: most(values) for output, values in change.items()}
     for link in solution.links_with_sections:
         law = solution.section(link).law
-        for force, (gaps, sizes) in law.of(link, at).changed(law.of(link, change), _ALONG).items():
+        for force, (gaps, sizes) in law.of(link, at).changed(law.of(link, change), ALONG).items():
             # A force is itself a sum that is rounded, in doubles always.
-            errors[Output("section", link, force)] = max(_largest(gaps), ROUNDING["double"] * _largest(sizes))
+            errors[Output("section", link, force)] = max(most(gaps), ROUNDING["double"] * most(sizes))
     return {output: error for output, error in errors.items() if solution.determined(output)}
 
 
-def _largest(values: Array) -> float:
+def most(values: Array) -> float:
+    """The largest size among values, 0 where none is a number."""
     return float(np.fmax.reduce(np.abs(values), axis=None, initial=0.0))
 
 
@@ -82,7 +84,7 @@ def explained(solution: Solution, residuals: Mapping[str, Array], errors: Mappin
     Such a residual is then taken for the relative error of every force: not rounding is at work, but something is wrong.
     """
     worst = max((float(np.max(values)) for values in residuals.values()), default=0.0)
-    sizes = {output: _largest(values) for output, values in solution.outputs.items()}
+    sizes = {output: most(values) for output, values in solution.outputs.items()}
     relative = [error / sizes[o] for o, error in errors.items() if o.group in _FORCES and sizes.get(o, 0.0) > error]
     if not errors or worst <= _UNEXPLAINED * max([*relative, blur(solution)]):
         return dict(errors)
@@ -97,7 +99,7 @@ def _of_cycle(graph: SceneGraph, cycle: CycleTable, solution: Solution) -> dict[
     missed = cycle.errors * cycle.peaks
     sizes: dict[str, float] = {}
     for output, k in graph.outputs.items():
-        reached = max(float(cycle.peaks[k]), _largest(solution.outputs[output]))
+        reached = max(float(cycle.peaks[k]), most(solution.outputs[output]))
         sizes[solution.unit(output)] = max(sizes.get(solution.unit(output), 0.0), reached)
     errors = {output: float(missed[k]) + rounding * sizes[solution.unit(output)] for output, k in graph.outputs.items()}
     nothing = {output: np.zeros(1) for output in solution.left_open}
@@ -105,7 +107,7 @@ def _of_cycle(graph: SceneGraph, cycle: CycleTable, solution: Solution) -> dict[
     for link in bounds.links_with_sections:
         law = bounds.section(link).law
         forces = (Output("section", link, force) for force in law.table.forces)
-        errors |= {output: law.bound(output.member, _ALONG) for output in forces if solution.determined(output)}
+        errors |= {output: law.bound(output.member, ALONG) for output in forces if solution.determined(output)}
     return errors
 
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.description import Description, density_of
+from ..declare.description import Description, density_of, oriented
 from ..instants.solution import Solution
 from ..quantities import FORCES, Output
 from ..tables import SPACE
@@ -24,7 +24,7 @@ from .digits import LOOSE as LOOSE
 from .digits import TOLERANCE as TOLERANCE
 from .digits import blur as blur
 from .friction import law_gaps
-from .placing import Complex, Moving, axis_of, measured, oriented, place
+from .placing import Complex, Moving, axis_of, measured, place
 from .spatial_certificate import residuals as spatial_residuals
 from .tally import Tally, forces_told, law_at_base
 from .touching import Placed, actions, idle

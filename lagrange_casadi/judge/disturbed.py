@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arithmetic.compensated import DTYPES, ROUNDING
-from ..arithmetic.interpret import ROUNDINGS, Arithmetic, followable, interpret, numpy_arithmetic
+from ..arithmetic.interpret import REMAINDERS, ROUNDINGS, Arithmetic, followable, interpret, numpy_arithmetic
 from ..codegen.stages import Stages
 from ..declare.density import Array
 from .roundings import left
@@ -45,8 +45,7 @@ _POOL = 1 << 12
 _KNOWN = numpy_arithmetic().operations
 _TRUTHS = {ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR}
 _WHOLE = {*_TRUTHS, ca.OP_SIGN, ca.OP_FLOOR, ca.OP_CEIL}
-_REMAINDERS = {ca.OP_FMOD, ca.OP_REMAINDER}
-_DECIDING = {*_WHOLE, *_REMAINDERS, ca.OP_ATAN2, ca.OP_COPYSIGN, ca.OP_IF_ELSE_ZERO}
+_DECIDING = {*_WHOLE, *REMAINDERS, ca.OP_ATAN2, ca.OP_COPYSIGN, ca.OP_IF_ELSE_ZERO}
 _HANDED = -1
 """The code of a number that a drive hands on which is not followed itself."""
 
@@ -290,7 +289,7 @@ def _following(code: int, values: tuple[Any, ...], decision: Any) -> Any:
     if code == ca.OP_IF_ELSE_ZERO:
         return _KNOWN[code](decision, values[1])
     result = _KNOWN[code](*values)
-    period = np.abs(values[1]) if code in _REMAINDERS else math.tau
+    period = np.abs(values[1]) if code in REMAINDERS else math.tau
     return result - period * np.rint((result - decision) / period)
 
 
@@ -306,7 +305,7 @@ def _differs(step: _Step, decision: Any, unit: float) -> npt.NDArray[np.bool_]:
         return np.asarray((decision != 0) != (own != 0))
     if step.code in _WHOLE:
         return np.asarray(decision != own)
-    return np.asarray(np.abs(decision - own) > (np.abs(step.operands[1]) if step.code in _REMAINDERS else math.tau) / 2)
+    return np.asarray(np.abs(decision - own) > (np.abs(step.operands[1]) if step.code in REMAINDERS else math.tau) / 2)
 
 
 def _sizes(course: _Course) -> list[Any]:

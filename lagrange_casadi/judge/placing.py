@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
-from ..declare.description import Description
+from ..declare.description import Description, oriented
 from ..instants.solution import Solution
 from .affine import rates_and_changes
 from .written import Entry, Written
@@ -77,11 +77,6 @@ def place(solution: Solution, written: Sequence[Written] = ()) -> dict[str, Movi
             moved = _span(solution, bodies)
     rest = [name for name in solution.description["bodies"] if name not in bodies]
     return bodies | (_Rest(solution, bodies, rest, written).motions() if rest else {})
-
-
-def oriented(description: Description, body: str) -> bool:
-    """Whether a body has a direction."""
-    return body == "ground" or description["bodies"][body]["length"] is not None
 
 
 def axis_of(joint: Description, parent: Moving) -> Complex:

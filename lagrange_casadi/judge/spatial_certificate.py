@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.description import Description, density_of, measured_of, slices_of
+from ..declare.description import Description, density_of, measured_of, oriented, slices_of
 from ..instants.solution import Solution
 from ..quantities import Output, force_members
 from . import digits
 from .friction import law_gaps
 from .locked import without_locked
-from .spatial_placing import Moving, Reported, cross, measured, oriented, relative, resolve, spot, told, turn
+from .spatial_placing import Moving, Reported, cross, measured, relative, resolve, spot, told, turn
 from .spatial_rest import axes_of, gaps_of, place_all
 from .tally import Tally, forces_told, law_at_base
 from .touching import Placed, actions, idle

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.description import Description
+from ..declare.description import Description, oriented
 from ..instants.solution import Solution
 from .written import Entry
 
@@ -132,11 +132,6 @@ def relative(reported: Reported, joint: Description) -> Relative:
         rate = rate + motion.rate[:, None] * axis
         turned = turned @ _rotation(direction, reported.turned.motion(name).value)
     return Relative((slide, speed, change), turned @ np.array(joint["turned"]).T, rate, acceleration, tuple(about))
-
-
-def oriented(description: Description, body: str) -> bool:
-    """Whether a body has directions."""
-    return body == "ground" or description["bodies"][body]["length"] is not None
 
 
 def told(description: Description, joint: Description) -> bool:

@@ -13,10 +13,10 @@ from typing import Any, Literal
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.description import Description
+from ..declare.description import Description, oriented
 from ..instants.solution import Solution
 from .affine import rates_and_changes
-from .spatial_placing import Moving, Reported, cross, measured, oriented, place, relative, spot, told, turn
+from .spatial_placing import Moving, Reported, cross, measured, place, relative, spot, told, turn
 from .written import Written
 
 _LEAST = 1e-12

@@ -7,12 +7,9 @@ from typing import BinaryIO
 import numpy as np
 
 from ..declare.scene import Scene
-from ..draw import drawing, space_drawing
+from ..draw.pictures import draw_into, save
 from ..evaluate import evaluate
 from .optimum import Optimum
-
-PICTURES = (".png", ".pdf", ".svg")
-"""Kinds of pictures, by the name's ending."""
 
 _TEXT = 40
 
@@ -24,7 +21,6 @@ def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) ->
 
     figure = Figure(figsize=(12, 8), layout="constrained")
     grid = figure.add_gridspec(2, 2, height_ratios=(3, 2))
-    draw_into = space_drawing.draw_into if scene.mechanism.space else drawing.draw_into
     before = dict(optimum.parameters) | dict(optimum.start.values)
     for column, (title, values) in enumerate((("start", before), ("optimum", optimum.parameters))):
         axes = figure.add_subplot(grid[0, column])
@@ -56,4 +52,4 @@ def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) ->
         )
     table.text(0.0, 0.98, "\n".join(lines), va="top", fontsize=8, family="monospace")
     table.set_title("limits: value, whether active, multiplier", fontsize=10, loc="left")
-    figure.savefig(file, format=ending.removeprefix("."), dpi=150, metadata={"Date": None} if ending != ".png" else None)
+    save(figure, file, ending)

@@ -7,7 +7,7 @@ from typing import BinaryIO
 import numpy as np
 
 from ..declare.scene import Scene
-from ..draw import drawing, space_drawing
+from ..draw.pictures import draw_into, save
 from ..evaluate import evaluate
 from .front import Front
 
@@ -35,10 +35,9 @@ def draw_front(scene: Scene, front: Front, file: BinaryIO, ending: str) -> None:
         axes.set(xlabel=f"{front.minimised[number]} [{front.units[number]}]", ylabel=f"{front.minimised[0]} [{front.units[0]}]")
         axes.grid(True, color="0.93")
     figure.suptitle(f"{front.case}: designs of which none is better in {'both' if len(others) == 1 else 'all'}", fontsize=11)
-    draw_into = space_drawing.draw_into if scene.mechanism.space else drawing.draw_into
     for column, k in enumerate(shown):
         axes = figure.add_subplot(below[0, column])
         optimum = front.points[k].optimum
         draw_into(axes, evaluate(scene, parameters=optimum.parameters, wanted=["motion"], backend="vm", certificate=False))
         axes.set_title(f"{k + 1}: {', '.join(f'{name} = {value:.5g}' for name, value in optimum.values.items())}", fontsize=9)
-    figure.savefig(file, format=ending.removeprefix("."), dpi=150, metadata={"Date": None} if ending != ".png" else None)
+    save(figure, file, ending)

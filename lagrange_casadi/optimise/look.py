@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from ..declare.density import Array, Density
+from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import Evaluated, run
 from ..instants.rung import Rung
-from ..instants.signals import SectionForce
+from ..instants.signals import section_forces
 from ..instants.sizes import size_of
 from ..quantities import Output
 from ..tables import table_of
@@ -122,16 +121,9 @@ class Look:
             ]
             return [np.zeros(self.t.size)], [rows[0] if len(rows) == 1 else size_of(rows)]
         values = dict(zip(mechanism.parameters, self.p.tolist(), strict=True))
-
-        def number(expression: Any) -> float:
-            return mechanism.number(expression, values)
-
-        link = mechanism.links[output.part]
-        assert isinstance(link.mass, Density)
-        length = number(link.length)
-        own = {o: k for o, k in self.graph.outputs.items() if o.along and o.part == output.part}
         with np.errstate(all="ignore"):
-            places, curves = SectionForce(output.member, output.part, own, length, link.mass.at(number, length)).curves(out)
+            force = section_forces(mechanism, output.part, self.graph.outputs, values)[output.member]
+            places, curves = force.curves(out)
         return list(places), list(curves)
 
     def _place(self, output: Output, curve: int) -> int:

@@ -23,6 +23,7 @@ from ..errors import DeclarationError
 from ..quantities import Output
 from ..sensitivity.along import Along, Place
 from ..sensitivity.in_scalars import in_scalars
+from ..sensitivity.points import resultant
 from ..tables import table_of
 from .fatigue import Tired, tired_link
 
@@ -103,9 +104,9 @@ class PointValues:
             link = Along(mechanism, mechanism.links[quantity.part], columns)
             places = [Place(xi), *(mark for mark in link.marks if mark.station)]
             names = table.parts("section", quantity.member)
-            sizes = [_size([link.force(name, place) for name in names]) for place in places]
+            sizes = [resultant([link.force(name, place) for name in names]) for place in places]
         else:
-            sizes = [_size([columns[part] for part in quantity.components(table) if part in columns])]
+            sizes = [resultant([columns[part] for part in quantity.components(table) if part in columns])]
         place = ca.SX.sym("place", len(sizes))
         # What is not meant may have no value, as a size at zero has no slope.
         value = sum((ca.if_else(place[k] > 0, size, 0) for k, size in enumerate(sizes)), ca.SX(0))
@@ -190,7 +191,3 @@ class PointValues:
         residual = ca.Function("residual", [z, ca.vertcat(t, d, p)], [correction])
         options = {"abstol": 1e-13, "max_iter": 50, "error_on_fail": False}
         return ca.rootfinder("loops", "newton", residual, options)
-
-
-def _size(parts: list[Any]) -> Any:
-    return parts[0] if len(parts) == 1 else ca.sqrt(sum(part * part for part in parts))

@@ -148,7 +148,7 @@ def _rows(
         names, left = table.parts("section", quantity.member), ca.SX(1.0)
         marks = link.marks
         here = {id(place): [link.force(name, place) for name in names] for place in marks}
-        sizes = {key: _size(parts) for key, parts in here.items()}
+        sizes = {key: resultant(parts) for key, parts in here.items()}
         for place in marks:
             twins = [other for other in marks if other.station == place.station and other is not place and place.station]
             nearer = ca.SX(1.0)
@@ -162,5 +162,6 @@ def _rows(
     return rows, weights
 
 
-def _size(parts: Sequence[Any]) -> Any:
+def resultant(parts: Sequence[Any]) -> Any:
+    """The size of what has these components, of one its value."""
     return parts[0] if len(parts) == 1 else ca.sqrt(sum(part * part for part in parts))

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
+from ..draw.pictures import save
 from ..errors import NoDesignError
 from ..instants.ordering import table_of_described
 from .best import best, chosen, size
@@ -234,8 +235,7 @@ def draw_sweep(sweep: Sweep, specs: Sequence[Spec], folder: Path) -> Iterator[tu
         why = ""
         with rc_context(STYLE):
             try:
-                # No program's name and no clock, so that the same sweep gives the same bytes.
-                spec.draw(sweep).savefig(path, dpi=200, metadata={"Software": None})
+                save(spec.draw(sweep), path, dpi=200)
             except NoDesignError as error:
                 why = str(error)
         yield path, why
