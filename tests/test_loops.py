@@ -10,6 +10,7 @@ from mechanisms import ladder
 
 from lagrange_casadi import Mechanism, Scene, derive, evaluate
 from lagrange_casadi.declare.motion import polynomial
+from lagrange_casadi.elements import cylinder
 from lagrange_casadi.errors import AssemblyError
 
 pytestmark = pytest.mark.usefixtures("interpreted")
@@ -220,3 +221,15 @@ def test_a_posture_on_a_dead_centre_assembles_nothing():
     scene = led()
     with pytest.raises(AssemblyError, match="cannot be assembled from the given posture"):
         evaluate(Scene(scene.mechanism, scene.motion, t=scene.t, posture={"b": -0.3, "c": -0.3}))
+
+
+@pytest.mark.parametrize("size", [1e-6, 0.05, 1e3])
+def test_two_circles_have_a_closed_form_whatever_their_size(size):
+    """A lever that a ram moves, as short or long as may be. Places are drawn near a metre, and few links reach so far."""
+    m = Mechanism("lever")
+    crank, lever = m.link("crank", length=0.05 * size, mass=1.0), m.link("lever", length=0.2 * size, mass=1.0)
+    m.revolute("O", m.ground, crank)
+    m.revolute("P", m.ground.at(0.25 * size, 0.0), lever)
+    cylinder(m, "ram", crank.tip, lever.at(0.15 * size), closed=0.08 * size, bore=0.05 * size, rod=0.03 * size)
+    law = {"O": polynomial(0.1, 5.0), "ram": polynomial(0.12 * size, 0.02 * size)}
+    assert derive(Scene(m, law, posture={"lever": 2.8}, t=(0, 0.4, 3))).newton is None

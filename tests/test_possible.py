@@ -102,3 +102,21 @@ def test_no_mass_at_all_is_impossible_everywhere(tmp_path):
         scene.mechanism.values({"a": -1.0, "b": 1.0})
     with pytest.raises(ParameterError, match="its whole mass must be finite and positive, got inf kg"):
         scene.mechanism.values({"a": 1.5e308, "b": 1.5e308})
+
+
+def test_what_bears_a_load_may_be_massless():
+    """Forces are then those of statics: by virtual power, the drive gives what the load takes."""
+    m = Mechanism("press")
+    work = m.parameter("work", 80e3, "N")
+    upper, lower, ram = m.link("upper", length=0.3, mass=0.0), m.link("lower", length=0.3, mass=0.0), m.point_mass("ram", 0.0)
+    m.revolute("top", m.ground.at(0.0, 0.6), upper)
+    m.revolute("knee", upper.tip, lower)
+    m.revolute("elbow", lower.tip, ram)
+    m.prismatic("way", m.ground, ram, axis=(0, -1))
+    m.force("pressed", ram, y=work)
+    scene = Scene(m, {"top": polynomial(-1.8, 0.2)}, posture={"lower": -1.3}, t=(0, 0.9, 7))
+    solution = evaluate(scene)
+    assert solution.certified
+    taken = 80e3 * solution.motion("way").rate
+    assert np.abs(0.2 * solution.effort("top") - taken).max() < 1e-12 * np.abs(taken).max()
+    assert DesignEngine.of(scene).evaluate(np.array([[80e3], [0.0]])).status.tolist() == [Status.OK] * 2

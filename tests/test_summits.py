@@ -193,6 +193,19 @@ def test_a_known_kink_cuts_a_step_in_two(law, kind, at):
     assert source.times <= 80
 
 
+def test_what_touches_zero_by_rounding_opens_few_steps():
+    """As the slope of a cam's lift where its cycle begins anew: its sign is that of its rounding, at all times that are near."""
+
+    def slope(t):
+        return (t - 1.0137) ** 3 + 6e-30 * np.sin(1e16 * t)
+
+    source, times = Counted(lambda t: np.cos(t) + np.abs(slope(t)), slope), np.linspace(0.0, 2.0, 51)
+    watches = (Watch(Kind.SWITCH, (0.0, 1e-30)),)
+    found = peaks(source, Curves((0,), (0,), (), watches), times, source.at(times), np.zeros(50, bool))
+    assert found.told.all()
+    assert source.times < 1000
+
+
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     "law",

@@ -68,6 +68,9 @@ NOISE: dict[Precision, float] = {"double": summits.NOISE, "single": 1e-2}
 DEEPEST: dict[Precision, int] = {"double": summits.DEEPEST, "single": 8}
 """Panels within each other."""
 
+FINEST: dict[Precision, int] = {"double": summits.FINEST, "single": 5}
+"""Of these, the one in whose steps nothing hides but by rounding."""
+
 SIDE: dict[Precision, float] = {"double": panels.SIDE, "single": 1e-5}
 """Of a step between instants: how near to a kink or a jump its sides are."""
 
@@ -191,6 +194,7 @@ def _macros(graph: SceneGraph, stages: Stages, newton: int | None, reduction: Re
         "INNER": summits.INNER,
         "STRIDE": STRIDE,
         "DEEPEST": DEEPEST[precision],
+        "FINEST": FINEST[precision],
         "PANELS": summits.PANELS,
         "SPACING": f"{panels.SPACING:.17g}",
         "SIDE": f"{SIDE[precision]:.17g}",

@@ -91,7 +91,8 @@ def _of(mechanism: Mechanism, precision: Precision) -> Demands:
         masses.append(mass)
         found += own
     if not any(_surely_positive(mass) for mass in masses):
-        found.append(_some_mass(mechanism.name, masses))
+        loaded = any(not isinstance(load, Friction) for load in mechanism.loads.values())
+        found.append(_some_mass(mechanism.name, masses, loaded=loaded))
     for joint in mechanism.joints.values():
         found += _of_axes(joint, precision)
         for point in (joint.parent, joint.child):
@@ -288,16 +289,17 @@ def _product(first: Sequence[Expression], second: Sequence[Expression]) -> list[
     return found
 
 
-def _some_mass(name: str, masses: list[Expression]) -> Demand:
+def _some_mass(name: str, masses: list[Expression], *, loaded: bool) -> Demand:
+    """That something is massive, or loaded: without either there is no force anywhere."""
     total = sum(masses[1:], masses[0])
 
     def refusal(number: Evaluator) -> str:
         mass = number(total)
         if mass == 0.0:
-            return f"mechanism '{name}' is massless: at least one link or point mass needs a mass"
+            return f"mechanism '{name}' is massless: at least one link or point mass needs a mass, or a load"
         return f"mechanism '{name}': its whole mass must be finite and positive, got {readable(mass)} kg"
 
-    return Demand(total, True, refusal)
+    return Demand(total, not loaded, refusal)
 
 
 def _surely_positive(mass: Expression) -> bool:

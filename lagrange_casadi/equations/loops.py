@@ -158,7 +158,9 @@ def solves(forms: Sequence[ClosedForm], phi: Any, coordinates: Sequence[Coordina
     size = ca.mmax(ca.fabs(ca.jacobian(phi, symbols)) @ ca.fabs(symbols))
     left = ca.vertcat(phi, size)
     for form in reversed(forms):
-        directions = [c[0] * c[0] + c[1] * c[1] - 1 for c in form.variables if c.numel() > 1]
+        # Beside their squares: where links do not reach, by far where they are short, both are large and imaginary.
+        pairs = [c[:2] for c in form.variables if c.numel() > 1]
+        directions = [(ca.sumsqr(pair) - 1) / (ca.sumsqr(ca.fabs(pair[0]) + ca.fabs(pair[1])) + 1) for pair in pairs]
         left = ca.vertcat(left[:-1], *(left[-1] * off for off in directions), left[-1])
         left = ca.substitute(left, column(c.variables for c in form.unknown), column(form.variables))
     branches = column(branch for form in forms for branch in form.branches)

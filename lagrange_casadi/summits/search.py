@@ -30,6 +30,9 @@ INNER = 8
 DEEPEST = 14
 """Panels within each other: the last one's steps are 4e-14 of those between the instants."""
 
+FINEST = 10
+"""Panels within each other: in steps of this one, 3e-10 of those between the instants, nothing hides but by rounding."""
+
 PANELS = 2048
 """Panels of a search, and four more for each instant."""
 
@@ -172,7 +175,7 @@ class _Search:
         else:
             kinks = np.histogram(self.knots, panel.t)[0] if depth and self.knots.size else None
             unseen, kinked = unresolved(panel.samples.watched, self.curves.watches, panel.step, kinks)
-            hiding = hiding | unseen
+            hiding = hiding | unseen if depth < FINEST else hiding
             bound = np.fmax(highest(values), highest(-values))
             self.hidden += np.count_nonzero(hiding) if depth == 0 else 0
             self.stretches(panel, bound, hiding | kinked)
