@@ -9,9 +9,10 @@ from strong import STEEL, press, robot, slider
 
 from lagrange_casadi import Mechanism, Scene, beams, best, evaluate, optimise, sweep
 from lagrange_casadi.cli import program
+from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.motion import harmonic
+from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.peaks import refine_safety
 from lagrange_casadi.sweep import strength
 from lagrange_casadi.sweep.axes import designs_of
@@ -91,6 +92,25 @@ def test_bounds_leave_out_no_swing():
             swings = strength.loaded(np.vstack([normal[0, k], own]))
             every.append(np.max(1.0 / strength.factor(swings.amplitude, swings.mean, material, "goodman")))
         assert found == pytest.approx(max(every), rel=1e-12)
+
+
+@pytest.mark.parametrize("law", [harmonic(0.2, 0.6, 2.0), polynomial(0.3)], ids=["swings", "rests"])
+def test_what_acts_along_a_link_and_stands_still_is_told_of_all_designs_at_once(law):
+    """Where a force and a load along the link act is no force itself: at rest, too, nothing may come of it."""
+    m = Mechanism("arm")
+    arm = m.link("arm", length=m.parameter("l", 0.5, "m"), beam=beams.Beam(beams.rectangle(0.02, 0.012), STEEL.but(endurance=2e8)))
+    m.revolute("O", m.ground, arm)
+    m.force("push", arm.at(0.3), y=-400.0)
+    m.line_load("wind", arm, y=(-500.0, -900.0), between=(0.1, 0.35), turning=True)
+    scene = Scene(m, {"O": law}, t=(0, 0.5, 17), wanted=["section:arm"])
+    engine, p = DesignEngine.of(scene, rung=Rung("vm")), np.array([[0.5]])
+    names = {name: k for k, name in enumerate(engine.columns)}
+    fatigue = strength.Fatigue.of(m, arm, [output for output in engine.outputs if output.along])
+    members = engine.evaluate(p, histories=True).series[:, [names[str(member)] for member in fatigue.members]]
+    assert fatigue.stands(members).all()
+    found = strength.worst(fatigue, *fatigue.stresses(members, p), arm.beam.material)
+    told = evaluate(scene, backend="vm", certificate=False).safety("arm").against("fatigue")
+    assert found == pytest.approx([1.0 / told], rel=1e-9)
 
 
 @pytest.mark.long
