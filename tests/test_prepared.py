@@ -3,6 +3,7 @@
 import math
 from concurrent.futures import ThreadPoolExecutor
 
+import casadi as ca
 import numpy as np
 import pytest
 from conftest import CASES
@@ -39,6 +40,18 @@ def test_series_are_those_of_evaluate(name):
     for output in f.outputs:
         size = largest[solution.unit(output)]
         np.testing.assert_allclose(found[output], solution.array(output), rtol=0, atol=1e-12 * size, err_msg=output)
+
+
+@pytest.mark.parametrize("backend", ["c", "vm"])
+def test_series_are_told_where_a_peak_cannot_be(backend):
+    m = Mechanism("buzz")
+    m.revolute("O", m.ground, m.link("arm", length=m.parameter("l", 0.3, "m"), mass=1.0))
+    m.output("fast", ca.sin(1e6 * m.time))
+    f = prepare(Scene(m, {"O": polynomial(0.0, 1.0)}, t=(0, 1, 9), wanted=["output:fast"]), backend=backend)
+    np.testing.assert_allclose(f(l=0.4)["output:fast"], np.sin(1e6 * f.t), atol=1e-9)
+    if backend == "c":  # which is quick to find out
+        with pytest.raises(AssemblyError, match="a peak cannot be told"):
+            f.peaks(l=0.4)
 
 
 @pytest.mark.sampled(3)

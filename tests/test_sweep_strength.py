@@ -7,11 +7,12 @@ import pytest
 from click.testing import CliRunner
 from strong import STEEL, press, robot, slider
 
-from lagrange_casadi import Mechanism, Scene, beams, best, evaluate, optimise, sweep
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, beams, best, evaluate, optimise, sweep
 from lagrange_casadi.cli import program
+from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import DeclarationError
 from lagrange_casadi.instants.rung import Rung
-from lagrange_casadi.motion import harmonic
+from lagrange_casadi.motion import harmonic, polynomial
 from lagrange_casadi.peaks import refine_safety
 from lagrange_casadi.sweep import strength
 from lagrange_casadi.sweep.axes import designs_of
@@ -91,6 +92,58 @@ def test_bounds_leave_out_no_swing():
             swings = strength.loaded(np.vstack([normal[0, k], own]))
             every.append(np.max(1.0 / strength.factor(swings.amplitude, swings.mean, material, "goodman")))
         assert found == pytest.approx(max(every), rel=1e-12)
+
+
+def at_once(scene, link):
+    """Utilisation against fatigue of a link of one design as sweeps tell it of many, and as its solution does."""
+    engine, mechanism = DesignEngine.of(scene, rung=Rung("vm")), scene.mechanism
+    p = np.array([list(mechanism.values().values())])
+    names, own = {name: k for k, name in enumerate(engine.columns)}, mechanism.links[link]
+    fatigue = strength.Fatigue.of(mechanism, own, [output for output in engine.outputs if output.along])
+    members = engine.evaluate(p, histories=True).series[:, [names[str(member)] for member in fatigue.members]]
+    assert fatigue.stands(members).all()
+    (found,) = strength.worst(fatigue, *fatigue.stresses(members, p), own.beam.material)
+    return found, 1.0 / evaluate(scene, backend="vm", certificate=False).safety(link).against("fatigue")
+
+
+@pytest.mark.parametrize("law", [harmonic(0.2, 0.6, 2.0), polynomial(0.3)], ids=["swings", "rests"])
+def test_what_acts_along_a_link_and_stands_still_is_told_of_all_designs_at_once(law):
+    """Where a force and a load along the link act is no force itself: at rest, too, nothing may come of it."""
+    m = Mechanism("arm")
+    arm = m.link("arm", length=m.parameter("l", 0.5, "m"), beam=beams.Beam(beams.rectangle(0.02, 0.012), STEEL.but(endurance=2e8)))
+    m.revolute("O", m.ground, arm)
+    m.force("push", arm.at(0.3), y=-400.0)
+    m.line_load("wind", arm, y=(-500.0, -900.0), between=(0.1, 0.35), turning=True)
+    found, told = at_once(Scene(m, {"O": law}, t=(0, 0.5, 17), wanted=["section:arm"]), "arm")
+    assert found == pytest.approx(told, rel=1e-9)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(16))
+def test_drawn_loads_are_told_of_all_designs_at_once(seed):
+    """Any that stand still, on any beam, in the plane and in space; a solution looks at more ratios."""
+    rng = np.random.default_rng(seed)
+    space = seed % 2 == 1
+    m = SpatialMechanism("arm") if space else Mechanism("arm")
+    wide, narrow = rng.uniform(0.015, 0.03, 2)
+    course = [beams.rectangle(wide, 0.012), beams.tapered(beams.round_bar(wide), beams.round_bar(narrow)), beams.tube(wide, 0.003)]
+    course += [beams.stepped([0.4], [beams.rectangle(wide, 0.012), beams.rectangle(narrow, 0.012)])]
+    notches = [beams.Notch(rng.uniform(0.1, 0.9), bending=1.8, shear=1.4, sensitivity=0.8)][: seed % 3]
+    beam = beams.Beam(course[seed % 4], STEEL.but(endurance=2e8), notches)
+    arm = m.link("arm", length=m.parameter("l", 0.5, "m"), beam=beam)
+    m.revolute("O", m.ground, arm, **({"axis": tuple(rng.normal(size=3))} if space else {}))
+    axes = "xyz" if space else "xy"
+    for k in range(rng.integers(1, 4)):
+        place = arm.at(float(rng.uniform(0.0, 0.5)), 0.01)
+        m.force(
+            f"push{k}", place, **dict(zip(axes, rng.normal(0.0, 300.0, 3).tolist(), strict=False)), turning=bool(rng.integers(2))
+        )
+    for k in range(rng.integers(0, 3)):
+        between = tuple(np.sort(rng.uniform(0.0, 0.5, 2)).tolist())
+        m.line_load(f"wind{k}", arm, y=tuple(rng.normal(0.0, 900.0, 2).tolist()), between=between, turning=bool(rng.integers(2)))
+    law = polynomial(0.3) if seed % 5 == 0 else harmonic(0.2, 0.6, 2.0)
+    found, told = at_once(Scene(m, {"O": law}, t=(0, 0.5, 17), wanted=["section:arm"]), "arm")
+    assert found == pytest.approx(told, rel=4e-3)
 
 
 @pytest.mark.long

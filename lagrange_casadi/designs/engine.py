@@ -234,6 +234,15 @@ class DesignEngine:
             series = outputs_of(self.graph, np.moveaxis(columns, 1, 0))
         return replace(found, series=np.stack([series[output] for output in self.outputs], axis=1))
 
+    def histories(self, p: Array) -> Outcome:
+        """Columns of designs (n, columns, t) at the instants that are asked for: no peaks are sought, so none can be untold."""
+        (_, asked), nothing = self.times.of(p), np.empty((len(p), 0))
+        series = np.empty((len(p), len(self.graph.columns), self.count))
+        found = Outcome(np.zeros(len(p), np.int8), nothing, nothing, nothing, nothing, nothing, series)
+        self._series(p, asked, found.status, series, 1)
+        self._refuse_motions(p, asked, found)
+        return found
+
     def told(self, out: Array, p: Array) -> dict[Output, Array]:
         """The series (t,) of one design, which are among its columns ``out`` (columns, t): what is open is NaN, angles go on."""
         self._withhold(out, p)

@@ -186,10 +186,10 @@ class Prepared:
         self._set(values, named)
         engine = self._engine
         if self._fill is None:
-            found = engine.evaluate(self._p, threads=1, histories=True)
+            found = engine.histories(self._p)
             assert found.series is not None
             self._refuse(found.status[0], WITH_SERIES)
-            return dict(zip(engine.columns, found.series[0], strict=True))
+            return {str(o): row for o, row in engine.told(found.series[0], self._p[0]).items()}
         self._fill[0]()
         self._refuse(self._status[0], WITH_SERIES)
         return self._rows if engine.plain else {str(o): row for o, row in engine.told(self._history[0], self._p[0]).items()}

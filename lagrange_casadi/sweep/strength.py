@@ -84,7 +84,10 @@ class Fatigue:
         sheared = [k for k, pair in enumerate(shears) if not (pair[0].is_zero() and pair[1].is_zero())]
         axes = tuple(axis for axis in (0, 1) if not all(shears[k][axis].is_zero() for k in sheared))
         every = ca.vertcat(*normal, *(shears[k][axis] for axis in axes for k in sheared))
-        slopes = ca.jacobian(every, symbols)
+        # Stresses are linear in forces, not in where these act.
+        acting = [k for k, member in enumerate(members) if not _is_place(member)]
+        slopes = ca.SX(every.numel(), len(members))
+        slopes[:, acting] = ca.jacobian(every, symbols[acting])
         still = [k for k in range(len(members)) if ca.depends_on(slopes, symbols[k])]
         # Rows of the matrix one after another, as numbers lie in memory.
         found = ca.Function("rows", [symbols, mechanism.symbols], [ca.vec(ca.densify(slopes.T))], {"cse": True})
@@ -302,6 +305,11 @@ def bounds(normal: Array, shears: Array, sheared: npt.NDArray[np.intp], material
         other = np.sqrt(wide) / (2 * endurance) + np.sqrt(np.maximum(high, 0.0) ** 2 + size) / strength
         bound[:, sheared] = np.maximum(whole, other)
     return bound, known
+
+
+def _is_place(member: Output) -> bool:
+    """Whether it is where something acts on a link, not how much."""
+    return member.member == "station" or (member.group == "spread" and member.power is None)
 
 
 def _places(body: Loaded, link: Link) -> Iterator[tuple[int, Any, Any, Notch | None]]:
