@@ -395,6 +395,6 @@ class Solution:
         return self._find("constraint or row with a multiplier", Output("multiplier", name))
 
     def _find(self, kind: str, output: Output) -> Array:
-        if output not in self.outputs:
-            raise UnknownNameError(kind, output.part, dict.fromkeys(o.part for o in self.outputs if o.group == output.group))
+        if not isinstance(output.part, str) or output not in self.outputs:
+            raise UnknownNameError(kind, str(output.part), dict.fromkeys(o.part for o in self.outputs if o.group == output.group))
         return self.outputs[output]
