@@ -20,7 +20,7 @@ from . import case_modules
 from .declare.expressions import told
 from .declare.scene import Scene
 from .draw.figures import Spec
-from .errors import CaseError, LagrangeCasadiError
+from .errors import CaseError, LagrangeCasadiError, check_kind
 from .shipped_cases import shipped_cases
 
 
@@ -50,6 +50,7 @@ def load_case(path: str | os.PathLike[str]) -> Case:
 
     Raises :class:`CaseError`; an error of a declaration passes as it is.
     """
+    check_kind("case", path, "a path, or a case's name", str, os.PathLike)
     given = Path(path)
     file = _file(given)
     if file.suffix != ".py":

@@ -20,6 +20,12 @@ def one_line(error: BaseException) -> str:
     return " ".join(str(error).split())
 
 
+def check_kind(what: str, value: object, expected: str, *kinds: type) -> None:
+    """Raise :class:`DeclarationError` for a value of none of the kinds, which says what was ``expected``."""
+    if not isinstance(value, kinds):
+        raise DeclarationError(f"{what}: expected {expected}, got {value!r}")
+
+
 def lacking(error: OSError) -> bool:
     """Whether the system has no more of something for now: descriptors, processes, memory. Nothing is wrong with what was asked."""
     return error.errno in (errno.EMFILE, errno.ENFILE, errno.EAGAIN, errno.ENOMEM)
@@ -33,6 +39,9 @@ class LagrangeCasadiError(Exception):
 
     exit_status = 2
 
+    def __str__(self) -> str:
+        return " ".join(super().__str__().split())
+
 
 class DeclarationError(LagrangeCasadiError):
     """A mechanism, a motion or a scene is declared in a way that has no meaning."""
@@ -45,7 +54,8 @@ class UnknownNameError(DeclarationError):
     """
 
     def __init__(self, kind: str, name: str | Sequence[str], valid: Iterable[str], listed_by: str = "", place: str = "") -> None:
-        names, unknown = list(valid), [name] if isinstance(name, str) else list(dict.fromkeys(name))
+        several = isinstance(name, (list, tuple)) and all(isinstance(other, str) for other in name)
+        names, unknown = list(valid), list(dict.fromkeys(name)) if several else [str(name)]
         listed = f"valid: {', '.join(names) or 'none are declared'}"
         many = len(listed) > _LONG
         if many:

@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from .errors import check_kind
 from .tables import PLANE, SPACE, Quantity, Table, table_of
 
 FORCES = PLANE.forces
@@ -96,6 +97,7 @@ class Output:
         """The output that a full name says. Raises ``KeyError`` for a text that is none."""
         if isinstance(name, Output):
             return name
+        check_kind("output", name, "a full name, as 'effort:O'", str)
         group, _, text = name.partition(":")
         part, *rest = text.split(":")
         if group in ("motion", "effort"):

@@ -103,7 +103,7 @@ def test_samples_cover_their_span_only():
         (lambda: motion.samples([0, 1, 2, 3], [0, 1, 2]), "of one length"),
         (lambda: at(motion.expression(lambda t: ca.vertcat(t, t)), 1.0), "the motion of joint 'J' must be a scalar"),
         (lambda: at(motion.expression(lambda t: math.sin(t)), 1.0), "joint 'J' is not a number; use CasADi's functions"),
-        (lambda: motion.samples("abcd", "abcd"), "two rows of numbers"),
+        (lambda: motion.samples("abcd", "abcd"), "times: expected a row of numbers, got 'abcd'"),
     ],
 )
 def test_misuse_is_named(make, says):

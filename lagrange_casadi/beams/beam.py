@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from .material import Material
 from .shape import Course, Shape, course_of
 
@@ -56,12 +56,13 @@ class Beam:
         course_of("beam", self.shape)
         if not isinstance(self.material, Material):
             raise DeclarationError(f"beam: expected a material of lagrange_casadi.beams, got {self.material!r}")
+        check_kind("beam", self.notches, "a list of notches", Sequence)
         object.__setattr__(self, "notches", tuple(self.notches))
         for notch in self.notches:
             if not isinstance(notch, Notch):
                 raise DeclarationError(f"beam: expected a notch of lagrange_casadi.beams, got {notch!r}")
         if self.columns is not None:
-            pair = tuple(self.columns)
+            pair = tuple(self.columns) if isinstance(self.columns, Sequence) else ()
             if len(pair) != 2 or not all(isinstance(k, (int, float)) and 0.0 < k < math.inf for k in pair):
                 raise DeclarationError(f"beam: expected two effective lengths, positive, got {self.columns!r}")
             object.__setattr__(self, "columns", pair)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from . import solid, walls
 from .properties import Fibre, Properties
 
@@ -150,7 +150,12 @@ def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
 
     Raises :class:`.DeclarationError` for ratios that fall or do not reach from 0 to 1, and for shapes that do not fit together.
     """
-    places = [float(ratio) for ratio in ratios]
+    for given in (ratios, shapes):
+        check_kind("along", given, "ratios, and as many cross-sections", Sequence)
+    try:
+        places = [float(ratio) for ratio in ratios]
+    except (TypeError, ValueError):
+        raise DeclarationError(f"along: expected numbers for ratios, got {ratios!r}") from None
     if len(places) != len(shapes) or len(places) < 2:
         raise DeclarationError(f"along: expected as many shapes as ratios, two or more, got {len(places)} and {len(shapes)}")
     if any(not isinstance(shape, Shape) for shape in shapes):
@@ -175,6 +180,8 @@ def tapered(base: Shape, tip: Shape) -> Course:
 
 def stepped(steps: Sequence[float], shapes: Sequence[Shape]) -> Course:
     """Constant cross-sections with steps between them, at ratios xi/l: one step fewer than shapes."""
+    for given in (steps, shapes):
+        check_kind("stepped", given, "a row of steps, and one cross-section more", Sequence)
     if len(shapes) != len(steps) + 1:
         raise DeclarationError(f"stepped: expected one step fewer than shapes, got {len(steps)} steps and {len(shapes)} shapes")
     ends = [0.0, *steps, 1.0]

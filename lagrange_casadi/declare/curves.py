@@ -42,7 +42,10 @@ def table(x: Any, places: Sequence[float], values: Sequence[float]) -> Any:
     :class:`DeclarationError` for places that do not increase.
     """
     at, to = rows("table", places, values, 2)
-    return ca.pw_lin(ca.SX(x), ca.DM(at), ca.DM(to))
+    try:
+        return ca.pw_lin(ca.SX(x), ca.DM(at), ca.DM(to))
+    except (NotImplementedError, RuntimeError):  # CasADi's of a kind or a shape
+        raise DeclarationError(f"table: expected a number or an expression, got {x!r}") from None
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,7 +31,7 @@ def checked(what: str, even: EvenPoints) -> EvenPoints:
         start, stop, count = float(even[0]), float(even[1]), int(even[2])
         if len(even) != 3:
             raise ValueError
-    except (TypeError, ValueError, IndexError, OverflowError):
+    except (TypeError, ValueError, LookupError, OverflowError):
         raise DeclarationError(f"{what}: expected (start, stop, count), got {even!r}") from None
     if count < 1 or count != even[2]:
         raise DeclarationError(f"{what}: COUNT must be a whole number of at least 1, got {even[2]}")

@@ -47,7 +47,7 @@ def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str) -> Expre
         return value
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise DeclarationError(f"{what} must be a number or an expression in parameters, got {value!r}") from None
     if not math.isfinite(number):
         symbols = "; functions of math and float() make nan of a symbol: use CasADi's, as casadi.sin" if math.isnan(number) else ""
@@ -77,6 +77,14 @@ def typed(what: str, angle: Expression) -> Expression:
         return read_angle(angle) if isinstance(angle, str) else angle
     except AngleError as error:
         raise DeclarationError(f"{what}: {error}") from None
+
+
+def bound(what: str, value: Any, unit: str) -> float:
+    """A number in a unit, not always finite; an angle may be a text. Raises :class:`DeclarationError` for anything else."""
+    try:
+        return float(typed(f"{what}: angle", value) if unit == "rad" else value)
+    except (TypeError, ValueError, OverflowError):
+        raise DeclarationError(f"{what}: expected a number [{unit}], got {value!r}") from None
 
 
 def unit_vector(what: str, axis: Any, component: Callable[[Any], Expression]) -> tuple[Expression, Expression]:

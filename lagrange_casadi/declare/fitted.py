@@ -74,6 +74,8 @@ def fit(mechanism: Mechanism, joint: Joint, *parts: Fitted) -> None:
     Raises :class:`.DeclarationError` for a joint of another mechanism or one that is no pin, for what is no such part, and for
     numbers that are not positive.
     """
+    if not hasattr(mechanism, "own"):
+        raise DeclarationError(f"fit: expected a Mechanism first, got {mechanism!r}")
     mechanism.own.joint(joint)
     what = f"joint '{joint.name}'"
     mechanism.own.open(f"fit {what}")

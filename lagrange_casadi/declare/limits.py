@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import casadi as ca
 
 from ..arithmetic.compensated import Precision
-from ..errors import DeclarationError, ParameterError, UnknownNameError
+from ..errors import DeclarationError, ParameterError, UnknownNameError, check_kind
 from .density import Density
 from .joints import Joint
 from .parts import Body, Expression, Ground, Link, Parameter, Point
@@ -41,11 +41,14 @@ def check_connected(name: str, ground: Ground, bodies: Iterable[Body], joints: I
         )
 
 
-def parameter_values(parameters: Mapping[str, Parameter], overrides: Mapping[str, float]) -> dict[str, float]:
+def parameter_values(parameters: Mapping[str, Parameter], overrides: Mapping[str, float] | None) -> dict[str, float]:
     """Defaults with overrides, each checked against its range.
 
-    Raises :class:`UnknownNameError` for names, :class:`ParameterError` for values, all of them at once.
+    Raises :class:`UnknownNameError` for names, :class:`ParameterError` for values, all of them at once, and
+    :class:`DeclarationError` for what has no names.
     """
+    overrides = {} if overrides is None else overrides
+    check_kind("parameters", overrides, "values by name, as {'l': 0.25}", Mapping)
     if unknown := [name for name in overrides if name not in parameters]:
         raise UnknownNameError("parameter", unknown, parameters)
     if faults := parameter_faults(parameters, overrides):

@@ -18,7 +18,7 @@ from ..errors import DeclarationError
 from .arguments import told_arguments
 from .constraints import constraint, row
 from .density import Density
-from .expressions import check_line, check_name, typed
+from .expressions import bound, check_line, check_name, typed
 from .fitted import Fitted
 from .friction import friction
 from .joints import Axis, Joint, JointKind
@@ -135,8 +135,8 @@ class Mechanism:
         """Declare a parameter from ``low`` to ``high``, and return its ``casadi.SX`` symbol to build lengths and places from."""
         self.own.free("parameter", name, self.parameters)
         check_line(f"parameter '{name}': its unit", unit)
-        default, low, high = (typed(f"parameter '{name}': angle", x) if unit == "rad" else x for x in (default, low, high))
-        parameter = Parameter(name, float(default), unit, float(low), float(high), ca.SX.sym(name))
+        default, low, high = (bound(f"parameter '{name}'", x, unit) for x in (default, low, high))
+        parameter = Parameter(name, default, unit, low, high, ca.SX.sym(name))
         parameter.check(parameter.default)
         return self.parameters.setdefault(name, parameter).symbol
 
@@ -278,8 +278,8 @@ class Mechanism:
         """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint, whose angle counts turns."""
         if self.own.joint(joint).coordinate != "angle":
             raise DeclarationError(f"load '{name}': joint '{joint.name}' has no angle for a torsion spring")
-        stretch, rate = self.coordinate(joint) - typed(f"load '{name}': angle", angle), self.rate(joint)
-        return self._turn_back(name, joint, -(stiffness * stretch) - damping * rate)
+        k, free, c = (self._load(name, x) for x in (stiffness, typed(f"load '{name}': angle", angle), damping))
+        return self._turn_back(name, joint, -(k * (self.coordinate(joint) - free)) - c * self.rate(joint))
 
     def _turn_back(self, name: str, joint: Joint, value: Expression) -> Torque:
         return self.torque(name, joint.child, value, against=joint.parent)
@@ -369,7 +369,7 @@ class Mechanism:
         or out of range, all of them at once, a length that is not positive, a mass or density that is negative, a station outside
         its link, or a mechanism without any mass.
         """
-        values = parameter_values(self.parameters, overrides or {})
+        values = parameter_values(self.parameters, overrides)
         demands(self).check(list(values.values()), lambda e: self.number(e, values))
         return values
 

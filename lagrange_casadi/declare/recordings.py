@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import DeclarationError, UnknownNameError, one_line
+from ..errors import DeclarationError, UnknownNameError, check_kind, one_line
 from ..system.csv_rows import read_rows
 from .curves import Curve, curve
 from .density import Array
@@ -93,6 +93,7 @@ def read_samples(
     Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for a line that is no row of numbers,
     times that do not rise, and ends of a cycle that differ, and :class:`.UnknownNameError` for columns and units that are not.
     """
+    check_kind("file", path, "a path", str, Path)
     path = Path(path)
     units = ((unit, _UNITS, "unit"), (time_unit, _TIMES, "time unit"))
     for name, valid, what in units:
@@ -135,8 +136,8 @@ def _column(place: str, column: str | int, heads: Sequence[str], count: int) -> 
         if heads.count(column) != 1:
             raise UnknownNameError("column", column, heads or [f"the numbers 1 to {count}"], place=place)
         return heads.index(column)
-    if not 1 <= column <= count:
-        raise DeclarationError(f"{place}: column {column} is none of the {count} there are, numbered from 1")
+    if not isinstance(column, int) or not 1 <= column <= count:
+        raise DeclarationError(f"{place}: column {column!r} is none of the {count} there are, numbered from 1")
     return column - 1
 
 

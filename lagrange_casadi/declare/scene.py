@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
@@ -91,7 +91,7 @@ class Wanted:
         """
         every = outputs(mechanism)
         choices = [*every, *kinds(mechanism)]
-        if isinstance(names, str) or not all(isinstance(name, str) for name in names):
+        if isinstance(names, str) or not isinstance(names, Iterable) or not all(isinstance(name, str) for name in names):
             raise DeclarationError(f"wanted: expected a list of output names, got {names!r}; valid: {', '.join(choices)}")
         for name in names:
             if name not in choices:
@@ -158,7 +158,7 @@ def without_fitted(mechanism: Mechanism, names: Sequence[str], what: str) -> Non
 
 def without_life(names: Sequence[str], what: str) -> None:
     """Raise :class:`.DeclarationError` where a life is among wanted names of what tells single instants."""
-    for name in names if not isinstance(names, str) else ():
+    for name in names if isinstance(names, Iterable) else ():
         if isinstance(name, str) and name.partition(":")[0] == "life":
             raise DeclarationError(f"output '{name}': {what} tell instants, and a life is that of a whole cycle; evaluate it")
 

@@ -37,10 +37,12 @@ def shaking(mechanism: Mechanism, name: str = "shaking", *, about: Sequence[Expr
     Source: Berkof and Lowen, *A new method for completely force balancing simple linkages*, J. Eng. Ind. 91 (1969), 21-26.
     Raises :class:`.DeclarationError` where there are no bodies, or ``about`` is no place.
     """
+    if not hasattr(mechanism, "moving"):
+        raise DeclarationError(f"shaking: expected a Mechanism, got {mechanism!r}")
     if not mechanism.moving:
         raise DeclarationError("shaking: declare it after the bodies; there are none")
     axes = mechanism.measures.components
-    if about and len(about) != len(axes):
+    if not isinstance(about, (tuple, list)) or len(about) not in (0, len(axes)):
         raise DeclarationError(f"shaking: expected a place ({', '.join(axes)}) for about, got {about!r}")
     centre = [mechanism.own.expression("shaking: about", x) for x in about] or [0.0] * len(axes)
     force, moment = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]

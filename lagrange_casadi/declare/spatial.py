@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..beams.beam import Beam
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import times
 from .arguments import told_arguments
@@ -20,7 +20,7 @@ from .line_loads import Between, Spread, line_load
 from .matter import beam_of, matter_of
 from .measures import Measures
 from .mechanism import Mechanism
-from .parts import Body, Expression, Force, LineLoad, Link, Point, PointMass, Row, Torque, Vector
+from .parts import Body, Expression, Force, Ground, LineLoad, Link, Point, PointMass, Row, Torque, Vector
 
 Turns = Sequence[tuple[str, Expression]] | tuple[Vector, Vector]
 """Turns in sequence, each about the ``"x"``, ``"y"`` or ``"z"`` axis that the turns before it carry, by an angle [rad, or text].
@@ -104,6 +104,7 @@ class SpatialMechanism(Mechanism):
 
     def at(self, body: Body, x: Expression, y: Expression, z: Expression) -> Point:
         """The point of a body that is at a place (x, y, z) [m] of the reference posture."""
+        check_kind("place", body, "a body", Ground, Link, PointMass)
         what = f"place on '{body.name}'"
         return self._reference(what, body).point(body, self._vector(what, (x, y, z)))
 

@@ -247,6 +247,8 @@ class Prepared:
     def _set(self, values: Mapping[str, Any] | None, named: Mapping[str, Any]) -> None:
         row = self._p[0]
         row[:] = self._defaults
+        if not (values is None or hasattr(values, "items")):
+            raise DeclarationError(f"parameters: expected values by name, as {{'l': 0.25}}, got {values!r}")
         for given in (values, named) if values else (named,):
             for name, value in given.items():
                 parameter = self._declared.get(name)

@@ -22,7 +22,7 @@ import casadi as ca
 from ..declare.mechanism import Mechanism
 from ..declare.meshes import FITTING, Fit, Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Body, Constraint, Expression, Point
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from ..geometry.vectors import cross, dot, minus, times
 from .courses import Numbers, along, courses_on, fits_of, length
 from .pitch import root
@@ -66,6 +66,7 @@ def belt(
     Raises :class:`.DeclarationError` for bodies that do not turn about parallel axes through these points, radii for which the
     pulleys touch, a preload that is negative, and an efficiency that is none.
     """
+    check_kind("belt", mechanism, "a Mechanism first", Mechanism)
     what, own = f"belt '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
     ends = own.point(what, first), own.point(what, second)

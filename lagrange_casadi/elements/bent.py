@@ -13,7 +13,7 @@ import casadi as ca
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression, Link, Point
 from ..declare.spatial import SpatialMechanism
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +57,7 @@ def bent_bar(
 
     Raises :class:`.DeclarationError` for corners that are no places, or lie on each other, and as declaring links does.
     """
+    check_kind("bent_bar", mechanism, "a Mechanism first", Mechanism)
     what, size = f"bent bar '{name}'", 3 if mechanism.space else 2
     if not isinstance(corners, Sequence) or len(corners) < 3:
         raise DeclarationError(f"{what}: expected three corners or more; a straight bar is a link")

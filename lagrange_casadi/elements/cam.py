@@ -18,7 +18,7 @@ from ..declare.expressions import sound
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Constraint, Expression, Ground, Link, Point
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from ..geometry.rotation import direction
 from .cam_profile import CamProfile, profile_of
 from .hertz import STEEL, largest_pressure
@@ -107,6 +107,7 @@ def disc_cam(
     Raises :class:`.DeclarationError` for joints that are others, a lift that has a kink, and a profile that is undercut with the
     default parameters.
     """
+    check_kind("disc_cam", mechanism, "a Mechanism first", Mechanism)
     what, own = f"cam '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side, base_radius)

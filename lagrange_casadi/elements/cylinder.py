@@ -10,7 +10,7 @@ import casadi as ca
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Body, Expression, Link, Point
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +49,7 @@ def cylinder(
 
     Raises :class:`.DeclarationError` for sizes that cannot be, and as declaring links and joints does.
     """
+    check_kind("cylinder", mechanism, "a Mechanism first", Mechanism)
     what, own = f"cylinder '{name}'", mechanism.own
     if mechanism.space:
         raise DeclarationError(f"{what}: cylinders lie in a plane; in space declare two links and a prismatic joint")

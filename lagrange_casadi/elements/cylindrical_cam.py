@@ -25,7 +25,7 @@ from ..declare.density import Array
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Constraint, Expression, Ground, Link, Point
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from ..geometry.rotation import Rotation, direction
 from ..geometry.vectors import ZERO, Vector, cross, dot, minus, plus, times
 from .hertz import STEEL, largest_pressure
@@ -121,6 +121,7 @@ def cylindrical_cam(
     along its joint's. Raises :class:`.DeclarationError` for joints that are others, a roller on the drum's axis or too large
     for the groove's bends, and a lift that has a kink or is not the same after a turn.
     """
+    check_kind("cylindrical_cam", mechanism, "a Mechanism first", Mechanism)
     what, own = f"cam '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
     for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):

@@ -18,7 +18,7 @@ from ..declare.expressions import typed
 from ..declare.mechanism import Mechanism
 from ..declare.meshes import Fit, Mesh, Transmission, Wrench
 from ..declare.parts import Body, Constraint, Expression, Point
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from ..geometry.vectors import cross, dot, minus
 from .courses import Course, Numbers, courses_on, fits_of
 from .losses import braking_of, loss_of, lost
@@ -94,6 +94,7 @@ def gears(
     Raises :class:`.DeclarationError` for bodies that do not turn about axes through these points, centres that do not fit the
     radii, numbers of teeth that are not whole, and angles out of range; values of parameters that break these are refused as well.
     """
+    check_kind("gears", mechanism, "a Mechanism first", Mechanism)
     what, own = f"gears '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
     if hand not in ("right", "left"):

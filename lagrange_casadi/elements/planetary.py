@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Body, Expression, Link, Point
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from .gears import Gears, gears
 from .ranges import positive
 from .wheel import wheel
@@ -69,6 +69,7 @@ def planetary(
 
     Raises :class:`.DeclarationError` for teeth that do not fit, and as :func:`.gears` does.
     """
+    check_kind("planetary", mechanism, "a Mechanism first", Mechanism)
     what, own = f"planetary set '{name}'", mechanism.own
     if mechanism.space:
         raise DeclarationError(f"{what}: it lies in a plane; in space declare planets, pins and gears")

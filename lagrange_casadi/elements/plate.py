@@ -12,7 +12,7 @@ import casadi as ca
 from ..declare.expressions import plain
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression, Link, Point
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +50,7 @@ def plate(
     Raises :class:`.DeclarationError` for what is no polygon: fewer than three corners, edges that cross, no area.
     """
     what = f"plate '{name}'"
+    check_kind("plate", mechanism, "a Mechanism first", Mechanism)
     if mechanism.space:
         raise DeclarationError(f"{what}: plates lie in a plane; in space declare a link with mass, centre and inertia")
     if not isinstance(corners, Sequence) or len(corners) < 3:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression, Link
 from ..declare.spatial import SpatialMechanism
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 
 _CORNERS = 48
 
@@ -37,6 +37,7 @@ def wheel(
 
     Raises :class:`.DeclarationError` for sizes that cannot be.
     """
+    check_kind("wheel", mechanism, "a Mechanism first", Mechanism)
     what, own = f"wheel '{name}'", mechanism.own
     if (mass is None) == (width is None):
         raise DeclarationError(f"{what}: give its mass, or its width and density")

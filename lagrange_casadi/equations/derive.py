@@ -13,7 +13,7 @@ from ..declare.description import describe
 from ..declare.held import effective_lengths, ends_of
 from ..declare.limits import told_parameters
 from ..declare.scene import Scene, Wanted
-from ..errors import AssemblyError, MobilityError, PostureError
+from ..errors import AssemblyError, MobilityError, PostureError, check_kind
 from ..quantities import Output
 from ..system import cache
 from .checks import Check, Column
@@ -42,6 +42,7 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool =
 
     Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the loops cannot be solved.
     """
+    check_kind("derive", scene, "a Scene", Scene)
     try:
         found = _kept(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted), iterate, elastic)
     except PostureError as error:

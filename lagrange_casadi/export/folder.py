@@ -15,7 +15,7 @@ import numpy as np
 from ..arithmetic.compensated import Precision
 from ..declare.expressions import check_line
 from ..declare.scene import Scene
-from ..errors import DeclarationError, PathError
+from ..errors import DeclarationError, PathError, check_kind
 from ..instants.rung import Rung
 from ..system.publish import check_writable, filling
 from ..version import __version__
@@ -80,6 +80,7 @@ def export(
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"export: expected a Scene, got {scene!r}")
+    check_kind("export", out, "a folder's path", str, os.PathLike)
     folder = Path(out)
     check_line("name", name or scene.mechanism.name)
     rung = Rung("auto", precision, newton, table)

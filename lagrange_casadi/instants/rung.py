@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ..arithmetic.compensated import PRECISIONS, Precision
-from ..errors import DeclarationError, UnknownNameError
+from ..errors import DeclarationError, UnknownNameError, check_kind
 
 Backend = Literal["auto", "lanes", "c", "vm"]
 BACKENDS: tuple[Backend, ...] = ("auto", "lanes", "c", "vm")
@@ -60,6 +60,7 @@ class Rung:
             raise DeclarationError(
                 f"table: expected a number of nodes, at least {FEWEST_NODES}, or an accuracy between 0 and 1, got {self.table!r}"
             )
+        check_kind("flags", self.flags, "options of a compiler, as one text", str)
         try:
             words = shlex.split(self.flags)
             if "\0" in self.flags:

@@ -16,7 +16,7 @@ from ..declare.times import Times, Timing
 from ..designs.engine import DesignEngine
 from ..equations.described import described
 from ..equations.fingerprint import fingerprint, sources
-from ..errors import DeclarationError, UnknownNameError
+from ..errors import DeclarationError, UnknownNameError, check_kind
 from ..instants.rung import Backend, Rung
 from ..strength.member import strength_open
 from ..study.peaks import wanted_for
@@ -44,6 +44,7 @@ class Box:
         declared = scene.mechanism.parameters
         if not isinstance(over, Mapping) or not over:
             raise DeclarationError(f"over: expected bounds by parameter, as {{'l': (0.15, 0.4)}}, got {over!r}")
+        check_kind("parameters", parameters or {}, "values by name, as {'l': 0.25}", Mapping)
         names, low, high = tuple(over), [], []
         for name, bounds in over.items():
             if name not in declared:
@@ -147,11 +148,11 @@ class Question:
                 raise DeclarationError(f"minimise: a smallest value has no least one that could be told; use max:{objective.name}")
         if len(set(objectives)) < len(objectives):
             raise DeclarationError(f"minimise: a term is there twice: {', '.join(map(str, objectives))}")
-        if isinstance(subject_to, str):
-            raise DeclarationError(f"subject_to: expected a list of constraints, got the text {subject_to!r}")
+        if isinstance(subject_to, str) or not isinstance(subject_to, Sequence):
+            raise DeclarationError(f"subject_to: expected a list of constraints, got {subject_to!r}")
         constraints = tuple(found for text in subject_to for found in constraints_of(text, scene.mechanism))
         box = Box.of(scene, over, parameters)
-        if not (0.0 < transmission < 1.0):
+        if not isinstance(transmission, float) or not 0.0 < transmission < 1.0:
             raise DeclarationError(f"transmission: expected a sine between 0 and 1, got {transmission!r}")
         return cls(objectives, constraints, box, scene.timing(t), Rung(backend), transmission)
 

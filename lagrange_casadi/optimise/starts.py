@@ -25,7 +25,8 @@ _MOST = 1 << 24
 
 def checked(starts: Any, screen: Any) -> None:
     """Raise :class:`DeclarationError` for counts that are none."""
-    if not isinstance(starts, (list, tuple)) and (type(starts) is not int or starts < 1):
+    told = isinstance(starts, (list, tuple)) and all(isinstance(start, Mapping) for start in starts)
+    if not told and (type(starts) is not int or starts < 1):
         raise DeclarationError(f"starts: expected a whole number above 0, or values of parameters, got {starts!r}")
     if type(screen) is not int or not 1 <= screen <= _MOST:
         raise DeclarationError(f"screen: expected a whole number from 1 to {_MOST}, got {screen!r}")

@@ -16,7 +16,7 @@ from ..beams.shape import between
 from ..beams.told import beam_told
 from ..declare.density import Array
 from ..declare.description import in_space
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from ..instants.section_law import SectionLaw, Side
 from ..instants.solution import Solution
 from ..summits.polynomials import interpolation
@@ -76,6 +76,7 @@ class Member:
         Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, equilibrium leaves its forces
         open, or its cross-section bears torsion of which its stiffness is not known.
         """
+        check_kind("strength", solution, "a Solution", Solution)
         law, body = solution.section(link).law, solution.description["bodies"][link]
         if "beam" not in body:
             having = ", ".join(name for name, other in solution.description["bodies"].items() if "beam" in other)

@@ -24,7 +24,7 @@ from ..declare.times import Over, Times, span_of
 from ..equations.derive import assembled, derive
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from ..evaluate import evaluate
 from ..instants.backends import follow
 from ..instants.section_law import SectionLaw, Side
@@ -61,6 +61,8 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
 
     Raises :class:`DeclarationError` where the solution is not of this scene, :class:`UnknownNameError` for a name that is none.
     """
+    check_kind("refine", scene, "a Scene", Scene)
+    check_kind("refine", solution, "a Solution", Solution)
     sampled = [solution.peak(name) for name in (solution.names() if names is None else names)]
     found = ContinuousSolution.of(scene, solution.by_equilibrium)
     peaks = (found if are_even(solution.t) else found.in_equal_steps()).peaks(sampled)

@@ -22,7 +22,7 @@ from ..declare.parts import Body, Force, Link, Parameter, Point, PointMass
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..elastic.compliance import Compliance, nodes
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from ..evaluate import evaluate
 from ..instants.solution import Solution
 from ..strength.member import Member
@@ -73,6 +73,7 @@ def tool_deflection(
     Raises :class:`.DeclarationError` where no link has a beam, a material has no elasticity, forces of a link that gives way stay
     open, or the point is on the ground or of another mechanism; and what :func:`.evaluate` does.
     """
+    check_kind("tool_deflection", scene, "a Scene", Scene)
     mechanism = scene.mechanism
     if not isinstance(point, (Point, Link, PointMass)):
         raise DeclarationError(f"tool_deflection: expected a point of the mechanism, got {point!r}")

@@ -19,7 +19,7 @@ from ..declare.density import Array
 from ..declare.even_points import points
 from ..declare.limits import parameter_faults
 from ..declare.mechanism import Mechanism
-from ..errors import DeclarationError, ParameterError, UnknownNameError
+from ..errors import DeclarationError, ParameterError, UnknownNameError, check_kind
 
 Numbers = npt.NDArray[np.int64]
 
@@ -266,6 +266,7 @@ def designs_of(given: Any) -> Designs:
 def check_designs(designs: Designs, mechanism: Mechanism, fixed: Mapping[str, float]) -> None:
     """Raise for parameters that are none or set twice, and for values out of their ranges, all of them at once."""
     parameters = mechanism.parameters
+    check_kind("parameters", fixed, "values by name, as {'l': 0.25}", Mapping)
     if designs.source:
         check_known(designs.names, parameters, designs.source)
     check_known([*designs.names, *fixed], parameters)

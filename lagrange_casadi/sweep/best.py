@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from ..declare.angles import angle
 from ..declare.density import Array
-from ..errors import DeclarationError
+from ..errors import DeclarationError, check_kind
 from ..system.numerals import real
 from .columns import STATUS
 from .reading import Sweep, names_in
@@ -97,11 +97,12 @@ def best(
 
     Raises :class:`UnknownNameError` for a column that is not there, :class:`DeclarationError` for no objective or more than two.
     """
+    check_kind("best", sweep, "a Sweep", Sweep)
     objectives = [*((name, 1.0) for name in names_in(minimise)), *((name, -1.0) for name in names_in(maximise))]
     if len(objectives) not in (1, 2):
         raise DeclarationError(f"expected one column to minimise or maximise, or two for their front, got {len(objectives)}")
-    if count is not None and count < 1:
-        raise DeclarationError(f"count: expected a whole number of at least 1, got {count}")
+    if count is not None and (not isinstance(count, int) or count < 1):
+        raise DeclarationError(f"count: expected a whole number of at least 1, got {count!r}")
     names = tuple(dict.fromkeys(name for name, _ in objectives))
     sweep.check_columns([*names, *names_in(columns), *(condition.name for condition in conditions_in(where))])
     kept: npt.NDArray[np.int64] = np.zeros(0, np.int64)
@@ -137,7 +138,10 @@ def chosen(
 
 def conditions_in(where: str | Condition | Sequence[str | Condition]) -> list[Condition]:
     """Conditions, of which one may stand alone. Raises :class:`DeclarationError` for what is none."""
+    check_kind("where", where, "a condition as 'l<0.3', or a list of them", str, Condition, list, tuple)
     given = [where] if isinstance(where, (str, Condition)) else where
+    for one in given:
+        check_kind("where", one, "a condition as 'l<0.3'", str, Condition)
     return [Condition.parse(text) if isinstance(text, str) else text for text in given]
 
 

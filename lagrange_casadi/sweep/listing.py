@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..declare.angles import typed
-from ..errors import DeclarationError, PathError
+from ..errors import DeclarationError, PathError, check_kind
 from ..system.numerals import real
 from .axes import Listed, check_known, not_parameter
 
@@ -28,6 +28,7 @@ def read_designs(path: str | os.PathLike[str], parameters: Collection[str] | Non
 
     Raises :class:`PathError` for no file, :class:`DeclarationError` for a head or a cell that is wrong, with its line and column.
     """
+    check_kind("file", path, "a path", str, os.PathLike)
     if not Path(path).is_file():
         raise PathError(f"{path}: {'is a folder, not a file' if Path(path).is_dir() else 'no such file'}")
     values, lines, angles = array("d"), array("q"), dict[str, None]()

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from ..declare.density import Array
 from ..declare.description import coordinates_of
-from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, one_line
+from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, check_kind, one_line
 from ..store.opening import opened_file, schema_of
 from ..system.seal import Seen, verify
 from ..tables import ANGLE, LENGTH
@@ -206,7 +206,7 @@ class Sweep:
 
     def _place(self, number: int) -> tuple[int, ...]:
         dims = tuple(self.dimensions.values())
-        if not 0 <= number < math.prod(dims):
+        if not isinstance(number, (int, np.integer)) or not 0 <= number < math.prod(dims):
             raise DeclarationError(f"design {number}: expected a number from 0 to {math.prod(dims) - 1}")
         return tuple(int(i) for i in np.unravel_index(number, dims))
 
@@ -358,7 +358,8 @@ def _box(numbers: npt.NDArray[np.int64] | None) -> slice:
 
 
 def names_in(given: str | Sequence[str]) -> list[str]:
-    """Names, of which one may stand alone."""
+    """Names, of which one may stand alone. Raises :class:`DeclarationError` for what is none."""
+    check_kind("columns", given, "a name, or a list of names", str, Sequence)
     return [given] if isinstance(given, str) else list(given)
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
 
-from ..errors import DeclarationError, PathError, one_line
+from ..errors import DeclarationError, PathError, check_kind, one_line
 
 _DELIMITERS = (";", "\t", ",")
 
@@ -43,6 +43,7 @@ def read_rows(path: str | os.PathLike[str], expected: str) -> list[Row]:
     Raises :class:`.PathError` for a file that cannot be read as text, and :class:`.DeclarationError` for a quote that does not end
     on its line, and for a file without rows, of which ``expected`` says what was.
     """
+    check_kind("file", path, "a path", str, os.PathLike)
     path = Path(path)
     try:
         lines = path.read_text(encoding="utf-8-sig").split("\n")

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from io import FileIO
 from pathlib import Path
 
-from ..errors import PathError, StoreError, one_line
+from ..errors import PathError, StoreError, check_kind, one_line
 from .room import cores
 
 try:
@@ -155,6 +155,7 @@ def is_held(path: str | os.PathLike[str]) -> bool:
 @contextmanager
 def _opened(path: str | os.PathLike[str]) -> Iterator[FileIO]:
     """A regular file to read; pipes and devices are not even opened."""
+    check_kind("file", path, "a path", str, os.PathLike)
     try:
         mode = os.stat(path).st_mode
     except (OSError, ValueError):
