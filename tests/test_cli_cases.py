@@ -1,8 +1,10 @@
 """The commands ``cases`` and ``new``: what comes with the package can be found by name, copied, and begun with."""
 
+import errno
 import filecmp
 import os
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -41,9 +43,26 @@ def test_nothing_is_copied_over_what_is_there(here, capfd):
     assert main(["cases", "--copy", "mine"]) == 2
     assert capfd.readouterr().err == "error: mine exists: expected a new folder\n"
     (here / "file").write_text("")
-    assert main(["cases", "--copy", "file/x"]) == 1
+    assert main(["cases", "--copy", "file/x"]) == 2
     assert capfd.readouterr().err.startswith("error: cannot write file")
     assert sorted(os.listdir()) == ["file", "mine"]
+
+
+def test_copies_are_all_there_or_none(here, capfd, monkeypatch):
+    def full(source, target):
+        if "beam_pump" in str(source):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        Path(target).touch()
+
+    monkeypatch.setattr("shutil.copyfile", full)
+    assert main(["cases", "--copy", "mine"]) == 1
+    assert capfd.readouterr().err == "error: cannot write mine: No space left on device\n"
+    assert not os.listdir()
+
+
+def test_what_begins_a_case_can_be_pasted(here, capfd):
+    assert main(["new", "my press"]) == 0
+    assert capfd.readouterr().out.endswith("run 'my press'\n")
 
 
 def test_without_them_it_says_so(monkeypatch, tmp_path, capfd):

@@ -256,3 +256,25 @@ def test_output_that_cannot_be_written_is_one_line(here):
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert done.returncode == 1
     assert done.stderr == "error: [Errno 28] No space left on device\n"
+
+
+CALLED_LATE = """
+import weakref
+
+def late(_):
+    raise KeyboardInterrupt
+
+class One:
+    pass
+
+one = One()
+seen = weakref.ref(one, late)
+del one
+"""
+
+
+def test_what_python_ignores_of_an_interrupt_is_not_told(here):
+    """A callback of a weak reference cannot raise; the interrupt is repeated until it arrives."""
+    Path("case.py").write_text(CALLED_LATE)
+    with program("info", "case.py") as asked:
+        assert asked.communicate()[1] == "error: case case.py: has no function scene()\n"

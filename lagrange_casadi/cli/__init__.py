@@ -5,9 +5,10 @@ from __future__ import annotations
 import itertools
 import os
 import signal
+import sys
 import threading
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
@@ -157,6 +158,8 @@ def _insistent() -> Iterator[None]:
         raise KeyboardInterrupt
 
     able = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")
+    # What Python ignores, as in a callback of a weak reference, arrives a second later, and is no one's concern.
+    ignored, sys.unraisablehook = sys.unraisablehook, _unless_interrupted(sys.unraisablehook)
     before = [(number, signal.signal(number, interrupt)) for number in (*interrupts(), signal.SIGALRM)] if able else []
     try:
         yield
@@ -167,10 +170,16 @@ def _insistent() -> Iterator[None]:
             raise _Interrupted from None
         raise
     finally:
+        sys.unraisablehook = ignored
         if able:
             signal.setitimer(signal.ITIMER_REAL, 0.0)
         for number, handler in before:
             signal.signal(number, handler)
+
+
+def _unless_interrupted(told: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """What tells of exceptions that Python ignores, but not of interrupts."""
+    return lambda ignored: None if issubclass(ignored.exc_type, KeyboardInterrupt) else told(ignored)
 
 
 def _in_casadi(frame: FrameType | None) -> bool:

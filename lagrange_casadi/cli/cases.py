@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import ast
+import shlex
 import shutil
 from pathlib import Path
 
 import click
 
-from ..errors import PathError, StoreError
+from ..errors import PathError
 from ..shipped_cases import shipped_cases
+from ..system.publish import filling
 
 
 @click.command()
@@ -25,12 +27,14 @@ def cases(copy: Path | None) -> None:
         return
     if copy.exists():
         raise PathError(f"{copy} exists: expected a new folder")
-    try:
+    with filling(copy) as draft:
         for name, folder in found.items():
-            shutil.copytree(folder, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
-    except OSError as error:
-        raise StoreError(f"cannot write {copy}: {error.strerror or error}") from None
-    click.echo(f"copied {len(found)} cases: begin with lagrange-casadi run {copy / next(iter(found))}")
+            for file in sorted(folder.rglob("*")):
+                if file.is_file() and "__pycache__" not in file.parts:
+                    place = draft / name / file.relative_to(folder)
+                    place.parent.mkdir(parents=True, exist_ok=True)
+                    shutil.copyfile(file, place)
+    click.echo(f"copied {len(found)} cases: begin with lagrange-casadi run {shlex.quote(str(copy / next(iter(found))))}")
 
 
 def _sentence(file: Path) -> str:

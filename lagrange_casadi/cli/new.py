@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 from pathlib import Path
 
@@ -32,7 +33,7 @@ def new(folder: Path, like: str) -> None:
                 shutil.copyfile(file, draft / file.name)
         case = draft / "case.py"
         case.write_text(_renamed(case.read_text(encoding="utf-8"), like, folder), encoding="utf-8", newline="\n")
-    click.echo(f"wrote {folder / 'case.py'}: change it, then lagrange-casadi run {folder}")
+    click.echo(f"wrote {folder / 'case.py'}: change it, then lagrange-casadi run {shlex.quote(str(folder))}")
 
 
 def _renamed(text: str, like: str, folder: Path) -> str:
