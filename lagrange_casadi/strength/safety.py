@@ -120,7 +120,7 @@ def tired(stress: Stress, material: Material, criterion: str) -> Verdict:
     else:
         (value, *_), place, fibre, swings = worst(stress, factor_score(material, criterion))
         k = int(np.argmin(factor(swings.amplitude, swings.mean, material, criterion)))
-        told = f"{swings.mean[k] / 1e6:.4g} +- {swings.amplitude[k] / 1e6:.4g} MPa by {criterion}"
+        told = f"mean {swings.mean[k] / 1e6:.4g} MPa, amplitude {swings.amplitude[k] / 1e6:.4g} MPa by {criterion}"
     return Verdict("fatigue", value, f"{told} at xi/l = {place.xi:.4f}, {fibre}{', notch' if place.notch else ''}")
 
 
