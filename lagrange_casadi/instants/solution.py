@@ -18,7 +18,7 @@ from ..declare.description import Description, coordinates_of, density_of
 from ..declare.limits import no_sections
 from ..declare.notes import notes
 from ..declare.times import DriveAxis
-from ..errors import DeclarationError, UnknownNameError, check_kind
+from ..errors import DeclarationError, UnknownNameError
 from ..quantities import Output
 from ..tables import Table
 from .derivatives import Derivatives
@@ -395,7 +395,6 @@ class Solution:
         return self._find("constraint or row with a multiplier", Output("multiplier", name))
 
     def _find(self, kind: str, output: Output) -> Array:
-        check_kind(kind, output.part, "a name", str)
-        if output not in self.outputs:
-            raise UnknownNameError(kind, output.part, dict.fromkeys(o.part for o in self.outputs if o.group == output.group))
+        if not isinstance(output.part, str) or output not in self.outputs:
+            raise UnknownNameError(kind, str(output.part), dict.fromkeys(o.part for o in self.outputs if o.group == output.group))
         return self.outputs[output]
