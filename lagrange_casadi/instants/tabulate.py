@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
-from ..equations.checks import FRACTIONS, Check
+from ..equations.checks import FRACTIONS, Check, column_of
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
 from ..quantities import Output
@@ -72,7 +72,7 @@ def tabulate(graph: SceneGraph, p: Array, table: int | float, rates: tuple[float
         if 2 * nodes > MOST:
             break
         values, nodes = np.stack((values, between), axis=-1).reshape(*values.shape[:2], -1), 2 * nodes
-    column = best.columns[int(np.argmax(best.errors))]
+    column = column_of(best.columns[int(np.argmax(best.errors))])
     worst = f"the {column.kind} of '{column.part}'" if isinstance(column, Check) else f"'{column}'"
     raise DeclarationError(
         f"table: an accuracy of {accuracy:g} is not reached; the best is {best.error:.2g}, with {best.nodes} nodes, and "
