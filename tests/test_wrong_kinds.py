@@ -85,7 +85,7 @@ WRONG = {
     "wanted": (lambda s: derive(s, 3.0), "wanted: expected a list of output names, got 3.0; valid: all, effort"),
     "a sweep's wanted": (lambda s: sweep(s, ONE, wanted=3), "wanted: expected a list of output names, got 3; valid: all"),
     "instants": (lambda s: evaluate(s, t={}), "t: expected (start, stop, count), got {}"),
-    "flags": (lambda s: prepare(s, flags=None), "flags: expected options of a compiler, as one text, got None"),
+    "flags": (lambda s: prepare(s, flags=None), "flags: expected options of a compiler, got None"),
     "prepared": (lambda s: prepare(s, backend="vm")([0.3]), "parameters: expected values by name, as {'l': 0.25}, got [0.3]"),
     "default": (lambda s: Mechanism("m").parameter("l", "long", "m"), "parameter 'l': expected a number [m], got 'long'"),
     "low": (lambda s: Mechanism("m").parameter("l", 1.0, low=None), "parameter 'l': expected a number [1], got None"),

@@ -29,7 +29,7 @@ class Scaled:
 
         Raises :class:`DeclarationError`, naming ``what``, for expressions that are not one scale times numbers, plus one shift.
         """
-        if isinstance(row, str) or not hasattr(row, "__len__") or not getattr(row, "shape", (1,)):
+        if not isinstance(row, ca.SX) and (isinstance(row, str) or not hasattr(row, "__len__") or not getattr(row, "shape", (1,))):
             raise DeclarationError(f"{what}: expected a row of numbers, got {row!r}")
         entries = ca.vertsplit(ca.vec(row)) if isinstance(row, ca.SX) else row
         if not any(isinstance(entry, ca.SX) and not entry.is_constant() for entry in entries):

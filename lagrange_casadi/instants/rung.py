@@ -60,7 +60,7 @@ class Rung:
             raise DeclarationError(
                 f"table: expected a number of nodes, at least {FEWEST_NODES}, or an accuracy between 0 and 1, got {self.table!r}"
             )
-        check_kind("flags", self.flags, "options of a compiler, as one text", str)
+        check_kind("flags", self.flags, "options of a compiler", str)
         try:
             words = shlex.split(self.flags)
             if "\0" in self.flags:
