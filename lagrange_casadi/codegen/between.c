@@ -151,8 +151,9 @@ static int designs_is_sharp(designs_real* row, casadi_int n, int kind, double st
 }
 #endif
 
-/* Tell in which steps of a panel something may hide; inside a step between instants, kinks of the motion are counted too. */
-static void designs_hide(const designs_panel* panel, int inside) {
+/* Tell in which steps of a panel something may hide; inside a step between instants, kinks of the motion are counted too. In the
+   finest steps rounding makes kinks, where what is watched is nearly zero, and poles alone hide more. */
+static void designs_hide(const designs_panel* panel, int depth) {
   const casadi_int steps = panel->n - 1;
 #if DESIGNS_WATCHES || DESIGNS_KNOTS
   const double step = (panel->t[steps] - panel->t[0])/(double) steps;
@@ -162,11 +163,11 @@ static void designs_hide(const designs_panel* panel, int inside) {
   memset(panel->kinks, 0, (size_t) steps);
 #if DESIGNS_WATCHES || DESIGNS_KNOTS
 #if DESIGNS_KNOTS
-  for (k = 0; inside && k < DESIGNS_KNOTS; ++k) {
+  for (k = 0; depth > 0 && k < DESIGNS_KNOTS; ++k) {
     if (!(designs_knot[k] >= panel->t[0] && designs_knot[k] <= panel->t[steps])) continue;
     for (i = 0; i < steps - 1 && designs_knot[k] >= panel->t[i + 1]; ++i) {}
     panel->kinks[i] += panel->kinks[i] < 2;
-    any = 1;
+    any = depth < DESIGNS_FINEST;
   }
 #endif
 #if DESIGNS_WATCHES
@@ -177,9 +178,12 @@ static void designs_hide(const designs_panel* panel, int inside) {
       const int found = designs_kinks(row, i, panel->n, designs_watch[k], designs_watch_at + designs_watch_first[k],
                                       designs_watch_first[k + 1] - designs_watch_first[k], step,
                                       panel->kinks[i] || panel->hiding[i] & DESIGNS_HIDES);
-      if (found == DESIGNS_MANY) panel->hiding[i] |= DESIGNS_HIDES;
-      else panel->kinks[i] = (signed char) (panel->kinks[i] + found > 2 ? 2 : panel->kinks[i] + found);
-      any |= found > 0;
+      if (found == DESIGNS_MANY) {
+        if (depth < DESIGNS_FINEST || designs_watch[k] == DESIGNS_IS_POLE) panel->hiding[i] |= DESIGNS_HIDES;
+        continue;
+      }
+      panel->kinks[i] = (signed char) (panel->kinks[i] + found > 2 ? 2 : panel->kinks[i] + found);
+      any |= found > 0 && depth < DESIGNS_FINEST;
     }
   }
 #endif
@@ -189,7 +193,7 @@ static void designs_hide(const designs_panel* panel, int inside) {
     if (panel->kinks[i] > 1 || (i > 0 && panel->kinks[i - 1]) || (i < steps - 1 && panel->kinks[i + 1])) panel->hiding[i] |= DESIGNS_HIDES;
   }
 #endif
-  (void) inside;
+  (void) depth;
 }
 
 /* Whether a kink may be in a step. */

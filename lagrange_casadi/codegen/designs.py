@@ -69,7 +69,7 @@ DEEPEST: dict[Precision, int] = {"double": summits.DEEPEST, "single": 8}
 """Panels within each other."""
 
 FINEST: dict[Precision, int] = {"double": summits.FINEST, "single": 5}
-"""Of these, the one in whose steps nothing hides but by rounding."""
+"""Of these, the one in whose steps nothing hides but beside a pole."""
 
 SIDE: dict[Precision, float] = {"double": panels.SIDE, "single": 1e-5}
 """Of a step between instants: how near to a kink or a jump its sides are."""

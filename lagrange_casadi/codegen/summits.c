@@ -209,7 +209,6 @@ static void designs_edge(const designs_panel* panel) {
 /* Search a panel. */
 static void designs_search(designs_now* now, const designs_panel* panel, int depth) {
   const signed char *step, *const steps = panel->hiding + panel->n - 1;
-  signed char was[DESIGNS_INNER + 1];
   designs_list list;
   designs_real limit;
   casadi_int i;
@@ -219,10 +218,7 @@ static void designs_search(designs_now* now, const designs_panel* panel, int dep
     for (i = 0; i < panel->n - 1; ++i) panel->hiding[i] = DESIGNS_HIDES;
   } else {
     designs_edge(panel);
-    /* What rises and falls within rounding, again and again, as what is nearly zero does, would open steps without an end. */
-    if (depth >= DESIGNS_FINEST) memcpy(was, panel->hiding, sizeof was);
-    designs_hide(panel, depth > 0);
-    if (depth >= DESIGNS_FINEST) memcpy(panel->hiding, was, sizeof was);
+    designs_hide(panel, depth);
     if (depth == 0) for (i = 0; i < panel->n - 1; ++i) now->hidden += panel->hiding[i] & DESIGNS_HIDES;
     for (q = 0; q < DESIGNS_QUANTITIES; ++q) {
       limit = now->peaks[q].limit;

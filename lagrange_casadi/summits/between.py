@@ -64,19 +64,23 @@ def highest(y: Array) -> Array:
 
 
 def unresolved(
-    rows: Array, watches: Sequence[Watch], step: float, kinks: npt.NDArray[np.intp] | None = None
+    rows: Array, watches: Sequence[Watch], step: float, kinks: npt.NDArray[np.intp] | None = None, finest: bool = False
 ) -> tuple[Flags, Flags]:
     """In which steps of time something may rise and fall unseen, (n - 1,), by what is watched (watches, n), and which have kinks.
 
     ``kinks`` are how many more kinks are known to be in each step. One in a step shows, two or one in each of two steps may not.
+    In the ``finest`` steps they do: there rounding makes as many, where what is watched is nearly zero, and poles alone hide more.
     """
     found = np.zeros(rows.shape[1] - 1, bool)
     count = np.zeros(found.size, np.intp) if kinks is None else kinks.copy()
     with np.errstate(all="ignore"):
         for row, watch in zip(rows, watches, strict=True):
             told, kinked = _unresolved(row, watch, step, found | (count > 0))
-            found |= told
+            if not finest or watch.kind is Kind.POLE:
+                found |= told
             count += kinked
+    if finest:
+        return found, count > 0
     beside = np.zeros(found.size, bool)
     beside[1:] |= count[:-1] > 0
     beside[:-1] |= count[1:] > 0

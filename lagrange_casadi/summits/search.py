@@ -31,7 +31,7 @@ DEEPEST = 14
 """Panels within each other: the last one's steps are 4e-14 of those between the instants."""
 
 FINEST = 10
-"""Panels within each other: in steps of this one, 3e-10 of those between the instants, nothing hides but by rounding."""
+"""Panels within each other: in steps of this one, 3e-10 of those between the instants, nothing hides but beside a pole."""
 
 PANELS = 2048
 """Panels of a search, and four more for each instant."""
@@ -174,8 +174,8 @@ class _Search:
             hiding, bound = np.ones(n - 1, bool), np.full((values.shape[0], n - 1), -np.inf)
         else:
             kinks = np.histogram(self.knots, panel.t)[0] if depth and self.knots.size else None
-            unseen, kinked = unresolved(panel.samples.watched, self.curves.watches, panel.step, kinks)
-            hiding = hiding | unseen if depth < FINEST else hiding
+            unseen, kinked = unresolved(panel.samples.watched, self.curves.watches, panel.step, kinks, depth >= FINEST)
+            hiding = hiding | unseen
             bound = np.fmax(highest(values), highest(-values))
             self.hidden += np.count_nonzero(hiding) if depth == 0 else 0
             self.stretches(panel, bound, hiding | kinked)
