@@ -49,6 +49,10 @@ def test_what_a_sweep_is(swept):
     assert next(iter(again.columns)) == "status"
     assert again.columns["peak_at:section:rod:bending"].axes == ("xi",)
     assert "36 designs over l, r, m1" in repr(again)
+    assert {"l", "r", "m1", "xi", "status", "peak:effort:O"} <= set(again)
+    assert all(again[name] is not None for name in again)
+    with pytest.raises(UnknownNameError, match="unknown column"):
+        again[0]
     np.testing.assert_array_equal(again["l"], LENGTHS)
     np.testing.assert_array_equal(again["xi"], np.linspace(0, 1, 4))
     assert {status: count for status, count in again.counts().items() if count} == {

@@ -122,7 +122,11 @@ class Sweep:
 
     def __contains__(self, name: object) -> bool:
         """Whether it has something of a name: what ``self[name]`` gives."""
-        return name in self.parameters or name in self._over or name in self.columns
+        return name in tuple(self)
+
+    def __iter__(self) -> Iterator[str]:
+        """The names of all that it has: parameters, ``t`` and ``xi`` where columns have them, and columns."""
+        yield from (*self.parameters, *self._over, *self.columns)
 
     def column(self, name: str) -> KeptColumn:
         """What a column is. Raises :class:`UnknownNameError`."""
