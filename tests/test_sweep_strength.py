@@ -198,3 +198,17 @@ def test_strength_that_is_open_is_left_out():
         optimise(scene, minimise="peak:utilisation:a0:fatigue", over={"l": (0.95, 1.1)}, backend="vm")
     assert "peak:section:arm:bending" in found
     assert "life:a1" not in found
+
+
+def test_what_rounding_leaves_at_a_free_end_buckles_nothing():
+    """A swinging arm is pulled outward: at its free end it feels nothing, but for rounding, which may be compression."""
+    m = Mechanism("swinging")
+    m.set_gravity(0.0, 0.0)
+    height = m.parameter("h", 0.02, "m", low=0.0)
+    arm = m.link("arm", length=0.5, beam=beams.Beam(beams.rectangle(height, 0.012), STEEL))
+    m.revolute("O", m.ground, arm)
+    scene = Scene(m, {"O": harmonic(0.0, 0.6, 2.0)}, t=(0, 0.5, 33))
+    found = sweep(scene, {"h": [0.01, 0.02]}, wanted=["safety:arm"])
+    assert found["status"].tolist() == [0, 0]
+    assert found["least:buckling:arm"].tolist() == [math.inf, math.inf]
+    assert evaluate(scene, certificate=False, backend="vm").safety("arm").against("buckling") == math.inf

@@ -11,6 +11,9 @@ from ..errors import DeclarationError, check_kind
 from .material import Material
 from .shape import Course, Shape, course_of
 
+SLIGHT = 1e-6
+"""Of a column's critical load: less compression buckles nothing, as what rounding leaves at a free end."""
+
 
 @dataclass(frozen=True)
 class Notch:

@@ -18,7 +18,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..beams.beam import Beam
+from ..beams.beam import SLIGHT, Beam
 from ..beams.properties import Properties
 from ..beams.shape import between
 from ..declare.density import Density
@@ -218,7 +218,7 @@ def _buckling(link: Loaded, effective: tuple[float, float]) -> Any:
             over = share / found + sum(b / gap for b, gap in zip(moments, gaps, strict=True)) - 1.0
             slope = share / found**2 + sum(b / gap**2 for b, gap in zip(moments, gaps, strict=True))
             found = found + ca.fmax(over / slope, 0.0)
-    return ca.if_else(n > 0.0, found, 0.0)
+    return ca.if_else(share > SLIGHT, found, 0.0)
 
 
 _ROUNDS, _TINY = 8, 1e-12

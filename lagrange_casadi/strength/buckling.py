@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from ..beams.beam import SLIGHT
 from ..declare.density import Array
 from .member import Member
 
@@ -65,7 +66,10 @@ def column(member: Member, effective: tuple[float, float]) -> Column:
 
 
 def load_factor(compression: Array, moments: tuple[Array, Array], of: Column) -> Array:
-    """By how much compression and moments may grow together until the column fails; infinite where nothing is compressed."""
+    """By how much compression and moments may grow together until the column fails; infinite where nothing is compressed.
+
+    Compression of less than 1e-6 of the critical load counts as none.
+    """
     n, (mz, my) = np.maximum(compression, 0.0), moments
     share = n / min(of.critical)
     low, high = np.zeros_like(n), np.full_like(n, np.inf)
@@ -79,7 +83,7 @@ def load_factor(compression: Array, moments: tuple[Array, Array], of: Column) ->
             )
             return np.asarray(~(factor * share + bent <= 1.0))
 
-        there = n > 0.0
+        there = share > SLIGHT
         low, high = np.where(there, low, 0.0), np.where(there, high, 0.0)
         for _ in range(_HALVINGS):
             middle = (low + high) / 2
