@@ -59,6 +59,7 @@ def true_errors(drawn, solution, exact):
 
 
 @pytest.mark.sampled(27)
+@pytest.mark.filterwarnings("ignore:the certificate fails")  # of a loop that one Newton step leaves open: how far is told
 @pytest.mark.parametrize("rung", RUNGS)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, case)))
 def test_estimates_are_near_the_errors(case, rung):

@@ -93,10 +93,16 @@ def section(columns, matter, link, ratio, seen=None):
     for name in columns:
         if name.startswith(f"section:{link}:") and name.endswith(":station"):
             n, f, m, station = (columns[name.removesuffix("station") + member] for member in ("n", "f", "m", "station"))
-            there = u < station or u == 1 <= station if seen is None else seen[name.split(":")[2]]
+            there = sees(u, station) if seen is None else seen[name.split(":")[2]]
             if there:
                 axial, shear, bending = axial + n, shear + f, bending + m + f * (station - u) * l
     return axial, shear, bending
+
+
+def sees(u, station, side="tip", slack=1e-12):
+    """Whether a section at a ratio feels what acts at a station; what misses an end by less than ``slack`` acts there."""
+    near = min(max(u, slack), 1 - slack)
+    return near < station or (side == "base" and near == station)
 
 
 def matter_of(mechanism, values, link):
@@ -123,14 +129,14 @@ def _looked_at(law):
     ratios = np.tile(RATIOS, (law.coefficients["n0"].size, 1))
     ratios = np.column_stack([ratios, *(np.clip(station, 0.0, 1.0) for station in stations.values())])
     forces = {side: [law.at(force, ratios, side) for force in FORCES] for side in (("tip", "base") if stations else ("tip",))}
-    return stations, ratios, forces
+    return stations, ratios, forces, law.slack
 
 
 def _section_gaps(matter, looked, i, columns, link):
-    stations, ratios, forces = looked
+    stations, ratios, forces, slack = looked
     for (k, u), (side, mine) in itertools.product(enumerate(ratios[i]), forces.items()):
         there = ((name, float(station[i])) for name, station in stations.items())
-        seen = {name: u < station or (side == "base" and u == station) or u == 1 <= station for name, station in there}
+        seen = {name: sees(u, station, side, slack) for name, station in there}
         true = section(columns, matter, link, u, seen)
         for force, value, own in zip(FORCES, true, mine, strict=True):
             yield force, float(abs(value - MP.mpf(float(own[i, k]))))
