@@ -88,8 +88,6 @@ class KeptOutputs:
             raise DeclarationError("designs: nothing is wanted that has a peak")
         units = tuple(output.unit(mechanism) for output in names)
         efforts = tuple(name for name in names if name.group in AVERAGED)
-
-        efforts = tuple(name for name in names if name.group in ("effort", "friction", "output"))
         along = tuple(_along(mechanism, link, at, table) for link in links)
         matter, positive, margins = _matter(graph.scene, links, along, rung.precision)
         columns = {column for columns in chosen.values() for column in columns}

@@ -10,7 +10,6 @@ import numpy as np
 from ..arithmetic.compensated import ROUNDING
 from ..declare.density import Array
 from ..declare.scene import Wanted
-from ..instants.laws import law_of
 from ..instants.solution import Solution
 from ..judge.accuracy import ALONG, most
 from ..quantities import Output
@@ -41,7 +40,7 @@ def told_errors(
             found[output] += part * most(solution.outputs[output] - before[output])
     for link in solution.links_with_sections:
         law = solution.section(link).law
-        old = law_of(link, before, law.length, law.density)
+        old = law.of(link, before)
         u = np.broadcast_to(ALONG, (solution.t.size, ALONG.size))
         for force in solution.table.forces:
             output = Output("section", link, force)

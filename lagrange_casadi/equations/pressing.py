@@ -21,8 +21,8 @@ from .multibody import Multibody, rates_along
 _REST = 1e-12
 """Of the fastest motion in the mechanism: a rate below is that of rest, but for rounding."""
 
-
 _TINY = 1e-30
+"""The least size that a direction is divided by: at rest it is zero."""
 
 
 @dataclass(frozen=True, eq=False)

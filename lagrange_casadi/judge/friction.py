@@ -73,12 +73,13 @@ def law_gaps(
 
 def _aside(solution: Solution, name: str, value: Array, spin: Array) -> Array:
     """How far the couple of a spherical joint's friction is from one of that size about the axis of turning."""
-    couple = [solution.outputs.get(Output("load", name, member)) for member in ("mx", "my", "mz")]
-    if any(component is None for component in couple):
+    outputs = [Output("load", name, member) for member in ("mx", "my", "mz")]
+    if not all(output in solution.outputs for output in outputs):
         return np.zeros_like(value)
+    couple = np.stack([solution.outputs[output] for output in outputs], axis=1)
     size = np.linalg.norm(spin, axis=1)[:, None]
     way = np.divide(spin, size, out=np.zeros_like(spin), where=size > 0.0)
-    return np.asarray(np.linalg.norm(np.stack(couple, axis=1) - value[:, None] * way, axis=1))  # type: ignore[arg-type]
+    return np.asarray(np.linalg.norm(couple - value[:, None] * way, axis=1))
 
 
 def _quick(solution: Solution, joint: str, turns: bool) -> float:

@@ -262,8 +262,9 @@ def _assembly(
 
 def _wanted(scene: Scene, wanted: Sequence[str] | None) -> tuple[str, ...]:
     """Output names; ``all`` are all but the motion, whose peaks size nothing, and strength, which is wanted by name."""
-    Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted)
-    names = tuple(scene.wanted if wanted is None else wanted)
+    wanted = scene.wanted if wanted is None else wanted
+    Wanted.of(scene.mechanism, wanted)
+    names = tuple(wanted)
     without_fitted(scene.mechanism, names, "sweeps")
     if "all" not in names or "motion" in names:
         return names

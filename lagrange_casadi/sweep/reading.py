@@ -120,12 +120,10 @@ class Sweep:
                 return _taken(file[name])
             return self._cut(file[name.replace(":", "/")], (*self.dimensions, *self.columns[name].axes))
 
-    def __contains__(self, name: object) -> bool:
-        """Whether it has something of a name: what ``self[name]`` gives."""
-        return name in tuple(self)
-
     def __iter__(self) -> Iterator[str]:
-        """The names of all that it has: parameters, ``t`` and ``xi`` where columns have them, and columns."""
+        """The names of all that it has, of which ``self[name]`` gives each: parameters, ``t`` and ``xi`` where columns have them,
+        and columns.
+        """
         yield from (*self.parameters, *self._over, *self.columns)
 
     def column(self, name: str) -> KeptColumn:
