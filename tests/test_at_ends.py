@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from exported import by_c99, compare, expected, exported, instants, solve
 
-from lagrange_casadi import Mechanism, Scene, evaluate, refine
+from lagrange_casadi import Mechanism, Scene, evaluate, refine, sweep
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.instants.rung import Rung
 from lagrange_casadi.motion import polynomial
@@ -76,6 +76,15 @@ def test_sweeps_have_the_refined_peaks(end):
         found = dict(zip(map(str, designs.quantities), outcome.value[0], strict=True))
         for name, value in refined.items():
             assert abs(found[name] - value) < 1e-11 * abs(value), (way, name)
+
+
+@pytest.mark.parametrize("end", ["tip", "base"])
+def test_sections_that_sweeps_keep_see_it_in_single_precision_too(end):
+    scene, at = rail(end)
+    kept = sweep(scene, {"l": [LENGTH]}, wanted=["section:bar"], precision="single", xi=(0, 1, 3), keep="histories")
+    shear = evaluate(scene).section("bar").shear[:, -1 if at else 0]
+    found = kept["history:section:bar:shear"][0][:, -1 if at else 0]
+    assert np.abs(found - shear).max() < SHIFT["single"] * np.abs(shear).max()
 
 
 @pytest.mark.long

@@ -193,7 +193,8 @@ class Harvest:
     @cached_property
     def strength(self) -> Kept:
         """What is kept of the strength of links."""
-        return Kept(self.mechanism, self.safety, self.life, self.engine.quantities, self.engine.columns)
+        engine = self.engine
+        return Kept(self.mechanism, self.safety, self.life, engine.quantities, engine.columns, engine.provenance.precision)
 
     @property
     def _histories(self) -> bool:
@@ -277,7 +278,7 @@ class Harvest:
         assert series is not None
         largest, whole = [], []
         for link in self._links:
-            matter = Matter.of(self.mechanism, link)
+            matter = Matter.of(self.mechanism, link, self.engine.provenance.precision)
             every = enumerate(map(Output.of, self.engine.columns))
             rows = {output: k for k, output in every if output.along and output.part == link}
             with np.errstate(all="ignore"):  # of designs that have no result

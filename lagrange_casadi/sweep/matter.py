@@ -17,19 +17,24 @@ from ..quantities import Output
 
 @dataclass(frozen=True, eq=False)
 class Matter:
-    """A link's length and density over the parameters, without deriving either anew for each design."""
+    """A link's length and density over the parameters, without deriving either anew for each design.
+
+    Laws are made of what was evaluated in a ``precision``.
+    """
 
     link: str
     density: Density
     numbers: Any
+    precision: str
 
     @classmethod
-    def of(cls, mechanism: Mechanism, name: str) -> Matter:
+    def of(cls, mechanism: Mechanism, name: str, precision: str) -> Matter:
         """That of a link."""
         link = mechanism.links[name]
         assert isinstance(link.mass, Density)
         cells = [c for cell in link.mass.cells for c in cell]
-        return cls(name, link.mass, ca.Function("matter", [mechanism.symbols], [ca.vertcat(ca.SX(0, 1), link.length, *cells)]))
+        numbers = ca.Function("matter", [mechanism.symbols], [ca.vertcat(ca.SX(0, 1), link.length, *cells)])
+        return cls(name, link.mass, numbers, precision)
 
     def law(self, members: Mapping[Output, Array], p: Array) -> SectionLaw:
         """The law from its coefficients and loads, (t,), of a design (parameters,).
@@ -39,4 +44,4 @@ class Matter:
         length, *cells = self.numbers(p.T).full()[..., None] if p.ndim > 1 else self.numbers(p).full().ravel().tolist()
         rest = iter(cells)
         density = self.density.at(lambda _: next(rest), length)
-        return law_of(self.link, members, length, density)
+        return law_of(self.link, members, length, density, self.precision)

@@ -135,13 +135,17 @@ class Fatigue:
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """What is kept of the strength of links: those whose ``safety`` is wanted, and those whose ``life`` is."""
+    """What is kept of the strength of links: those whose ``safety`` is wanted, and those whose ``life`` is.
+
+    ``series`` names what is evaluated over time, in a ``precision``.
+    """
 
     mechanism: Mechanism
     safety: tuple[str, ...]
     life: tuple[str, ...]
     quantities: tuple[str, ...]
     series: tuple[str, ...]
+    precision: str
 
     @property
     def histories(self) -> bool:
@@ -240,7 +244,8 @@ class Kept:
         members = {member: series[names[str(member)]] for member in self._fatigue[link].members}
         assert own.beam is not None
         beam = own.beam.mapped(lambda _, x: mechanism.number(x, values))
-        member = Member(link, beam, Matter.of(mechanism, link).law(members, p), t, np.linspace(0.0, 1.0, FEW), mechanism.space)
+        law = Matter.of(mechanism, link, self.precision).law(members, p)
+        member = Member(link, beam, law, t, np.linspace(0.0, 1.0, FEW), mechanism.space)
         stress, material = Stress(member), beam.material
         (least, *_), *_ = search(stress, factor_score(material, _CRITERION))
         if link not in self.life or (least >= 1.0 and material.endless):
