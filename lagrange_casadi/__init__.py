@@ -20,6 +20,7 @@ from .export import export
 from .instants.solution import Peak, Solution
 from .optimise import Front, Optimum, optimise
 from .store.runs import check, load, save
+from .study.holding import holding
 from .study.peaks import refine
 from .study.sensitivities import Sensitivities, sensitivities
 from .study.tolerances import tolerances
@@ -53,6 +54,7 @@ __all__ = [
     "evaluate",
     "export",
     "figures",
+    "holding",
     "load",
     "load_case",
     "motion",

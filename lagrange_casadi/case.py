@@ -17,10 +17,12 @@ from types import ModuleType
 from typing import Any
 
 from . import case_modules
+from .arguments import public
 from .declare.expressions import told
 from .declare.scene import Scene
 from .draw.figures import Spec
-from .errors import CaseError, LagrangeCasadiError, check_kind
+from .draw.kept import dump_specs
+from .errors import CaseError, LagrangeCasadiError, shown
 from .shipped_cases import shipped_cases
 
 
@@ -45,12 +47,12 @@ class Case:
         return load_case, (self.path,)
 
 
+@public
 def load_case(path: str | os.PathLike[str]) -> Case:
     """Load a case's folder or Python file, or by its name one that comes with the package; what is here has precedence.
 
     Raises :class:`CaseError`; an error of a declaration passes as it is.
     """
-    check_kind("case", path, "a path, or a case's name", str, os.PathLike)
     given = Path(path)
     file = _file(given)
     if file.suffix != ".py":
@@ -62,7 +64,12 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         raise CaseError(f"case {given}: scene() returned {type(scene).__name__}, expected a lagrange_casadi.Scene")
     figures = _call(given, file, module, "figures") if callable(getattr(module, "figures", None)) else ()
     if not isinstance(figures, (list, tuple)) or not all(isinstance(spec, Spec) for spec in figures):
-        raise CaseError(f"case {given}: figures() must return a list of specs of lagrange_casadi.figures, got {figures!r}")
+        raise CaseError(f"case {given}: figures() must return a list of specs of lagrange_casadi.figures, got {shown(figures)}")
+    for spec in figures:
+        try:
+            dump_specs([spec])
+        except (TypeError, ValueError, RecursionError) as error:
+            raise CaseError(f"case {given}: figures(): figure {shown(spec.name)} cannot be kept in a file: {told(error)}") from None
     return Case(file, scene, tuple(figures))
 
 

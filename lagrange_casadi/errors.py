@@ -8,22 +8,44 @@ from __future__ import annotations
 
 import difflib
 import errno
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from pickle import PicklingError
 
 _LONG = 300
 """Characters of names that a message takes at most."""
 
+_SHOWN = 120
+"""Characters of a value that a message takes at most."""
+
+
+_CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufeff]")
+"""Characters that a terminal obeys, that turn the direction of writing, and halves of characters, which cannot be written."""
+
+
+def escaped(text: str) -> str:
+    """A text as it may be shown on a terminal: control characters, ends of lines too, as Python writes them."""
+    return _CONTROLS.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+
 
 def one_line(error: BaseException) -> str:
-    """What an error says, in one line."""
-    return " ".join(str(error).split())
+    """What an error says, in one line that may be shown."""
+    return escaped(" ".join(str(error).split()))
 
 
 def check_kind(what: str, value: object, expected: str, *kinds: type) -> None:
     """Raise :class:`DeclarationError` for a value of none of the kinds, which says what was ``expected``."""
     if not isinstance(value, kinds):
-        raise DeclarationError(f"{what}: expected {expected}, got {value!r}")
+        raise DeclarationError(f"{what}: expected {expected}, got {shown(value)}")
+
+
+def shown(value: object) -> str:
+    """A value in a message: as Python writes it, in one line that is not long."""
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:  # of a class that is not ours, and of whole numbers with thousands of digits
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
 
 
 def lacking(error: OSError) -> bool:
@@ -40,7 +62,7 @@ class LagrangeCasadiError(Exception):
     exit_status = 2
 
     def __str__(self) -> str:
-        return " ".join(super().__str__().split())
+        return escaped(" ".join(super().__str__().split()))
 
 
 class DeclarationError(LagrangeCasadiError):
@@ -67,6 +89,10 @@ class UnknownNameError(DeclarationError):
         super().__init__(f"{f'{place}: ' if place else ''}unknown {kind}{'s' if len(unknown) > 1 else ''} {told}; {listed}")
 
 
+class NoComponentError(UnknownNameError, AttributeError):
+    """A component that there is in space alone."""
+
+
 def _hint(name: str, names: Sequence[str], many: bool) -> str:
     """The nearest of names, in words; of those that are too many to be listed else one that holds it."""
     held = [other for other in names if name and name in other] if many else []
@@ -82,8 +108,8 @@ class PickleError(LagrangeCasadiError, PicklingError):
     """What cannot be sent to another process; the message says what can be sent instead."""
 
 
-class AngleError(DeclarationError, ValueError):
-    """What is no angle: neither a finite number [rad] nor a text such as ``350 deg``."""
+class NumberError(DeclarationError, ValueError):
+    """What is no number in its unit: neither a finite number, nor a text of one with a unit, such as ``350 deg`` or ``100 mm``."""
 
 
 class PostureError(DeclarationError):

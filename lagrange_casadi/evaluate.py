@@ -10,12 +10,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from .arguments import public
 from .arithmetic.compensated import Precision
+from .declare.corners import Corners
 from .declare.density import Array
 from .declare.ends import BEYOND
 from .declare.even_points import EvenPoints, points
 from .declare.giving import Elastic, felt, giving
-from .declare.motion import ends_function, refuse_kinked
+from .declare.motion import ends_function
 from .declare.scene import Scene, Wanted, checked_ratios
 from .declare.times import Over, Times, Timing, span_of
 from .declare.wanted_slopes import by_parameters
@@ -52,6 +54,7 @@ _LONG = 60.0
 """Seconds of which nothing need be said."""
 
 
+@public
 def evaluate(
     scene: Scene,
     *,
@@ -131,8 +134,9 @@ def evaluate(
     found, provenance = columns(graph, times, p, rung, threads)
     refuse(graph, found, times, p, rung)
     out = np.asarray(found.out, float)
+    Corners.of(scene).refuse_constraints(lambda name: graph.seen(name, out), p.tolist())
     left_open += undetermined(graph, out, p, rung)
-    description = described(scene, values)
+    description = described(graph.scene, values)
     done = complete(graph, out, np.asarray(found.iterated, float), times, p, description, left_open, gives) if gives else None
     if done is not None:
         out, left_open = done.out, done.left_open
@@ -222,7 +226,7 @@ def checked_laws(scene: Scene, span: tuple[float, float], p: tuple[float, ...]) 
 
     Also where it puts into a curve what is beyond the curve's ends.
     """
-    refuse_kinked(scene.laws, scene.mechanism.symbols, p, span)
+    Corners.of(scene).refuse_laws(span, p)
     ends = ends_function(scene.laws, scene.mechanism.symbols)
     if ends is None:
         return

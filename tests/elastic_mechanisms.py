@@ -33,8 +33,8 @@ def agrees(solution, i, reactions, tolerance=1e-8):
     size = max(np.abs(row).max() for row in reactions.values())
     for joint, row in reactions.items():
         found = solution.reaction(joint)
-        for k, values in enumerate((found.fx, found.fy, found.fz, found.mx, found.my, found.mz)):
-            if values is not None:
+        for k, member in enumerate(("fx", "fy", "fz", "mx", "my", "mz")):
+            if (values := getattr(found, member, None)) is not None:
                 assert values[i] == pytest.approx(row[k], abs=tolerance * size), (joint, k)
 
 

@@ -110,6 +110,8 @@ class _Draft:
             self.join(f"c{number}", self.pick(CLOSING), one, other, self.place(other))
             return
         start, end = self.place(one), self.place(other)
+        if np.array_equal(start, end):
+            raise OpenLoopError("a rod has no length")
         bar = rng.random() < 0.3
         link = rod(rng, f"bar{number}" if bar else f"rod{number}", float(np.linalg.norm(end - start)), slender=bar)
         self.put(link, start, frame(end - start, rng))
@@ -145,6 +147,8 @@ def anyhow(rng) -> Drawn:
         draft.close(k)
     bodies = [*draft.bodies.values()]
     bars = [one.name for one in bodies if one.name.startswith("bar")]
+    if any(sum(bar in (joint.parent, joint.child) for joint in draft.joints) > 2 for bar in bars):
+        raise OpenLoopError("a bar carries more than its ends, and does not spin freely")
     acts = acting(rng, [one for one in bodies if one.name not in bars])
     mechanism = Mechanism(bodies, draft.joints, **acts)
     guess = {name: pose for name, pose in draft.poses.items() if name != GROUND}

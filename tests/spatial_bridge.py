@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -15,6 +17,9 @@ from spatial_rubbing import Rub
 from lagrange_casadi import Scene, SpatialMechanism, density, derive, motion
 
 _SIZE = 0.3
+BESIDE = (0.3, 3.0, 0.0)
+"""In a body's own axes, the direction by which its y axis is told."""
+NO_BEAMS: Mapping[str, Any] = MappingProxyType({})
 NAMES = {
     "cylindrical": ("turn", "slide"),
     "universal": ("turn_1", "turn_2"),
@@ -42,12 +47,19 @@ def plain(drawn: Drawn) -> Drawn:
     return dataclasses.replace(drawn, mechanism=dataclasses.replace(drawn.mechanism, joints=joints))
 
 
-def declared(drawn: Drawn, t: float = 0.0, rubs: Sequence[Rub] = (), **options) -> Scene:
-    """A scene of what was drawn, with friction where it rubs, its loops assembled as the oracle has them at an instant."""
+def declared(drawn: Drawn, t: float = 0.0, rubs: Sequence[Rub] = (), beams: Mapping[str, Any] = NO_BEAMS, **options) -> Scene:
+    """A scene of what was drawn, with friction where it rubs, its loops assembled as the oracle has them at an instant.
+
+    Rods may have ``beams``, by their names; a bar that has one is told by places, and so is its y axis.
+    """
     one = drawn.mechanism
     m = SpatialMechanism("drawn")
     m.set_gravity(*map(float, one.gravity))
-    parts = {GROUND: m.ground} | {b.name: _body(m, b, drawn.guess[b.name] if b.name in drawn.hard else None) for b in one.bodies}
+    told = {body for joint in one.joints if drawn.is_hard(joint) for body in (joint.parent, joint.child)}
+    told |= bars_of(drawn) & {*beams}
+    parts = {GROUND: m.ground}
+    for b in one.bodies:
+        parts[b.name] = _body(m, b, drawn.guess[b.name] if b.name in told else None, beams.get(b.name))
 
     def at(body, point):
         return parts[body].at(*map(float, point))
@@ -83,6 +95,14 @@ def declared(drawn: Drawn, t: float = 0.0, rubs: Sequence[Rub] = (), **options) 
     return Scene(m, laws, **{"t": (t, t + drawn.span, 9), "posture": rough, "drives": drives, **options})
 
 
+def bars_of(drawn: Drawn) -> set[str]:
+    """The rods that may spin about their line."""
+    if not drawn.idle:
+        return set()
+    ends = {b.name: [j.kind for j in drawn.mechanism.joints if b.name in (j.parent, j.child)] for b in drawn.mechanism.bodies}
+    return {name for name in drawn.rods if ends[name] == ["spherical"] * 2}
+
+
 def postures(drawn: Drawn, t: float) -> dict[str, float]:
     """The coordinates at an instant, by the package's names, as they follow from the oracle's poses."""
     found: dict[str, float] = {}
@@ -114,7 +134,7 @@ def instants(scene: Scene, times, wanted=None):
     return dict(zip(graph.names, np.array(rows).T, strict=True))
 
 
-def _body(m, body, pose=None):
+def _body(m, body, pose=None, beam=None):
     if isinstance(body, Rigid):
         rows, centre, told = np.array(body.inertia, float), np.array(body.centre, float), {"length": _SIZE}
         if pose is not None:
@@ -131,12 +151,13 @@ def _body(m, body, pose=None):
             for name, of in told.items()
         }
         matter = density.thick(matter, **{name: density.polynomial(a, b - a) for name, (a, b) in ends.items()})
-    return m.link(body.name, density=matter, **({"length": length} if pose is None else _lying(*pose, length)))
+    made = {} if beam is None else {"beam": beam}
+    return m.link(body.name, density=matter, **made, **({"length": length} if pose is None else _lying(*pose, length)))
 
 
 def _lying(r, R, length):
     """Where a link lies whose axes are the columns of a matrix; what tells its y axis is neither a unit nor at a right angle."""
-    base, tip, aside = (tuple(map(float, place)) for place in (r, r + R @ [length, 0.0, 0.0], R @ [0.3, 3.0, 0.0]))
+    base, tip, aside = (tuple(map(float, place)) for place in (r, r + R @ [length, 0.0, 0.0], R @ BESIDE))
     return {"between": (base, tip), "beside": aside}
 
 

@@ -35,7 +35,7 @@ class Formula:
         "section:rod:bending",
     )
     efforts = ("effort:O",)
-    undetermined = doubtful = ()
+    doubtful = ()
     cost, room = 1 / 15, 0
     provenance = Provenance("formula", "double", "", "", "(default)", {"lagrange_casadi": __version__})
 

@@ -200,8 +200,8 @@ REFUSED = {
     "clockwise": (beams.polygon([(0, 0), (0, 1), (1, 0)]), "area, of corners counter-clockwise, of its polygon must be"),
     "not a number": (beams.rectangle(math.nan, 0.1), "height of its cross-section must be finite, got nan"),
     "text": (
-        beams.rectangle("wide", 0.1),
-        "height of its cross-section must be a number or an expression in parameters, got 'wide'",
+        beams.rectangle(None, 0.1),
+        "height of its cross-section must be a number or an expression in parameters, got None",
     ),
 }
 

@@ -8,9 +8,12 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+import sweeps
 
+from lagrange_casadi import evaluate
 from lagrange_casadi.cli import main
-from lagrange_casadi.errors import DeclarationError
+from lagrange_casadi.errors import DeclarationError, PathError
+from lagrange_casadi.instants import backends
 from lagrange_casadi.system import cache
 
 NAMES = [f"{k:032x}" for k in range(12)]
@@ -167,3 +170,103 @@ def test_a_system_that_is_short_of_something_is_asked_again(fresh_cache, monkeyp
         with pytest.warns(UserWarning, match=r"cannot use the cache folder .* now: Too many open files"):
             assert cache.folder() is None
     assert cache.folder() == fresh_cache
+
+
+def owned_by_another(path, monkeypatch):
+    """Let the system say that something belongs to somebody else."""
+    lstat = os.lstat
+
+    def told(other, *arguments, **keywords):
+        found = list(lstat(other, *arguments, **keywords))
+        if str(other) == str(path):
+            found[4] = os.geteuid() + 1
+        return os.stat_result(found)
+
+    monkeypatch.setattr(os, "lstat", told)
+
+
+@pytest.fixture
+def foreign(request, fresh_cache, monkeypatch):
+    """A cache folder into which others may put something, as did whoever planted a graph there."""
+    monkeypatch.setattr(cache, "_is_own_group", lambda _: False)
+    cache._usable.cache_clear()
+    fresh_cache.mkdir(parents=True)
+    (fresh_cache / f"{NAMES[0]}.graph").write_text(f"{cache.digest(b'planted')}\nplanted")
+    place = {"folder": fresh_cache, "parent": fresh_cache.parent}[request.param[0]]
+    if request.param[1] == "owner":
+        owned_by_another(place, monkeypatch)
+    else:
+        place.chmod(request.param[1])
+    yield place
+    cache._usable.cache_clear()
+
+
+WAYS = [(place, how) for place in ("folder", "parent") for how in (0o777, 0o775, 0o757, "owner")] + [("folder", 0o1777)]
+
+
+@pytest.mark.parametrize("foreign", WAYS, indirect=True)
+def test_what_others_may_have_put_there_is_not_read(fresh_cache, foreign, capsys):
+    why = rf"{foreign} belongs to another user|others may write into {foreign}"
+    with pytest.warns(UserWarning, match=rf"^the cache folder {fresh_cache} is not used, for ({why}); a temporary one is$"):
+        own = cache.folder()
+    assert own != fresh_cache
+    assert own.stat().st_mode & 0o777 == 0o700
+    assert cache.read(f"{NAMES[0]}.graph") is None
+    cache.write(f"{NAMES[1]}.graph", "mine")
+    assert cache.read(f"{NAMES[1]}.graph") == "mine"
+    assert left(fresh_cache) == NAMES[:1]
+    assert main(["cache"]) == 0
+    assert capsys.readouterr().err.startswith(f"note: {fresh_cache} is not used, for ")
+
+
+@pytest.mark.parametrize("foreign", [("parent", 0o1777), ("parent", 0o755), ("folder", 0o700)], indirect=True)
+def test_a_folder_like_tmp_may_lead_there(fresh_cache, foreign):
+    assert cache.folder() == fresh_cache
+    assert cache.read(f"{NAMES[0]}.graph") == "planted"
+
+
+def test_a_group_of_this_users_own_may_write(fresh_cache, monkeypatch):
+    monkeypatch.setattr(cache, "_is_own_group", lambda _: True)
+    fresh_cache.mkdir(parents=True)
+    fresh_cache.chmod(0o775)
+    assert cache.distrusted(fresh_cache) == ""
+    fresh_cache.chmod(0o777)
+    assert cache.distrusted(fresh_cache) == f"others may write into {fresh_cache}"
+
+
+@pytest.mark.parametrize("backend", ["c", "lanes"])
+def test_a_library_that_others_may_write_is_built_again(fresh_cache, backend):
+    """A planted one would run, for its digest beside it fits."""
+    evaluate(sweeps.scene(), backend=backend, flags="-O0")
+    libraries = list(fresh_cache.glob("*.so"))
+    for library in libraries:
+        library.chmod(0o666)
+    backends._library.cache_clear()
+    with pytest.warns(UserWarning, match=r"the cached library .*\.so is not trusted \(others may write into .*\.so\) and is built"):
+        evaluate(sweeps.scene(), backend=backend, flags="-O0")
+    assert libraries
+    assert not any(library.stat().st_mode & 0o22 for library in libraries if library.name in os.listdir(fresh_cache))
+
+
+def test_nothing_is_built_where_others_may_change_it(fresh_cache, tmp_path, monkeypatch):
+    shared = tmp_path / "shared"
+    shared.mkdir()
+    monkeypatch.setattr(cache.tempfile, "tempdir", str(shared))
+    for mode, fits in ((0o777, False), (0o1777, True), (0o755, True)):
+        shared.chmod(mode)
+        if fits:
+            with cache.working_folder() as work:
+                assert work.parent == shared
+            continue
+        why = rf"in the temporary folder {shared}, for others may write into .*; set \$TMPDIR to a folder of your own$"
+        with pytest.raises(PathError, match=why), cache.working_folder():
+            pass
+
+
+def test_a_link_of_somebody_else_is_not_followed(fresh_cache, tmp_path, monkeypatch):
+    fresh_cache.mkdir(parents=True)
+    link = tmp_path / "link"
+    link.symlink_to(fresh_cache)
+    assert cache.distrusted(link) == ""
+    owned_by_another(link, monkeypatch)
+    assert cache.distrusted(link) == f"{link} belongs to another user"

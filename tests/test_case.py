@@ -39,6 +39,15 @@ def test_a_name_keeps_what_looks_like_an_ending(tmp_path, monkeypatch, given, na
     assert load_case(given).name == name
 
 
+DRAWN = """
+import casadi, numpy
+from lagrange_casadi.figures import TimePlot
+def figures():
+    return [TimePlot("f", ("effort:O",), factor={})]
+"""
+STRANGE = ("casadi.SX(1)", "numpy.float32(1)", "1j", "b'1'", "len", "numpy.ones(2)", "{(1, 2): 3}", "{1}")
+
+
 def test_the_paper_says_what_it_wants_drawn(slider_crank):
     assert [spec.name[:5] for spec in slider_crank.figures[:9]] == [f"fig{n:02}" for n in range(6, 15)]
 
@@ -53,7 +62,8 @@ def test_the_paper_says_what_it_wants_drawn(slider_crank):
         ("scene = 3\n", CaseError, r"has no function scene\(\)"),
         ("def scene():\n    return 3\n", CaseError, r"scene\(\) returned int, expected a lagrange_casadi\.Scene"),
         ("def scene():\n    raise ValueError('two\\nlines')\n", CaseError, r"line 2: ValueError: two lines$"),
-        (GOOD.replace("length=1", "length='x'"), DeclarationError, "link 'a': length must be a number"),
+        *((GOOD + DRAWN.format(value), CaseError, r"figures\(\): figure 'f' cannot be kept in a file: ") for value in STRANGE),
+        (GOOD.replace("length=1", "length='x'"), DeclarationError, "link 'a': length: expected a finite number"),
     ],
 )
 def test_broken_cases_are_one_line(tmp_path, text, error, says):

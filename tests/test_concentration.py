@@ -101,7 +101,7 @@ def test_the_narrow_side_of_a_step_has_the_stress():
     ("make", "told"),
     [
         (lambda: beams.shoulder(0.5, 0.02, 0.03, 0.001), "shoulder: wide must be more than narrow, got 0.02 and 0.03 m"),
-        (lambda: beams.shoulder(0.5, 0.03, 0.02, -1.0), "shoulder: radius must be positive, got -1.0"),
+        (lambda: beams.shoulder(0.5, 0.03, 0.02, -1.0), "shoulder: radius must be positive, got -1 m"),
         (lambda: beams.shoulder(0.5, 0.03, 0.02, 0.0001, flat=True), "for tension the depth .* from 0.1 to 20, got 50"),
         (
             lambda: beams.shoulder(0.5, 0.03, 0.02, 0.001),

@@ -114,7 +114,7 @@ def test_they_are_differences_of_first_ones(name):
     scene = load_case(CASES / name).scene
     f = prepare(scene, wanted=["effort", "reaction", "section"])
     found, gradient = f.curvature(), f.gradient()
-    p = f._p[0].copy()
+    p = f._answers.p[0].copy()
     sizes = np.abs(gradient.value) + np.nanmax(np.abs(found.bends) * np.abs(p[:, None] * p), axis=(1, 2)) + 1e-300
     whole = np.abs(gradient.value) > 1e-9 * np.abs(gradient.value).max()
     for j, parameter in enumerate(f.parameters):

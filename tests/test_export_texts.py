@@ -228,7 +228,7 @@ def test_what_is_no_line_of_text_is_refused(tmp_path, wicked):
     for what in (lambda: export(slider_crank(), tmp_path, name=wicked), lambda: arm(wicked)):
         with pytest.raises(DeclarationError, match="must be a line of printable characters, got "):
             what()
-    with pytest.raises(DeclarationError, match="must be a line of printable characters, got 7"):
+    with pytest.raises(DeclarationError, match="unit: expected a text, got 7"):
         arm(7)
     with pytest.raises(DeclarationError, match=r"flags: expected options of a compiler, .*: they hold a null character"):
         evaluate(arm(), flags="-DX=\0")

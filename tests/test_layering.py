@@ -19,6 +19,7 @@ ORDER = (
     "tables",
     "quantities",
     "system",
+    "arguments",
     "arithmetic",
     "geometry",
     "beams",

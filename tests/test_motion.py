@@ -96,7 +96,7 @@ def test_samples_cover_their_span_only():
     ("make", "says"),
     [
         (lambda: motion.polynomial(), "at least one coefficient"),
-        (lambda: motion.expression(3.0), "expected a function of the symbol t"),
+        (lambda: motion.expression(3.0), "expression: law: expected a function, got"),
         (lambda: motion.samples([0, 1, 2], [0, 1, 2]), "at least 4, got 3"),
         (lambda: motion.samples([0, 1, 1, 2], [0, 1, 2, 3]), "places must increase, but entry 2 is at 1 after 1"),
         (lambda: motion.samples([0, 1, 2, 3], [0, 1, math.nan, 3]), "must be finite"),

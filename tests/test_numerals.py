@@ -17,7 +17,7 @@ def test_numbers_are_read():
     assert [whole(text) for text in ("12", " -3 ")] == [12, -3]
 
 
-@pytest.mark.parametrize("text", ["1_0", "0.1_5", "1e1_0", "x", "", "0x10"])
+@pytest.mark.parametrize("text", ["1_0", "0.1_5", "1e1_0", "x", "", "0x10", "\u0663", "\uff11", "1\u0662"])
 def test_what_is_no_number_is_refused(text):
     for read in (real, whole):
         with pytest.raises(ValueError, match=r"expected a number|could not convert|invalid literal"):

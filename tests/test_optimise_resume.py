@@ -3,6 +3,7 @@
 import importlib
 import signal
 import sys
+import zlib
 
 import h5py
 import pytest
@@ -148,10 +149,38 @@ def test_damaged_lines_are_done_again(here):
     whole = asked(out="x.h5", resume=True, progress=lambda *told: seen.append(told[0]))
     assert set(seen) == {0, 2}
     assert whole.objective == asked().objective
+    journal.write_bytes(content[0] * 2)
+    assert asked(out="x.h5", resume=True).objective == whole.objective
     journal.write_bytes(b"nothing of ours\n")
     with pytest.raises(StoreError, match="holds what no search wrote"):
         asked(out="x.h5", resume=True)
     assert asked(out="x.h5", force=True).converged
+
+
+ODD = ['["identity"]', '"identity"', '{"identity": 3}', "3", "null", '{"of": "x", "trail": {}}', '{"of": []}', "[" * 9999, "\\xff"]
+
+
+def test_odd_lines_and_journals_that_were_joined(here):
+    """Each line has its checksum: other programs can write that too."""
+
+    def stop(start, _objective, _excess):
+        if start == 1:
+            raise KeyboardInterrupt
+
+    assert asked(out="x.h5", progress=stop).stopped
+    journal = here / "x.h5.journal"
+    own = journal.read_bytes()
+    odd = [text.encode() for text in ODD]
+    odd = b"".join(b"%08x %b\n" % (zlib.crc32(text), text) for text in odd)
+    journal.write_bytes(own + odd + own)
+    assert asked(out="x.h5", resume=True).objective == asked().objective
+    assert asked(out="x.h5", progress=stop, transmission=0.1, force=True).stopped
+    journal.write_bytes(own + journal.read_bytes())
+    with pytest.raises(StoreError, match=r"is of another search: transmission was 0\.1 and is 0\.05"):
+        asked(out="x.h5", resume=True)
+    journal.write_bytes(odd)
+    with pytest.raises(StoreError, match="holds what no search wrote"):
+        asked(out="x.h5", resume=True)
 
 
 def test_nothing_is_left_of_a_mistake(here):
@@ -174,3 +203,39 @@ def test_two_searches_do_not_write_one_file(here):
         raise KeyboardInterrupt
 
     asked(out="x.h5", progress=meanwhile)
+
+
+FULL = """
+import resource, sys
+resource.setrlimit(resource.RLIMIT_FSIZE, ({0}, {0}))
+sys.dont_write_bytecode = True
+from lagrange_casadi.cli import main
+sys.exit(main({1!r}))
+"""
+
+
+@pytest.mark.parametrize("limit", [0, 100])
+def test_a_full_disk_does_not_block_the_command_that_is_repeated(here, limit):
+    """The journal's first line does not fit; the system's limit stands for the disk."""
+    command = [sys.executable, "-c", FULL.format(limit, [*ASKED, "--out", "x.h5"])]
+    for _ in range(2):
+        with sweeps.process(*command, cwd=here) as full:
+            err = full.communicate(timeout=60)[1]
+        assert full.returncode == 1
+        assert err == "error: cannot write x.h5.journal: File too large\n"
+        assert not list(here.glob("x.h5*"))
+
+
+def test_an_empty_journal_is_of_no_search(here, whole):
+    """A kill has left it, or the program that filled the disk."""
+    journal_of(here / "x.h5").touch()
+    assert main([*ASKED, "--out", "x.h5"]) in (0, 1)
+    assert (here / "x.h5").read_bytes() == whole
+
+
+def test_a_search_replaces_none_but_a_search(here, capfd):
+    (here / "x.h5").write_text("mine")
+    for more in ([], ["--force"]):
+        assert main([*ASKED, "--out", "x.h5", *more]) == 2
+        assert capfd.readouterr().err == "error: cannot write x.h5: it is no file of HDF5; choose another name\n"
+        assert (here / "x.h5").read_text() == "mine"

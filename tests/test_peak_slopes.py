@@ -19,8 +19,8 @@ from lagrange_casadi.sensitivity.peaks import PeakKind
 def gaps(f, parameters=None, **at):
     """How far each slope is from Richardson's differences of the peaks, over the largest of its quantity; and the gradient."""
     gradient = f.gradient(**at)
-    values = dict(zip(f.parameters, f._p[0].tolist(), strict=True))
-    sizes = np.nanmax(np.abs(gradient.slopes * f._p[0]), axis=1) + np.abs(gradient.value)
+    values = dict(zip(f.parameters, f._answers.p[0].tolist(), strict=True))
+    sizes = np.nanmax(np.abs(gradient.slopes * f._answers.p[0]), axis=1) + np.abs(gradient.value)
     units: dict[str, float] = {}
     for size, quantity in zip(sizes, f.quantities, strict=True):
         group = quantity.split(":")[0]

@@ -177,7 +177,7 @@ def test_a_follower_that_is_none_is_told():
     [
         ("x,z\n1,2\n", DeclarationError, r"p\.csv, line 1: expected one column 'y', as in x \[mm\], got x, z"),
         ("x [in],y\n1,2\n", DeclarationError, r"p\.csv, line 1: column 'x' cannot be in 'in'; valid: m, mm, um"),
-        ("# cam\nx,y\n1,2\n1\n", DeclarationError, r"p\.csv, line 4: expected a finite number for y, got ''"),
+        ("# cam\nx,y\n1,2\n1,\n", DeclarationError, r"p\.csv, line 4: expected a finite number for y, got ''"),
         ("x,y\n1,two\n", DeclarationError, r"p\.csv, line 2: expected a finite number for y, got 'two'"),
         (None, PathError, r"p\.csv: no such file"),
     ],

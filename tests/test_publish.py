@@ -2,9 +2,12 @@
 
 import os
 import signal
+import sys
+import threading
 
 import h5py
 import pytest
+import sweeps
 
 from lagrange_casadi.errors import PathError
 from lagrange_casadi.system.publish import check_writable, filling, replacing, uninterrupted
@@ -82,3 +85,63 @@ def test_an_interrupt_waits_until_it_is_let_through():
         work(breathes=False)
     assert reached[1:] == ["after the signal", "at the end"]
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+HELD = """
+import sys, time
+from pathlib import Path
+from lagrange_casadi.system.publish import filling, replacing
+with {"file": replacing, "folder": filling}[sys.argv[1]](Path("x.out")) as draft:
+    (draft / "a" if draft.is_dir() else draft).write_text("half")
+    print("ready", flush=True)
+    time.sleep(60)
+"""
+
+
+@pytest.mark.parametrize("kind", ["file", "folder"])
+def test_what_a_kill_has_left_goes_with_the_next_of_its_name(tmp_path, monkeypatch, kind):
+    """Not what a process that lives is writing, nor what only looks like it."""
+    monkeypatch.chdir(tmp_path)
+    others = {".x.out.notes", ".x.out.abcdefgh.00000000", ".y.out.abcdefgh"}
+    for name in others:
+        (tmp_path / name).mkdir()
+    with sweeps.process(sys.executable, "-c", HELD, kind) as killed, sweeps.process(sys.executable, "-c", HELD, kind) as living:
+        assert [killed.stdout.readline(), living.stdout.readline()] == ["ready\n"] * 2
+        both = set(os.listdir(tmp_path)) - others
+        assert len(both) == 2
+        killed.send_signal(signal.SIGKILL)
+        killed.wait()
+        with replacing(tmp_path / "x.txt") as draft:
+            draft.write_text("another")
+            assert both < set(os.listdir(tmp_path))
+        with replacing(tmp_path / "x.out") as draft:
+            draft.write_text("whole")
+        left = set(os.listdir(tmp_path)) - others - {"x.out", "x.txt"}
+        assert len(left) == 1
+        assert left < both
+    (tmp_path / "x.out").unlink()
+    with replacing(tmp_path / "x.out") as draft:
+        draft.write_text("whole")
+    assert set(os.listdir(tmp_path)) == others | {"x.out", "x.txt"}
+
+
+def test_many_drafts_of_one_name_at_once_are_each_whole(tmp_path):
+    """None takes another's for one that was left, not even before that is locked."""
+    target, failed = tmp_path / "x.txt", []
+
+    def often(text):
+        try:
+            for _ in range(30):
+                with replacing(target) as draft:
+                    draft.write_text(text)
+                    assert draft.read_text() == text
+        except BaseException as error:
+            failed.append(error)
+
+    threads = [threading.Thread(target=often, args=(str(k) * 10,)) for k in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not failed
+    assert os.listdir(tmp_path) == ["x.txt"]

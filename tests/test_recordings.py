@@ -133,7 +133,7 @@ RAMP = [[0.1 * k, 1.0 * k * k] for k in range(8)]
         (RAMP, {"smoothing": -1.0}, DeclarationError, r"smoothing must be the noise \[rad\], a number that is not negative"),
         (RAMP, {"smoothing": "auto"}, DeclarationError, "or 'estimated', got 'auto'"),
         (RAMP, {"smoothing": 1e3}, DeclarationError, r"axis\.csv: curve: a smoothing of 1000 leaves but a straight line"),
-        (RAMP, {"points": 3}, DeclarationError, "points must be a whole number of at least 5, got 3"),
+        (RAMP, {"points": 3}, DeclarationError, "points: expected a whole number of at least 5, got 3"),
         (RAMP[:4], {}, DeclarationError, "expected at least 5 rows of numbers, got 4"),
         ([*RAMP, [0.7, 1.0]], {}, DeclarationError, r"axis\.csv, line 10: times must rise, but 0\.7000000000000 follows 0\.7"),
         ([*RAMP, [0.9, math.nan]], {}, DeclarationError, r"axis\.csv, line 10: expected a finite number, got 'nan'"),
@@ -150,7 +150,7 @@ def test_files_that_cannot_be_read(here):
     (here / "empty.csv").write_text("# nothing\n\n")
     with pytest.raises(DeclarationError, match=r"empty\.csv: it has no rows"):
         read_samples(here / "empty.csv")
-    (here / "short.csv").write_text("t;q\n0;1\n1;2\n# why\n2\n")
+    (here / "short.csv").write_text("t;q\n0;1\n1;2\n# why\n2;\n")
     with pytest.raises(DeclarationError, match=r"short\.csv, line 5: expected a finite number, got ''"):
         read_samples(here / "short.csv")
 

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from mechanisms import parallelogram
 
-from lagrange_casadi import Mechanism, Scene, evaluate, load_case
+from lagrange_casadi import Mechanism, Scene, evaluate, load_case, prepare, sweep, tolerances
 from lagrange_casadi.declare.motion import polynomial
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.errors import AssemblyError, MobilityError
 from lagrange_casadi.instants.refusal import Status
 from lagrange_casadi.instants.rung import Rung
+from lagrange_casadi.sweep.checking import check_sweep
 
 pytestmark = pytest.mark.usefixtures("interpreted")
 
@@ -130,7 +131,7 @@ def test_a_weld_that_misses_by_half_a_turn_does_not_fit():
         evaluate(bridge(math.pi), wanted=["motion"])
 
 
-def three_cranks(**keywords):
+def three_cranks(default=math.pi / 2, **keywords):
     """Three equal cranks side by side carry one bar; what each end of it bears is open, but for the postures in which it is not."""
     m = Mechanism("three_cranks")
     a, b, c = (m.link(name, length=0.2, mass=0.3) for name in "abc")
@@ -138,7 +139,7 @@ def three_cranks(**keywords):
     for k, link in enumerate((a, b, c)):
         m.revolute(f"G{k}", m.ground.at(0.5 * k, 0.0), link)
         m.revolute(f"B{k}", link.tip, (bar.base, bar.at(0.5), bar.tip)[k])
-    angle = m.parameter("angle", math.pi / 2, "rad")
+    angle = m.parameter("angle", default, "rad")
     return Scene(m, {"G0": polynomial(angle)}, posture={"a": 1.5, "b": 1.5, "c": 1.5, "bar": 0.0}, t=(0, 0, 1), **keywords)
 
 
@@ -155,6 +156,25 @@ def test_what_is_open_is_decided_for_the_parameters_that_are_evaluated(backend):
     assert leaning.determined("effort:G0")
     torque = 9.81 * 0.2 * math.cos(1.0) * (3 * 0.3 / 2 + 1.0)
     np.testing.assert_allclose(leaning.effort("G0"), torque, rtol=1e-13)
+
+
+@pytest.mark.parametrize("backend", ["vm", "lanes"])
+@pytest.mark.parametrize("wanted", [["reaction:B0"], ["reaction:B0", "effort"]])
+def test_what_the_defaults_leave_open_is_told_of_designs_that_determine_it(wanted, backend, tmp_path):
+    """The defaults lean: alone they would say that nothing is there; upright cranks have it all the same."""
+    scene = three_cranks(default=1.0, wanted=wanted)
+    upright = evaluate(scene, parameters={"angle": math.pi / 2}).peak("reaction:B0:fx")
+    f = prepare(scene, backend=backend)
+    k = f.quantities.index("reaction:B0:fx")
+    assert np.isnan(f.peaks().value[k])
+    assert np.isnan(f()["reaction:B0:fx"]).all()
+    assert f.peaks(angle=math.pi / 2).value[k] == pytest.approx(upright.value, abs=1e-13)
+    assert f(angle=math.pi / 2)["reaction:B0:fx"] == pytest.approx([upright.value], abs=1e-13)
+    found = sweep(scene, {"angle": [1.0, math.pi / 2]}, backend=backend, out=tmp_path / "cranks.h5")
+    assert np.isfinite(found["peak:reaction:B0:fx"]).tolist() == [False, True]
+    assert check_sweep(tmp_path / "cranks.h5") == []
+    spread = tolerances(scene, {"angle": 0.01}, samples=4, backend=backend).peaks
+    assert np.isnan(spread["reaction:B0:fx"].nominal)
 
 
 def test_what_is_unique_is_not_withheld():

@@ -145,12 +145,13 @@ def test_a_link_known_by_its_inertia_has_no_section():
         ({"motion": {"B": polynomial(0)}}, "joint 'B' cannot be driven"),
         ({"motion": {"O": 3.0}}, "motion of joint 'O': expected a law"),
         ({"posture": {"stick": 1.0}}, "unknown link or joint in posture 'stick'; valid: crank, rod, O, A, guide"),
-        ({"t": (0, 1, 0)}, "t: COUNT must be a whole number of at least 1, got 0"),
+        ({"t": (0, 1, 0)}, "t: COUNT must be a whole number from 1 to 2\\^63 - 1, got 0"),
         ({"t": (0, 1, 1)}, "t: COUNT must be 2 or more to reach from 0 to 1, got 1"),
         ({"xi": (0, 1, 1)}, "xi: COUNT must be 2 or more to reach from 0 to 1, got 1"),
         ({"t": (0, 1, 1.5)}, "t: COUNT must be a whole number"),
         ({"t": (1, 0, 5)}, "t: STOP must be after START"),
         ({"t": (0, float("nan"), 5)}, "t: START and STOP must be finite"),
+        ({"t": (-1e308, 1e308, 5)}, "t: START and STOP are too far apart"),
         ({"t": (0, 1)}, "t: expected"),
         ({"xi": (0, 1.5, 5)}, r"xi: ratios xi/l must lie in \[0, 1\], got 0 to 1.5"),
         ({"xi": (-0.1, 1, 5)}, r"xi: ratios"),
@@ -194,10 +195,10 @@ def test_what_does_not_fit_into_memory_is_refused_before_it_is_tried(keywords, s
     ("keywords", "says"),
     [
         ({"backend": "gpu"}, "unknown backend 'gpu'; valid: auto, lanes, c, vm"),
-        ({"backend": None}, "unknown backend 'None'; valid: auto, lanes, c, vm"),
-        ({"threads": True}, "threads: expected a whole number from 1 to 1024, got True"),
+        ({"backend": None}, "evaluate: backend: expected a text, got None"),
+        ({"threads": True}, "threads: expected a whole number, got True"),
         ({"threads": 0}, "threads: expected a whole number from 1 to 1024, got 0"),
-        ({"threads": 1.5}, "threads: expected a whole number from 1 to 1024, got 1.5"),
+        ({"threads": 1.5}, "threads: expected a whole number, got 1.5"),
     ],
 )
 def test_a_way_to_run_that_there_is_not_is_named(keywords, says):

@@ -1,26 +1,26 @@
 """The seal: what it says, what it finds, and what is not even opened."""
 
-import gzip
 import hashlib
 import os
 import re
 import shutil
-from dataclasses import replace
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+import sweeps
 import xarray
 from conftest import ROOT
 from forging import flip, unseal
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lagrange_casadi import Sweep, check, evaluate, load, save
+from lagrange_casadi import Sweep, check, load, save, sweep
 from lagrange_casadi.cli import main
 from lagrange_casadi.errors import PathError, StoreError
+from lagrange_casadi.optimise import file as optimum
 from lagrange_casadi.store import runs as store
+from lagrange_casadi.sweep import is_sweep
 from lagrange_casadi.sweep.checking import check_sweep
 from lagrange_casadi.system import seal
 
@@ -64,7 +64,7 @@ def test_the_digest_is_what_the_documentation_says(tmp_path, length):
     assert whole[length:].decode("ascii").rstrip(" \n") + "\n" == lines
     assert whole[-1:] == b"\n"
     assert seal.kind_of(path) == "something"
-    assert seal.verify(path).sealed
+    seal.verify(path)
 
 
 @pytest.mark.parametrize("error", [OSError("gone"), KeyboardInterrupt()])
@@ -106,7 +106,7 @@ def test_every_byte_of_a_seal_counts(sealed):
         with pytest.raises(StoreError, match=r"x\.bin: "):
             seal.verify(sealed)
         sealed.write_bytes(content)
-    assert seal.verify(sealed).sealed
+    seal.verify(sealed)
 
 
 @given(st.integers(0, 2 * MIB + 999), st.integers(0, 7))
@@ -119,7 +119,7 @@ def test_every_bit_before_it_counts(tmp_path_factory, place, bit):
     with pytest.raises(StoreError, match=r"bits\.bin: damaged: its bytes are not those that were written$"):
         seal.verify(path)
     flip(path, place, 1 << bit)
-    assert seal.verify(path).sealed
+    seal.verify(path)
 
 
 @pytest.mark.parametrize("cut", [1, 255, 256, 257, 1000, 2 * MIB])
@@ -158,7 +158,6 @@ def test_what_was_seen_is_told_from_what_came_after(sealed):
     times = os.stat(sealed)
     os.utime(sealed, ns=(times.st_atime_ns, times.st_mtime_ns + 1))
     assert not seen.is_at(sealed)
-    assert not replace(seen, sealed=False).is_at(sealed)
 
 
 @pytest.mark.parametrize("read", [load, check, store.figure_specs, Sweep.open, check_sweep, seal.verify])
@@ -194,71 +193,69 @@ def test_to_change_a_file_takes_its_seal(run, tmp_path):
     shutil.copy(run, path)
     with h5py.File(path, "r+") as file:
         file.attrs["mine"] = 1
-    with pytest.raises(StoreError, match=r"x\.h5: damaged: it has lost its seal, as where another program has changed it$"):
+    with pytest.raises(StoreError, match=r"x\.h5: it has no seal: .*; run it again$"):
         load(path)
 
 
-def of_before(name, folder):
-    """A file of schema version 1, as the package wrote it then."""
-    path = folder / name
-    path.write_bytes(gzip.decompress((Path(__file__).parent / "data" / f"{name}.gz").read_bytes()))
-    return path
-
-
-def test_a_run_of_schema_version_1_is_read(tmp_path, capsys, slider_crank):
-    path = of_before("run_1.h5", tmp_path)
-    found, now = load(path), evaluate(slider_crank.scene, t=(0, 0.08, 5), xi=(0, 1, 3))
-    for name in found.names():
-        expected = now.array(name)
-        np.testing.assert_allclose(found.array(name), expected, atol=1e-12 * np.abs(expected).max(), err_msg=name)
-    assert check(path) == []
-    assert not seal.verify(path).sealed
-    assert main(["check", str(path)]) == 0
-    told = "whole and consistent, as far as can be told: files of schema version 1 have no digest of all of it"
-    assert capsys.readouterr().out == f"{path}: {told}\n"
-
-
-def test_a_sweep_of_schema_version_1_is_read(tmp_path, capsys):
-    path = of_before("sweep_1.h5", tmp_path)
-    found = Sweep.open(path)
-    assert found.shape == (2, 2)
-    assert found["status"].tolist() == [[0, 4], [0, 0]]
-    assert check_sweep(path) == []
-    assert main(["check", str(path)]) == 0
-    assert "as far as can be told" in capsys.readouterr().out
-
-
-def test_a_chunk_that_an_unsealed_sweep_lacks_is_counted(tmp_path):
-    """HDF5 would make up its numbers."""
-    path = of_before("sweep_1.h5", tmp_path)
-    with h5py.File(path, "r+") as file:
-        name = "peak/section/rod/axial"
-        old = file[name]
-        attributes, scales = dict(old.attrs), [dim[0] for dim in old.dims]
-        del file[name]
-        new = file.create_dataset(name, (2, 2), np.float64, chunks=(2, 2), fillvalue=0)
-        for key in ("units", "long_name", "sign"):
-            new.attrs[key] = attributes[key]
-        for dim, scale in zip(new.dims, scales, strict=True):
-            dim.attach_scale(scale)
-    with pytest.raises(StoreError, match=r"sweep_1\.h5: damaged: /peak/section/rod/axial has 0 bytes of 32$"):
-        Sweep.open(path)
-
-
-@pytest.mark.parametrize("keep", [20, 47, 48, 100, 50_000])
-def test_an_unsealed_file_that_was_cut_is_refused(tmp_path, keep):
-    path = of_before("run_1.h5", tmp_path)
-    path.write_bytes(path.read_bytes()[:keep])
-    with pytest.raises(
-        StoreError, match=rf"run_1\.h5: not a whole HDF5 file of this package: it has {keep} bytes and no seal at their"
-    ):
-        load(path)
-
-
-def test_a_seal_is_not_got_rid_of(run, tmp_path):
-    """Without it, a file of now is not taken for one of before."""
+@pytest.fixture(params=["run", "sweep", "search"])
+def unsealed(request, run, monkeypatch, tmp_path):
+    """A file without its seal, and what reads such a file otherwise."""
     path = tmp_path / "x.h5"
-    shutil.copy(run, path)
+    if request.param == "run":
+        shutil.copy(run, path)
+        readers = (load, check, store.figure_specs)
+    elif request.param == "sweep":
+        sweeps.use(monkeypatch)
+        sweep(sweeps.scene(), {"l": [0.2, 0.3]}, out=path)
+        readers = (Sweep.open, check_sweep)
+    else:
+        with h5py.File(path, "w") as file:
+            file.attrs.update({"schema": optimum.SCHEMA, "schema_version": optimum.VERSION, "complete": True})
+            file.attrs.update({"stopped": False, "feasible": True, "converged": True})
+        seal.seal(path, optimum.SCHEMA)
+        readers = (optimum.check_optimum,)
+    for read in readers:
+        read(path)
     unseal(path)
-    with pytest.raises(StoreError, match="has lost its seal"):
-        load(path)
+    return path, readers
+
+
+@pytest.mark.parametrize("version", [None, 1])
+def test_what_has_no_seal_is_to_be_run_again(unsealed, capsys, monkeypatch, version):
+    """Of whatever version it says it is: HDF5 never sees it."""
+    path, readers = unsealed
+    if version:
+        with h5py.File(path, "r+") as file:
+            file.attrs["schema_version"] = version
+    told = f"{path}: it has no seal: cut short, changed by another program, or from before there were seals; run it again"
+
+    def opened(*_arguments, **_keywords):
+        raise AssertionError("HDF5 saw it")
+
+    monkeypatch.setattr(h5py, "File", opened)
+    for read in readers:
+        with pytest.raises(StoreError, match=f"^{re.escape(told)}$"):
+            read(path)
+    for command in ("check", "info", "report", "best", "table"):
+        assert main([command, str(path), *(("--minimise", "peak:effort:O") if command == "best" else ())]) == 1
+        assert capsys.readouterr() == ("", f"error: {told}\n")
+    assert not is_sweep(path)
+    assert not optimum.is_optimum(path)
+
+
+def test_an_unsealed_file_is_not_replaced(unsealed, solution):
+    with pytest.raises(PathError, match=r"it is an HDF5 file of something else, or without its seal; choose another name$"):
+        save(solution, unsealed[0])
+
+
+@pytest.mark.parametrize("schema", [store.SCHEMA, "lagrange-casadi-sweep", optimum.SCHEMA])
+def test_other_versions_are_to_be_run_again(tmp_path, schema):
+    """Those of version 1 too, where somebody has sealed them."""
+    path = tmp_path / "x.h5"
+    read = {store.SCHEMA: load, optimum.SCHEMA: optimum.check_optimum}.get(schema, Sweep.open)
+    for version in (0, 99) if schema == optimum.SCHEMA else (1, 99):
+        with h5py.File(path, "w") as file:
+            file.attrs.update({"schema": schema, "schema_version": version, "complete": True})
+        seal.seal(path, schema)
+        with pytest.raises(StoreError, match=rf"schema version {version}.*, this program reads versions \d to \d: run it again$"):
+            read(path)

@@ -119,7 +119,7 @@ def test_mistakes():
         changes.array("effort:X", "l")
     with pytest.raises(DeclarationError, match="a section force has a mean at every ratio"):
         changes.mean("section:beam:bending")
-    with pytest.raises(DeclarationError, match="expected a Scene and a Solution"):
+    with pytest.raises(DeclarationError, match="scene: expected a Scene, got"):
         sensitivities(solution, scene)
     for other in (load_case(CASES / "four_bar").scene, replace(loaded(), motion={"O": harmonic(0.1, 0.3, 0.5)})):
         with pytest.raises(DeclarationError, match="is not one of this scene"):

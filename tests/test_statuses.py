@@ -6,7 +6,7 @@ from lagrange_casadi.export.statuses import SHARED, STATUSES
 from lagrange_casadi.instants.refusal import Status
 
 PARAMETERS = {Status.INVALID, Status.IMPOSSIBLE}
-OF_DESIGNS = {Status.PASSES_DEAD_CENTRE, Status.UNCERTIFIED, Status.PEAK_NOT_TOLD, Status.NO_INSTANTS}
+OF_DESIGNS = {Status.PASSES_DEAD_CENTRE, Status.UNCERTIFIED, Status.PEAK_NOT_TOLD, Status.NO_INSTANTS, Status.CORNER}
 
 
 def test_every_reason_of_an_instant_is_told_in_the_same_words():

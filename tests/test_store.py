@@ -18,7 +18,10 @@ from forging import edit, flip
 from lagrange_casadi import check, evaluate, load, save
 from lagrange_casadi.errors import BusyError, DeclarationError, PathError, StoreError
 from lagrange_casadi.store import runs as store
+from lagrange_casadi.system import seal
 from lagrange_casadi.tables import CONVENTIONS
+
+FOREIGN = "it is an HDF5 file of something else, or without its seal"
 
 pytestmark = pytest.mark.quick
 
@@ -147,7 +150,7 @@ def test_a_flipped_byte_is_found(file, read):
 def test_a_truncated_file_is_refused(file, keep):
     data = file.read_bytes()
     file.write_bytes(data[: int(len(data) * keep)])
-    with pytest.raises(StoreError, match=r"result\.h5: not a whole HDF5 file of this package: it "):
+    with pytest.raises(StoreError, match=r"result\.h5: (it has no seal: cut short|not a file of this program: it begins)"):
         load(file)
 
 
@@ -160,10 +163,10 @@ def test_an_unfinished_file_is_refused(file):
 def test_other_files_are_refused(tmp_path, file):
     with h5py.File(tmp_path / "other.h5", "w") as h:
         h["x"] = 1.0
-    with pytest.raises(StoreError, match="not the file of a run, its attribute 'schema' is None"):
+    with pytest.raises(StoreError, match=r"it has no seal: .*run it again"):
         load(tmp_path / "other.h5")
     edit(file, lambda h: h.attrs.__setitem__("schema_version", 99))
-    with pytest.raises(StoreError, match="schema version 99, this program reads versions 1 to 7"):
+    with pytest.raises(StoreError, match="schema version 99, this program reads versions 2 to 7"):
         load(file)
     with pytest.raises(PathError, match="is a folder, not a file"):
         load(tmp_path)
@@ -198,7 +201,7 @@ def test_an_interrupt_leaves_the_file_of_before(solution, file, monkeypatch):
 
 
 def test_places_that_cannot_be_written(solution, tmp_path):
-    with pytest.raises(DeclarationError, match="expected a solution and a path"):
+    with pytest.raises(DeclarationError, match=r"save: (solution|path): expected a"):
         save(tmp_path, solution)
     with pytest.raises(PathError, match="it is a folder"):
         save(solution, tmp_path)
@@ -207,12 +210,19 @@ def test_places_that_cannot_be_written(solution, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("schema", "says"), [("lagrange-casadi-sweep", "it is the file of a sweep"), ("", "it is an HDF5 file of something else")]
+    ("schema", "says"),
+    [
+        ("lagrange-casadi-sweep", "it is the file of a sweep"),
+        ("lagrange-casadi-optimum", "it is the file of a search"),
+        ("", FOREIGN),
+    ],
 )
 def test_no_other_hdf5_file_is_replaced(solution, tmp_path, schema, says):
     target = tmp_path / "x.h5"
     with h5py.File(target, "w") as h:
         h.attrs["schema"] = schema
+    if schema:
+        seal.seal(target, schema)
     before = target.read_bytes()
     with pytest.raises(PathError, match=rf"cannot write .*x\.h5: {says}; choose another name"):
         save(solution, target)
@@ -223,8 +233,8 @@ def test_no_other_hdf5_file_is_replaced(solution, tmp_path, schema, says):
     ("content", "says"),
     [
         (b"notes", "it is no file of HDF5"),
-        (b"\x89HDF\r\n\x1a\n" + b"damaged" * 100, r"what is there cannot be read \(.*\)"),
-        (b"MATLAB".ljust(512) + b"\x89HDF\r\n\x1a\n" + b"damaged" * 100, r"what is there cannot be read \(.*\)"),
+        (b"\x89HDF\r\n\x1a\n" + b"damaged" * 100, FOREIGN),
+        (b"MATLAB".ljust(512) + b"\x89HDF\r\n\x1a\n" + b"damaged" * 100, FOREIGN),
     ],
 )
 def test_nothing_is_replaced_that_was_not_read_and_found_to_be_a_run(solution, tmp_path, content, says):
@@ -274,7 +284,7 @@ def test_what_cannot_be_opened_is_left_alone(solution, file, monkeypatch):
 def test_a_damaged_run_is_left_to_its_owner(solution, file, keep):
     """It might be what is left of something else."""
     file.write_bytes(file.read_bytes()[:keep])
-    with pytest.raises(PathError, match=r"cannot write .*result\.h5: what is there cannot be read"):
+    with pytest.raises(PathError, match=r"cannot write .*result\.h5: it is an HDF5 file of something else, or without its seal"):
         save(solution, file)
 
 

@@ -272,3 +272,14 @@ def test_a_link_stays_and_what_it_leads_to_is_written(monkeypatch, solution, her
     assert sorted(os.listdir("real")) == ["figures", "run.h5", "sweep.h5", "x.csv"]
     assert os.listdir("figures") == ["a.png"]
     assert all((here / name).is_symlink() for name in ("run.h5", "sweep.h5", "x.csv", "figures"))
+
+
+@pytest.mark.parametrize("before", [False, True])
+def test_a_table_that_cannot_be_written_leaves_the_files_of_before(here, capfd, before):
+    """A run's file, its figures and its table are put into their places together."""
+    if before:
+        assert main(["run", str(CASE), "--t", "0:0.08:5", "--no-figures"]) == 0
+    there = {path.name: path.read_bytes() for path in here.iterdir()}
+    assert main(["run", str(CASE), "--t", "0:0.08:9", "--csv", "/dev/full"]) == 1
+    assert capfd.readouterr().err.endswith("error: cannot write /dev/full: No space left on device\n")
+    assert {path.name: path.read_bytes() for path in here.iterdir()} == there

@@ -126,7 +126,7 @@ def test_what_is_there_is_not_overwritten(whole, tmp_path):
     with pytest.raises(PathError, match=r"notes\.h5 has appeared since the sweep began"):
         run(tmp_path / "notes.h5", resume=True)
     shutil.rmtree(tmp_path / "notes.h5.parts")
-    for keywords, says in (({}, "exists"), ({"resume": True}, "not a whole HDF5 file")):
+    for keywords, says in (({}, "exists"), ({"resume": True}, "not a file of this program")):
         with pytest.raises((PathError, StoreError), match=says):
             run(tmp_path / "notes.h5", **keywords)
     assert (tmp_path / "notes.h5").read_text() == "mine"

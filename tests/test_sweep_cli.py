@@ -96,7 +96,7 @@ MISTAKES = [
     (["--grid", "l=0.1", "--designs", "bad.csv"], 2, "expected either --grid"),
     (["--designs", "none.csv"], 2, "none.csv: no such file"),
     (["--designs", "bad.csv"], 2, "bad.csv, line 3, column 'r': expected a finite number, got 'x'"),
-    (["--designs", "short.csv"], 2, "short.csv, line 2: 1 cells, expected 2, column 'r' is missing"),
+    (["--designs", "short.csv"], 2, "short.csv, line 2: 1 cells, expected 2, as in the first row"),
     (["--designs", "note.csv"], 2, "note.csv, line 1, columns 2, 4: unknown parameters 'note', 'q'; valid: r, l, m1, m2, m3"),
     (["--designs", "numbered.csv"], 2, "numbered.csv, line 1, column 1: 'design' is a result of a sweep, not a parameter: take"),
     (["--designs", "low.csv"], 2, "error: low.csv: l = -0.2 in line 2, -0.3 in line 4, out of its range [0, inf]"),
@@ -110,7 +110,7 @@ MISTAKES = [
     (["--grid", "l=0.2", "--out", "x.txt"], 2, "expected a name that ends in .h5"),
     (["--grid", "l=0.2", "--out", "nowhere/x.h5"], 2, "folder nowhere does not exist"),
     (["--grid", "l=0.2", "--out", "mine.h5"], 2, "mine.h5 exists: --force replaces it, --resume goes on"),
-    (["--grid", "l=0.2", "--out", "mine.h5", "--resume"], 1, "mine.h5: not a whole HDF5 file"),
+    (["--grid", "l=0.2", "--out", "mine.h5", "--resume"], 1, "mine.h5: not a file of this program"),
     (["--grid", "l=0.2", "--resume", "--force"], 2, "resume and force exclude each other"),
     (["--grid", "l=0.2", "--dask", "tcp://127.0.0.1:1", "--workers", "2"], 2, "workers and dask exclude each other"),
 ]

@@ -1,15 +1,28 @@
 """Many threads of a program at once give, to the byte, what one gives."""
 
+import io
 import json
 import os
 import subprocess
 import sys
+import tempfile
 import threading
+import warnings
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import casadi as ca
+import numpy as np
+import pytest
 import threaded
+from matplotlib import rcParams
 
-from lagrange_casadi import evaluate
+from lagrange_casadi import Scene, evaluate, prepare, sweep
+from lagrange_casadi.animation import Film, write_animation
+from lagrange_casadi.declare.motion import samples
+from lagrange_casadi.draw import pictures
+from lagrange_casadi.figures import TimePlot
+from lagrange_casadi.sweep.plots import Peaks, draw_sweep
 
 
 def jobs(threads, folder, cache):
@@ -46,3 +59,97 @@ def test_no_switch_of_casadis_is_turned(fresh_cache):
         over.set()
         building.join()
     assert not lost
+
+
+RODS = [0.5 + 0.01 * k for k in range(6)]
+THREADS = 4
+TIMES = np.linspace(0.0, 1.0, 9)
+
+
+ASKED = {
+    "series": lambda f, l: dict(f(l=l)),
+    "peaks": lambda f, l: vars(f.peaks(l=l)),
+    "designs": lambda f, l: vars(f.designs([[{"l": l, "r": 0.1}[name] for name in f.parameters]], histories=True)),
+    "gradient": lambda f, l: {"slopes": (found := f.gradient(l=l)).slopes, "mean": found.mean},
+    "curvature": lambda f, l: {"bends": f.curvature(l=l).bends},
+    "instants": lambda f, l: {"effort": f(l=l)["effort:O"], "t": f.t},
+}
+
+
+def told(found):
+    """Every number of what was found, whatever becomes of its arrays."""
+    return {name: np.array(rows).tobytes() if isinstance(rows, np.ndarray) else repr(rows) for name, rows in found.items()}
+
+
+def hammered(asked, values, times=4):
+    """What each of many threads that ask for all values at once, in orders of their own, got otherwise than one thread alone."""
+    alone = [asked(value) for value in values]
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+
+    def ask(first):
+        order = [(first + k) % len(values) for k in range(times * len(values))]
+        return [k for k in order if asked(values[k]) != alone[k]]
+
+    try:
+        with ThreadPoolExecutor(THREADS) as pool:
+            return [wrong for some in pool.map(ask, range(THREADS)) for wrong in some]
+    finally:
+        sys.setswitchinterval(before)
+
+
+@pytest.mark.parametrize("way", ASKED)
+@pytest.mark.parametrize("asked", [{}, {"newton": 3}, {"backend": "vm"}, {"waved": True}], ids=str)
+def test_a_prepared_scene_answers_each_thread(asked, way):
+    """By compiled code, with loops iterated, by the virtual machine; and with samples, and instants of each design's own."""
+    scene, slow = threaded.press(0), "backend" in asked
+    if "waved" in asked:
+        law = samples(TIMES, 0.3 + np.sin(2.0 * TIMES))
+        scene = Scene(scene.mechanism, {"O": law}, t=(0.0, 1.0, 9), posture={"rod": 1.5})
+        asked = {"t": (0.0, scene.mechanism.parameters["l"].symbol, 9)}
+    f = prepare(scene, **{"t": (0.0, 1.0, 9), "wanted": ["effort", "section:rod"], **asked})
+    assert not hammered(lambda l: told(ASKED[way](f, l)), RODS[:2] if slow else RODS, 1 if slow else 4)
+
+
+def test_a_thread_finds_its_own_answer_again():
+    f = prepare(threaded.SHARED, t=(0.0, 1.0, 9), wanted=["effort"])
+    own = f(l=0.5)["effort:O"]
+    kept = own.copy()
+    with ThreadPoolExecutor(1) as pool:
+        other = pool.submit(lambda: f(l=0.6)["effort:O"]).result()
+    assert not np.shares_memory(own, other)
+    np.testing.assert_array_equal(own, kept)
+
+
+@pytest.mark.parametrize("rung", [{}, {"backend": "vm"}, {"newton": 3}, {"precision": "single"}, {"table": 32}], ids=str)
+def test_one_scene_is_evaluated_by_many_threads(rung):
+    def asked(l):
+        found = evaluate(threaded.SHARED, parameters={"l": l}, t=(0.0, 1.0, 9), **rung)
+        laws = {f"bending:{name}": found.section(name).bending for name in found.links_with_sections}
+        return told({**found.series, **laws, "errors": found.errors, "certificate": found.certificate})
+
+    assert not hammered(asked, RODS[:3], 1)
+
+
+def test_many_threads_draw_the_pictures_of_one(tmp_path):
+    """And leave matplotlib, and what is warned of, as they were."""
+    plain = evaluate(threaded.SHARED, t=(0.0, 1.0, 9), wanted=["effort", "motion"])
+    swept = sweep(threaded.SHARED, {"l": (0.5, 0.6, 3)}, t=(0.0, 1.0, 9), wanted=["effort"], flags="-O0", out=tmp_path / "x.h5")
+    spec, line = TimePlot("effort", ("effort:O",)), Peaks("line", ("peak:effort:O",), ("l",))
+    settings, filters = dict(rcParams), list(warnings.filters)
+
+    def drawn(kind):
+        file = io.BytesIO()
+        if kind == "svg":
+            pictures.save(spec.draw(plain), file, ".svg")
+        elif kind == "sweep":
+            with tempfile.TemporaryDirectory(dir=tmp_path) as folder:
+                return [path.read_bytes() for path, _ in draw_sweep(swept, [line], Path(folder))]
+        else:
+            write_animation(plain, path := tmp_path / f"{threading.get_ident()}.gif", Film(width=80, rate=1.0, seconds=1.0))
+            return path.read_bytes()
+        return file.getvalue()
+
+    assert not hammered(drawn, ["svg", "sweep", "gif"], 1)
+    assert dict(rcParams) == settings
+    assert warnings.filters == filters

@@ -109,7 +109,7 @@ def test_a_slide_is_a_drive_too():
     first, last = (float(law.graph(ca.DM(t))) for t in (scene.t[0], scene.t[0] + 0.02))
     found = evaluate(scene, over=(joint, first, last, 9))
     assert (found.over.unit, found.over.label) == ("m", f"{joint} [m]")
-    with pytest.raises(DeclarationError, match=f"expected a number in m, for joint '{joint}' slides, got '3 deg'"):
+    with pytest.raises(DeclarationError, match=r"STOP: expected a number \[m\], or a text such as '100 mm', got '3 deg'"):
         evaluate(scene, over=(joint, 0.0, "3 deg", 9))
 
 
@@ -141,12 +141,13 @@ def test_what_is_asked_for_can_be_sent_and_compared():
         (("O", 0, 1), "over: expected (joint, start, stop, count), got ('O', 0, 1)"),
         ("O=0:1:5", "over: expected (joint, start, stop, count), got 'O=0:1:5'"),
         (("O", 0, 1, 1), "over: COUNT must be 2 or more"),
-        (("O", 0, 1, 0), "over: COUNT must be a whole number of at least 1, got 0"),
+        (("O", 0, 1, 0), "over: COUNT must be a whole number from 1 to 2^63 - 1, got 0"),
         (("O", 1, 1, 5), "over: STOP must be after START, got 1 and 1"),
         (("O", 0, math.inf, 5), "over: START and STOP must be finite"),
+        (("O", "-1e308 rad", "1e308 rad", 5), "over: START and STOP are too far apart, got -1e+308 and 1e+308"),
         (
-            ("O", 0, "1 turn", 5),
-            "over: STOP: expected a finite number [rad], or a text such as '350 deg'",
+            ("O", 0, "1 lap", 5),
+            "over: STOP: expected a number [rad], or a text such as '350 deg'",
         ),
         (("O", 1, 0, 5), "over: the motion of joint 'O' goes the other way than from 1 rad (57.2958 deg) to 0 rad (0 deg)"),
         (("O", 0, ca.SX.sym("q"), 5), "over: STOP depends on 'q', not a parameter"),

@@ -9,6 +9,7 @@ from lagrange_casadi import (
     Mechanism,
     Scene,
     SpatialMechanism,
+    Sweep,
     beams,
     bearings,
     best,
@@ -59,40 +60,53 @@ RECT = beams.rectangle(height=0.03, width=0.01)
 STEEL = beams.material("C45+QT")
 ONE = {"l": (0.2, 0.3)}
 WRONG = {
-    "derive": (lambda s: derive("swing"), "derive: expected a Scene, got 'swing'"),
-    "refine": (lambda s: refine(s, None), "refine: expected a Solution, got None"),
-    "tool_deflection": (lambda s: tool_deflection(None, "arm"), "tool_deflection: expected a Scene, got None"),
+    "open": (lambda s: Sweep.open(None), "open: path: expected a path, got None"),
+    "out": (lambda s: sweep(s, ONE, out=3), "sweep: out: expected a path, got 3"),
+    "material": (lambda s: beams.material([]), "material: name: expected a text, got []"),
+    "forty digits": (
+        lambda s: optimise(s, minimise="l", over=ONE, screen=10**40),
+        "expected a whole number from 1 to 16777216, got 1",
+    ),
+    "derive": (lambda s: derive("swing"), "derive: scene: expected a Scene, got 'swing'"),
+    "refine": (lambda s: refine(s, None), "refine: solution: expected a Solution, got None"),
+    "tool_deflection": (lambda s: tool_deflection(None, "arm"), "tool_deflection: scene: expected a Scene, got None"),
     "shaking": (lambda s: shaking("m"), "shaking: expected a Mechanism, got 'm'"),
     "about": (lambda s: shaking(s.mechanism, about=1.0), "shaking: expected a place (x, y) for about, got 1.0"),
-    "strength": (lambda s: strength.safety(None, "arm"), "strength: expected a Solution, got None"),
-    "vibration": (lambda s: vibration(s, "arm"), "strength: expected a Solution, got"),
-    "best": (lambda s: best("sweep.h5", minimise="l"), "best: expected a Sweep, got 'sweep.h5'"),
-    "gears": (lambda s: elements.gears("pair", 1, 2, 3), "gears: expected a Mechanism first, got 'pair'"),
-    "plate": (lambda s: elements.plate("p", "p", []), "plate: expected a Mechanism first, got 'p'"),
+    "strength": (lambda s: strength.safety(None, "arm"), "safety: solution: expected a Solution, got None"),
+    "vibration": (lambda s: vibration(s, "arm"), "vibration: solution: expected a Solution, got"),
+    "best": (lambda s: best("sweep.h5", minimise="l"), "best: sweep: expected a Sweep, got 'sweep.h5'"),
+    "gears": (lambda s: elements.gears("pair", 1, 2, 3), "gears: mechanism: expected a Mechanism"),
+    "plate": (lambda s: elements.plate("p", "p", []), "plate 'p': mechanism: expected a Mechanism, got 'p'"),
     "fit": (lambda s: bearings.fit("O", None), "fit: expected a Mechanism first, got 'O'"),
-    "load": (lambda s: load(True), "file: expected a path, got True"),
-    "check": (lambda s: check(None), "file: expected a path, got None"),
-    "load_case": (lambda s: load_case(1), "case: expected a path, or a case's name, got 1"),
-    "read_designs": (lambda s: read_designs(3), "file: expected a path, got 3"),
-    "read_samples": (lambda s: motion.read_samples(3), "file: expected a path, got 3"),
-    "export": (lambda s: export(s, None), "export: expected a folder's path, got None"),
-    "parameters": (lambda s: s.mechanism.values([0.3]), "parameters: expected values by name, as {'l': 0.25}, got [0.3]"),
+    "load": (lambda s: load(True), "path: expected a path, got True"),
+    "check": (lambda s: check(None), "path: expected a path, got None"),
+    "load_case": (lambda s: load_case(1), "load_case: path: expected a path, got 1"),
+    "read_designs": (lambda s: read_designs(3), "read_designs: path: expected a path, got 3"),
+    "read_samples": (lambda s: motion.read_samples(3), "path: expected a path, got 3"),
+    "export": (lambda s: export(s, None), "export: out: expected a path, got None"),
+    "parameters": (lambda s: s.mechanism.values([0.3]), "expected values by name, as {'l': 0.25}, got [0.3]"),
     "a sweep's": (lambda s: sweep(s, ONE, parameters=3), "parameters: expected values by name, as {'l': 0.25}, got 3"),
     "a search's": (lambda s: optimise(s, minimise="l", over=ONE, parameters=3), "parameters: expected values by name"),
     "limits": (lambda s: optimise(s, minimise="l", over=ONE, subject_to=3), "subject_to: expected a list of constraints, got 3"),
     "starts": (lambda s: optimise(s, minimise="l", over=ONE, starts=[0.2]), "starts: expected a whole number above 0, or values"),
-    "sine": (lambda s: optimise(s, minimise="l", over=ONE, transmission="x"), "transmission: expected a sine between 0 and 1"),
+    "sine": (lambda s: optimise(s, minimise="l", over=ONE, transmission="x"), "transmission: expected a number, got 'x'"),
     "wanted": (lambda s: derive(s, 3.0), "wanted: expected a list of output names, got 3.0; valid: all, effort"),
     "a sweep's wanted": (lambda s: sweep(s, ONE, wanted=3), "wanted: expected a list of output names, got 3; valid: all"),
     "instants": (lambda s: evaluate(s, t={}), "t: expected (start, stop, count), got {}"),
-    "flags": (lambda s: prepare(s, flags=None), "flags: expected options of a compiler, got None"),
-    "prepared": (lambda s: prepare(s, backend="vm")([0.3]), "parameters: expected values by name, as {'l': 0.25}, got [0.3]"),
-    "default": (lambda s: Mechanism("m").parameter("l", "long", "m"), "parameter 'l': expected a number [m], got 'long'"),
-    "low": (lambda s: Mechanism("m").parameter("l", 1.0, low=None), "parameter 'l': expected a number [1], got None"),
+    "flags": (lambda s: prepare(s, flags=None), "prepare: flags: expected a text, got None"),
+    "prepared": (lambda s: prepare(s, backend="vm")([0.3]), "expected values by name, as {'l': 0.25}, got [0.3]"),
+    "default": (
+        lambda s: Mechanism("m").parameter("l", "long", "m"),
+        "parameter 'l': expected a number [m], or a text such as '100 mm', got 'long'",
+    ),
+    "low": (lambda s: Mechanism("m").parameter("l", 1.0, low=None), "parameter 'l': low: expected a number or a text, got None"),
     "huge": (lambda s: Mechanism("m").point_mass("p", 10**400), "must be a number or an expression in parameters, got 1000"),
     "stiffness": (lambda s: sprung(stiffness=float("nan")), "load 'spring' must be finite, got nan"),
     "damping": (lambda s: sprung(damping="much"), "load 'spring' must be a number or an expression"),
-    "a place": (lambda s: SpatialMechanism("m").at("arm", 0.0, 0.0, 0.0), "place: expected a body, got 'arm'"),
+    "a place": (
+        lambda s: SpatialMechanism("m").at("arm", 0.0, 0.0, 0.0),
+        "place: expected a body, got 'arm'",
+    ),
     "table": (lambda s: table("x", [0, 1], [0, 1]), "table: expected a number or an expression, got 'x'"),
     "samples": (lambda s: motion.samples(1.0, [0, 1]), "expected a row of numbers, got 1.0"),
     "along": (lambda s: beams.along(["a", 1], [RECT, RECT]), "along: expected numbers for ratios, got ['a', 1]"),
@@ -110,9 +124,9 @@ def test_what_was_expected_is_said(scene, call, says):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("name", [None, 3.0, ["O"], np.zeros(2)], ids=str)
+@pytest.mark.parametrize("name", [None, 3.0, ["O"], {}, np.zeros(2)], ids=str)
 def test_what_is_no_name_is_told(solution, name):
-    for of in (solution.effort, solution.peak, solution.array):
+    for of in (solution.effort, solution.peak, solution.array, solution.section):
         with pytest.raises(LagrangeCasadiError, match=r"got |unknown "):
             of(name)
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import public
 from ..declare.density import Array
 from ..errors import DeclarationError
 from ..system.csv_rows import Row, read_rows
@@ -72,6 +73,7 @@ class Motor:
         return self.rated_torque * self.rated_speed
 
 
+@public
 def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
     """The motors of a CSV file, one a row, below a head of columns in any order and beside others.
 
@@ -84,7 +86,7 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
     line that is no motor, by its number.
     """
     rows = read_rows(path, f"the columns name, {', '.join(_ROTARY)}")
-    head = rows[0]
+    head = next(rows)
     cells = [_HEAD.fullmatch(cell) for cell in head.cells]
     names = [match.group(1) if match else cell for match, cell in zip(cells, head.cells, strict=True)]
     linear = any(name in names for name in ("stall_force", "rated_force", "peak_force"))
@@ -100,14 +102,14 @@ def read_motors(path: str | os.PathLike[str]) -> list[Motor]:
         for column, match in zip(names, cells, strict=True)
         if column in (*needed, *knee, _LASTS)
     }
-    if len(rows) == 1:
-        raise DeclarationError(f"{head.where}: it has no motors, only heads")
     motors: dict[str, Motor] = {}
-    for row in rows[1:]:
+    for row in rows:
         motor = _motor(row, names, units, needed, knee, linear)
         if motor.name in motors:
             raise DeclarationError(f"{row.where}: motor '{motor.name}' comes twice")
         motors[motor.name] = motor
+    if not motors:
+        raise DeclarationError(f"{head.where}: it has no motors, only heads")
     return list(motors.values())
 
 
@@ -123,8 +125,6 @@ def _unit(head: Row, column: str, unit: str | None, linear: bool) -> float:
 def _motor(
     row: Row, names: list[str], units: dict[str, float], needed: tuple[str, ...], knee: tuple[str, str], linear: bool
 ) -> Motor:
-    if len(row.cells) != len(names):
-        raise DeclarationError(f"{row.where}: {len(row.cells)} cells, expected {len(names)}")
     cells = dict(zip(names, row.cells, strict=True))
     if not cells["name"]:
         raise DeclarationError(f"{row.where}: a motor without a name")

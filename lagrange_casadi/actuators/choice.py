@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import public
 from ..errors import DeclarationError, NoDesignError
 from .catalogue import Motor
 from .duty import Duty
@@ -49,6 +50,7 @@ class Choice:
         return max(self.shares.values()) <= 1.0
 
 
+@public
 def judge(motor: Motor, duty: Duty, refused: tuple[str, ...] = ()) -> Choice:
     """What a duty takes of a motor.
 
@@ -69,6 +71,7 @@ def judge(motor: Motor, duty: Duty, refused: tuple[str, ...] = ()) -> Choice:
     return Choice(motor, duty, heat, torque, duty.peak_speed / motor.max_speed, refused)
 
 
+@public
 def select(motors: Iterable[Motor], duty: Callable[[float, float], Duty], *, ratios: Sequence[float] = (1.0,)) -> Choice:
     """The smallest motor that serves, by rated power, with the ratio that heats it least.
 

@@ -8,9 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arguments import public
 from ..declare.density import Array
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.solution import Solution
+from ..study.holding import Holding
 
 _COARSE = 0.01
 """By how much every second instant may tell otherwise, where instants are enough."""
@@ -116,6 +118,7 @@ class Duty:
         return any(abs(whole - part) > _COARSE * whole for whole, part in pairs)
 
 
+@public
 def duty_of(
     solution: Solution,
     joint: str,
@@ -125,13 +128,15 @@ def duty_of(
     inertia: float = 0.0,
     linear: bool = False,
     carried: Array | None = None,
+    held: Holding | None = None,
 ) -> Duty:
     """The duty of a drive's motor, from a solution that has the drive's effort and its motion.
 
     ``ratio`` is how many times as fast as the drive the motor turns, for a drive that slides in rad/m; a negative one turns it the
     other way. ``efficiency`` is that of the gearbox, ``inertia`` [kg m^2] that of the motor's rotor and what turns with it.
     A ``linear`` motor pushes a drive that slides; its inertia is the mass of its moving part [kg], and its ratio usually 1.
-    ``carried`` is what :func:`.inertia_at` tells of the drive, for the ratio of inertias.
+    ``carried`` is what :func:`.inertia_at` tells of the drive, for the ratio of inertias. ``held`` is what
+    :func:`.holding` tells of it: where joints that rub are at rest the effort is the larger in size of its range.
 
     Raises :class:`.UnknownNameError` for what is no drive of the solution, :class:`.DeclarationError` for numbers that cannot be,
     for fewer than two instants, and where the effort is open, as where a joint that rubs is at rest.
@@ -152,12 +157,18 @@ def duty_of(
     if carried is not None and np.shape(carried) != solution.t.shape:
         raise DeclarationError(f"carried: expected an inertia at each of the {solution.t.size} instants")
     effort, motion = solution.effort(joint), solution.motion(joint)
+    rests = np.isnan(effort)
+    if held is not None:
+        effort = np.where(rests, held.worst, effort)
     open_ = int(np.count_nonzero(~np.isfinite(effort)))
     if open_:
-        rests = "; joints that rub are at rest there: give their friction smooth" if solution.resting.any() else ""
-        raise DeclarationError(f"the effort of drive '{joint}' is open at {open_} of {solution.t.size} instants{rests}")
-    # The gearbox takes its losses from whoever gives power.
-    passed = np.where(effort * motion.rate >= 0.0, 1.0 / efficiency, efficiency)
+        why = "; joints that rub are at rest there: give what holding() tells, or their friction smooth"
+        if held is not None:
+            why = f"; joints that rub are at rest there, and {held.untold}: give their friction smooth"
+        why = why if solution.resting.any() else ""
+        raise DeclarationError(f"the effort of drive '{joint}' is open at {open_} of {solution.t.size} instants{why}")
+    # The gearbox takes its losses from whoever gives power; what holds at rest gets no help from it.
+    passed = np.where(rests | (effort * motion.rate >= 0.0), 1.0 / efficiency, efficiency)
     torque = effort * passed / ratio + inertia * ratio * motion.acceleration
     return Duty(
         joint, float(ratio), float(efficiency), float(inertia), solution.t, ratio * motion.rate, torque, bool(linear), carried

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
@@ -19,6 +20,7 @@ from ..instants.rung import Rung
 _VM = Rung("vm")
 
 
+@public
 def inertia_at(
     scene: Scene,
     joint: str,

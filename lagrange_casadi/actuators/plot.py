@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..draw.pictures import PICTURES, save
+from ..arguments import public
+from ..draw.pictures import PICTURES, one_at_a_time, save
 from ..errors import DeclarationError
 from ..system.publish import check_writable, writing
 from .catalogue import Motor
@@ -22,6 +23,8 @@ def check_picture(path: str | Path) -> None:
     check_writable(target)
 
 
+@public
+@one_at_a_time()
 def plot_duty(duty: Duty, path: str | Path, motor: Motor | None = None) -> None:
     """Draw a duty's points of torque over speed, its root mean square at its mean speed, and the limits of a motor, into a file.
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 import os
+from base64 import b64encode
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 
 import numpy as np
 
+from ..arguments import public
 from ..draw.places import drawn_spots
 from ..draw.shapes import shapes
 from ..errors import DeclarationError
@@ -26,6 +29,9 @@ from .vector import svg
 
 ENDINGS = (".gif", ".mp4", ".svg", ".glb")
 """Kinds of animations, by the name's ending."""
+
+_KINDS = {".gif": "image/gif", ".svg": "image/svg+xml", ".mp4": "video/mp4"}
+"""Those that browsers show."""
 
 _WIDTHS, _MOST, _SHORTEST = (80, 3840), 3000, 0.1
 
@@ -68,15 +74,33 @@ def check_ending(path: Path) -> None:
         find_ffmpeg()
 
 
-def write_animation(solution: Solution, path: str | os.PathLike[str], film: Film | None = None) -> None:
+@dataclass(frozen=True)
+class Animation:
+    """An animation in a file, which a notebook shows if it is the last value of a cell; a .glb is for programs of its own."""
+
+    path: Path
+
+    def _repr_html_(self) -> str:
+        """The file itself, within the page."""
+        told, kind = escape(str(self.path)), _KINDS.get(self.path.suffix.lower())
+        if kind is None or not self.path.is_file():
+            return f"<p>{told}</p>"
+        source = f"data:{kind};base64,{b64encode(self.path.read_bytes()).decode()}"
+        if kind.startswith("video"):
+            return f'<video src="{source}" title="{told}" autoplay loop controls muted></video>'
+        return f'<img src="{source}" alt="{told}">'
+
+
+@public
+def write_animation(solution: Solution, path: str | os.PathLike[str], film: Film | None = None) -> Animation:
     """Write one cycle of a solution as a GIF, an MP4, an animated SVG or glTF, replacing the file at ``path`` whole or not at all.
+
+    What it returns is shown by a notebook.
 
     Raises :class:`.DeclarationError` where the solution lacks the motion of its bodies, or forces that are asked for, and where
     ``path`` has another ending; :class:`.PathError` and :class:`.StoreError` where the file cannot be written;
     :class:`.LagrangeCasadiError` where an MP4 is asked for and ffmpeg is not found.
     """
-    if not isinstance(solution, Solution) or not isinstance(path, (str, os.PathLike)):
-        raise DeclarationError(f"animation: expected a solution and a path, got {solution!r} and {path!r}")
     target, film = Path(path), film or Film()
     check_ending(target)
     ending = target.suffix.lower()
@@ -87,15 +111,16 @@ def write_animation(solution: Solution, path: str | os.PathLike[str], film: Film
         solid = glb(solution, max(2, round(film.rate * film.seconds)), film.seconds, forces=film.forces)
         with writing(target) as (file,):
             file.write(solid)
-        return
+        return Animation(target)
     picture = picture_of(solution, film)
     if ending == ".mp4":
         with replacing(target) as draft:
             mp4(picture, picture.frames / film.seconds, draft)
-        return
+        return Animation(target)
     data = gif(picture, film.seconds) if ending == ".gif" else svg(picture, film.seconds).encode()
     with writing(target) as (file,):
         file.write(data)
+    return Animation(target)
 
 
 def picture_of(solution: Solution, film: Film) -> Picture:

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..draw.pictures import one_at_a_time
 from ..errors import LagrangeCasadiError, StoreError, one_line
 from ..system.room import require
 from .drawn import INK, Dot, Picture, Thing, Words
@@ -49,7 +50,7 @@ def frames(picture: Picture, chosen: Iterable[int] | None = None) -> Iterator[Pi
     for k in range(picture.frames) if chosen is None else chosen:
         for thing, artist in artists:
             _move(artist, thing, thing.points[min(k, len(thing.points) - 1)])
-        with warnings.catch_warnings():
+        with one_at_a_time(), warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Glyph", UserWarning)  # a name may have letters that no font has
             canvas.draw()
         yield np.asarray(canvas.buffer_rgba())[..., :3].copy()

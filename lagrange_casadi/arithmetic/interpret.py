@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -95,6 +95,31 @@ def interpret(function: Any, inputs: Sequence[Sequence[Any]], arithmetic: Arithm
                 raise DeclarationError(f"function '{function.name()}' cannot be followed: it {what}")
             work[step.results[0]] = rule(*(work[place] for place in step.arguments))
     return outputs
+
+
+def operations(function: Any, inputs: Sequence[Any]) -> Iterator[tuple[int, list[Any]]]:
+    """Every operation of an SX function of scalars, with the expressions of ``inputs`` that it is applied to.
+
+    Of a table's cell (``OP_CALL``) the second is the numbers between its cells.
+    """
+    work: dict[int, Any] = {}
+    for step in steps(function):
+        if step.operation == ca.OP_OUTPUT:
+            continue
+        if step.operation == ca.OP_CONST:
+            found = ca.SX(step.constant)
+        elif step.operation == ca.OP_INPUT:
+            found = inputs[step.arguments[0]].nz[step.arguments[1]]
+        elif step.looked_up is not None:
+            operands = [work[place] for place in step.arguments]
+            if step.looked_up.kind == "cell":
+                yield ca.OP_CALL, [*operands, ca.SX(step.looked_up.numbers[1:-1])]
+            found = step.looked_up.function(*operands)
+        else:
+            operands = [work[place] for place in step.arguments]
+            yield step.operation, operands
+            found = ca.SX.unary(step.operation, *operands) if len(operands) == 1 else ca.SX.binary(step.operation, *operands)
+        work[step.results[0]] = found
 
 
 def _name(operation: int) -> str:

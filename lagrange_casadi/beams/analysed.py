@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..arguments import public
 from ..errors import DeclarationError, LagrangeCasadiError
 from .shape import Shape, given
 
@@ -17,6 +18,7 @@ _PIECES = 400
 _NEEDS = "a cross-section of any outline needs sectionproperties; install it with: pip install 'lagrange_casadi[sections]'"
 
 
+@public
 def analysed(section: Any, mesh: float | None = None) -> Shape:
     """A cross-section by its properties, as sectionproperties tells them: torsion and the largest shear stresses too.
 

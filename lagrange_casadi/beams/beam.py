@@ -75,6 +75,11 @@ class Beam:
         """How the cross-section goes along the link."""
         return course_of("beam", self.shape)
 
+    @property
+    def round(self) -> bool:
+        """Whether its cross-sections are the same about any axis across the link."""
+        return all(shape.round for shape in self.course.shapes())
+
     def mapped(self, change: Callable[[str, Any], Any]) -> Beam:
         """The same with other dimensions."""
         return replace(self, shape=self.course.mapped(change))

@@ -13,7 +13,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..errors import DeclarationError
+from ..arguments import number, public
+from ..errors import DeclarationError, NumberError
 from .beam import Notch
 
 _Row = tuple[float, float, float]
@@ -47,11 +48,12 @@ _KNOWN = (50.0, 250.0)
 """Neuber's constant of steels [in^1/2] in powers of the ultimate strength [ksi], and the strengths for which it holds."""
 
 
+@public
 def shoulder(
     at: float,
-    wide: float,
-    narrow: float,
-    radius: float,
+    wide: float | str,
+    narrow: float | str,
+    radius: float | str,
     *,
     flat: bool = False,
     shear: float | None = None,
@@ -65,7 +67,7 @@ def shoulder(
     Raises :class:`.DeclarationError` for what is no step, and where the fits do not hold: the step's depth t over the radius must
     be from 0.1 to 20, for torsion from 0.25 to 4.
     """
-    _positive("shoulder", wide=wide, narrow=narrow, radius=radius)
+    wide, narrow, radius = _lengths("shoulder", wide=wide, narrow=narrow, radius=radius)
     if not wide > narrow:
         raise DeclarationError(f"shoulder: wide must be more than narrow, got {wide:g} and {narrow:g} m")
     if shear is None:
@@ -75,13 +77,14 @@ def shoulder(
     return Notch(at, axial, _fitted("bending", bending, wide, narrow, radius), shear, sensitivity)
 
 
-def hole(at: float, height: float, diameter: float, *, shear: float = 1.0, sensitivity: float = 1.0) -> Notch:
+@public
+def hole(at: float, height: float | str, diameter: float | str, *, shear: float = 1.0, sensitivity: float = 1.0) -> Notch:
     """A hole through the middle of a flat bar of a ``height``, along z, so that the bar bends in the hole's own plane [m].
 
     In bending the factor is that of the outermost fibre, or of the hole's edge where that has more. Raises
     :class:`.DeclarationError` for a hole that does not fit.
     """
-    _positive("hole", height=height, diameter=diameter)
+    height, diameter = _lengths("hole", height=height, diameter=diameter)
     share = diameter / height
     if not share < 1.0:
         raise DeclarationError(f"hole: diameter must be less than height, got {diameter:g} and {height:g} m")
@@ -90,17 +93,19 @@ def hole(at: float, height: float, diameter: float, *, shear: float = 1.0, sensi
     return Notch(at, tension, max(1.0, 2.0 * share) / (1.0 - share**3), shear, sensitivity)
 
 
+@public
 def keyway(at: float, *, sensitivity: float = 1.0) -> Notch:
     """The end of an end-milled keyway of a shaft; its corners have a radius of a fiftieth of the diameter, as in standards."""
     return Notch(at, 1.0, 2.14, 3.0, sensitivity)
 
 
-def sensitivity(radius: float, ultimate: float) -> float:
+@public
+def sensitivity(radius: float | str, ultimate: float) -> float:
     """How much of a notch of a ``radius`` [m] fatigue feels in steel of an ``ultimate`` strength [Pa], from 0 to 1.
 
     Raises :class:`.DeclarationError` for a strength for which it is not known.
     """
-    _positive("sensitivity", radius=radius, ultimate=ultimate)
+    (radius,) = _lengths("sensitivity", radius=radius)
     strength = ultimate / _KSI
     if not _KNOWN[0] <= strength <= _KNOWN[1]:
         ends = " to ".join(f"{end * _KSI / 1e6:.0f}" for end in _KNOWN)
@@ -123,7 +128,14 @@ def _fitted(load: str, fit: _Fit, wide: float, narrow: float, radius: float) -> 
     return max(1.0, sum((a + b * math.sqrt(ratio) + c * ratio) * share**k for k, (a, b, c) in enumerate(rows)))
 
 
-def _positive(what: str, **numbers: float) -> None:
-    for name, value in numbers.items():
-        if not (isinstance(value, (int, float)) and 0.0 < value < math.inf):
-            raise DeclarationError(f"{what}: {name} must be positive, got {value!r}")
+def _lengths(what: str, **told: float | str) -> list[float]:
+    """Positive lengths [m]. Raises :class:`.DeclarationError` for what is none."""
+    found = []
+    for name, value in told.items():
+        try:
+            found.append(number(value, "m"))
+        except NumberError as error:
+            raise DeclarationError(f"{what}: {name}: {error}") from None
+        if not found[-1] > 0.0:
+            raise DeclarationError(f"{what}: {name} must be positive, got {found[-1]:g} m")
+    return found

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
+from ..arguments import public
 from ..errors import DeclarationError, UnknownNameError
 
 
@@ -66,6 +67,7 @@ class Material:
         return replace(self, **numbers)
 
 
+@public
 def material(name: str) -> Material:
     """One of a small table: least values of standards for thin parts. Raises :class:`.UnknownNameError` for any other."""
     if name not in TABLE:

@@ -6,6 +6,7 @@ import os
 import re
 from dataclasses import dataclass
 
+from ..arguments import public
 from ..errors import DeclarationError
 from ..system.csv_rows import Row, read_rows
 from .shape import Shape, dimensions_of
@@ -31,6 +32,7 @@ class Profile:
         return Shape(kind, {name: self.dimensions[name] for name in names})
 
 
+@public
 def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
     """Profiles of a CSV file: a column ``name``, and one for each dimension, in metres or with a unit as ``height [mm]``.
 
@@ -39,21 +41,20 @@ def read_profiles(path: str | os.PathLike[str]) -> tuple[Profile, ...]:
     Raises :class:`.PathError` for a file that cannot be read, and :class:`.DeclarationError` that names the line which is wrong.
     """
     rows = read_rows(path, "a head and a line for every profile")
-    heads = [_head(rows[0].where, head) for head in rows[0].cells]
+    head = next(rows)
+    heads = [_head(head.where, cell) for cell in head.cells]
     names = [name for name, _ in heads]
     if names.count("name") != 1 or len(set(names)) < len(names) or len(names) < 2:
-        raise DeclarationError(f"{rows[0].where}: expected a column 'name' and one for each dimension, got {', '.join(names)}")
-    if len(rows) < 2:
-        raise DeclarationError(f"{rows[0].where}: expected a line for every profile below this head")
+        raise DeclarationError(f"{head.where}: expected a column 'name' and one for each dimension, got {', '.join(names)}")
     found: dict[str, Profile] = {}
-    for row in rows[1:]:
-        if len(row.cells) != len(names):
-            raise DeclarationError(f"{row.where}: {len(row.cells)} cells, expected {len(names)}")
+    for row in rows:
         cells = dict(zip(names, row.cells, strict=True))
         name = cells.pop("name")
         if not name.isprintable() or not name or name in found:
             raise DeclarationError(f"{row.where}: " + (f"profile '{name}' comes twice" if name in found else "it has no name"))
         found[name] = Profile(name, {key: _size(row, key, text, dict(heads)[key]) for key, text in cells.items()})
+    if not found:
+        raise DeclarationError(f"{head.where}: expected a line for every profile below this head")
     return tuple(found.values())
 
 

@@ -1,6 +1,7 @@
 """Cross-sections by their kind and dimensions, constant or changing along a link.
 
-Dimensions [m] are numbers or expressions in parameters. Heights are along the link's y, which in a planar mechanism is the axis n,
+Dimensions [m] are numbers, texts such as ``"30 mm"``, or expressions in parameters.
+Heights are along the link's y, which in a planar mechanism is the axis n,
 in the plane of motion; widths are along its z. The centroid is on the link's axis.
 """
 
@@ -11,7 +12,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..errors import DeclarationError, check_kind
+from ..arguments import number, public
+from ..errors import DeclarationError, NumberError, check_kind
 from . import solid, walls
 from .properties import Fibre, Properties
 
@@ -26,9 +28,19 @@ class Shape:
     kind: str
     dimensions: Mapping[str, Any]
 
+    def __post_init__(self) -> None:
+        if any(isinstance(value, str) for value in self.dimensions.values()):
+            read = {name: _length(f"{self.kind}: {name}", value) for name, value in self.dimensions.items()}
+            object.__setattr__(self, "dimensions", read)
+
     def properties(self, *, space: bool = True) -> Properties:
         """Its properties; round ones have fewer fibres where bending is in one plane alone."""
         return _FORMS[self.kind](dict(self.dimensions), space)
+
+    @property
+    def round(self) -> bool:
+        """Whether it is the same about any axis of its plane."""
+        return self.kind in _ROUND
 
     @property
     def area(self) -> Any:
@@ -61,46 +73,63 @@ class Course:
         yield from {id(shape): shape for cell in self.cells for shape in cell}.values()
 
 
+def _length(what: str, value: Any) -> Any:
+    """A text as a length [m], anything else as it is. Raises :class:`.DeclarationError` for a text of none."""
+    try:
+        return number(value, "m") if isinstance(value, str) else value
+    except NumberError as error:
+        raise DeclarationError(f"{what}: {error}") from None
+
+
+@public
 def rectangle(height: Any, width: Any) -> Shape:
     """A rectangle."""
     return Shape("rectangle", {"height": height, "width": width})
 
 
+@public
 def round_bar(diameter: Any) -> Shape:
     """A round bar."""
     return Shape("round_bar", {"diameter": diameter})
 
 
+@public
 def tube(diameter: Any, wall: Any) -> Shape:
     """A round tube, by its outer diameter and its wall."""
     return Shape("tube", {"diameter": diameter, "wall": wall})
 
 
+@public
 def ellipse(height: Any, width: Any) -> Shape:
     """An ellipse, by its two diameters."""
     return Shape("ellipse", {"height": height, "width": width})
 
 
+@public
 def i_section(height: Any, width: Any, web: Any, flange: Any) -> Shape:
     """An I, by its height, the width of its flanges, and the thickness of its web and of its flanges."""
     return Shape("i_section", {"height": height, "width": width, "web": web, "flange": flange})
 
 
+@public
 def t_section(height: Any, width: Any, web: Any, flange: Any) -> Shape:
     """A T, its flange on the side of +y."""
     return Shape("t_section", {"height": height, "width": width, "web": web, "flange": flange})
 
 
+@public
 def c_section(height: Any, width: Any, web: Any, flange: Any) -> Shape:
     """A C, its web on the side of -z."""
     return Shape("c_section", {"height": height, "width": width, "web": web, "flange": flange})
 
 
+@public
 def box(height: Any, width: Any, web: Any, flange: Any) -> Shape:
     """A box, by its outer height and width, and the thickness of its two webs and of its two flanges."""
     return Shape("box", {"height": height, "width": width, "web": web, "flange": flange})
 
 
+@public
 def polygon(places: Sequence[tuple[Any, Any]]) -> Shape:
     """A polygon by its corners (y, z), counter-clockwise from y to z; its centroid comes to lie on the link's axis.
 
@@ -115,6 +144,7 @@ def polygon(places: Sequence[tuple[Any, Any]]) -> Shape:
     return Shape("polygon", {f"{axis}{k}": x for k, corner in enumerate(corners, 1) for axis, x in zip("yz", corner, strict=True)})
 
 
+@public
 def given(
     area: Any,
     iz: Any,
@@ -145,6 +175,7 @@ def given(
     return Shape("given", words | {name: 2 / 3 * area if value is None else value for name, value in shears.items()})
 
 
+@public
 def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
     """Shapes of one kind at ratios xi/l from 0 to 1, dimensions linear between; where a ratio comes twice there is a step.
 
@@ -173,11 +204,13 @@ def along(ratios: Sequence[float], shapes: Sequence[Shape]) -> Course:
     return Course(tuple(breaks), tuple(cells))
 
 
+@public
 def tapered(base: Shape, tip: Shape) -> Course:
     """A cross-section whose dimensions are linear from those at the base to those at the tip."""
     return along([0.0, 1.0], [base, tip])
 
 
+@public
 def stepped(steps: Sequence[float], shapes: Sequence[Shape]) -> Course:
     """Constant cross-sections with steps between them, at ratios xi/l: one step fewer than shapes."""
     for given in (steps, shapes):
@@ -215,6 +248,7 @@ def dimensions_of(kind: str) -> tuple[str, ...] | None:
     return _NAMES.get(kind)
 
 
+_ROUND = ("round_bar", "tube")
 _THIN = ("height", "width", "web", "flange")
 _NAMES = {
     "rectangle": ("height", "width"),

@@ -26,6 +26,7 @@ from .cases import cases
 from .check import check
 from .drawing import drawn_ways
 from .drive import drive_command as drive
+from .echo import echo
 from .export import export
 from .info import info
 from .new import new
@@ -105,7 +106,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except LagrangeCasadiError as error:
             return _fail(str(error), error.exit_status)
         except click.exceptions.NoArgsIsHelpError as error:
-            click.echo(error.format_message(), err=True)
+            for line in error.format_message().splitlines():
+                _say(line)
             return error.exit_code
         except click.ClickException as error:
             return _fail(error.format_message(), error.exit_code)
@@ -200,4 +202,4 @@ def _fail(message: str, status: int) -> int:
 
 def _say(line: str) -> None:
     with suppress(OSError):  # the terminal may be gone
-        click.echo(line, err=True)
+        echo(line, err=True)

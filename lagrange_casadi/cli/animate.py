@@ -18,6 +18,7 @@ from ..judge.certificate import failure
 from ..store.runs import load
 from ..store.untrusted import told_as
 from ..system.publish import check_writable
+from .echo import echo
 from .options import instants, parameters, settings_by
 from .options import over as by_drive
 
@@ -80,7 +81,7 @@ def animate(
         wanted = _wanted(case.scene, film)
         solution = evaluate(case.scene, parameters=parameters(settings), t=t, over=over, wanted=wanted)
         write_animation(solution, out, film)
-    click.echo(f"wrote {out}")
+    echo(f"wrote {out}")
     if solution.failed:
         raise CertificateError(f"{failure(solution)}; {out} shows what fails it")
 

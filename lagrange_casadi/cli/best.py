@@ -14,6 +14,7 @@ from ..sweep.axes import DESIGN, counted, grouped
 from ..sweep.best import missed, tally
 from ..system.publish import check_writable
 from ..system.streams import is_standard_output
+from .echo import echo
 from .rows import show, write_csv
 
 
@@ -50,4 +51,4 @@ def best(
         show(sweep, names, [(design.number, list(design.values.values())) for design in found])
     if csv:
         write_csv([DESIGN, *names], ([design.number, *design.values.values()] for design in found), csv)
-        click.echo(f"wrote {csv}: {counted(len(found))}", err=piped)
+        echo(f"wrote {csv}: {counted(len(found))}", err=piped)

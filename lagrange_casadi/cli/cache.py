@@ -7,6 +7,7 @@ import click
 from ..errors import StoreError
 from ..sweep.axes import counted
 from ..system import cache as kept
+from .echo import echo
 
 
 @click.command()
@@ -16,17 +17,20 @@ def cache(clear: bool) -> None:
     place, most = kept.place(), kept.limit()
     try:
         entries = list(kept.entries(place).values()) if place.exists() else []
+        distrusted = kept.distrusted(place) if place.exists() else ""
     except OSError as error:
         raise StoreError(f"cannot read {place}: {error.strerror}") from None
     names = [file.suffix for entry in entries for file in entry.files]
     size = sum(entry.size for entry in entries)
     libraries = counted(names.count(".so"), "library").replace("librarys", "libraries")
+    if distrusted:
+        echo(f"note: {place} is not used, for {distrusted}", err=True)
     what = f"{counted(names.count('.graph'), 'graph')}, {libraries}, {size / 1e6:.3g} MB"
     if not clear:
-        click.echo(f"{place}: {what} in {counted(len(names), 'file')}")
-        click.echo(f"limit: {most / 1e6:g} MB, of which what was used longest ago goes first; ${kept.VARIABLE} sets another")
+        echo(f"{place}: {what} in {counted(len(names), 'file')}")
+        echo(f"limit: {most / 1e6:g} MB, of which what was used longest ago goes first; ${kept.VARIABLE} sets another")
         return
     removed = kept.remove(entries)
     if removed < size:
         raise StoreError(f"cannot remove all that is kept in {place}: {(size - removed) / 1e6:.3g} MB are left")
-    click.echo(f"{place}: removed {what}")
+    echo(f"{place}: removed {what}")

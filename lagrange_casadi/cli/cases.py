@@ -12,6 +12,7 @@ import click
 from ..errors import PathError
 from ..shipped_cases import shipped_cases
 from ..system.publish import filling
+from .echo import echo
 
 
 @click.command()
@@ -23,7 +24,7 @@ def cases(copy: Path | None) -> None:
         raise PathError("the cases were not installed with the package: they are in its repository")
     if copy is None:
         for name, folder in found.items():
-            click.echo(f"{name:18} {_sentence(folder / 'case.py')}")
+            echo(f"{name:18} {_sentence(folder / 'case.py')}")
         return
     if copy.exists():
         raise PathError(f"{copy} exists: expected a new folder")
@@ -34,7 +35,7 @@ def cases(copy: Path | None) -> None:
                     place = draft / name / file.relative_to(folder)
                     place.parent.mkdir(parents=True, exist_ok=True)
                     shutil.copyfile(file, place)
-    click.echo(f"copied {len(found)} cases: begin with lagrange-casadi run {shlex.quote(str(copy / next(iter(found))))}")
+    echo(f"copied {len(found)} cases: begin with lagrange-casadi run {shlex.quote(str(copy / next(iter(found))))}")
 
 
 def _sentence(file: Path) -> str:

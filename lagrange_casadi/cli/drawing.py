@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-import click
 from tqdm import tqdm
 
 from ..declare.scene import Scene
@@ -17,6 +16,7 @@ from ..draw.postures import draw_postures
 from ..errors import LagrangeCasadiError, PostureError
 from ..instants.solution import Solution
 from ..system.publish import writing
+from .echo import echo
 
 
 def draw_with_progress(solution: Solution, specs: Sequence[Spec], folder: Path, si: bool = False) -> None:
@@ -28,7 +28,7 @@ def draw_with_progress(solution: Solution, specs: Sequence[Spec], folder: Path, 
         (drawn if path else skipped).append(spec.name)
     write_index(solution.case, drawn, folder)
     if skipped:
-        click.echo(f"note: not drawn, for want of their outputs: {', '.join(skipped)}", err=True)
+        echo(f"note: not drawn, for want of their outputs: {', '.join(skipped)}", err=True)
 
 
 def drawn_ways(error: PostureError) -> str:

@@ -11,6 +11,7 @@ import click
 from ..arithmetic.compensated import Precision
 from ..case import load_case
 from ..export import export as write
+from .echo import echo
 from .options import arithmetic, parameters, settings_by, wanted
 
 
@@ -60,11 +61,11 @@ def export(
         wasm=wasm,
     )
     for own, called in made.mapped.items():
-        click.echo(f"{own} is called {called} in C")
+        echo(f"{own} is called {called} in C")
     p = made.prefix
-    click.echo(f"wrote {out}: {p}.h, {p}.c and what goes with them; {len(made.inputs)} inputs, {len(made.outputs)} outputs")
+    echo(f"wrote {out}: {p}.h, {p}.c and what goes with them; {len(made.inputs)} inputs, {len(made.outputs)} outputs")
     if fmu:
-        click.echo(f"wrote {out / f'{p}.fmu'}: FMI 2.0, for Model Exchange and Co-Simulation")
+        echo(f"wrote {out / f'{p}.fmu'}: FMI 2.0, for Model Exchange and Co-Simulation")
     if wasm:
-        click.echo(f"wrote {out / f'{p}.wasm'} and {p}.js: README.wasm.md says how a web page uses them")
-    click.echo(f"try it: cd {shlex.quote(str(out))} && cmake -B build && cmake --build build && ctest --test-dir build")
+        echo(f"wrote {out / f'{p}.wasm'} and {p}.js: README.wasm.md says how a web page uses them")
+    echo(f"try it: cd {shlex.quote(str(out))} && cmake -B build && cmake --build build && ctest --test-dir build")

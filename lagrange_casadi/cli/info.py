@@ -20,6 +20,7 @@ from ..sweep import Sweep, is_sweep
 from ..sweep.axes import counted
 from ..sweep.checking import progress, unfinished
 from ..sweep.instant_axis import in_words
+from .echo import echo
 from .options import wanted
 from .report import asked_line, peak_line
 from .scene_lines import scene_lines
@@ -37,7 +38,7 @@ def info(target: Path, want: tuple[str, ...]) -> None:
             raise click.UsageError("--want goes with a case, not with a file")
         if folder:
             _describe_sweep(folder.identity)
-            click.echo(progress(folder))
+            echo(progress(folder))
         elif is_sweep(target):
             _describe_whole(Sweep.open(target))
         else:
@@ -51,85 +52,85 @@ def _describe_case(scene: Scene, want: tuple[str, ...]) -> None:
     graph = derive(scene, want or None)
     _describe_mechanism(described(scene, mechanism.values()))
     for line in scene_lines(scene):
-        click.echo(line)
+        echo(line)
     timing = scene.timing()
-    click.echo(
+    echo(
         asked_line(
             timing.words(mechanism.symbols)[:4], bool(timing.joint) and scene.guided.coordinates[timing.joint][1].kind == "slide"
         )
     )
-    click.echo(f"xi/l: {scene.xi[0]:g} to {scene.xi[1]:g}, {scene.xi[2]} points")
+    echo(f"xi/l: {scene.xi[0]:g} to {scene.xi[1]:g}, {scene.xi[2]} points")
     whole = kinds(mechanism)
-    click.echo(f"outputs: {', '.join(outputs(mechanism))}" + (f"; all of a kind: {', '.join(whole)}" if whole else ""))
-    click.echo(f"wanted: {', '.join(want or scene.wanted)}")
+    echo(f"outputs: {', '.join(outputs(mechanism))}" + (f"; all of a kind: {', '.join(whole)}" if whole else ""))
+    echo(f"wanted: {', '.join(want or scene.wanted)}")
     loops = [f"{name} ({'iterated' if graph.iterates(name) else 'closed form'})" for name in graph.checks("closure")]
-    click.echo(f"loops closed by: {', '.join(loops) or 'none'}")
+    echo(f"loops closed by: {', '.join(loops) or 'none'}")
     counts = ", ".join(f"{name} {count}" for name, count in graph.instructions.items())
-    click.echo(f"instructions an instant: {sum(graph.instructions.values())} ({counts})")
+    echo(f"instructions an instant: {sum(graph.instructions.values())} ({counts})")
 
 
 def _describe_file(solution: Solution) -> None:
     _describe_mechanism(solution.description)
     provenance = solution.provenance
-    click.echo(f"t [s]: {solution.t[0]:g} to {solution.t[-1]:g}, {solution.t.size} points")
+    echo(f"t [s]: {solution.t[0]:g} to {solution.t[-1]:g}, {solution.t.size} points")
     if solution.over:
         first, last = (solution.over.drawn(solution.over.values[k]) for k in (0, -1))
-        click.echo(f"in equal steps of {solution.over.label}: {first:.6g} to {last:.6g}")
-    click.echo(f"xi/l: {solution.xi[0]:g} to {solution.xi[-1]:g}, {solution.xi.size} points")
-    click.echo(f"backend: {provenance.backend}, {provenance.precision} {provenance.compiler} {provenance.flags}".rstrip())
-    click.echo(f"method: {provenance.rung}")
-    click.echo(f"versions: {', '.join(f'{name} {version}' for name, version in provenance.versions.items())}")
+        echo(f"in equal steps of {solution.over.label}: {first:.6g} to {last:.6g}")
+    echo(f"xi/l: {solution.xi[0]:g} to {solution.xi[-1]:g}, {solution.xi.size} points")
+    echo(f"backend: {provenance.backend}, {provenance.precision} {provenance.compiler} {provenance.flags}".rstrip())
+    echo(f"method: {provenance.rung}")
+    echo(f"versions: {', '.join(f'{name} {version}' for name, version in provenance.versions.items())}")
     for note in solution.notes:
-        click.echo(f"note: {note}")
+        echo(f"note: {note}")
     if solution.sensitivities.by:
         by = ", ".join(solution.sensitivities.parameters)
-        click.echo(f"sensitivities: of {len(solution.sensitivities.quantities)} quantities by {by}")
-    click.echo("peaks:")
+        echo(f"sensitivities: of {len(solution.sensitivities.quantities)} quantities by {by}")
+    echo("peaks:")
     for name in solution.names():
-        click.echo(peak_line(solution, solution.peak(name)))
+        echo(peak_line(solution, solution.peak(name)))
 
 
 def _describe_sweep(identity: Mapping[str, Any]) -> None:
     _describe_mechanism(identity["mechanism"])
     for name, words in identity["grid"].items():
-        click.echo(f"swept {name}: {words}")
+        echo(f"swept {name}: {words}")
     asked, xi = identity["t"][:4], identity["xi"]
-    click.echo(asked_line(asked, len(asked) > 3 and coordinates_of(identity["mechanism"])[asked[3]] == "slide"))
+    echo(asked_line(asked, len(asked) > 3 and coordinates_of(identity["mechanism"])[asked[3]] == "slide"))
     if xi:
-        click.echo(f"xi/l: {xi[0]:g} to {xi[1]:g}, {xi[2]} points")
-    click.echo(f"backend: {identity['backend']}, {identity['precision']} {identity['compiler']} {identity['flags']}".rstrip())
-    click.echo(f"method: {identity['rung']}")
-    click.echo(f"versions: {', '.join(f'{name} {version}' for name, version in identity['versions'].items())}")
+        echo(f"xi/l: {xi[0]:g} to {xi[1]:g}, {xi[2]} points")
+    echo(f"backend: {identity['backend']}, {identity['precision']} {identity['compiler']} {identity['flags']}".rstrip())
+    echo(f"method: {identity['rung']}")
+    echo(f"versions: {', '.join(f'{name} {version}' for name, version in identity['versions'].items())}")
 
 
 def _describe_whole(sweep: Sweep) -> None:
     _describe_sweep(sweep.identity)
     for status, count in sweep.counts().items():
         if count:
-            click.echo(f"{counted(count)}: {sweep.statuses[status][1]}")
-    click.echo("columns:")
+            echo(f"{counted(count)}: {sweep.statuses[status][1]}")
+    echo("columns:")
     for kept in sweep.columns.values():
         axes = f" over {in_words(kept.axes)}" if kept.axes else ""
-        click.echo(f"  {kept.name:<36} {kept.unit:<4} {kept.long_name}{axes}")
+        echo(f"  {kept.name:<36} {kept.unit:<4} {kept.long_name}{axes}")
 
 
 def _describe_mechanism(description: Description) -> None:
-    click.echo(f"mechanism: {description['name']}")
+    echo(f"mechanism: {description['name']}")
     for name, p in description["parameters"].items():
         limits = "" if math.isinf(p["low"]) and math.isinf(p["high"]) else f" (range {p['low']:g} to {p['high']:g})"
-        click.echo(f"  parameter {name} = {p['value']:g} {p['unit']}{limits}")
+        echo(f"  parameter {name} = {p['value']:g} {p['unit']}{limits}")
     for name, body in description["bodies"].items():
         size = "point mass" if body["length"] is None else f"link of {body['length']:g} m,"
         thick = ", slices with rotary inertia" if "slices" in body.get("density", {}) else ""
-        click.echo(f"  {size} {name}: {body['mass']:g} kg{thick}")
+        echo(f"  {size} {name}: {body['mass']:g} kg{thick}")
     for name, joint in description["joints"].items():
         points = [[p[k] for k in "xyz" if k in p] for p in (joint["parent"], joint["child"])]
         ends = " - ".join(f"{p['body']} {_vector(at)}" for p, at in zip((joint["parent"], joint["child"]), points, strict=True))
         moves = _in_space(joint, description) if "coordinates" in joint else _in_plane(joint)
-        click.echo(f"  {joint['kind']} joint {name}: {ends}{moves}")
-    click.echo(f"  gravity: {_vector(description['gravity'])} m/s^2")
+        echo(f"  {joint['kind']} joint {name}: {ends}{moves}")
+    echo(f"  gravity: {_vector(description['gravity'])} m/s^2")
     if description.get("bars"):
-        click.echo(f"  bars, whose spin about their own axis is idle: {', '.join(description['bars'])}")
+        echo(f"  bars, whose spin about their own axis is idle: {', '.join(description['bars'])}")
 
 
 def _in_plane(joint: Description) -> str:

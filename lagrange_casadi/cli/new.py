@@ -13,6 +13,7 @@ import click
 from ..errors import PathError, UnknownNameError
 from ..shipped_cases import shipped_cases
 from ..system.publish import filling
+from .echo import echo
 
 _SIMPLE = "four_bar"
 
@@ -33,7 +34,7 @@ def new(folder: Path, like: str) -> None:
                 shutil.copyfile(file, draft / file.name)
         case = draft / "case.py"
         case.write_text(_renamed(case.read_text(encoding="utf-8"), like, folder), encoding="utf-8", newline="\n")
-    click.echo(f"wrote {folder / 'case.py'}: change it, then lagrange-casadi run {shlex.quote(str(folder))}")
+    echo(f"wrote {folder / 'case.py'}: change it, then lagrange-casadi run {shlex.quote(str(folder))}")
 
 
 def _renamed(text: str, like: str, folder: Path) -> str:

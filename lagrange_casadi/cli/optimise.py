@@ -10,8 +10,8 @@ from typing import Any
 import click
 from tqdm import tqdm
 
+from ..arguments import typed
 from ..case import load_case
-from ..declare.angles import typed
 from ..declare.even_points import EvenPoints
 from ..draw.pictures import PICTURES
 from ..errors import DeclarationError
@@ -23,17 +23,18 @@ from ..optimise.front import POINTS
 from ..optimise.front_figure import draw_front
 from ..system.numerals import real
 from ..system.publish import check_writable, writing
+from .echo import echo
 from .optimum_lines import front_lines, optimum_lines
 from .options import instants, parameters, settings_by
 
 _BOUNDS = "NAME=LEAST:LARGEST"
 
 
-def _bounds(text: str) -> tuple[str, tuple[float, float]]:
-    """NAME=LEAST:LARGEST; angles may have a unit, as 30deg."""
+def _bounds(text: str) -> tuple[str, tuple[float | str, float | str]]:
+    """NAME=LEAST:LARGEST; numbers may have a unit, as 30deg."""
     name, _, words = (word.strip() for word in text.partition("="))
     try:
-        low, high = (value if is_angle else real(word) for word in words.split(":") for value, is_angle in (typed(word),))
+        low, high = (word if typed(word)[1] else real(word) for word in words.split(":"))
     except ValueError:
         raise click.BadParameter(f"expected {_BOUNDS}, as in l=0.15:0.4, got '{text}'") from None
     return name, (low, high)
@@ -138,6 +139,6 @@ def optimise(
         else:
             draw_front(loaded.scene, found, picture, figure.suffix)
     for line in optimum_lines(found) if isinstance(found, Optimum) else front_lines(found):
-        click.echo(line)
-    click.echo(f"wrote {out} and {figure}")
+        echo(line)
+    echo(f"wrote {out} and {figure}")
     return 0 if found.feasible and found.converged and not found.stopped else 1

@@ -10,11 +10,11 @@ from typing import Any, TypeVar
 
 import click
 
+from ..arguments import typed
 from ..arithmetic.compensated import PRECISIONS
-from ..declare.angles import angle
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
-from ..errors import AngleError, DeclarationError
+from ..errors import DeclarationError
 from ..instants.rung import BACKENDS
 from ..sweep import Axis, Range, Values
 from ..system.numerals import real, whole
@@ -27,26 +27,26 @@ Number = TypeVar("Number")
 
 
 def even_points(text: str) -> EvenPoints:
-    """START:STOP:COUNT, both ends included."""
+    """START:STOP:COUNT, both ends included; START and STOP may have a unit, as 80ms."""
     try:
         start, stop, count = text.split(":")
-        return real(start), real(stop), whole(count)
+        return _value(start), _value(stop), whole(count)
     except ValueError:
         raise click.BadParameter(f"expected START:STOP:COUNT, as in 0:0.08:801, got '{text}'") from None
 
 
 def steps_over(text: str) -> Over:
-    """JOINT=START:STOP:COUNT; whether START and STOP are angles is the joint's affair."""
+    """JOINT=START:STOP:COUNT; which units START and STOP may have is the joint's affair."""
     try:
         joint, steps = (part.strip() for part in text.split("="))
         start, stop, count = steps.split(":")
-        return joint, start, stop, whole(count)
+        return joint, _value(start), _value(stop), whole(count)
     except ValueError:
         raise click.BadParameter(f"expected {OVER}, as in O=0:720deg:721, got '{text}'") from None
 
 
 def axis(text: str) -> tuple[str, Axis]:
-    """NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,...; angles may have a unit, as 30deg."""
+    """NAME=START:STOP:COUNT, NAME=START:STOP:COUNT:log or NAME=VALUE,VALUE,...; numbers may have a unit, as 30deg."""
     name, words = (word.strip() for word in text.partition("=")[::2])
     parts = words.split(":")
     if not (name and words) or len(parts) not in (1, 3, 4):
@@ -67,15 +67,11 @@ def axis(text: str) -> tuple[str, Axis]:
 
 
 def setting(text: str) -> tuple[str, float | str]:
-    """NAME=VALUE; a value with a unit stays a text, for what is set to tell whether it is an angle."""
+    """NAME=VALUE; a value with a unit stays a text, for what is set to tell whether it fits."""
     name, equals, value = (word.strip() for word in text.partition("="))
     with suppress(ValueError):
         if equals:
-            return name, real(value)
-    with suppress(AngleError):
-        if equals:
-            angle(value)
-            return name, value
+            return name, _value(value)
     raise click.BadParameter(f"expected NAME=VALUE with a number in SI units, as in l=0.25 or phi=30deg, got '{text}'")
 
 
@@ -111,11 +107,8 @@ def table(text: str) -> float:
 
 
 def _value(word: str) -> Any:
-    """A number, or the text of an angle. Raises ``ValueError`` for anything else."""
-    with suppress(ValueError):
-        return real(word)
-    angle(word)
-    return word
+    """A number, or the text of one with a unit. Raises ``ValueError`` for anything else."""
+    return word if typed(word)[1] else real(word)
 
 
 def _read(read: Callable[[str], Number], what: str, word: str, words: str) -> Number:

@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 from tqdm import tqdm
 
-from ..declare.angles import angle
-from ..draw.index import NAME, write_index
+from ..arguments import typed
+from ..draw.index import MANIFEST, NAME, write_index
 from ..draw.kept import parse_specs
 from ..errors import NoDesignError
 from ..store.runs import figure_specs, load
@@ -19,6 +19,7 @@ from ..sweep.default_figures import default_plots
 from ..sweep.plots import Spec, draw_sweep
 from ..system.publish import check_writable, filling
 from .drawing import draw_with_progress
+from .echo import echo
 from .options import place
 
 _UNDRAWN = "cannot be drawn"
@@ -46,6 +47,7 @@ def plot(
 ) -> None:
     """Draw the figures of FILE.h5, as its case wants them, or peaks over parameters where it is a sweep."""
     check_writable(out, folder=True)
+    MANIFEST.check(out)
     if is_sweep(file):
         if si:
             raise click.UsageError("--si goes with the file of a run; figures of a sweep are in SI")
@@ -61,7 +63,8 @@ def plot(
         solution, drawn = load(file), parse_specs(figure_specs(file))
         with told_as(_UNDRAWN, file), filling(out) as draft:
             draw_with_progress(solution, drawn, draft, si)
-    click.echo(f"wrote the figures in {out}/; {out}/{NAME} shows all of them")
+            MANIFEST.add(draft, out)
+    echo(f"wrote the figures in {out}/; {out}/{NAME} shows all of them")
 
 
 def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
@@ -76,17 +79,17 @@ def _draw(sweep: Sweep, specs: Sequence[Spec], out: Path) -> None:
         if len(skipped) == len(specs):
             raise NoDesignError(f"there is nothing to draw: {'; '.join(dict.fromkeys(skipped))}")
         write_index(sweep.case, drawn, draft)
+        MANIFEST.add(draft, out)
     for line in skipped:
-        click.echo(f"note: not drawn: {line}", err=True)
+        echo(f"note: not drawn: {line}", err=True)
 
 
 def _number(sweep: Sweep, name: str, value: float | str) -> float:
-    """Where a parameter stays; of an angle it may be told with its unit."""
-    if isinstance(value, str):
-        if (unit := sweep.parameters.get(name)) != "rad":
-            raise click.UsageError(f"--at: parameter '{name}' is in {unit}, got {value}")
-        return angle(value)
-    return value
+    """Where a parameter stays; it may be told with its unit."""
+    found, told = typed(value)
+    if told and (unit := sweep.parameters.get(name)) != told:
+        raise click.UsageError(f"--at: parameter '{name}' is in {unit}, got {value}")
+    return float(found)
 
 
 def _twice(at: Sequence[tuple[str, float | str]]) -> str:

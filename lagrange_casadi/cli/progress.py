@@ -8,10 +8,10 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-import click
 from tqdm import tqdm
 
 from ..sweep.axes import counted, grouped
+from .echo import echo
 
 _SECONDS = 10.0
 
@@ -51,12 +51,12 @@ class Lines(Silent):
         if not self._began:
             self._began, self._last, self._first = now, now, done
             if done:
-                click.echo(f"going on after {grouped(int(done))} of {counted(int(total))}", err=True)
+                echo(f"going on after {grouped(int(done))} of {counted(int(total))}", err=True)
         elif now - self._last >= _SECONDS:
             self._last = now
             rate = (done - self._first) / (now - self._began)
             left = tqdm.format_interval((total - done) / rate) if rate else "?"
-            click.echo(
+            echo(
                 f"{grouped(int(done))} of {counted(int(total))}, {100 * done / total:.3g} %, {rate:.4g} a second, {left} left",
                 err=True,
             )

@@ -23,6 +23,7 @@ from ..store.untrusted import told_as
 from ..sweep import Sweep, is_sweep
 from ..sweep.page import is_of, write_sweep_report
 from ..system.publish import check_writable
+from .echo import echo
 from .options import instants, parameters, settings_by, wanted
 from .options import over as by_drive
 
@@ -102,20 +103,18 @@ def _of_sweep(target: Path, out: Path, case: Path | None) -> None:
     except LagrangeCasadiError as error:
         if case is not None:
             raise
-        click.echo(f"note: the page has no mechanism in motion: {one_line(error)}; --case CASE names another case", err=True)
+        echo(f"note: the page has no mechanism in motion: {one_line(error)}; --case CASE names another case", err=True)
         found = None
     with told_as(_UNSHOWN, target):
         write_sweep_report(sweep, out, None if found is None else found.scene, _command(found.name if found else sweep.case))
-    click.echo(f"wrote {out}: open it in a browser")
+    echo(f"wrote {out}: open it in a browser")
 
 
 def _tell(solution: Solution, out: Path) -> None:
     """Say what was written. Raises :class:`CertificateError` where the certificate fails: the page is there, and says so."""
     shown, total = shown_instants(solution).size, solution.t.size
     if shown < total:
-        click.echo(
-            f"note: pictures and charts show {shown} of {total} instants, which is as many as fit; tables are of all", err=True
-        )
-    click.echo(f"wrote {out}: open it in a browser")
+        echo(f"note: pictures and charts show {shown} of {total} instants, which is as many as fit; tables are of all", err=True)
+    echo(f"wrote {out}: open it in a browser")
     if solution.failed:
         raise CertificateError(f"{failure(solution)}; {out} says so")

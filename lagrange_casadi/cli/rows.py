@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from io import TextIOWrapper
 from pathlib import Path
 
-import click
 import numpy as np
 
 from ..declare.density import Array
 from ..sweep import Sweep
 from ..sweep.columns import STATUS
 from ..system.publish import writing
+from .echo import echo
 
 _WIDTH = 10
 _BLOCK = 1024
@@ -23,17 +24,24 @@ def show(sweep: Sweep, names: Sequence[str], rows: Iterable[tuple[int, Sequence[
     """Print rows below a head of names and units, each with its design's number; how many there were."""
     heads = ["design", *(_head(sweep, name) for name in names)]
     widths = [max(len(head), _WIDTH) for head in heads]
-    click.echo("  ".join(head.rjust(width) for head, width in zip(heads, widths, strict=True)))
+    echo("  ".join(head.rjust(width) for head, width in zip(heads, widths, strict=True)))
     count = 0
     for number, values in rows:
         cells = [str(number), *(_cell(sweep, name, value) for name, value in zip(names, values, strict=True))]
-        click.echo("  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
+        echo("  ".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
         count += 1
     return count
 
 
 def write_csv(names: Sequence[str], rows: Iterable[Sequence[float]], path: Path) -> int:
     """Write rows with every digit they have; how many there were."""
+    with csv_written(names, rows, path) as count:
+        return count
+
+
+@contextmanager
+def csv_written(names: Sequence[str], rows: Iterable[Sequence[float]], path: Path) -> Iterator[int]:
+    """Rows with every digit they have, which are put into their place at the end, unless something fails; how many there are."""
     count = 0
     with writing(path) as (file,):
         text = TextIOWrapper(file, encoding="utf-8", newline="")
@@ -43,7 +51,8 @@ def write_csv(names: Sequence[str], rows: Iterable[Sequence[float]], path: Path)
             writer.writerow([repr(value) for value in values])
             count += 1
         text.detach()
-    return count
+        file.flush()
+        yield count
 
 
 def rows_of(columns: Sequence[Array]) -> Iterator[list[float]]:

@@ -17,6 +17,7 @@ from ..declare import turned
 from ..declare.even_points import EvenPoints
 from ..declare.scene import Scene
 from ..declare.times import Over, Timing
+from ..draw.index import MANIFEST
 from ..draw.kept import dump_specs
 from ..errors import CertificateError
 from ..evaluate import evaluate
@@ -25,17 +26,20 @@ from ..instants.rung import Backend
 from ..instants.solution import Solution
 from ..judge.certificate import failure, summary
 from ..store.runs import check_target, save
+from ..study.holding import holding
 from ..study.peaks import forces, refine, resultants
-from ..system.publish import check_free, check_writable, filling
+from ..system.publish import check_writable, filling
 from ..system.room import MOST_THREADS
 from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
+from .echo import echo
 from .elastic_lines import elastic_lines
+from .holding_lines import holding_lines
 from .options import EVEN_POINTS, even_points, instants, parameters, rung, settings_by, wanted
 from .options import over as by_drive
 from .replaced import figures_in, replaced_lines
 from .report import report_lines
-from .rows import rows_of, write_csv
+from .rows import csv_written, rows_of
 from .slope_lines import slope_lines
 from .strength_lines import strength_lines
 
@@ -105,15 +109,15 @@ def run(
     usual = Path(f"{loaded.name}_figures") if out == Path(f"{loaded.name}.h5") else None
     place = folder or usual
     replaced, before, drawn = out.exists(), figures_in(place), set[str]()
-    with filling(folder) if folder else nullcontext() as draft:
+    heads = columns(solution) if csv else {}
+    told = csv_written([TIME, *heads], rows_of([solution.t, *heads.values()]), csv) if csv else nullcontext()
+    with told, filling(folder) if folder else nullcontext() as draft:
         if folder and draft:
             draw_with_progress(solution, loaded.figures, draft)
-            check_free(draft, folder)
+            MANIFEST.add(draft, folder)
             drawn = figures_in(draft)
         save(solution, out, dump_specs(loaded.figures))
-    if csv:
-        write_csv([TIME, *(heads := columns(solution))], rows_of([solution.t, *heads.values()]), csv)
-    say = partial(click.echo, err=csv is not None and is_standard_output(csv))
+    say = partial(echo, err=csv is not None and is_standard_output(csv))
     for line in _report(loaded.scene, solution, want or loaded.scene.wanted, loaded.scene.timing(t, over), backend, refine_peaks):
         say(line)
     if not no_certificate:
@@ -132,6 +136,7 @@ def _check_places(out: Path, folder: Path | None, csv: Path | None) -> None:
         if os.path.realpath(folder) == os.path.realpath(out):
             raise click.UsageError(f"--figures {folder}: expected another place than the file's")
         check_writable(folder, folder=True)
+        MANIFEST.check(folder)
     if csv:
         if os.path.realpath(csv) in [os.path.realpath(other) for other in (out, folder) if other]:
             raise click.UsageError(f"--csv {csv}: expected another place than the file's and the figures'")
@@ -147,6 +152,7 @@ def _report(
     yield f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {used}; {what}:"
     names = [*forces(solution), *resultants(solution)]
     yield from report_lines(solution, refine(scene, solution, names) if refined else ())
+    yield from holding_lines(solution, holding(scene, solution))
     yield from slope_lines(solution, scene, backend)
     yield from strength_lines(solution, scene.mechanism, want, scene if refined else None)
     yield from elastic_lines(solution, scene.mechanism, want)

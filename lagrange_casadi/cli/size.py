@@ -17,6 +17,7 @@ from ..strength.fatigue import CRITERIA
 from ..strength.stress import KINDS
 from ..study.sizing import Sized, size
 from ..system.numerals import real
+from .echo import echo
 from .options import instants, parameters, settings_by
 from .options import over as by_drive
 from .strength_lines import safety_lines, told
@@ -91,19 +92,19 @@ def size_command(
         deflection=deflection,
     )
     stiff = "" if deflection is None else f", and a deflection of {deflection:g} of its length, or less"
-    click.echo(f"{loaded.name}: of {len(table)} profiles the lightest with a factor of safety of {safety:g}, or more{stiff}:")
+    echo(f"{loaded.name}: of {len(table)} profiles the lightest with a factor of safety of {safety:g}, or more{stiff}:")
     for sized in found.links:
         for line in _lines(sized):
-            click.echo(line)
+            echo(line)
     for name, why in found.left.items():
-        click.echo(f"{name}: left as it is, for {why}")
+        echo(f"{name}: left as it is, for {why}")
         for line in told(
             name, lambda link: list(safety_lines(found.solution.safety(link, criterion=criterion, yielding=yielding)))
         ):
-            click.echo(line)
+            echo(line)
     loads = f"loads were evaluated {found.evaluations} times"
-    click.echo(f"together {found.mass:.6g} kg; {loads}; certificate: {'holds' if found.solution.certified else 'fails'}")
-    click.echo(" ".join(f"--set {name}={value!r}" for name, value in found.parameters.items()))
+    echo(f"together {found.mass:.6g} kg; {loads}; certificate: {'holds' if found.solution.certified else 'fails'}")
+    echo(" ".join(f"--set {name}={value!r}" for name, value in found.parameters.items()))
 
 
 def _lines(sized: Sized) -> list[str]:

@@ -18,8 +18,10 @@ from ..instants.rung import Backend
 from ..sweep import KEEPS, Axis, Keep, Sweep, read_designs
 from ..sweep import sweep as carry_out
 from ..sweep.axes import counted, grouped
+from ..sweep.resting import resting_note
 from ..sweep.turning import turning_note
 from ..system.room import MOST_THREADS
+from .echo import echo
 from .options import AXIS, EVEN_POINTS, axis, even_points, instants, parameters, settings_by, untabled_rung, wanted
 from .options import over as by_drive
 from .progress import shown
@@ -121,9 +123,11 @@ def sweep(
             progress=progress,
         )
     _report(found)
-    if note := turning_note(loaded.scene, loaded.scene.timing(t, over), swept, parameters(settings)):
-        click.echo(f"note: {note}")
-    click.echo(f"wrote {found.path}" if progress.begun else f"{found.path} was complete already: nothing was done")
+    turns = turning_note(loaded.scene, loaded.scene.timing(t, over), swept, parameters(settings))
+    rests = resting_note(loaded.scene, found, parameters(settings), t=t, over=over, wanted=want or None)
+    for note in filter(None, (rests, turns)):
+        echo(f"note: {note}")
+    echo(f"wrote {found.path}" if progress.begun else f"{found.path} was complete already: nothing was done")
     if wrong := found.counts()[Status.UNCERTIFIED]:
         raise CertificateError(
             f"{counted(wrong)} of those that were checked in full, one of each block, "
@@ -134,7 +138,7 @@ def sweep(
 def _report(found: Sweep) -> None:
     shape = " x ".join(str(length) for length in found.dimensions.values())
     product = f"{shape} = " if len(found.dimensions) > 1 else ""
-    click.echo(f"{found.case}: {product}{counted(found.size)} over {', '.join(found.parameters)}")
+    echo(f"{found.case}: {product}{counted(found.size)} over {', '.join(found.parameters)}")
     for status, many in found.counts().items():
         if status and many:
-            click.echo(f"  {grouped(many)} without a result: {found.statuses[status][1]}")
+            echo(f"  {grouped(many)} without a result: {found.statuses[status][1]}")

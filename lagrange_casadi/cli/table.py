@@ -17,6 +17,7 @@ from ..sweep.columns import STATUS
 from ..sweep.instant_axis import in_words
 from ..system.publish import check_writable
 from ..system.streams import is_standard_output
+from .echo import echo
 from .rows import show, write_csv
 
 _WIDE = 6
@@ -49,12 +50,12 @@ def table(file: Path, where: Sequence[str], columns: Sequence[str], rows: int, c
     found = chain([first], found)
     if csv:
         count = write_csv(names, (values for _, values in found), csv)
-        click.echo(f"wrote {csv}: {counted(count, what)}", err=is_standard_output(csv))
+        echo(f"wrote {csv}: {counted(count, what)}", err=is_standard_output(csv))
     elif show(sweep, names, islice(found, min(rows, sys.maxsize))) == rows:
         met, with_result = tally(sweep, where, along)
         if met > rows:
             what = counted(met, what) + (" that meet the conditions" if where else "")
-            click.echo(f"... of {what}, {grouped(with_result)} with a result; --rows N shows more, --csv OUT.csv writes all")
+            echo(f"... of {what}, {grouped(with_result)} with a result; --rows N shows more, --csv OUT.csv writes all")
     if not columns:
         _tell_of_others(sweep, names)
 
@@ -76,4 +77,4 @@ def _tell_of_others(sweep: Sweep, shown: Sequence[str]) -> None:
     for axes, names in others.items():
         more = f" and {len(names) - _TOLD} more (`lagrange-casadi info {sweep.path}` lists them)" if len(names) > _TOLD else ""
         over, rows = (f" over {in_words(axes)}", f", a row for every {' and '.join(axes)}") if axes else ("", "")
-        click.echo(f"note: --column NAME shows other columns{over}{rows}: {', '.join(names[:_TOLD])}{more}", err=True)
+        echo(f"note: --column NAME shows other columns{over}{rows}: {', '.join(names[:_TOLD])}{more}", err=True)

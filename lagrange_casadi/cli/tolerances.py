@@ -18,6 +18,7 @@ from ..instants.rung import BACKENDS, Backend
 from ..study.tolerances import SAMPLES, Spreads
 from ..study.tolerances import tolerances as spreads_of
 from ..system.publish import check_writable, writing
+from .echo import echo
 from .options import instants, parameters, settings_by, wanted
 from .options import over as by_drive
 
@@ -70,18 +71,18 @@ def tolerances(
     if out is not None:
         with writing(out) as (file,):
             file.write(_rows(found).encode())
-        click.echo(f"wrote {out}")
+        echo(f"wrote {out}")
 
 
 def _print(found: Spreads) -> None:
     width = max(len(name) for name in found.peaks)
     failed = f", {found.failed} of them without a result" if found.failed else ""
-    click.echo(f"{found.case}: {found.drawn} designs drawn{failed}; sigma and worst to first order, the rest of what was drawn")
+    echo(f"{found.case}: {found.drawn} designs drawn{failed}; sigma and worst to first order, the rest of what was drawn")
     heads = {"nominal": 11, "+- worst": 10, "sigma": 10, "drawn": 10, "least": 11, "largest": 11}
-    click.echo(f"  {'peak of':<{width}} {' '.join(f'{head:>{size}}' for head, size in heads.items())}  due to")
+    echo(f"  {'peak of':<{width}} {' '.join(f'{head:>{size}}' for head, size in heads.items())}  due to")
     for spread in found.peaks.values():
         due = ", ".join(f"{name} {100 * share:.0f}%" for name, share in list(spread.shares.items())[:_FEW] if share >= 0.005)
-        click.echo(
+        echo(
             f"  {spread.quantity:<{width}} {spread.nominal:>11.5g} {spread.worst:>10.3g} {spread.sigma:>10.3g} "
             f"{spread.deviation:>10.3g} {spread.low:>11.5g} {spread.high:>11.5g}  {due}"
         )

@@ -19,6 +19,7 @@ from ..instants.rung import Rung
 from ..study.trade import RUNGS, Trade
 from ..study.trade import trade as measure
 from ..system.publish import check_writable, writing
+from .echo import echo
 from .options import instants, parameters, settings_by, wanted
 from .options import over as by_drive
 
@@ -62,37 +63,35 @@ def trade(
         numbers.write(f"{json.dumps(found.as_dict(), indent=1)}\n".encode())
         draw_trade(found, picture, figure.suffix)
     _print(found)
-    click.echo(f"wrote {out} and {figure}")
+    echo(f"wrote {out} and {figure}")
     if accuracy is not None:
         best = found.fastest(accuracy)
-        click.echo(
-            f"fastest within {accuracy:g}: {best.rung.options} ({1e9 * best.seconds:.3g} ns an instant, error {best.largest:.1e})"
-        )
+        echo(f"fastest within {accuracy:g}: {best.rung.options} ({1e9 * best.seconds:.3g} ns an instant, error {best.largest:.1e})")
 
 
 def _print(found: Trade) -> None:
     width = max(len(one.rung.options) for one in found.measurements)
     default = next((one.seconds for one in found.measurements if one.rung == Rung("lanes")), found.measurements[0].seconds)
-    click.echo(
+    echo(
         f"{found.case}: every output at {found.instants} instants, one thread; errors at {found.compared} instants, relative to "
         "each quantity's peak; * nothing is faster and more accurate"
     )
-    click.echo(f"  {'method':<{width}} {'ns/instant':>11} {'x lanes':>8} {'largest':>9} {'median':>9}   worst quantity")
+    echo(f"  {'method':<{width}} {'ns/instant':>11} {'x lanes':>8} {'largest':>9} {'median':>9}   worst quantity")
     for one in found.measurements:
         mark = "*" if one in found.front else " "
         note = f"; {one.note}" if one.note else ""
-        click.echo(
+        echo(
             f"{mark} {one.rung.options:<{width}} {1e9 * one.seconds:>11.4g} {one.seconds / default:>8.2f} {one.largest:>9.1e} "
             f"{one.median:>9.1e}   {one.worst}{note}"
         )
     for options, reason in found.refused.items():
-        click.echo(f"  {options}: {reason}")
+        echo(f"  {options}: {reason}")
     if found.peaks:
-        click.echo("how far peaks of forces fall short, by instants of the cycle; refined: between them, as by run --refine-peaks")
-        click.echo(f"  {'instants':>8} {'worst':>9} {'median':>9} {'refined worst':>14} {'refined median':>15}")
+        echo("how far peaks of forces fall short, by instants of the cycle; refined: between them, as by run --refine-peaks")
+        echo(f"  {'instants':>8} {'worst':>9} {'median':>9} {'refined worst':>14} {'refined median':>15}")
     for row in found.peaks:
         sampled, refined = (
             f"{row.sampled_worst:>9.1e} {row.sampled_median:>9.1e}",
             f"{row.refined_worst:>14.1e} {row.refined_median:>15.1e}",
         )
-        click.echo(f"  {row.count:>8} {sampled} {refined}")
+        echo(f"  {row.count:>8} {sampled} {refined}")

@@ -18,7 +18,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-import tempfile
 import warnings
 from collections.abc import Sequence
 from contextlib import suppress
@@ -154,8 +153,8 @@ def loaded(source: str, compiler: Compiler, extra: tuple[str, ...] = ()) -> ctyp
     kept = None if folder is None else _kept(folder / f"{name}.so")
     if kept is not None:
         return kept
-    with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as work:
-        fresh = _compile(source, compiler, flags, Path(work) / name, folder)
+    with cache.working_folder() as work:
+        fresh = _compile(source, compiler, flags, work / name, folder)
         if folder is not None:
             try:
                 cache.keep([fresh.with_suffix(suffix) for suffix in (_suffix(compiler), ".sha256", ".so")], folder)
@@ -175,17 +174,20 @@ def broken(compiler: Compiler, error: Exception) -> CompilerError:
 def _kept(library: Path) -> ctypes.CDLL | None:
     """A library of the cache, unless it is not there, or is not what was put there."""
     try:
+        found = cache.distrusted(library)
         seal, content = library.with_suffix(".sha256").read_bytes(), library.read_bytes()
     except FileNotFoundError:  # also where another process makes room meanwhile
         return None
     except OSError as error:
         why = f"cannot be read ({error.strerror})"
     else:
-        if seal == cache.digest(content).encode():
+        if found:
+            why = f"is not trusted ({found})"
+        elif seal == cache.digest(content).encode():
             try:
-                found = ctypes.CDLL(str(library))
+                there = ctypes.CDLL(str(library))
                 cache.use(library)
-                return found
+                return there
             except OSError as error:
                 if not library.exists():
                     return None

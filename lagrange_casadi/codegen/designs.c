@@ -1,5 +1,5 @@
 /* Many designs, one after another. */
-/* Everything of one design; a design without a result leaves nothing but why, and one at rest its history. */
+/* Everything of one design; a design without a result leaves nothing but why. */
 static int designs_one(designs_now* now, const double* p, const double* guess, double* value, double* t, double* xi, double* mean,
                        double* rms, double* history) {
   designs_real pairs[DESIGNS_SOME(DESIGNS_NT*DESIGNS_NP)], pair[DESIGNS_NT], z[DESIGNS_SOME(DESIGNS_NZ)], margin;
@@ -43,11 +43,13 @@ static int designs_one(designs_now* now, const double* p, const double* guess, d
   designs_sample(now, history);
   why = designs_refused(now);
   if (why != DESIGNS_OK || !value) return why;
+  for (k = 0; k < DESIGNS_EFFORTS; ++k) {
+    mean[k] = designs_mean(now, designs_effort[k], 0);
+    rms[k] = sqrt(designs_mean(now, designs_effort[k], 1));
+  }
   if (!designs_peaks(now, value, t, xi)) return DESIGNS_PEAK_NOT_TOLD;
   for (k = 0; k < DESIGNS_EFFORTS; ++k) {
-    const int open = value[designs_effort[k]] != value[designs_effort[k]];
-    mean[k] = open ? NAN : designs_mean(now, designs_effort[k], 0);
-    rms[k] = open ? NAN : sqrt(designs_mean(now, designs_effort[k], 1));
+    if (value[designs_effort[k]] != value[designs_effort[k]]) mean[k] = rms[k] = NAN;
   }
   return DESIGNS_OK;
 }
@@ -68,8 +70,7 @@ static void designs_timed(designs_now* now, const double* t) {
 
 /* So many designs, rows of parameters p, over n instants t, those of a design t_apart values beyond those of the one before, or the
    same. value, peak_t and xi become rows of quantities, mean and rms of efforts, all of them or none where value is NULL; these ask
-   for instants in equal steps. history, unless it is NULL, becomes outputs by instants; of a design without a result all is NaN, but
-   for the history of one at rest. bent
+   for instants in equal steps. history, unless it is NULL, becomes outputs by instants; of a design without a result all is NaN. bent
    tells after which instants the motion bends more than they show, its rows are bent_apart values apart. Of the room there are DESIGNS_ROOM rows of stride values, of which the first is zero, and as many
    panels of DESIGNS_STRIDE values a row as may lie within each other; of the status stride integers that are zero, and of hiding
    twice as many. */
@@ -101,6 +102,6 @@ LAGRANGE_CASADI_EXPORT void lagrange_casadi_designs(const lagrange_casadi_design
     if (why == DESIGNS_OK) continue;
     for (k = 0; values && k < DESIGNS_QUANTITIES; ++k) values[k] = times[k] = places[k] = NAN;
     for (k = 0; values && k < DESIGNS_EFFORTS; ++k) means[k] = squares[k] = NAN;
-    for (i = 0; whole && why != DESIGNS_AT_REST && i < DESIGNS_OUTPUTS*n; ++i) whole[i] = NAN;
+    for (i = 0; whole && i < DESIGNS_OUTPUTS*n; ++i) whole[i] = NAN;
   }
 }

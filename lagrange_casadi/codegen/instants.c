@@ -20,7 +20,7 @@ typedef struct {
   designs_real *times, *rows, *z, *inner, *scale;
   designs_peak* peaks;
   double half;
-  int *status, untold;
+  int *status, untold, rests;
   const signed char* bent;
   signed char zigzags[DESIGNS_CURVES];
   signed char* hiding;
@@ -200,12 +200,13 @@ static int designs_why(const designs_now* now, casadi_int i) {
   return x - x == 0 ? DESIGNS_OK : DESIGNS_NOT_FINITE;
 }
 
-/* Why a design has no result: that of its first instant without one; at rest it has one beside what friction reaches. */
-static int designs_refused(const designs_now* now) {
+/* Why a design has no result: that of its first instant without one. At rest it has one beside what friction reaches. */
+static int designs_refused(designs_now* now) {
   const designs_real* row = designs_row(now, DESIGNS_CHECKED + DESIGNS_CHECKS);
   designs_real limit;
   casadi_int i;
-  int k, bad = 0, why, rests = DESIGNS_OK;
+  int k, bad = 0, why;
+  now->rests = 0;
   for (i = 0; i < now->n; ++i) bad |= !(row[i] - row[i] == 0);
   for (i = 0; i < now->n; ++i) bad |= now->status[i] != DESIGNS_OK;
   for (k = 0; k < DESIGNS_CHECKS; ++k) {
@@ -228,9 +229,9 @@ static int designs_refused(const designs_now* now) {
   for (i = 0; i < now->n; ++i) {
     why = designs_why(now, i);
     if (why != DESIGNS_OK && why != DESIGNS_AT_REST) return why;
-    if (why == DESIGNS_AT_REST) rests = why;
+    now->rests |= why == DESIGNS_AT_REST;
   }
-  return rests;
+  return DESIGNS_OK;
 }
 
 /* Whether equilibrium leaves open, at any instant, what a check tells of. */
@@ -243,6 +244,24 @@ static int designs_is_open(const designs_now* now, int check) {
   return open;
 }
 
+/* The mean of a row of which not all values count, or of its square: over the steps whose two ends are numbers, else over values. */
+static double designs_mean_of_counted(const designs_now* now, int k, int squared) {
+  const designs_real* row = designs_row(now, k);
+  double sum = 0, alone = 0, x, y;
+  casadi_int i, steps = 0, many = 0;
+  for (i = 0; i < now->n; ++i) {
+    if (row[i] != row[i]) continue;
+    x = squared ? (double) row[i]*row[i] : row[i];
+    alone += x;
+    ++many;
+    if (i + 1 == now->n || row[i + 1] != row[i + 1]) continue;
+    y = squared ? (double) row[i + 1]*row[i + 1] : row[i + 1];
+    sum += (x + y)/2;
+    ++steps;
+  }
+  return steps ? sum/(double) steps : alone/(double) many;
+}
+
 /* The time mean of a row, or of its square, by trapezia. */
 static double designs_mean(const designs_now* now, int k, int squared) {
   const designs_real* row = designs_row(now, k);
@@ -250,6 +269,7 @@ static double designs_mean(const designs_now* now, int k, int squared) {
   casadi_real part, sum = 0;
   double whole = 0, first = row[0], last = row[n - 1];
   casadi_int i;
+  if (now->rests) return designs_mean_of_counted(now, k, squared);
   if (squared) {
     first = first*first;
     last = last*last;

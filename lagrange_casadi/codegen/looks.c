@@ -37,11 +37,24 @@ static void designs_grow(const designs_now* now, int q, designs_real best) {
   peak->limit = best > DESIGNS_NOTHING*scale && !peak->open ? best + peak->rounding : (designs_real) INFINITY;
 }
 
+/* Where friction at rest leaves a curve open at an instant, its row holds a zero with a minus sign, which no other value of it has. */
+static int designs_nothing(designs_real x) { return x == 0 && 1/x < 0; }
+
+/* Whether a curve is open at an end of the step between instants in which a time is: there it is not sought. */
+static int designs_lacks(const designs_now* now, int curve, double t) {
+  const designs_real* row = designs_row(now, curve);
+  const double x = (t - now->t[0])/(2*now->half);
+  casadi_int i = x > 0 ? (casadi_int) x : 0;
+  if (!now->rests || now->n < 2) return 0;
+  i = i < now->n - 2 ? i : now->n - 2;
+  return designs_nothing(row[i]) || designs_nothing(row[i + 1]);
+}
+
 /* Take in what a curve is at a time. */
 static void designs_note(designs_now* now, int curve, designs_real value, double t, designs_real place) {
   designs_peak* peak = now->peaks + designs_of[curve];
   const designs_real size = value < 0 ? -value : value;
-  if (!(size - size == 0)) return;
+  if (!(size - size == 0) || designs_lacks(now, curve, t)) return;
   if (size > peak->best) {
     designs_grow(now, designs_of[curve], size);
     if (peak->size >= size - peak->rounding && peak->t < t - now->half) return;

@@ -1,11 +1,11 @@
-"""Programs that are started here, compilers all: within a time limit, and ended with all that they started in turn."""
+"""Programs that are started here, compilers mostly: within a time limit, and ended with all that they started in turn."""
 
 from __future__ import annotations
 
 import os
 import signal
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -35,8 +35,11 @@ def limit() -> float:
     return min(seconds, _LONGEST)
 
 
-def run(command: Sequence[str], seconds: float, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
-    """Run a program to its end, in a folder; what it says is read as UTF-8, whatever it is.
+def run(
+    command: Sequence[str], seconds: float, folder: Path | None = None, variables: Mapping[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run a program to its end, in a folder, with ``variables`` besides those of this process; what it says is read as UTF-8,
+    whatever it is.
 
     Raises ``OSError`` where it cannot be started, ``subprocess.TimeoutExpired`` where it has not ended in time.
     """
@@ -46,6 +49,7 @@ def run(command: Sequence[str], seconds: float, folder: Path | None = None) -> s
             process = subprocess.Popen(
                 command,
                 cwd=folder,
+                env={**os.environ, **(variables or {})},
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,

@@ -235,10 +235,35 @@ static void designs_search(designs_now* now, const designs_panel* panel, int dep
   }
 }
 
+/* Leave out what friction at rest leaves open; a curve that is open at all instants has no number. */
+static void designs_leave_out(designs_now* now, signed char* none) {
+  const casadi_int padded = (now->n + LANES - 1)/LANES*LANES;
+  designs_real lanes[LANES], most, size;
+  designs_real* row;
+  casadi_int i;
+  int j, k;
+  for (k = 0; k < DESIGNS_CURVES; ++k) {
+    row = designs_row(now, k);
+    most = 0;
+    none[k] = 1;
+    for (i = 0; i < padded; ++i) {
+      none[k] &= row[i] != row[i];
+      row[i] = row[i] != row[i] ? -(designs_real) 0 : row[i] == 0 ? 0 : row[i];
+      size = designs_magnitude(row[i]);
+      most = size > most ? size : most;
+    }
+    for (j = 0; j < LANES; ++j) lanes[j] = most;
+    memcpy(now->most + k, lanes, sizeof lanes);
+  }
+}
+
 /* The largest size of every quantity over the instants, and of every unit. */
 static void designs_largest(designs_now* now) {
   designs_real lanes[LANES];
-  int j, k;
+  signed char none[DESIGNS_CURVES];
+  int j, k, q;
+  memset(none, 0, sizeof none);
+  if (now->rests) designs_leave_out(now, none);
   for (k = 0; k < DESIGNS_UNITS; ++k) now->scale[k] = 0;
   memset(now->zigzags, -1, sizeof now->zigzags);
   for (k = 0; k < DESIGNS_QUANTITIES; ++k) {
@@ -251,6 +276,10 @@ static void designs_largest(designs_now* now) {
     now->peaks[k].open = 0;
   }
   for (k = 0; k < DESIGNS_DOUBTS; ++k) now->peaks[designs_doubtful[k]].open |= designs_is_open(now, designs_doubted[k]);
+  for (q = 0; now->rests && q < DESIGNS_QUANTITIES; ++q) {
+    for (j = 1, k = designs_first[q]; k < designs_first[q + 1]; ++k) j &= none[k];
+    now->peaks[q].open |= j;
+  }
   for (k = 0; k < DESIGNS_CURVES; ++k) {
     designs_peak* peak = now->peaks + designs_of[k];
     memcpy(lanes, now->most + k, sizeof lanes);

@@ -3,6 +3,8 @@
 #define DESIGNS_PANEL_ROWS (DESIGNS_CURVES + DESIGNS_PLACES + DESIGNS_WATCHES)
 /* How often a kink is sought, and by how many of the watched. */
 #define DESIGNS_TRIALS 3
+/* Panels within each other beside an instant at which friction at rest leaves a curve open. */
+#define DESIGNS_BESIDE_REST 3
 #define DESIGNS_WATCHED 2
 
 static void designs_search(designs_now* now, const designs_panel* panel, int depth);
@@ -30,6 +32,9 @@ static void designs_part(designs_now* now, double start, double stop, const desi
   designs_panel within;
   designs_real *row, x;
   int i, j, k;
+  for (k = 0; now->rests && depth >= DESIGNS_BESIDE_REST && k < DESIGNS_CURVES; ++k) {
+    if (designs_lacks(now, k, (start + stop)/2)) return;
+  }
   within.n = DESIGNS_WITHIN;
   within.stride = DESIGNS_STRIDE;
   within.t = t;
@@ -51,7 +56,7 @@ static void designs_part(designs_now* now, double start, double stop, const desi
         x = designs_panel_row(&within, k)[j];
         if ((x < 0 ? -x : x) > now->peaks[designs_of[k]].best) designs_note(now, k, x, t[j], designs_ratio(k, place, j - 1 - i));
         /* What has no value is nothing, and hides what is beside it. */
-        if (x - x == 0) continue;
+        if (x - x == 0 || designs_lacks(now, k, (start + stop)/2)) continue;
         hiding[j - 1] = hiding[j] = DESIGNS_HIDES;
         designs_panel_row(&within, k)[j] = 0;
       }
@@ -65,6 +70,10 @@ static void designs_part(designs_now* now, double start, double stop, const desi
     row = within.rows + k*DESIGNS_STRIDE + LANES;
     row[0] = first[k];
     row[DESIGNS_WITHIN - 1] = last[k];
+  }
+  for (k = 0; now->rests && k < DESIGNS_CURVES; ++k) {
+    if (!designs_lacks(now, k, (start + stop)/2)) continue;
+    for (j = 0; j < DESIGNS_WITHIN; ++j) designs_panel_row(&within, k)[j] = 0;
   }
   designs_search(now, &within, depth + 1);
 }

@@ -8,7 +8,6 @@ import casadi as ca
 
 from ..errors import DeclarationError
 from .joints import Joint
-from .kinks import refuse_kinks
 from .ownership import Ownership
 from .parts import Constraint, Row
 
@@ -24,8 +23,6 @@ def constraint(own: Ownership, name: str, phi: Any) -> Constraint:
         )
     if ca.depends_on(phi, m.measures.rates):
         raise DeclarationError(f"constraint '{name}' depends on rates; declare it with nonholonomic()")
-    defaults = [parameter.default for parameter in m.parameters.values()]
-    refuse_kinks(f"constraint '{name}'", phi, ca.vertcat(m.measures.places, m.time), m.symbols, defaults)
     return Constraint(name, phi)
 
 

@@ -10,8 +10,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arguments import number, public
 from ..arithmetic import lookups
-from ..errors import DeclarationError
+from ..errors import DeclarationError, NumberError, shown
 from .splines import Cell, smoothed, through
 
 _SAME = 1e-12
@@ -21,9 +22,9 @@ _SAME = 1e-12
 def rows(what: str, places: Sequence[float], values: Sequence[float], least: int) -> tuple[list[float], list[float]]:
     """Two rows of one length, at increasing places. Raises :class:`DeclarationError`, saying ``what`` is wrong where."""
     try:
-        at, to = [float(p) for p in places], [float(v) for v in values]
-    except (TypeError, ValueError):
-        raise DeclarationError(f"{what}: expected two rows of numbers, got {places!r} and {values!r}") from None
+        at, to = [number(p, finite=False) for p in places], [number(v, finite=False) for v in values]
+    except (TypeError, NumberError):
+        raise DeclarationError(f"{what}: expected two rows of finite numbers, got {shown(places)} and {shown(values)}") from None
     if len(at) != len(to) or len(at) < least:
         raise DeclarationError(f"{what}: expected two rows of one length, at least {least}, got {len(at)} and {len(to)}")
     if not all(math.isfinite(number) for number in (*at, *to)):
@@ -34,6 +35,7 @@ def rows(what: str, places: Sequence[float], values: Sequence[float], least: int
     return at, to
 
 
+@public
 def table(x: Any, places: Sequence[float], values: Sequence[float]) -> Any:
     """A curve for loads: linear between values at increasing places, and straight on beyond them.
 
@@ -103,6 +105,7 @@ class Curve:
         return found
 
 
+@public
 def curve(x: Sequence[float], y: Sequence[float], *, periodic: bool = False, smoothing: float = 0.0) -> Curve:
     """A smooth curve through points, for constraints, motions, loads and densities: call it on an expression.
 

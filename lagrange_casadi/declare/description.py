@@ -73,7 +73,7 @@ def shape_of(value: Any) -> dict[str, Any]:
     """What a description is like: that of a planar mechanism, or that of one in space."""
     gravity = value.get("gravity") if isinstance(value, dict) else None
     shape = IN_SPACE if isinstance(gravity, list) and len(gravity) > 2 else IN_PLANE
-    optional = {"outlines": {str: [[float, float]]}, "losses": [str]}
+    optional = {"outlines": {str: [[float, float]]}, "losses": [str], "beside": {str: _VECTOR}, "rounded": {str: [float]}}
     return shape | {name: kind for name, kind in optional.items() if isinstance(value, dict) and name in value}
 
 
@@ -146,6 +146,8 @@ def describe(
     found = _described(mechanism, values, driven, lambda _: next(numbers))
     if mechanism.outputs:
         found["outputs"] = {name: own.unit for name, own in mechanism.outputs.items()}
+    if mechanism.rounded:
+        found["rounded"] = {name: list(by) for name, by in mechanism.rounded.items()}
     if drives is None:
         return found
     return found | {"drives": list(drives), "motions": {name: _kind(mechanism, name) for name in driven}}
@@ -255,8 +257,10 @@ def _described(
         for name, parameter in mechanism.parameters.items()
     }
     paths = {name: place(path.point) for name, path in mechanism.paths.items()}
+    beside = {name: vector(link.beside) for name, link in mechanism.links.items() if link.beside is not None}
     outlines = {name: [vector(corner) for corner in link.outline] for name, link in mechanism.links.items() if link.outline}
     lossy = [c.name for c in mechanism.constraints.values() if c.transmission is not None and c.transmission.loss is not None]
+    told = ("paths", paths), ("outlines", outlines), ("losses", lossy), ("beside", beside)
     return {
         "name": mechanism.name,
         "parameters": parameters,
@@ -266,4 +270,4 @@ def _described(
         "loads": loads,
         "rows": {name: row.replaces for name, row in mechanism.rows.items()},
         "constraints": list(mechanism.constraints),
-    } | {name: found for name, found in (("paths", paths), ("outlines", outlines), ("losses", lossy)) if found}
+    } | {name: found for name, found in told if found}

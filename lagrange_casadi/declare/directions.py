@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,18 +12,20 @@ import casadi as ca
 from ..errors import DeclarationError
 from ..geometry.rotation import Rotation, direction
 from ..geometry.vectors import AXES, ZERO, Vector, cross, dot, minus, times
-from .expressions import typed
 from .joints import Triad
 from .parts import Body, Expression, Link, Point
 
-Checked = Callable[[str, Any], Expression]
-"""Takes what is said of an expression, and the expression."""
+Checked = Callable[..., Expression]
+"""Takes what is said of an expression, the expression, and its unit if a text may tell it."""
 
 RIGHT = 1e-9
 """A cosine that is smaller is that of a right angle."""
 
 SAME = 1e-12
 """Numbers that differ by less, over a size beside them, are one but for rounding."""
+
+ROUNDED = 1e-6
+"""What a direction may be off by the rounding of a drawing [rad]."""
 
 FAINT = 1e-15
 """A component of a direction that is smaller is rounding."""
@@ -63,18 +65,19 @@ class Reference:
         return self.rotation.resolve(other.rotation.x), self.rotation.resolve(other.rotation.y)
 
 
-def vector(what: str, value: Any, checked: Checked) -> Vector:
-    """Three expressions. Raises :class:`DeclarationError` for anything else."""
+def vector(what: str, value: Any, checked: Checked, unit: str = "1") -> Vector:
+    """Three expressions, in a unit. Raises :class:`DeclarationError` for anything else."""
     if not isinstance(value, (tuple, list)) or len(value) != 3:
         raise DeclarationError(f"{what} must be three components (x, y, z), got {value!r}")
-    x, y, z = (checked(what, component) for component in value)
+    x, y, z = (checked(what, component, unit) for component in value)
     return x, y, z
 
 
 def triad_of(what: str, axis: Any, second: Any, checked: Checked) -> Triad:
     """Directions u, v, w at right angles: along an axis, along a second one or any across it, and at right angles to both.
 
-    Raises :class:`DeclarationError` for an axis of length zero, and for a second one that is not at right angles to it.
+    A second one that is off a right angle by the rounding of a drawing is made exact: its part across the first is taken.
+    Raises :class:`DeclarationError` for an axis of length zero, and for a second one that is off by more.
     """
     if axis is None:
         if second is not None:
@@ -86,8 +89,10 @@ def triad_of(what: str, axis: Any, second: Any, checked: Checked) -> Triad:
     else:
         v = _unit(f"{what}: second axis", vector(f"{what}: second axis", second, checked))
         cosine = dot(u, v)
-        if isinstance(cosine, float) and abs(cosine) > RIGHT:
+        if isinstance(cosine, float) and abs(cosine) > ROUNDED:
             raise DeclarationError(not_right(what, cosine))
+        if isinstance(cosine, float) and abs(cosine) > SAME:
+            v = _unit(f"{what}: second axis", minus(v, times(cosine, u)))
     return u, v, cross(u, v)
 
 
@@ -97,10 +102,16 @@ def not_right(what: str, cosine: float) -> str:
     return f"{what}: its axes must be at right angles, and are at {degrees:.6g} deg"
 
 
+def most_across(axis: Sequence[float]) -> int:
+    """Which coordinate axis is most across a direction; of those that are but for rounding, the first."""
+    least = min(map(abs, axis))
+    return next(k for k in range(3) if abs(axis[k]) <= least + ROUNDED)
+
+
 def across(axis: Vector) -> Vector:
     """A direction at right angles to one: the part across it of the coordinate axis that is most across; of symbols, any."""
     if all(isinstance(component, float) for component in axis):
-        most = min(range(3), key=lambda k: abs(axis[k]))
+        most = most_across(axis)
         return _unit("axis", minus(AXES[most], times(axis[most], axis)))
     # Duff et al., Building an orthonormal basis, revisited, JCGT 6, 2017.
     x, y, z = (ca.SX(component) for component in axis)
@@ -121,21 +132,22 @@ def turned_by(what: str, turned: Any, checked: Checked) -> tuple[Vector, Vector]
     for turn in turned:
         if not isinstance(turn, (tuple, list)) or len(turn) != 2 or turn[0] not in ("x", "y", "z"):
             raise DeclarationError(f"{what}: turned is {expected}, got {turn!r}")
-        angle = checked(f"{what}: turned", typed(what, turn[1]))
+        angle = checked(f"{what}: turned", turn[1], "rad")
         found = found.then(Rotation.about(AXES["xyz".index(turn[0])], *direction(angle), angle))
     return found.x, found.y
 
 
-def between(what: str, places: Any, beside: Any, checked: Checked) -> tuple[Reference, Expression]:
-    """Where a link is that lies between two places, and its length; ``beside`` tells which way its y axis is."""
+def between(what: str, places: Any, beside: Any, checked: Checked) -> tuple[Reference, Expression, Vector | None]:
+    """The reference of a link that lies between two places, its length, and the direction ``beside`` of length 1, where told."""
     if not isinstance(places, (tuple, list)) or len(places) != 2:
         raise DeclarationError(f"{what}: between must be two places, got {places!r}")
-    base, tip = (vector(f"{what}: between", place, checked) for place in places)
+    base, tip = (vector(f"{what}: between", place, checked, "m") for place in places)
     along = minus(tip, base)
     length = _size(along)
     if isinstance(length, float) and length == 0.0:
         raise DeclarationError(f"{what}: the two places that it lies between are one")
     x = times(1 / length, along)
+    aside = None
     if beside is None:
         y = across(x)
     else:
@@ -144,7 +156,7 @@ def between(what: str, places: Any, beside: Any, checked: Checked) -> tuple[Refe
         if all(isinstance(component, float) and abs(component) < RIGHT for component in part):
             raise DeclarationError(f"{what}: beside lies along the link, and must tell which way its y axis is")
         y = _unit(f"{what}: beside", part)
-    return Reference(base, Rotation.of(x, y), tip), length
+    return Reference(base, Rotation.of(x, y), tip), length, aside
 
 
 def tensor(what: str, inertia: Any, checked: Checked) -> tuple[Vector, Vector, Vector]:

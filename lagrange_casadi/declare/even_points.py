@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from fractions import Fraction
 
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import DeclarationError
+from ..arguments import number
+from ..errors import DeclarationError, shown
 from ..system.room import require
 from .density import Array
 
@@ -25,18 +27,24 @@ _UNEVEN = 1e-9
 """Of a step: what is off by less is off by rounding."""
 
 
-def checked(what: str, even: EvenPoints) -> EvenPoints:
-    """Even points in numbers. Raises :class:`DeclarationError` for a count below 1, ends that are not finite, fall, or are one."""
+def checked(what: str, even: EvenPoints, unit: str = "1") -> EvenPoints:
+    """Even points in numbers, of a unit.
+
+    Raises :class:`DeclarationError` for a count below 1, ends that are not finite, or too far apart for a double, fall, or are one.
+    """
     try:
-        start, stop, count = float(even[0]), float(even[1]), int(even[2])
-        if len(even) != 3:
-            raise ValueError
+        if isinstance(even, str | Mapping) or len(even) != 3:
+            raise TypeError
+        start, stop = (number(end, unit, finite=False) for end in (even[0], even[1]))
+        count = int(number(even[2]))
     except (TypeError, ValueError, LookupError, OverflowError):
-        raise DeclarationError(f"{what}: expected (start, stop, count), got {even!r}") from None
+        raise DeclarationError(f"{what}: expected (start, stop, count), got {shown(even)}") from None
     if count < 1 or count != even[2]:
-        raise DeclarationError(f"{what}: COUNT must be a whole number of at least 1, got {even[2]}")
+        raise DeclarationError(f"{what}: COUNT must be a whole number from 1 to 2^63 - 1, got {shown(even[2])}")
     if not (math.isfinite(start) and math.isfinite(stop)):
         raise DeclarationError(f"{what}: START and STOP must be finite, got {start:g} and {stop:g}")
+    if not math.isfinite(stop - start):
+        raise DeclarationError(f"{what}: START and STOP are too far apart, got {start:g} and {stop:g}")
     if stop < start or (count > 1 and stop == start):
         raise DeclarationError(f"{what}: STOP must be after START, got {start:g} and {stop:g}")
     if count == 1 and stop > start:

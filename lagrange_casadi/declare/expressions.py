@@ -9,8 +9,8 @@ from typing import Any
 
 import casadi as ca
 
-from ..errors import AngleError, DeclarationError, one_line
-from .angles import angle as read_angle
+from ..arguments import number, typed
+from ..errors import DeclarationError, NumberError, one_line, shown
 from .parts import Expression
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
@@ -28,8 +28,11 @@ def check_line(what: str, text: object) -> None:
         raise DeclarationError(f"{what} must be a line of printable characters, got {text!r}")
 
 
-def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str) -> Expression:
-    """A finite float, or an SX scalar in the given symbols. Raises :class:`DeclarationError`, saying what is ``allowed``."""
+def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str, unit: str = "1") -> Expression:
+    """A finite float, or an SX scalar in the given symbols; a number in a ``unit`` may be a text, as ``"100 mm"``.
+
+    Raises :class:`DeclarationError`, saying what is ``allowed``.
+    """
     if isinstance(value, ca.SX):
         if value.numel() != 1:
             raise DeclarationError(f"{what} must be a scalar, got one of shape {value.shape}")
@@ -46,13 +49,40 @@ def scalar(what: str, value: Any, symbols: Iterable[Any], allowed: str) -> Expre
                 )
         return value
     try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise DeclarationError(f"{what} must be a number or an expression in parameters, got {value!r}") from None
-    if not math.isfinite(number):
-        symbols = "; functions of math and float() make nan of a symbol: use CasADi's, as casadi.sin" if math.isnan(number) else ""
-        raise DeclarationError(f"{what} must be finite, got {number}{symbols}")
-    return number
+        found = number(value, unit, finite=isinstance(value, str))
+    except NumberError as error:
+        if isinstance(value, str) and unit != "1":
+            raise DeclarationError(f"{what}: {error}") from None
+        raise DeclarationError(f"{what} must be a number or an expression in parameters, got {shown(value)}") from None
+    if not math.isfinite(found):
+        nan = "; functions of math and float() make nan of a symbol: use CasADi's, as casadi.sin" if math.isnan(found) else ""
+        raise DeclarationError(f"{what} must be finite, got {found}{nan}")
+    return found
+
+
+def coordinates(what: str, told: Iterable[tuple[Any, str]]) -> tuple[list[Expression], str]:
+    """Numbers or expressions of a joint's coordinate, each with what it is per, as ``"/s"``; and in which unit texts tell them.
+
+    That is rad or m, or nothing without a text. Raises :class:`DeclarationError` for what is none of these, or in both units.
+    """
+    found: list[Expression] = []
+    units: set[str] = set()
+    for value, per in told:
+        read, unit = typed(value)
+        base = unit.removesuffix(per)
+        if isinstance(value, str) and unit not in (f"rad{per}", f"m{per}"):
+            examples = f"'350 deg{per}' or '100 mm{per}'"
+            raise DeclarationError(f"{what}: expected a number, an expression, or a text such as {examples}, got {shown(value)}")
+        units |= {base} if unit else set()
+        found.append(scalar(what, read, symbols_of(read), "parameter"))
+    if len(units) > 1:
+        raise DeclarationError(f"{what}: angles and lengths at once; expected those of one coordinate")
+    return found, next(iter(units), "")
+
+
+def symbols_of(value: Any) -> list[Any]:
+    """The symbols of an expression; of anything else none."""
+    return list(ca.symvar(value)) if isinstance(value, ca.SX) else []
 
 
 def sound(condition: Any) -> Any:
@@ -71,20 +101,12 @@ def told(error: BaseException) -> str:
     return f"{type(error).__name__}: {text}"
 
 
-def typed(what: str, angle: Expression) -> Expression:
-    """An angle [rad]: a text as a number, anything else as it is. Raises :class:`DeclarationError` for a text of none."""
-    try:
-        return read_angle(angle) if isinstance(angle, str) else angle
-    except AngleError as error:
-        raise DeclarationError(f"{what}: {error}") from None
-
-
 def bound(what: str, value: Any, unit: str) -> float:
-    """A number in a unit, not always finite; an angle may be a text. Raises :class:`DeclarationError` for anything else."""
+    """A number in a unit, not always finite. Raises :class:`DeclarationError` for anything else."""
     try:
-        return float(typed(f"{what}: angle", value) if unit == "rad" else value)
-    except (TypeError, ValueError, OverflowError):
-        raise DeclarationError(f"{what}: expected a number [{unit}], got {value!r}") from None
+        return number(value, unit, finite=False)
+    except NumberError as error:
+        raise DeclarationError(f"{what}: {error}") from None
 
 
 def unit_vector(what: str, axis: Any, component: Callable[[Any], Expression]) -> tuple[Expression, Expression]:

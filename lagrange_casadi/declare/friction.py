@@ -113,7 +113,9 @@ def _require(what: str, joint: Joint, axis: Axis, numbers: Mapping[str, Expressi
 
 
 def _number(own: Ownership, what: str, value: Expression) -> Expression:
-    found, positive = own.expression(what, value), what.rpartition(" ")[2] in POSITIVE
+    word = what.rpartition(" ")[2]
+    unit = "m" if word in ("radius", "length") else "1"
+    found, positive = own.expression(what, value, unit), word in POSITIVE
     if isinstance(found, float) and (found < 0.0 or (found == 0.0 and positive)):
         raise DeclarationError(f"{what} must be {'positive' if positive else 'at least 0'}, got {found:g}")
     return found

@@ -11,6 +11,7 @@ import copy
 from collections.abc import Mapping, Sequence
 
 from ..errors import DeclarationError, UnknownNameError
+from ..tables import ANGLE, LENGTH
 from .joints import Joint
 from .mechanism import Mechanism
 from .motion import Motion
@@ -55,6 +56,11 @@ def laws_of(mechanism: Mechanism, motion: Mapping[str, Motion | Sequence[Motion]
             wanted = {1: "one law", 2: "two laws, of x and y", 3: "three laws, of x, y and the angle"}[expected]
             raise DeclarationError(f"motion of {what} '{name}': expected {wanted}, got {len(given)}")
         found |= {f"{name}{end}": law for end, law in zip(_NAMES[expected], given, strict=True)}
+    for name, law in found.items():
+        turns = mechanism.coordinates[name][1].kind == "angle" if name in mechanism.coordinates else name.endswith(".angle")
+        unit = ANGLE if turns else LENGTH
+        if law.unit not in ("", unit):
+            raise DeclarationError(f"motion of '{name}': it is told in {law.unit}, and its coordinate is in {unit}")
     return found
 
 

@@ -1,47 +1,49 @@
-"""Where an expression has a kink or a jump: found numerically, from the operations in which it can have one.
+"""Where an expression has a kink or a jump, found numerically along a path, from the operations in which it can have one.
 
-What is differentiated twice must have a slope that does not jump: else rates jump, and accelerations say nothing of it. With
-comparisons, sizes and whole parts it may jump or not: the pieces of a cam's curve may go on smoothly, and those of a table do not.
+What is differentiated twice must have a slope that does not jump: else rates jump, and accelerations
+say nothing of it. With comparisons, sizes, whole parts and divisors, and with functions at the ends of
+where they are defined, it may jump or not: the pieces of a cam's curve may go on smoothly, and those of
+a table do not. So every place at which an operation may make a kink is found to the last bit, and value
+and slopes on both sides of it are compared.
 """
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import Any
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
-from ..arithmetic.interpret import Arithmetic, followable, interpret, numpy_arithmetic, steps
+from ..arithmetic.interpret import followable, operations
+from ..arithmetic.lookups import is_entry
 from ..errors import DeclarationError
+from .density import Array
 
-Span = tuple[float, float]
+Flags = npt.NDArray[np.bool_]
 
-_SAME = 1e-6
-"""Of a slope or value: what is no jump."""
+_SAME, _FAINT = 1e-6, 1e-9
+"""What is no jump: of the value or slope there, and of the largest along the path."""
 
-_FAINT = 1e-9
-"""Of an ordinary slope or value: what is none."""
+_HALVINGS, _ROUNDS = 64, 8
+"""How often a step is halved, and how many places are looked for in one."""
 
-_HALVINGS, _MOST = 60, 64
-_LINEAR, _NEAR, _FAR = 4001, 8.0, 5
+_WIDEST, _LIMITS = 32.0, 41
+"""From how many steps away a limit is taken, and at how many distances, each half of the one before."""
 
-_STATES: dict[int, Callable[..., Any]] = {
-    ca.OP_LT: np.less,
-    ca.OP_LE: np.less_equal,
-    ca.OP_FMIN: np.less,
-    ca.OP_FMAX: np.less,
-    ca.OP_FABS: np.signbit,
-    ca.OP_SIGN: np.signbit,
-    ca.OP_COPYSIGN: lambda x, y: np.signbit(y),
-    ca.OP_FLOOR: np.floor,
-    ca.OP_CEIL: np.ceil,
-    ca.OP_FMOD: lambda x, y: np.trunc(x / y),
-    ca.OP_REMAINDER: lambda x, y: np.rint(x / y),
-}
-"""On which side of a place where an operation has a kink or a jump its arguments are."""
+_SLACK = 10.0
+"""By how much more limits may differ, which are extrapolated."""
+
+_DIP, _TOUCH = 0.3, 1e-12
+"""Of what is beside it: how near to zero an argument seems to come, and what is zero."""
+
+_ROUNDING = 16 * np.finfo(float).eps
+
+_AT_ONCE = 1 << 17
+"""Numbers of each operation that are looked at together."""
 
 
 @dataclass(frozen=True)
@@ -50,99 +52,325 @@ class Kink:
 
     what: str
     jump: float
-    at: dict[str, float]
+    at: Mapping[str, float]
 
     def __str__(self) -> str:
         place = ", ".join(f"{name} = {value:.6g}" for name, value in self.at.items())
         return f"its {self.what} jumps by {100.0 * self.jump:.3g} % where {place}"
 
-
-def refuse_kinks(what: str, expression: Any, moving: Any, fixed: Any, values: Sequence[float], span: Span | None = None) -> None:
-    """Raise :class:`DeclarationError` for what is to be differentiated twice and has a kink; arguments as of :func:`kink`."""
-    found = kink(expression, moving, fixed, values, span)
-    if found is not None:
-        raise DeclarationError(
-            f"{what}: {found}: rates would jump there, and accelerations would miss that; expected a curve whose slope does not "
-            "jump, of CasADi's functions: in place of a table, a curve(x, y), a polynomial or a Fourier sum"
+    def refused(self, what: str) -> DeclarationError:
+        """The error for ``what`` has the kink."""
+        return DeclarationError(
+            f"{what}: {self}: rates would jump there, and accelerations would miss that; expected a curve "
+            "whose slope does not jump, of CasADi's functions: in place of a table, a curve(x, y), a "
+            "polynomial or a Fourier sum"
         )
 
 
-def kink(expression: Any, moving: Any, fixed: Any, values: Sequence[float], span: Span | None) -> Kink | None:
-    """A kink or jump of a scalar expression along lines through its ``moving`` symbols; None where it has none there.
+@dataclass(frozen=True, eq=False)
+class Smooth:
+    """A scalar expression whose slopes must not jump, and operations in it that may make them.
 
-    ``fixed`` symbols have ``values``. With a ``span`` there is one moving symbol, which is looked at within the span.
+    ``symbols`` are those of the moving symbols that it depends on. ``marks(x, p)`` are arguments of
+    operations that may make a kink where they pass zero, or a whole number if ``whole``; what is
+    ``open`` there may be without bound, or have a slope that is, and may make a kink where it only
+    touches zero too. ``turns(x, p, way)`` are the marks' derivatives along a way, ``slopes(x, p)`` the
+    value and its derivatives by the symbols.
     """
-    own = [symbol for symbol in ca.vertsplit(moving) if ca.depends_on(expression, symbol)] if moving.numel() else []
-    if not own:
-        return None
-    symbols = ca.vertcat(*own)
-    function = ca.Function("sought", [symbols, fixed], [ca.SX(expression)])
-    if not followable(function) or not any(step.operation in _STATES for step in steps(function)):
-        return None
-    slopes = ca.Function("slopes", [symbols, fixed], [ca.vertcat(expression, ca.gradient(ca.SX(expression), symbols))])
-    for start, way, parts in _lines(len(own), span):
+
+    symbols: tuple[Any, ...]
+    marks: Any
+    turns: Any
+    slopes: Any
+    whole: Flags
+    open: Flags
+
+    @classmethod
+    def of(cls, expression: Any, moving: Any, fixed: Any) -> Smooth | None:
+        """That of an expression of ``moving`` and ``fixed`` symbols; None where nothing can make a kink."""
+        expression = ca.SX(expression)
+        own = [symbol for symbol in ca.vertsplit(moving) if ca.depends_on(expression, symbol)] if moving.numel() else []
+        if not own:
+            return None
+        x, way = ca.vertcat(*own), ca.SX.sym("way", len(own))
+        function = ca.Function("sought", [x, fixed], [ca.densify(expression)], {"cse": True})
+        if not followable(function):
+            return None
+        found: dict[tuple[int, bool, bool], Any] = {}
+        for operation, operands in operations(function, [x, fixed]):
+            for mark, whole, open_ in _marks(operation, operands):
+                if not mark.is_constant() and ca.depends_on(mark, x):
+                    found[mark.element_hash(), whole, open_] = mark
+        if not found:
+            return None
+        rows, (_, whole, open_) = ca.vertcat(*found.values()), zip(*found, strict=True)
+        slopes = ca.vertcat(expression, ca.gradient(expression, x))
+        return cls(
+            tuple(own),
+            ca.Function("marks", [x, fixed], [ca.densify(rows)], {"cse": True}),
+            ca.Function("turns", [x, fixed, way], [ca.densify(ca.jtimes(rows, x, way))], {"cse": True}),
+            ca.Function("slopes", [x, fixed], [ca.densify(slopes)], {"cse": True}),
+            np.array(whole),
+            np.array(open_),
+        )
+
+    def kink(self, path: Array, values: Sequence[float]) -> Kink | None:
+        """The worst kink along a path (symbols, n) of straight steps, for ``values`` of the fixed symbols."""
+        found = [*self._kinks(np.asarray(path, float)[None], np.array(values, float)[None])]
+        if not found:
+            return None
+        _, what, jump, place = max(found, key=lambda one: (one[1] == "value", one[2]))
+        return Kink(what, jump, {symbol.name(): float(x) for symbol, x in zip(self.symbols, place, strict=True)})
+
+    def broken(self, paths: Array, p: Array) -> Flags:
+        """Which of the paths (d, symbols, n) have a kink, for values ``p`` (d, fixed) of each."""
+        found = np.zeros(len(paths), bool)
+        size = max(1, _AT_ONCE // max(paths.shape[2], 1))
+        for start in range(0, len(paths), size):
+            some = slice(start, start + size)
+            found[[start + k for k, *_ in self._kinks(paths[some], p[some])]] = True
+        return found
+
+    def _kinks(self, paths: Array, p: Array) -> Iterator[tuple[int, str, float, Array]]:
+        """Every kink: the number of its path, what jumps, by what part of it, and where."""
+        count, _, n = paths.shape
+        if n < 2 or not count:
+            return
+        flat, fixed = np.moveaxis(paths, 1, 0).reshape(len(self.symbols), -1), np.repeat(p.T, n, axis=1)
         with np.errstate(all="ignore"):
-            # Within a span, what stands still most of the time has its largest values for ordinary ones.
-            found = _along(function, slopes, start, way, parts, values, np.median if span is None else np.max)
-        if found is not None:
-            what, jump, place = found
-            return Kink(what, jump, {symbol.name(): float(x) for symbol, x, b in zip(own, place, way, strict=True) if b != 0.0})
-    return None
+            usual = np.abs(_called(self.slopes, flat, fixed)).reshape(-1, count, n)
+            usual = np.where(np.isfinite(usual), usual, 0.0)
+            # A constraint's value is zero but for rounding: it is as large as what is added up in it.
+            terms = (usual[1:] * np.abs(flat).reshape(-1, count, n)).sum(axis=0)
+            usual = np.array([np.maximum(usual[0], terms), usual[1:].max(axis=0)]).max(axis=2)
+            marks = _called(self.marks, flat, fixed).reshape(-1, count, n)
+            passed, touched = self._places(_Steps.of(paths, p), marks)
+            found = [*self._compared(passed, usual), *self._limits(touched, usual)]
+        yield from found
+
+    def _places(self, steps: _Steps, marks: Array) -> tuple[_Steps, _Steps]:
+        """Where marks pass, and where something is open: steps from just before to just after."""
+        states = self._states(marks)
+        changed = np.flatnonzero((states[..., 1:] != states[..., :-1]).any(axis=0))
+        turned, row = self._turned(steps, marks)
+        at = turned.at(turned.low)
+        there = self._marks(turned, turned.low)
+        largest = np.where(np.isfinite(marks), np.abs(marks), 0.0).max(axis=2)[row, turned.owner]
+        beside = np.maximum(*(np.abs(self._marks(turned, x)[row, np.arange(row.size)]) for x in (0.0, 1.0)))
+        zero = np.abs(there[row, np.arange(row.size)]) <= _TOUCH * beside + _ROUNDING * largest
+        touched = [turned.some(zero & self.open[row])]
+        waiting = [steps.some(changed)]
+        if at.size:
+            waiting += [turned.to(0.0, turned.low), turned.to(turned.low, 1.0)]
+        passed = []
+        for _ in range(_ROUNDS):
+            rest = _Steps.joined(waiting)
+            ends = [self._states(self._marks(rest, x)) for x in (rest.low, rest.high)]
+            rest = rest.some((ends[0] != ends[1]).any(axis=0))
+            if not rest.owner.size:
+                break
+            found = rest.halved(partial(self._state, rest))
+            ends = [self._states(self._marks(found, x)) for x in (found.low, found.high)]
+            open_ = ((ends[0] != ends[1]) & self.open[:, None]).any(axis=0)
+            passed.append(found.some(~open_))
+            touched.append(found.some(open_))
+            waiting = [found.to(found.high, rest.high)]
+        return _Steps.joined(passed or [steps.some([])]), _Steps.joined(touched)
+
+    def _turned(self, steps: _Steps, marks: Array) -> tuple[_Steps, npt.NDArray[np.intp]]:
+        """Where marks turn back near zero between instants, or near a whole number; and which."""
+        n = marks.shape[2]
+        if n < 3:
+            return steps.some([]), np.zeros(0, np.intp)
+        whole = self.whole[:, None, None]
+        far = np.abs(marks - np.where(whole, np.rint(marks), 0.0))
+        before, here, after = far[..., :-2], far[..., 1:-1], far[..., 2:]
+        lowest = here - (after - before) ** 2 / (8.0 * (after - 2.0 * here + before))
+        row, owner, place = np.nonzero((here <= before) & (here <= after) & (lowest <= _DIP * here))
+        number = np.concatenate([owner * (n - 1) + place, owner * (n - 1) + place + 1])
+        row, some = np.concatenate([row, row]), steps.some(number)
+
+        def rises(x: Any, of: _Steps = some, rows: Any = row) -> Array:
+            slopes = _called(self.turns, of.at(x), of.p, of.way)
+            return np.asarray(slopes[rows, np.arange(rows.size)] > 0.0)[None]
+
+        turning = (rises(some.low) != rises(some.high))[0]
+        some, row = some.some(turning), row[turning]
+        return some.halved(lambda x: rises(x, some, row)), row
+
+    def _state(self, steps: _Steps, x: Any) -> Array:
+        return self._states(self._marks(steps, x))
+
+    def _marks(self, steps: _Steps, x: Any) -> Array:
+        return _called(self.marks, steps.at(x), steps.p)
+
+    def _states(self, marks: Array) -> Array:
+        """On which side of a place each mark is."""
+        whole = self.whole.reshape(-1, *[1] * (marks.ndim - 1))
+        return np.where(whole, np.floor(marks), marks > 0.0)
+
+    def _compared(self, steps: _Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
+        """Kinks where marks pass, by what is just before and just after."""
+        off = steps.off(4.0, 1.0)
+        # Off the place itself, where a size has the slope of neither side.
+        before, after = (_called(self.slopes, steps.at(x), steps.p) for x in (steps.low - off, steps.high + off))
+        gaps = _both(np.abs(after - before))
+        sizes = _both(np.maximum(np.abs(before), np.abs(after)))
+        least = _SAME * sizes + _FAINT * usual[:, steps.owner]
+        return _worst(steps, gaps, sizes, gaps > least)
+
+    def _limits(self, steps: _Steps, usual: Array) -> Iterator[tuple[int, str, float, Array]]:
+        """Kinks where something may be without bound: by what both sides tend to.
+
+        A difference of both sides, d(h) = jump + c h, is extrapolated to h = 0. Rounding spoils it where h
+        is small, what is of higher order where it is large; so nowhere is it small where there is a jump.
+        """
+        many, middle = steps.owner.size, (steps.low + steps.high) / 2
+        far = (_WIDEST * 0.5 ** np.arange(_LIMITS))[:, None]
+        wide = _Steps.joined([steps] * _LIMITS)
+        shape = len(self.symbols) + 1, _LIMITS, many
+        sides = (wide.at((middle + side * far).ravel()) for side in (-1, 1))
+        before, after = (_called(self.slopes, places, wide.p).reshape(shape) for places in sides)
+        gaps = _both(np.abs(2.0 * (after - before)[:, 1:] - (after - before)[:, :-1]))
+        sizes = _both(np.maximum(np.abs(before), np.abs(after)))[:, 1:]
+        seen = far[1:] > steps.off(64.0, 0.0)
+        gaps = np.where(np.isfinite(gaps), gaps, np.inf)
+        pairs = np.maximum(gaps[:, 1:], gaps[:, :-1])
+        least = _SLACK * (_SAME * sizes + _FAINT * usual[:, None, steps.owner])[:, 1:]
+        share = np.where(seen[1:] & np.isfinite(pairs), pairs / least, np.inf)
+        best, last = share.argmin(axis=1), np.maximum(seen.sum(axis=0) - 2, 0)
+        # Of a root or a power it is not small anywhere, but falls for ever.
+        which = (np.broadcast_to(k, (2, 1, many)) for k in (last, np.maximum(last - 8, 0)))
+        end, earlier = (np.take_along_axis(pairs, k, 1)[:, 0] for k in which)
+        broken = (share.min(axis=1) > 1.0) & ~(end < earlier / 2)
+        place = best[:, None]
+        gaps, sizes = (np.take_along_axis(rows[:, 1:], place, 1)[:, 0] for rows in (gaps, sizes))
+        return _worst(steps, gaps, sizes, broken)
 
 
-def _lines(many: int, span: Span | None) -> Iterator[tuple[Any, Any, Any]]:
-    """Starts, directions and parts of lines: along each symbol, the others anywhere, and a few across all."""
-    if span is not None:
-        yield np.zeros(1), np.ones(1), np.linspace(*span, _LINEAR)
-        return
-    generator = np.random.default_rng(0)
-    far = np.logspace(-_FAR, _FAR, 20 * _FAR)
-    parts = np.sort(np.concatenate([np.linspace(-_NEAR, _NEAR, _LINEAR), far, -far]))
-    for way in [*np.eye(many), *([generator.normal(size=many) for _ in range(3)] if many > 1 else [])]:
-        yield generator.uniform(-1.0, 1.0, many) * (way == 0.0), way, parts
+@dataclass(frozen=True, eq=False)
+class _Steps:
+    """Straight steps of paths: from ``x`` by ``way`` (symbols, m), ``p`` (fixed, m), and of which path (``owner``).
+
+    A share of a step is looked at, from ``low`` to ``high``; ``least`` and ``most`` are where the path ends.
+    """
+
+    x: Array
+    way: Array
+    p: Array
+    owner: npt.NDArray[np.intp]
+    low: Array
+    high: Array
+    least: Array
+    most: Array
+
+    @classmethod
+    def of(cls, paths: Array, p: Array) -> _Steps:
+        """All steps of paths (d, symbols, n) for values ``p`` (d, fixed)."""
+        count, symbols, n = paths.shape
+        x, way = (np.moveaxis(rows, 1, 0).reshape(symbols, -1) for rows in (paths[..., :-1], np.diff(paths)))
+        least, most = np.full((count, n - 1), -np.inf), np.full((count, n - 1), np.inf)
+        least[:, 0], most[:, -1] = 0.0, 1.0
+        owner, none = np.repeat(np.arange(count), n - 1), np.zeros(count * (n - 1))
+        return cls(x, way, p.T[:, owner], owner, none, none + 1.0, least.ravel(), most.ravel())
+
+    @classmethod
+    def joined(cls, parts: Sequence[_Steps]) -> _Steps:
+        """Several as one."""
+        return cls(*(np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in _STEPS))
+
+    def some(self, which: Any) -> _Steps:
+        """Some of the steps."""
+        which = np.asarray(which) if len(which) else np.zeros(0, np.intp)
+        return _Steps(*(getattr(self, name)[..., which] for name in _STEPS))
+
+    def to(self, low: Any, high: Any) -> _Steps:
+        """Other shares of the steps."""
+        return replace(self, low=low + 0.0 * self.low, high=high + 0.0 * self.high)
+
+    def at(self, share: Any) -> Array:
+        """The places at shares of the steps, not beyond the path."""
+        return np.asarray(self.x + np.clip(share, self.least, self.most) * self.way)
+
+    def off(self, roundings: float, least: float) -> Array:
+        """The shares that move by so many roundings of places, or of ``least``."""
+        sizes = np.maximum(np.maximum(np.abs(self.x), np.abs(self.x + self.way)), least)
+        moves = np.abs(self.way) / np.spacing(sizes)
+        return np.asarray(roundings / np.maximum(moves.max(axis=0, initial=0.0), 1.0))
+
+    def halved(self, state: Callable[[Any], Array]) -> _Steps:
+        """To where the state of each, (rows, m), changes from what it is at its low share."""
+        low, high = self.low, self.high
+        before = state(low)
+        for _ in range(_HALVINGS if self.owner.size else 0):
+            middle = (low + high) / 2
+            same = (state(middle) == before).all(axis=0)
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        return self.to(low, high)
 
 
-def _along(
-    function: Any, slopes: Any, start: Any, way: Any, parts: Any, values: Sequence[float], ordinary: Callable[[Any], Any]
-) -> tuple[str, float, Any] | None:
-    """What jumps along a line, by what part of it, and where; ``ordinary`` tells of many sizes what is an ordinary one."""
+_STEPS = tuple(entry.name for entry in fields(_Steps))
 
-    def states(at: Any) -> Any:
-        seen: list[Any] = []
 
-        def of(code: int, rule: Callable[..., Any], *arguments: Any) -> Any:
-            if code in _STATES:
-                seen.append(np.broadcast_to(np.asarray(_STATES[code](*arguments), float), at.shape))
-            return rule(*arguments)
+def _called(function: Any, *columns: Array) -> Array:
+    """The rows (rows, m) of a function of columns."""
+    if not columns[0].shape[1]:
+        return np.zeros((function.size1_out(0), 0))
+    return np.asarray(function(*(ca.DM(array) for array in columns)).full())
 
-        known = numpy_arithmetic()
-        operations = {code: functools.partial(of, code, rule) for code, rule in known.operations.items()}
-        rows = [a + b * at for a, b in zip(start, way, strict=True)]
-        interpret(function, [rows, [np.float64(value) for value in values]], Arithmetic(known.constant, operations))
-        return np.array(seen)
 
-    at = states(parts)
-    changes = np.flatnonzero((at[:, 1:] != at[:, :-1]).any(axis=0))
-    changes = changes[np.linspace(0, changes.size - 1, min(changes.size, _MOST)).astype(int)] if changes.size else changes
-    low, high, before = parts[changes], parts[changes + 1], at[:, changes]
-    for _ in range(_HALVINGS if changes.size else 0):
-        middle = (low + high) / 2
-        same = (states(middle) == before).all(axis=0)
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
-    # Off the place itself, where a size has the slope of neither side.
-    off = 4.0 * np.spacing(np.maximum(np.abs(low), 1.0))
-    low, high = low - off, high + off
-    ends = [slopes(start[:, None] + way[:, None] * x[None], values).full() for x in (low, high)] if changes.size else []
-    if not ends:
-        return None
-    usual = np.abs(slopes(start[:, None] + way[:, None] * parts[None, ::50], values).full())
-    usual = np.where(np.isfinite(usual), usual, 0.0)
-    for what, rows in (("value", slice(0, 1)), ("slope", slice(1, None))):
-        gap = np.abs(ends[1][rows] - ends[0][rows]).max(axis=0)
-        size = np.maximum(*(np.abs(end[rows]).max(axis=0) for end in ends))
-        least = _FAINT * ordinary(usual[rows].max(axis=0))
-        jumps = np.flatnonzero(gap > _SAME * size + least)
-        if jumps.size:
-            worst = jumps[np.argmax(gap[jumps] / size[jumps])]
-            return what, float(gap[worst] / size[worst]), start + way * high[worst]
-    return None
+def _both(rows: Array) -> Array:
+    """Of rows of a value and of slopes, that of the value and the largest of slopes."""
+    return np.array([rows[0], rows[1:].max(axis=0)])
+
+
+def _worst(steps: _Steps, gaps: Array, sizes: Array, broken: Flags) -> Iterator[tuple[int, str, float, Array]]:
+    places = steps.at(steps.high)
+    for k in np.flatnonzero(broken.any(axis=0)):
+        row = 0 if broken[0, k] else 1
+        part = gaps[row, k] / sizes[row, k]
+        yield int(steps.owner[k]), ("value", "slope")[row], float(min(part, 2.0)), places[:, k]
+
+
+def _marks(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Any, bool, bool]]:
+    """What makes an operation a kink where it passes zero, or a whole number; and whether it is open there."""
+    x, y = operands[0], operands[-1]
+    if operation in (ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_LT):
+        yield (y - x if operation == ca.OP_LT else x - y), False, False
+    elif operation in (ca.OP_FABS, ca.OP_SIGN):
+        yield x, False, False
+    elif operation == ca.OP_COPYSIGN:
+        yield y, False, False
+    elif operation in (ca.OP_EQ, ca.OP_NE):
+        yield ca.fabs(x - y), False, False
+    elif operation in (ca.OP_NOT, ca.OP_IF_ELSE_ZERO):
+        yield ca.fabs(x), False, False
+    elif operation in (ca.OP_AND, ca.OP_OR):
+        yield from ((ca.fabs(one), False, False) for one in operands)
+    elif operation in (ca.OP_FLOOR, ca.OP_CEIL):
+        # What a table has for a cell is a whole number already.
+        if not is_entry(x):
+            yield (x if operation == ca.OP_FLOOR else -x), True, False
+    elif operation in (ca.OP_FMOD, ca.OP_REMAINDER):
+        yield x / y + (0.5 if operation == ca.OP_REMAINDER else 0.0), True, False
+        yield y, False, True
+    elif operation in (ca.OP_DIV, ca.OP_INV):
+        yield y, False, True
+    elif operation == ca.OP_TAN:
+        yield ca.cos(x), False, True
+    elif operation in (ca.OP_SQRT, ca.OP_LOG):
+        yield x, False, True
+    elif operation == ca.OP_LOG1P:
+        yield 1.0 + x, False, True
+    elif operation in (ca.OP_ASIN, ca.OP_ACOS, ca.OP_ATANH):
+        yield 1.0 - x * x, False, True
+    elif operation == ca.OP_ACOSH:
+        yield x - 1.0, False, True
+    elif operation == ca.OP_HYPOT:
+        yield x * x + y * y, False, True
+    elif operation == ca.OP_ATAN2:
+        # Its cut is where the first is zero and the second negative.
+        yield x, False, False
+        yield x * x + y * y, False, True
+    elif operation in (ca.OP_POW, ca.OP_CONSTPOW) and not (y.is_constant() and float(y) >= 0.0 and float(y).is_integer()):
+        yield x, False, True

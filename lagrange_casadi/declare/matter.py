@@ -18,7 +18,7 @@ def matter_of(
     density: Density | None,
     centre: tuple[Expression, ...] | None,
     inertia: Any,
-    checked: Callable[[str, Expression], Expression],
+    checked: Callable[..., Expression],
     rigid: Callable[[Any, Any], tuple[tuple[Expression, ...], Any]] | None = None,
     beam: Beam | None = None,
 ) -> Density | RigidMass:
@@ -49,15 +49,15 @@ def matter_of(
     if centre is not None:
         if rigid is not None:
             place, moments = rigid(centre, inertia)
-            return RigidMass(checked(f"{what}: mass", mass), place, moments)
+            return RigidMass(checked(f"{what}: mass", mass, "kg"), place, moments)
         if not isinstance(centre, (tuple, list)) or len(centre) != 2:
             raise DeclarationError(f"{what}: centre must be two components (x, y), got {centre!r}")
-        x, y = (checked(f"{what}: centre", c) for c in centre)
-        return RigidMass(checked(f"{what}: mass", mass), (x, y), checked(f"{what}: inertia", inertia))
-    return uniform(checked(f"{what}: mass", mass))
+        x, y = (checked(f"{what}: centre", c, "m") for c in centre)
+        return RigidMass(checked(f"{what}: mass", mass, "kg"), (x, y), checked(f"{what}: inertia", inertia))
+    return uniform(checked(f"{what}: mass", mass, "kg"))
 
 
-def beam_of(what: str, beam: Beam | None, checked: Callable[[str, Expression], Expression]) -> Beam | None:
+def beam_of(what: str, beam: Beam | None, checked: Callable[..., Expression]) -> Beam | None:
     """What a link is made of, its dimensions looked at. Raises :class:`DeclarationError` for what is no beam."""
     if beam is None:
         return None
@@ -66,7 +66,7 @@ def beam_of(what: str, beam: Beam | None, checked: Callable[[str, Expression], E
     return beam.mapped(lambda name, value: checked(f"{what}: {name} of its cross-section", value))
 
 
-def _checked(density: Density, what: str, checked: Callable[[str, Expression], Expression]) -> Density:
+def _checked(density: Density, what: str, checked: Callable[..., Expression]) -> Density:
     cells = tuple(tuple(checked(what, c) for c in cell) for cell in density.cells)
     return Density(density.breaks, cells, density.per_length)
 

@@ -13,12 +13,12 @@ from typing import Any, cast
 
 import casadi as ca
 
+from ..arguments import Number, public
 from ..beams.beam import Beam
 from ..errors import DeclarationError
-from .arguments import told_arguments
 from .constraints import constraint, row
 from .density import Density
-from .expressions import bound, check_line, check_name, typed
+from .expressions import bound, check_line, check_name
 from .fitted import Fitted
 from .friction import friction
 from .joints import Axis, Joint, JointKind
@@ -53,7 +53,7 @@ from .results import Asked, OwnOutput, Results
 _GROUND = "ground"
 
 
-@told_arguments
+@public
 @dataclass(eq=False)
 class Mechanism:
     """A planar mechanism under declaration: links and point masses in the x-y plane, joined to each other and to the ground.
@@ -77,6 +77,7 @@ class Mechanism:
     outputs: dict[str, OwnOutput] = field(default_factory=dict, init=False)
     paths: dict[str, Path] = field(default_factory=dict, init=False)
     fitted: dict[str, dict[str, Fitted]] = field(default_factory=dict, init=False)
+    rounded: dict[str, tuple[float, float]] = field(default_factory=dict, init=False)
     gravity: Vector = field(default=(0.0, -9.81, 0.0), init=False)
     frozen: bool = field(default=False, init=False)
     time: Any = field(default_factory=lambda: ca.SX.sym("t"), init=False)
@@ -131,7 +132,7 @@ class Mechanism:
         """The parameters' symbols as one column, in the order of declaration."""
         return ca.vertcat(ca.SX(0, 1), *(parameter.symbol for parameter in self.parameters.values()))
 
-    def parameter(self, name: str, default: float, unit: str = "1", *, low: float = -math.inf, high: float = math.inf) -> Any:
+    def parameter(self, name: str, default: Number, unit: str = "1", *, low: Number = -math.inf, high: Number = math.inf) -> Any:
         """Declare a parameter from ``low`` to ``high``, and return its ``casadi.SX`` symbol to build lengths and places from."""
         self.own.free("parameter", name, self.parameters)
         check_line(f"parameter '{name}': its unit", unit)
@@ -161,13 +162,13 @@ class Mechanism:
         what, checked = f"link '{name}'", self.own.expression
         beam = beam_of(what, beam, checked)
         matter = matter_of(what, mass, density, centre, inertia, checked, beam=beam)
-        return cast(Link, self.bodies.setdefault(name, Link(name, checked(f"{what}: length", length), matter, beam)))
+        return cast(Link, self.bodies.setdefault(name, Link(name, checked(f"{what}: length", length, "m"), matter, beam)))
 
     def point_mass(self, name: str, mass: Expression) -> PointMass:
         """Declare a mass [kg] without extent, at a point; welded to a link it moves with the link."""
         self.own.free("point mass", name, self.bodies)
-        mass = self.own.expression(f"point mass '{name}': mass", mass)
-        return cast(PointMass, self.bodies.setdefault(name, PointMass(name, mass)))
+        body = PointMass(name, self.own.expression(f"point mass '{name}': mass", mass, "kg"))
+        return cast(PointMass, self.bodies.setdefault(name, body))
 
     def revolute(self, name: str, parent: Body | Point, child: Body | Point) -> Joint:
         """Pin a point of ``child`` to a point of ``parent``; a link stands for its base, the ground for its origin."""
@@ -201,8 +202,8 @@ class Mechanism:
 
     def gear(self, name: str, first: Joint, second: Joint, *, ratio: Expression, offset: Expression = 0.0) -> Constraint:
         """Tie two joints: coordinate of ``second`` = ratio (that of ``first``) + offset (or ``"15 deg"``); a mesh has -z1/z2."""
-        offset = offset if self.own.moving_joint(second)[1].kind == "slide" else typed(f"gear '{name}': offset", offset)
-        ratio, offset = self.own.expression(f"gear '{name}': ratio", ratio), self.own.expression(f"gear '{name}': offset", offset)
+        told = (("ratio", ratio, "1"), ("offset", offset, "m" if self.own.moving_joint(second)[1].kind == "slide" else "rad"))
+        ratio, offset = (self.own.expression(f"gear '{name}': {word}", value, of) for word, value, of in told)
         return self.constraint(name, self.coordinate(second) - ratio * self.coordinate(first) - offset)
 
     def constraint(self, name: str, phi: Any) -> Constraint:
@@ -265,7 +266,7 @@ class Mechanism:
     ) -> Spring:
         """Stretch a spring [N/m] of a free length [m], with a damper [N s/m] beside it, between two points: :class:`.Spring`."""
         ends = self._load_point(name, first), self._load_point(name, second)
-        numbers = [self._load(name, value) for value in (stiffness, length, damping)]
+        numbers = [self._load(name, stiffness), self._load(name, length, "m"), self._load(name, damping)]
         return cast(Spring, self.loads.setdefault(name, Spring(name, *ends, *numbers)))
 
     def damper(self, name: str, first: Body | Point, second: Body | Point, *, damping: Expression) -> Spring:
@@ -278,7 +279,7 @@ class Mechanism:
         """Put a spring [N m/rad], free at ``angle``, and a damper [N m s/rad] on a revolute joint, whose angle counts turns."""
         if self.own.joint(joint).coordinate != "angle":
             raise DeclarationError(f"load '{name}': joint '{joint.name}' has no angle for a torsion spring")
-        k, free, c = (self._load(name, x) for x in (stiffness, typed(f"load '{name}': angle", angle), damping))
+        k, free, c = self._load(name, stiffness), self._load(name, angle, "rad"), self._load(name, damping)
         return self._turn_back(name, joint, -(k * (self.coordinate(joint) - free)) - c * self.rate(joint))
 
     def _turn_back(self, name: str, joint: Joint, value: Expression) -> Torque:
@@ -345,8 +346,7 @@ class Mechanism:
 
     def direction(self, link: Link) -> Any:
         """The symbol of the direction of a link's axis against the ground's x axis [rad]; it counts turns as a coordinate does."""
-        body = self.own.point("direction", link).body
-        if not isinstance(body, Link):
+        if not isinstance(body := self.own.point("direction", link).body, Link):
             raise DeclarationError(f"direction: expected a link, got '{body.name}'")
         return self.measures.link(body).places[0]
 
@@ -396,5 +396,5 @@ class Mechanism:
         self.own.free("load", name, self.loads)
         return self.own.point(f"load '{name}'", place)
 
-    def _load(self, name: str, value: Expression) -> Expression:
-        return self.own.expression(f"load '{name}'", value, moving=True)
+    def _load(self, name: str, value: Expression, unit: str = "1") -> Expression:
+        return self.own.expression(f"load '{name}'", value, unit, moving=True)

@@ -14,11 +14,12 @@ from typing import Any
 
 import casadi as ca
 
+from ..arguments import public
 from ..errors import DeclarationError
 from .curves import curve, rows
 from .ends import beyond_ends
-from .expressions import scalar, told
-from .kinks import Span, refuse_kinks
+from .expressions import coordinates, scalar, symbols_of, told
+from .kinks import Smooth
 from .parts import Expression
 from .possible import Demand
 from .scaled import Scaled
@@ -32,7 +33,7 @@ class Motion:
     ``spline`` tells that the graph needs ``casadi.MX``; ``span`` is the time the law covers, and ``knots`` are the times between
     which the second derivative of a spline is linear. Of a motion made of moves ``stretches`` are these, ``period`` is their time
     where they go on over and over, and ``demands`` are what parameters must hold to.
-    ``told`` says in words what a motion from a file is.
+    ``told`` says in words what a motion from a file is; ``unit`` is rad or m if texts tell its numbers in that.
     """
 
     graph: Callable[[Any], Any]
@@ -43,6 +44,7 @@ class Motion:
     period: Expression | None = None
     demands: tuple[Demand, ...] = ()
     told: str = ""
+    unit: str = ""
 
     def __call__(self, x: Any) -> Any:
         """The law of an expression in place of the time, as of a joint's coordinate, for constraints and loads."""
@@ -51,28 +53,44 @@ class Motion:
         return self.graph(ca.SX(x))
 
 
+@public
 def polynomial(*coefficients: Expression) -> Motion:
     """c0 + c1 t + c2 t^2 + ... (paper eq. 22: ``polynomial(0, Omega0, epsilon0/2)``); numbers or parameters' symbols.
 
-    The value is the joint's coordinate [rad or m] at the time t [s]. Raises :class:`.DeclarationError` without a coefficient.
+    The value is the joint's coordinate [rad or m] at the time t [s]; a number may be a text, as in
+    ``polynomial("45 deg", "360 deg/s")``. Raises :class:`.DeclarationError` without a coefficient, and for one that is none.
     """
     if not coefficients:
         raise DeclarationError("polynomial: expected at least one coefficient")
+    told, unit = coordinates("polynomial", ((c, _per(k)) for k, c in enumerate(coefficients)))
 
     def graph(t: Any) -> Any:
-        value = ca.SX(coefficients[-1])
-        for coefficient in reversed(coefficients[:-1]):
+        value = ca.SX(told[-1])
+        for coefficient in reversed(told[:-1]):
             value = value * t + coefficient
         return value
 
-    return Motion(graph)
+    return Motion(graph, unit=unit)
 
 
+def _per(order: int) -> str:
+    """What a derivative by time is per, in units."""
+    return "" if order == 0 else "/s" if order == 1 else f"/s^{order}"
+
+
+@public
 def harmonic(mean: Expression, amplitude: Expression, frequency: Expression, phase: Expression = 0.0) -> Motion:
-    """mean + amplitude sin(2 pi frequency t + phase): [rad or m], the frequency in Hz, the phase in rad; numbers or symbols."""
-    return Motion(lambda t: mean + amplitude * ca.sin(2.0 * math.pi * frequency * t + phase))
+    """mean + amplitude sin(2 pi frequency t + phase): [rad or m], the frequency in Hz, the phase in rad; numbers or symbols.
+
+    All but the frequency may be texts, as ``"45 deg"`` or ``"100 mm"``.
+    """
+    (middle, size), unit = coordinates("harmonic", ((mean, ""), (amplitude, "")))
+    often = scalar("harmonic: frequency", frequency, symbols_of(frequency), "parameter")
+    ahead = scalar("harmonic: phase", phase, symbols_of(phase), "parameter", "rad")
+    return Motion(lambda t: middle + size * ca.sin(2.0 * math.pi * often * t + ahead), unit=unit)
 
 
+@public
 def expression(law: Callable[[Any], Any]) -> Motion:
     """Any law: a function that takes the symbol t [s] and returns a ``casadi.SX`` expression of it and of parameters [rad or m].
 
@@ -83,15 +101,21 @@ def expression(law: Callable[[Any], Any]) -> Motion:
     return Motion(law)
 
 
+@public
 def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion:
     """A C2 cubic spline through samples, not-a-knot at its ends: ``values`` [rad or m] at ``times`` [s].
 
-    Parameters may scale and shift all values alike, and all times: ``samples(times, ratio * angles)``. It is defined between the
-    first and the last time only.
+    Parameters may scale and shift all values alike, and all times: ``samples(times, ratio * angles)``. Numbers may be texts, as
+    ``"20 ms"`` and ``"45 deg"``. It is defined between the first and the last time only.
 
     Raises :class:`DeclarationError` for fewer than four samples, for times that do not increase, for what is not finite, and for
     parameters that change some values otherwise than others.
     """
+    unit = ""
+    if isinstance(times, list | tuple) and any(isinstance(time, str) for time in times):
+        times = [scalar("motion samples: times", time, symbols_of(time), "parameter", "s") for time in times]
+    if isinstance(values, list | tuple) and any(isinstance(value, str) for value in values):
+        values, unit = coordinates("motion samples: values", ((value, "") for value in values))
     at, to = Scaled.of("motion samples: times", times), Scaled.of("motion samples: values", values)
     if at.scale is not None or to.scale is not None:
         through = curve(*rows("motion samples", at.numbers, to.numbers, 4))
@@ -100,11 +124,11 @@ def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion
             value = through(time if at.scale is None else (time - at.shift) / at.scale)
             return value if to.scale is None else to.shift + to.scale * value
 
-        return Motion(graph)
+        return Motion(graph, unit=unit)
     times, values = at.numbers, to.numbers
     t, v = rows("motion samples", times, values, 4)
     spline = ca.interpolant("spline", "bspline", [t], v)
-    return Motion(lambda time: spline(time), spline=True, span=(t[0], t[-1]), knots=tuple(t))
+    return Motion(lambda time: spline(time), spline=True, span=(t[0], t[-1]), knots=tuple(t), unit=unit)
 
 
 def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
@@ -125,12 +149,15 @@ def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
     return ca.Function("motion", [time, p], _stack(rows, ca.MX), *names)
 
 
-def refuse_kinked(laws: Mapping[str, Motion], parameters: Any, values: Sequence[float], span: Span) -> None:
-    """Raise :class:`DeclarationError` for a law whose value or rate jumps within a span of time, for values of the parameters."""
+def smooth_laws(laws: Mapping[str, Motion], parameters: Any) -> dict[str, Smooth]:
+    """Of laws that may have kinks in time, by the joint's name, that they must not have them.
+
+    Moves go on smoothly by their making, wherever parameters allow them.
+    """
     t = ca.SX.sym("t")
-    for joint, law in laws.items():
-        if not law.spline:
-            refuse_kinks(f"the motion of joint '{joint}'", ca.SX(_scalar(joint, law, t, parameters)), t, parameters, values, span)
+    looked_at = {joint: law for joint, law in laws.items() if not (law.spline or law.stretches)}
+    found = {joint: Smooth.of(_scalar(joint, law, t, parameters), t, parameters) for joint, law in looked_at.items()}
+    return {joint: smooth for joint, smooth in found.items() if smooth is not None}
 
 
 def ends_function(laws: Mapping[str, Motion], parameters: Any) -> Any | None:

@@ -10,15 +10,17 @@ from typing import Any
 
 import casadi as ca
 
+from ..arguments import public
 from ..errors import DeclarationError
 from ..system.numerals import readable
-from .expressions import check_name, plain, scalar, sound, typed
+from .expressions import check_name, coordinates, plain, scalar, sound, symbols_of
 from .motion import Motion
 from .parts import Expression
 from .possible import Demand, Evaluator
 from .rest_laws import Limits, RestLaw, rest_law, s_curve_within, trapezoid_within
 from .stretches import Stretch
 
+_PER = {"speed": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
 _FORGIVEN = 1e-9
 """Of itself: by how much a time may be too short, or a cycle not close, by rounding."""
 
@@ -43,6 +45,7 @@ class Dwell:
     time: Expression | None
 
 
+@public
 def move(
     to: Expression | str | None = None,
     *,
@@ -70,11 +73,13 @@ def move(
     return Move(_named(name), to, by, time, law, Limits(speed, acceleration, jerk))
 
 
+@public
 def dwell(time: Expression | None = None, *, name: str = "") -> Dwell:
     """A rest of a ``time`` [s] for :func:`moves`; one of them may go without, and lasts as long as the period asks for."""
     return Dwell(_named(name), time)
 
 
+@public
 def moves(
     parts: Sequence[object],
     *,
@@ -100,27 +105,28 @@ def moves(
     """
     each = _sequence(parts)
     common = Limits(speed, acceleration, jerk)
-    origin, demands = _expression("moves: start", start, angle=True), _Demanded([])
+    demands = _Demanded([], set())
+    origin = demands.coordinate("moves: start", start)
     place, way, found = origin, _Sum(origin), []
     for number, part in enumerate(each):
         what = _what(part, number)
         if isinstance(part, Dwell):
             law, time, by, after = None, part.time, 0.0, place
         else:
-            by, after = _way(what, part, place, way)
+            by, after = _way(what, part, place, way, demands)
             law, time = _timed(what, part, by, common, demands)
         found.append([part.name or f"part {number + 1}", law, time, place, by, after])
         place = after
     times = _filled(each, [row[2] for row in found], period, demands)
     for number, (part, time) in enumerate(zip(each, times, strict=True)):
         _demand_time(_what(part, number), time, demands)
-    first = _expression("moves: begin", begin)
+    first = _expression("moves: begin", begin, "s")
     total = _Sum(first)
     seams = [first, *(total.then(time) for time in times)]
     stretches = tuple(
         Stretch(name, law, seams[k], seams[k + 1], times[k], at, by) for k, (name, law, _, at, by, _) in enumerate(found)
     )
-    far = _expression("moves: advance", advance, angle=True)
+    far = demands.coordinate("moves: advance", advance)
     length = None
     if cyclic:
         length = _Sum(0.0).then(*times)
@@ -128,7 +134,11 @@ def moves(
     elif not (isinstance(far, float) and far == 0.0):
         raise DeclarationError("moves: advance is of a cyclic motion; expected cyclic=True")
     each_demand = tuple(demands.each)
-    return Motion(_graph(stretches, place, length, far, each_demand), stretches=stretches, period=length, demands=each_demand)
+    if len(demands.units) > 1:
+        raise DeclarationError("moves: angles and lengths at once; expected those of one coordinate")
+    graph = _graph(stretches, place, length, far, each_demand)
+    unit = next(iter(demands.units), "")
+    return Motion(graph, stretches=stretches, period=length, demands=each_demand, unit=unit)
 
 
 def _graph(stretches: tuple[Stretch, ...], last: Expression, period: Any, advance: Any, demands: tuple[Demand, ...]) -> Any:
@@ -192,9 +202,15 @@ class _Sum:
 
 @dataclass(frozen=True)
 class _Demanded:
-    """Demands that are found: one of numbers is held at once, those that parameters decide are kept."""
+    """Demands that are found: one of numbers is held at once, those that parameters decide are kept; and units of texts."""
 
     each: list[Demand]
+    units: set[str]
+
+    def coordinate(self, what: str, value: Any, per: str = "") -> Any:
+        (found,), unit = coordinates(what, [(value, per)])
+        self.units.update([unit] if unit else [])
+        return plain(found)
 
     def add(self, demand: Demand) -> None:
         value = plain(demand.value)
@@ -229,18 +245,16 @@ def _named(name: str) -> str:
     return name
 
 
-def _expression(what: str, value: Any, *, angle: bool = False) -> Any:
-    value = typed(what, value) if angle else value
-    symbols = ca.symvar(value) if isinstance(value, ca.SX) else []
-    return plain(scalar(what, value, symbols, "parameter"))
+def _expression(what: str, value: Any, unit: str = "1") -> Any:
+    return plain(scalar(what, value, symbols_of(value), "parameter", unit))
 
 
-def _way(what: str, part: Move, place: Expression, way: _Sum) -> tuple[Expression, Expression]:
+def _way(what: str, part: Move, place: Expression, way: _Sum, demands: _Demanded) -> tuple[Expression, Expression]:
     """How far a move goes, and where it ends."""
     if part.by is not None:
-        by = _expression(f"{what}: by", part.by, angle=True)
+        by = demands.coordinate(f"{what}: by", part.by)
         return by, way.then(by)
-    to = _expression(f"{what}: to", part.to, angle=True)
+    to = demands.coordinate(f"{what}: to", part.to)
     way.terms[:] = [to]
     negative = -place if isinstance(place, ca.SX) else float(-place)
     return _Sum(to).then(negative), to
@@ -266,11 +280,11 @@ def _timed(what: str, part: Move, by: Expression, common: Limits, demands: _Dema
     if "jerk" in told and isinstance(law.jerk, float) and math.isinf(law.jerk):
         raise DeclarationError(f"{what}: accelerations of the law {law.name} jump, so no limit of jerk holds; expected another law")
     if not limits.told:
-        return law, _expression(f"{what}: time", part.time)
+        return law, _expression(f"{what}: time", part.time, "s")
     least = plain(law.least_time(by, limits))
     if part.time is None:
         return law, least
-    time = _expression(f"{what}: time", part.time)
+    time = _expression(f"{what}: time", part.time, "s")
 
     def refusal(number: Evaluator) -> str:
         broken = ", ".join(f"{name} {readable(number(limit))}" for name, limit in limits.told.items())
@@ -284,21 +298,21 @@ def _timed(what: str, part: Move, by: Expression, common: Limits, demands: _Dema
 def _limits(what: str, limits: Limits, demands: _Demanded) -> Limits:
     found: dict[str, Expression] = {}
     for name, value in limits.told.items():
-        found[name] = _expression(f"{what}: {name}", value)
+        found[name] = demands.coordinate(f"{what}: {name}", value, _PER[name])
         demands.add(Demand(found[name], True, _not_positive(f"{what}: {name}", found[name])))
     return Limits(**found)
 
 
 def _filled(parts: list[Move | Dwell], times: list[Any], period: Any, demands: _Demanded) -> list[Expression]:
     """The times of all parts, the dwell that has none filled up."""
-    known = [None if time is None else _expression(f"{_what(parts[k], k)}: time", time) for k, time in enumerate(times)]
+    known = [None if time is None else _expression(f"{_what(parts[k], k)}: time", time, "s") for k, time in enumerate(times)]
     lacking = [k for k, time in enumerate(known) if time is None]
     told = [time for time in known if time is not None]
     if period is None:
         if lacking:
             raise DeclarationError(f"{_what(parts[lacking[0]], lacking[0])}: expected a time, or a period of the moves to fill up")
         return told
-    whole, total = _expression("moves: period", period), _Sum(0.0).then(*told)
+    whole, total = _expression("moves: period", period, "s"), _Sum(0.0).then(*told)
     if len(lacking) > 1:
         raise DeclarationError(f"moves: {len(lacking)} dwells have no time; at most one can fill up the period")
     if not lacking:

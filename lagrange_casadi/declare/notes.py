@@ -27,10 +27,13 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description, r
         told = f"{len(drives)} drives ({', '.join(drives)}) make {moved} motion{'s' if moved > 1 else ''}"
         yield f"{told}: of all efforts that do, these have the least weighted sum of squares"
     if resting.any():
-        open_ = [o.part for o, values in outputs.items() if (o.group, o.member) == ("friction", "along") and np.isnan(values).any()]
-        frictions = f" ({', '.join(open_)})" if open_ else ""
-        when = f"at {int(np.count_nonzero(resting))} of {t.size} instants, first at t = {t[np.flatnonzero(resting)[0]]:.6g} s"
-        yield f"a joint that rubs is at rest {when}: what depends on its friction{frictions} is open there, and NaN"
+        yield rest_note(t, outputs, resting)
+    if rounded := description.get("rounded"):
+        angle, distance = (max(by[k] for by in rounded.values()) for k in (0, 1))
+        yield (
+            f"loops close but for rounding, of {', '.join(rounded)}: their axes and places are taken as parallel or coincident, "
+            f"moved by up to {angle:.2g} rad and {distance:.2g} m"
+        )
     for name, joint in description["joints"].items():
         if (second := _locked(joint, outputs)) is not None:
             near = t[int(np.argmin(np.abs(np.cos(second))))]
@@ -53,6 +56,16 @@ def notes(t: Array, outputs: Mapping[Output, Array], description: Description, r
                 f"joint '{name}' leaves link '{joint['parent']['body']}' at t = {t[away[0]]:.6g} s (xi/l from {low:.4g} to "
                 f"{high:.4g}): beyond its ends it loads the link as through a bracket"
             )
+
+
+def rest_note(t: Array, outputs: Mapping[Output, Array], resting: npt.NDArray[np.bool_]) -> str:
+    """When a joint that rubs is at rest, as it is at some instants, and which frictions are."""
+    open_ = [o.part for o, values in outputs.items() if (o.group, o.member) == ("friction", "along") and np.isnan(values).any()]
+    frictions = f" ({', '.join(open_)})" if open_ else ""
+    first, last = t[np.flatnonzero(resting)[[0, -1]]]
+    when = f"at {int(np.count_nonzero(resting))} of {t.size} instants, first at t = {first:.6g} s, last at t = {last:.6g} s"
+    left = "open there, and NaN: it is left out of peaks, means and strength"
+    return f"a joint that rubs is at rest {when}: what depends on its friction{frictions} is {left}"
 
 
 def _along(name: str, joint: Description) -> dict[Output, float]:

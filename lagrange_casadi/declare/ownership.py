@@ -30,7 +30,7 @@ class Ownership:
         if self.mechanism.bodies.get(point.body.name) is not point.body:
             raise DeclarationError(f"{what}: '{point.body.name}' is of another mechanism than '{self.mechanism.name}'")
         what = f"{what}: place on '{point.body.name}'"
-        x, y, z = (self.expression(what, number) for number in point.place)
+        x, y, z = (self.expression(what, number, "m") for number in point.place)
         if not self.mechanism.space and not (isinstance(z, float) and z == 0.0):
             raise DeclarationError(f"{what}: a plane has no z, got {z}; a mechanism in space is a SpatialMechanism")
         return Point(point.body, x, y, point.end, z)
@@ -54,15 +54,18 @@ class Ownership:
             raise DeclarationError(f"joint '{joint.name}' has no coordinate '{name}'; valid: {valid}")
         return joint, axes[name]
 
-    def expression(self, what: str, value: Expression, *, moving: bool = False, found: bool = False) -> Expression:
-        """A finite float, or an SX scalar in parameters; where ``moving`` in time and state too; where ``found`` in results too."""
+    def expression(self, what: str, value: Expression, unit: str = "1", *, moving: bool = False, found: bool = False) -> Expression:
+        """A finite float, or an SX scalar in parameters; if ``moving`` in time and state too; if ``found`` in results too.
+
+        A number in a ``unit`` may be a text, as ``"100 mm"``.
+        """
         mechanism = self.mechanism
         own = [parameter.symbol for parameter in mechanism.parameters.values()]
         own += [mechanism.time, *mechanism.measures.symbols] if moving else []
         own += [*mechanism.measures.accelerations, *(asked.symbol for asked in mechanism.asked)] if found else []
         allowed = "parameter, time, coordinate or rate" if moving else "parameter"
         allowed = f"{allowed.replace(' or rate', ', rate')} or result" if found else allowed
-        return scalar(what, value, own, f"{allowed} of mechanism '{mechanism.name}'")
+        return scalar(what, value, own, f"{allowed} of mechanism '{mechanism.name}'", unit)
 
     def free(self, kind: str, name: str, table: Mapping[str, Part]) -> None:
         """Raise for a name that is taken, and where nothing can be added any more."""

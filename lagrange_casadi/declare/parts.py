@@ -6,12 +6,12 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
+from ..arguments import in_words, number
 from ..beams.beam import Beam
-from ..errors import ParameterError
+from ..errors import NumberError, ParameterError, shown
 from ..geometry.vectors import Expression as Expression
 from ..geometry.vectors import Vector as Vector
 from ..system.numerals import readable
-from .angles import angle
 from .density import Density
 
 if TYPE_CHECKING:
@@ -38,30 +38,21 @@ class Parameter:
             raise ParameterError(found)
 
     def number(self, value: Any) -> float:
-        """A value as a number; of a parameter in rad it may be a text such as ``"30 deg"``.
-
-        Raises ``TypeError`` or ``ValueError`` for what is none.
-        """
-        try:
-            return float(value)
-        except (TypeError, ValueError):
-            if self.unit != "rad":
-                raise
-            return angle(value)
+        """A value as a number, see :func:`.arguments.number`. Raises :class:`.NumberError` for what is none; it may be infinite."""
+        return number(value, self.unit, finite=False)
 
     def fault(self, value: Any) -> str:
         """What is wrong with a value, in words; nothing where it is a finite number within ``[low, high]``."""
         try:
-            number = self.number(value)
-        except (TypeError, ValueError):
-            unit = "" if self.unit == "1" else f" [{self.unit}]" + (", or a text such as '30 deg'" if self.unit == "rad" else "")
-            return f"parameter '{self.name}' must be a number{unit}, got {value!r}"
-        if not math.isfinite(number):
-            return f"parameter '{self.name}' must be a finite number, got {number}"
-        if not self.low <= number <= self.high:
+            found = self.number(value)
+        except NumberError:
+            return f"parameter '{self.name}' must be a {in_words(self.unit)}, got {shown(value)}"
+        if not math.isfinite(found):
+            return f"parameter '{self.name}' must be a finite number, got {found}"
+        if not self.low <= found <= self.high:
             return (
-                f"parameter '{self.name}' = {readable(number, self.low, self.high)}{'' if self.unit == '1' else ' ' + self.unit} "
-                f"is out of its range [{readable(self.low, number)}, {readable(self.high, number)}]"
+                f"parameter '{self.name}' = {readable(found, self.low, self.high)}{'' if self.unit == '1' else ' ' + self.unit} "
+                f"is out of its range [{readable(self.low, found)}, {readable(self.high, found)}]"
             )
         return ""
 
@@ -121,13 +112,15 @@ class Link(Body):
 
     Its mass lies along the axis with a :class:`.Density`, which gives it a section law, or is known as a whole only
     (:class:`RigidMass`), and then it has none. ``beam`` says what it is made of, where that is told. ``outline`` are the corners of
-    what it is drawn as, in its own axes [m].
+    what it is drawn as, in its own axes [m]. ``beside`` is the direction that was declared for its y axis in space, of length 1 and
+    in ground axes.
     """
 
     length: Expression
     mass: Density | RigidMass
     beam: Beam | None = None
     outline: tuple[tuple[Expression, Expression], ...] = ()
+    beside: Vector | None = None
 
     @property
     def base(self) -> Point:
@@ -333,11 +326,16 @@ Load: TypeAlias = Force | Torque | Spring | LineLoad | Friction
 
 @dataclass(frozen=True, eq=False)
 class Constraint:
-    """Phi(q, t) = 0 in joint coordinates (paper eq. 5). Of a ``transmission`` the multiplier acts where its parts touch."""
+    """Phi(q, t) = 0 in joint coordinates (paper eq. 5). Of a ``transmission`` the multiplier acts where its parts touch.
+
+    Phi is differentiated twice, so its slopes must not jump; of a cam those of its ``lift`` alone, at the
+    cam's angle: off the contact those of phi may jump as the normal turns, on it that counts for nothing.
+    """
 
     name: str
     phi: Any
     transmission: Transmission | None = None
+    lift: Any = None
 
 
 @dataclass(frozen=True, eq=False)

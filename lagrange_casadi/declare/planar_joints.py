@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..errors import DeclarationError
-from .expressions import typed, unit_vector
+from .expressions import unit_vector
 from .joints import Joint, JointKind
 from .ownership import Ownership
 from .parts import Body, Expression, Point
@@ -29,4 +29,4 @@ def in_plane(
             f"{'the weld' if kind == 'weld' else 'the axis'}; make the other body the parent"
         )
     unit = (1.0, 0.0) if axis is None else unit_vector(what, axis, lambda a: own.expression(f"{what}: axis", a))
-    return Joint(name, kind, start, end, unit, own.expression(f"{what}: angle", typed(f"{what}: angle", angle)))
+    return Joint(name, kind, start, end, unit, own.expression(f"{what}: angle", angle, "rad"))

@@ -5,28 +5,23 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..errors import DeclarationError, UnknownNameError, check_kind, one_line
+from ..arguments import UNITS, count, number, public
+from ..errors import DeclarationError, NumberError, UnknownNameError, one_line
 from ..system.csv_rows import read_rows
 from .curves import Curve, curve
 from .density import Array
+from .expressions import coordinates, scalar, symbols_of
 from .motion import Motion
 from .parts import Expression
 
-_UNITS = {
-    "rad": 1.0,
-    "deg": math.radians(1.0),
-    "turn": math.tau,
-    "m": 1.0,
-    "cm": 1e-2,
-    "mm": 1e-3,
-    "um": 1e-6,
-}
-_TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
+_UNITS = UNITS["rad"] | UNITS["m"]
+_TIMES = UNITS["s"]
 _LEAST = 5
 """So many rows are needed at least for four pieces."""
 
@@ -50,6 +45,7 @@ class Recording:
     values: Array
 
 
+@public
 def read_samples(
     path: str | Path,
     *,
@@ -72,7 +68,7 @@ def read_samples(
     ----------
     path
         The file. Columns are parted by semicolons, tabs or commas; where they are not parted by commas, a comma may be the decimal
-        point. Lines that begin with ``#`` are passed over.
+        mark, in all numbers or in none. Lines that begin with ``#`` are passed over.
     value, time
         The columns of the values and of the times: by their name in the first line, or by their number, from 1.
     unit, time_unit
@@ -93,34 +89,46 @@ def read_samples(
     Raises :class:`.PathError` for a file that cannot be read, :class:`.DeclarationError` for a line that is no row of numbers,
     times that do not rise, and ends of a cycle that differ, and :class:`.UnknownNameError` for columns and units that are not.
     """
-    check_kind("file", path, "a path", str, Path)
     path = Path(path)
     units = ((unit, _UNITS, "unit"), (time_unit, _TIMES, "time unit"))
     for name, valid, what in units:
         if name not in valid:
             raise UnknownNameError(what, str(name), valid, place=path.name)
+    for what, told in (("period", period), ("advance", advance)):
+        _finite(f"{path.name}: {what}", 0.0 if told is None else told)
+    words = ("ratio", "offset", "stretch")
+    (ahead,), told_in = coordinates(f"{path.name}: offset", [(offset, "")])
+    each = zip(words, (ratio, ahead, stretch), strict=True)
+    scales = [scalar(f"{path.name}: {word}", x, symbols_of(x), "parameter") for word, x in each]
     recording = _read(path, time, value, unit, _TIMES[time_unit])
     if periodic or period is not None:
         recording = _closed(recording, None if period is None else period * _TIMES[time_unit], advance)
     elif advance:
         raise DeclarationError(f"{path.name}: advance is of a periodic motion; expected periodic=True")
     noise = _noise(recording, smoothing)
-    return _law(recording, noise, points, periodic or period is not None, advance, (ratio, offset, stretch))
+    return _law(recording, noise, points, periodic or period is not None, advance, scales, told_in)
+
+
+def _finite(what: str, value: object) -> None:
+    """Raise :class:`DeclarationError` for what is no finite number."""
+    try:
+        number(value)
+    except NumberError as error:
+        raise DeclarationError(f"{what}: {error}") from None
 
 
 def _read(path: Path, time: str | int, value: str | int, unit: str, second: float) -> Recording:
     """The two columns of a file."""
     rows = read_rows(path, "columns of times and values")
-    heads = rows[0].cells
-    if not any(math.isnan(rows[0].number(cell)) for cell in heads):
-        heads = ()
-    wanted = [_column(path.name, column, heads, len(rows[0].cells)) for column in (time, value)]
+    first = next(rows)
+    headed = any(math.isnan(first.number(cell)) for cell in first.cells)
+    wanted = [_column(path.name, column, first.cells if headed else (), len(first.cells)) for column in (time, value)]
     found: list[list[float]] = []
-    for row in rows[1 if heads else 0 :]:
-        cells = [row.cells[column] if column < len(row.cells) else "" for column in wanted]
+    for row in rows if headed else chain([first], rows):
+        cells = [row.cells[column] for column in wanted]
         numbers = [row.number(cell) for cell in cells]
-        for cell, number in zip(cells, numbers, strict=True):
-            if math.isnan(number):
+        for cell, found_number in zip(cells, numbers, strict=True):
+            if math.isnan(found_number):
                 raise DeclarationError(f"{row.where}: expected a finite number, got {cell!r}")
         if found and not numbers[0] > found[-1][0]:
             raise DeclarationError(f"{row.where}: times must rise, but {cells[0]} follows {found[-1][0]:g}")
@@ -131,13 +139,13 @@ def _read(path: Path, time: str | int, value: str | int, unit: str, second: floa
     return Recording(path.name, unit, t * second, values)
 
 
-def _column(place: str, column: str | int, heads: Sequence[str], count: int) -> int:
+def _column(place: str, column: str | int, heads: Sequence[str], many: int) -> int:
     if isinstance(column, str):
         if heads.count(column) != 1:
-            raise UnknownNameError("column", column, heads or [f"the numbers 1 to {count}"], place=place)
+            raise UnknownNameError("column", column, heads or [f"the numbers 1 to {many}"], place=place)
         return heads.index(column)
-    if not isinstance(column, int) or not 1 <= column <= count:
-        raise DeclarationError(f"{place}: column {column!r} is none of the {count} there are, numbered from 1")
+    if isinstance(column, bool) or not isinstance(column, int) or not 1 <= column <= many:
+        raise DeclarationError(f"{place}: column {column!r} is none of the {many} there are, numbered from 1")
     return column - 1
 
 
@@ -157,7 +165,7 @@ def _noise(recording: Recording, smoothing: float | str) -> float:
     """The noise that is to be smoothed away, in the unit of the values."""
     if smoothing == "estimated":
         return float(np.sqrt(np.mean(np.diff(recording.values, 4) ** 2) / _FOURTH))
-    if not isinstance(smoothing, (int, float)) or not 0.0 <= smoothing < math.inf:
+    if isinstance(smoothing, bool) or not isinstance(smoothing, (int, float)) or not 0.0 <= smoothing < math.inf:
         raise DeclarationError(
             f"{recording.name}: smoothing must be the noise [{recording.unit}], a number that is not negative, or 'estimated', "
             f"got {smoothing!r}"
@@ -166,7 +174,13 @@ def _noise(recording: Recording, smoothing: float | str) -> float:
 
 
 def _law(
-    recording: Recording, noise: float, points: int | None, periodic: bool, advance: float, scales: tuple[Expression, ...]
+    recording: Recording,
+    noise: float,
+    points: int | None,
+    periodic: bool,
+    advance: float,
+    scales: Sequence[Expression],
+    told_in: str,
 ) -> Motion:
     t, values, size = recording.t, recording.values, _UNITS[recording.unit]
     whole = float(t[-1] - t[0])
@@ -183,8 +197,7 @@ def _law(
         level[-1] = level[0]
     found = _curve(recording.name, t, level, periodic, noise)
     if points is not None:
-        if type(points) is not int or points < _LEAST:
-            raise DeclarationError(f"{recording.name}: points must be a whole number of at least {_LEAST}, got {points!r}")
+        count(f"{recording.name}: points", points, _LEAST)
         even = np.linspace(t[0], t[-1], points)
         found = _curve(recording.name, even, np.asarray(found(even)), periodic, 0.0)
     off = float(np.abs(np.asarray(found(t)) - level).max())
@@ -202,7 +215,7 @@ def _law(
     every = f", taken at {points} even times" if points else ""
     smoothed = f", smoothed by {noise:.3g} {recording.unit}" if noise else ""
     told = f"{t.size} samples of {recording.name} from {t[0]:g} to {t[-1]:g} s{', over and over' if periodic else ''}"
-    return Motion(graph, told=f"{told}{smoothed}{every}, at most {off:.3g} {recording.unit} off")
+    return Motion(graph, told=f"{told}{smoothed}{every}, at most {off:.3g} {recording.unit} off", unit=told_in)
 
 
 def _curve(name: str, t: Array, values: Array, periodic: bool, noise: float) -> Curve:

@@ -10,9 +10,10 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NoReturn
 
+from ..arguments import number, within
 from ..arithmetic.compensated import Precision
-from ..errors import AngleError, DeclarationError, ParameterError, PickleError, UnknownNameError
-from .angles import angle
+from ..errors import DeclarationError, NumberError, ParameterError, PickleError, UnknownNameError
+from ..tables import ANGLE, LENGTH
 from .density import Density
 from .drives import weighed
 from .even_points import EvenPoints, checked
@@ -25,28 +26,21 @@ from .parts import Expression, Friction
 from .possible import Demands, demands
 from .shaking import refuse_late
 from .stretches import Timetable, timetable
-from .times import Instants, Over, Times, Timing, instants_of, span_of
+from .times import TURNS, Instants, Over, Times, Timing, instants_of, span_of
 from .wanted_slopes import SENSITIVITY, others, sensitivities
 
 _KINDS = ("reaction", "multiplier", "load", "friction", "section", "output")
 STRENGTH = ("stress", "safety", "life", "deflection")
 """What is told of links that have a beam: it follows from their sections, which are wanted with it."""
 
-_TURNS = 4.0 * math.pi
-"""The largest direction of a posture [rad]: what is beyond was meant in degrees."""
-
 
 def _rough(name: str, value: object, turns: bool) -> float:
     """What a posture says of a direction [rad] or a place [m]. Raises :class:`DeclarationError`."""
-    if not turns:
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-            raise DeclarationError(f"posture of '{name}': expected a place along its line, a finite number [m], got {value!r}")
-        return float(value)
     try:
-        found = angle(value)
-    except AngleError as error:
+        found = number(value, ANGLE if turns else LENGTH)
+    except NumberError as error:
         raise DeclarationError(f"posture of '{name}': {error}") from None
-    if abs(found) > _TURNS:
+    if turns and abs(found) > TURNS:
         degrees = f"{math.degrees(found):.6g} deg, more than two turns"
         told = f"; '{value:g} deg' is {value:g} degrees" if isinstance(value, (int, float)) else ""
         raise DeclarationError(f"posture of '{name}': {found:.6g} rad is {degrees}{told}")
@@ -231,6 +225,8 @@ class Scene:
     elastic
         Whether least strain energy tells the forces that equilibrium leaves open, by the beams of links: of all, or of those that
         are named, and others are rigid. Forces that go through a link without a beam stay open.
+    rounding
+        How far axes [rad] and places [of its size] in space may be off where loops do not close as declared, 0 to 1e-3.
 
     Raises :class:`.DeclarationError` for what does not fit the mechanism, :class:`.UnknownNameError` for names it does not have,
     and :class:`.ParameterError` where the default parameters make a part impossible.
@@ -246,6 +242,7 @@ class Scene:
     drives: Mapping[str, Expression] | Sequence[str] | None = None
     over: Over | None = None
     elastic: Elastic = False
+    rounding: float = 1e-6
 
     def __post_init__(self) -> None:
         if not isinstance(self.mechanism, Mechanism):
@@ -264,7 +261,7 @@ class Scene:
         for name in self.posture:
             if name not in places:
                 raise UnknownNameError("link or joint in posture", name, places)
-        slides = [name for name, (_, axis) in coordinates.items() if axis.kind == "slide"]
+        slides = {name for name, (_, axis) in coordinates.items() if axis.kind == "slide"}
         rough = {name: _rough(name, value, name not in slides) for name, value in self.posture.items()}
         object.__setattr__(self, "posture", MappingProxyType(rough))
         for row in self.mechanism.rows.values():
@@ -279,6 +276,7 @@ class Scene:
         self.mechanism.freeze()
         Wanted.of(self.mechanism, self.wanted)
         checked_ratios(self.xi)
+        object.__setattr__(self, "rounding", within("rounding", self.rounding, 0.0, 1e-3))
         timing = self.timing()
         try:
             self.mechanism.values()
@@ -312,9 +310,7 @@ class Scene:
         return self.drives if isinstance(self.drives, Mapping) else None
 
     def __repr__(self) -> str:
-        start, stop = self.t[:2]
-        motion = ", ".join(self.motion) or "nothing"
-        wanted = ", ".join(self.wanted)
+        (start, stop), motion, wanted = self.t[:2], ", ".join(self.motion) or "nothing", ", ".join(self.wanted)
         asked = f"from {start} to {stop} s" if self.over is None else f"over {self.over[0]} from {self.over[1]} to {self.over[2]}"
         return f"<Scene of {self.mechanism.name}: drives {motion}, wants {wanted}, {self.timing().count} instants {asked}>"
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ..arguments import public
 from ..errors import DeclarationError
 from .density import Density
 from .matter import second_moments
@@ -27,6 +28,7 @@ class Shaking(OwnOutput):
     bodies: tuple[str, ...]
 
 
+@public
 def shaking(mechanism: Mechanism, name: str = "shaking", *, about: Sequence[Expression] = ()) -> tuple[OwnOutput, ...]:
     """Declare the shaking force and the shaking moment of a mechanism as outputs, and return them.
 
@@ -44,7 +46,7 @@ def shaking(mechanism: Mechanism, name: str = "shaking", *, about: Sequence[Expr
     axes = mechanism.measures.components
     if not isinstance(about, (tuple, list)) or len(about) not in (0, len(axes)):
         raise DeclarationError(f"shaking: expected a place ({', '.join(axes)}) for about, got {about!r}")
-    centre = [mechanism.own.expression("shaking: about", x) for x in about] or [0.0] * len(axes)
+    centre = [mechanism.own.expression("shaking: about", x, "m") for x in about] or [0.0] * len(axes)
     force, moment = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
     for body in mechanism.moving:
         points, moments = _matter(mechanism, body)

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..arguments import public
 from ..beams.beam import Beam
 from ..errors import DeclarationError, check_kind
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import times
-from .arguments import told_arguments
 from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
@@ -29,7 +29,7 @@ Or the directions of the child's x and y axes, in the parent's axes.
 """
 
 
-@told_arguments
+@public
 @dataclass(eq=False)
 class SpatialMechanism(Mechanism):
     """A mechanism under declaration whose links lie in space. What is common with :class:`.Mechanism` reads the same.
@@ -40,7 +40,8 @@ class SpatialMechanism(Mechanism):
     Where things are is said in one of two ways, joint by joint:
 
     - *relative*: a joint is between a point of its parent and a point of its child, its ``axis`` in the parent's axes, and
-      ``turned`` says how the child is turned against the parent where the joint's coordinates are zero;
+      ``turned`` says how the child is turned against the parent where the joint's coordinates are zero, by default as both lie
+      in the reference posture, or not at all if one has no place there;
     - *hard points*: all is said in ground axes, in one reference posture. A link lies ``between`` two places, a joint is ``at`` a
       place, its ``axis`` in ground axes; coordinates are zero in the reference posture, from where loops are assembled.
     """
@@ -78,7 +79,9 @@ class SpatialMechanism(Mechanism):
         that of a ``beam`` of :mod:`.beams` alone; or ``mass``, ``centre`` [m] and ``inertia`` about the centre [kg m^2], three
         moments or a matrix of three rows, for a body whose sections are not wanted. These are on the link's axes; of a link
         ``between`` places they are on the ground's, in the reference posture. Its y axis is then the part across the link of the
-        direction ``beside``, by default of the ground's axis that is most across it.
+        direction ``beside``, by default of the ground's axis that is most across it. The link carries it from there; but a bar,
+        slender and between two spherical joints, spins freely about its line: its y axis is the part across it of ``beside``,
+        fixed in the ground, at every instant, and without ``beside`` no stress is told of one that is not round.
         """
         self.own.free("link", name, self.bodies)
         what = f"link '{name}'"
@@ -86,17 +89,17 @@ class SpatialMechanism(Mechanism):
             raise DeclarationError(f"{what}: give its length, or the two places that it lies between")
         if beside is not None and between is None:
             raise DeclarationError(f"{what}: beside goes with between; a joint tells how a link of a length is turned")
-        reference = None
+        reference, aside = None, None
         if between is not None:
-            reference, length = lying(what, between, beside, self.own.expression)
+            reference, length, aside = lying(what, between, beside, self.own.expression)
 
         def rigid(centre: Any, inertia: Any) -> tuple[Vector, Any]:
-            place, moments = self._vector(f"{what}: centre", centre), tensor(what, inertia, self.own.expression)
+            place, moments = self._vector(f"{what}: centre", centre, "m"), tensor(what, inertia, self.own.expression)
             return (place, moments) if reference is None else (reference.local(place), rotated(moments, reference))
 
         beam = beam_of(what, beam, self.own.expression)
         matter = matter_of(what, mass, density, centre, inertia, self.own.expression, rigid, beam)
-        link = Link(name, self.own.expression(f"{what}: length", length), matter, beam)
+        link = Link(name, self.own.expression(f"{what}: length", length, "m"), matter, beam, beside=aside)
         self.bodies[name] = link
         if reference is not None:
             self.references[name] = reference
@@ -106,7 +109,7 @@ class SpatialMechanism(Mechanism):
         """The point of a body that is at a place (x, y, z) [m] of the reference posture."""
         check_kind("place", body, "a body", Ground, Link, PointMass)
         what = f"place on '{body.name}'"
-        return self._reference(what, body).point(body, self._vector(what, (x, y, z)))
+        return self._reference(what, body).point(body, self._vector(what, (x, y, z), "m"))
 
     def revolute(
         self,
@@ -180,7 +183,7 @@ class SpatialMechanism(Mechanism):
         turned: Turns = (),
     ) -> Joint:
         """Let ``child`` turn about ``axis`` and slide along it by ``lead`` [m] a turn: its coordinate is the angle."""
-        pitch = self.own.expression(f"joint '{name}': lead", lead) / math.tau
+        pitch = self.own.expression(f"joint '{name}': lead", lead, "m") / math.tau
         return self._spatial(name, "screw", parent, child, axis, None, at, turned, pitch)
 
     def planar(
@@ -325,9 +328,13 @@ class SpatialMechanism(Mechanism):
         self.own.free("joint", name, self.joints)
         what = f"joint '{name}'"
         directions: Triad = triad_of(what, axis, second, self.own.expression)
+        placed = at is not None
         if at is None:
             start, end = self.own.point(what, parent), self.own.point(what, child)
             zero = turned_by(what, turned, self.own.expression)
+            near, far = (self.references.get(point.body.name) for point in (start, end))
+            if not turned and near and far and start.body.oriented and end.body.oriented:
+                zero, placed = near.seen(far), True
         else:
             start, end, directions, zero = self._at_reference(what, parent, child, at, directions, turned)
         if start.body is end.body:
@@ -341,7 +348,7 @@ class SpatialMechanism(Mechanism):
             kind = "spherical" if kind == "revolute" else kind
         joint = Joint(name, kind, start, end, (1.0, 0.0, 0.0), 0.0, directions, zero, pitch)
         self.joints[name] = joint
-        if at is not None:
+        if placed:
             self.hard.add(name)
         return joint
 
@@ -357,7 +364,7 @@ class SpatialMechanism(Mechanism):
                 raise DeclarationError(f"{what}: at goes with bodies of '{self.name}', whose points follow from it, got {got}")
         assert isinstance(parent, Body)
         assert isinstance(child, Body)
-        place = self._vector(f"{what}: at", at)
+        place = self._vector(f"{what}: at", at, "m")
         for body in (parent, child):
             if isinstance(body, PointMass) and body.name not in self.references:
                 self.references[body.name] = Reference(place)
@@ -373,11 +380,11 @@ class SpatialMechanism(Mechanism):
             )
         return self.references[body.name]
 
-    def _vector(self, what: str, value: Any) -> Vector:
-        return vector(what, value, self.own.expression)
+    def _vector(self, what: str, value: Any, unit: str = "1") -> Vector:
+        return vector(what, value, self.own.expression, unit)
 
 
 def reference_posture(mechanism: Mechanism) -> dict[str, float]:
-    """Coordinates where all parts are where they were declared to be: zero, of joints that were declared at a place."""
+    """Coordinates where all parts are turned as they were declared to be: zero, of joints that take it from that posture."""
     hard = mechanism.hard if isinstance(mechanism, SpatialMechanism) else ()
     return {name: 0.0 for name, (joint, _) in mechanism.coordinates.items() if joint.name in hard}

@@ -15,10 +15,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..errors import AngleError, DeclarationError, UnknownNameError
-from ..system.numerals import real
+from ..arguments import number
+from ..errors import DeclarationError, NumberError, UnknownNameError, shown
+from ..system.brief import Brief
 from ..tables import ANGLE, LENGTH
-from .angles import angle
 from .density import Array
 from .even_points import EvenPoints, checked, points
 from .expressions import scalar
@@ -36,6 +36,9 @@ Times = tuple[Expression, Expression, int]
 
 Bound = float | str
 """A number, or a function of the parameters as CasADi writes it down, so that it can be compared and sent."""
+
+TURNS = 4.0 * math.pi
+"""Angles beyond these [rad], without a unit, were meant in degrees: the directions of a posture, and whole numbers over a drive."""
 
 _MOST_LOOKS = 1 << 16
 """At so many times at most is a motion looked at, whether it turns back."""
@@ -63,12 +66,13 @@ class Timing:
         if over is None:
             return cls(*_read(mechanism, "t", t))
         if not isinstance(over, (tuple, list)) or len(over) != 4 or not isinstance(over[0], str):
-            raise DeclarationError(f"over: expected (joint, start, stop, count), got {over!r}")
+            raise DeclarationError(f"over: expected (joint, start, stop, count), got {shown(over)}")
         if over[0] not in motion:
             raise UnknownNameError("driven joint in over", over[0], motion)
         slides = mechanism.coordinates[over[0]][1].kind == "slide"
-        bounds = [_typed(name, bound, over[0], slides) for name, bound in zip(("START", "STOP"), over[1:], strict=False)]
-        start, stop, count = _read(mechanism, "over", (*bounds, over[3]))
+        unit = LENGTH if slides else ANGLE
+        bounds = [_bound(name, bound, unit) for name, bound in zip(("START", "STOP"), over[1:], strict=False)]
+        start, stop, count = _read(mechanism, "over", (*bounds, over[3]), unit)
         if count < 2:
             raise DeclarationError(f"over: COUNT must be 2 or more, got {count}")
         if start == stop:
@@ -111,13 +115,28 @@ class Timing:
         return [start, stop, self.count, self.joint, around] if self.joint else [start, stop, self.count]
 
 
-@dataclass(frozen=True, eq=False)
-class DriveAxis:
-    """The coordinate of a driven ``joint`` at instants that are equal steps of it: ``values`` (t,), in ``unit``, rad or m."""
+@dataclass(frozen=True, eq=False, repr=False)
+class DriveAxis(Brief, np.lib.mixins.NDArrayOperatorsMixin):
+    """The coordinate of a driven ``joint`` at instants that are equal steps of it: ``values`` (t,), in ``unit``, rad or m.
+
+    NumPy and figures take it as its values.
+    """
 
     joint: str
     unit: str
     values: Array
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
+        return np.array(self.values, dtype) if copy else np.asarray(self.values, dtype)
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **keywords: Any) -> Any:
+        return getattr(ufunc, method)(*(one.values if isinstance(one, DriveAxis) else one for one in inputs), **keywords)
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __getitem__(self, chosen: Any) -> Any:
+        return self.values[chosen]
 
     @property
     def long_name(self) -> str:
@@ -221,33 +240,41 @@ def _shown(mechanism: Mechanism, joint: str, value: float) -> str:
     return f"{value:.6g} rad ({math.degrees(value):.6g} deg)"
 
 
-def _read(mechanism: Mechanism, what: str, even: Any) -> tuple[Bound, Bound, int]:
+def _read(mechanism: Mechanism, what: str, even: Any, unit: str = "s") -> tuple[Bound, Bound, int]:
     """Start, stop and count, each a number or an expression of parameters; two numbers are looked at as :func:`.checked` does."""
     if not isinstance(even, Sequence) or not any(isinstance(bound, ca.SX) for bound in even[:2]):
         if what == "t":
-            return checked(what, even)
+            return checked(what, even, unit)
         low, high, count = checked(what, _rising(even))
         falls = float(even[0]) > float(even[1])
         return (high, low, count) if falls else (low, high, count)
     if len(even) != 3:
-        raise DeclarationError(f"{what}: expected (start, stop, count), got {even!r}")
+        raise DeclarationError(f"{what}: expected (start, stop, count), got {shown(even)}")
     names = ("START", "STOP")
-    each = [scalar(f"{what}: {name}", bound, _symbols(mechanism), "parameter") for name, bound in zip(names, even[:2], strict=True)]
+    symbols = _symbols(mechanism)
+    each = [scalar(f"{what}: {name}", bound, symbols, "parameter", unit) for name, bound in zip(names, even[:2], strict=True)]
     _, _, count = checked(what, (0.0, 1.0, even[2]))
     start, stop = (_written(mechanism, bound) if isinstance(bound, ca.SX) else bound for bound in each)
     return start, stop, count
 
 
-def _typed(name: str, bound: Any, joint: str, slides: bool) -> Any:
-    """A bound that is a text as a number [rad or m]."""
-    if not isinstance(bound, str):
-        return bound
+def _bound(name: str, bound: Any, unit: str) -> Any:
+    """A bound of a coordinate, a text as a number.
+
+    Raises :class:`DeclarationError` for a text of another unit, and for an angle beyond two turns that is a whole number without a
+    unit: what turns so often is rarely whole in rad, and was meant in degrees.
+    """
     try:
-        return real(bound) if slides else angle(bound)
-    except AngleError as error:
+        found: Any = bound if isinstance(bound, ca.SX) else number(bound, unit, finite=False)
+    except NumberError as error:
         raise DeclarationError(f"over: {name}: {error}") from None
-    except ValueError:
-        raise DeclarationError(f"over: {name}: expected a number in m, for joint '{joint}' slides, got {bound!r}") from None
+    told = unit == ANGLE and isinstance(found, float) and not isinstance(bound, str)
+    if told and math.isfinite(found) and abs(found) > TURNS and found == round(found):
+        raise DeclarationError(
+            f"over: {name}: {found:.6g} rad is {math.degrees(found):.6g} deg, more than two turns; '{found:g} deg' is {found:g} "
+            f"degrees, and '{found:g} rad' as many turns"
+        )
+    return found
 
 
 def _rising(even: Any) -> Any:

@@ -19,8 +19,6 @@ import numpy.typing as npt
 from .. import codegen
 from ..codegen.stages import Stages
 from ..declare.density import Array
-from ..declare.ends import BEYOND
-from ..declare.motion import ends_function
 from ..declare.scene import Scene
 from ..declare.times import Times, Timing
 from ..equations.derive import derive
@@ -29,9 +27,8 @@ from ..errors import DeclarationError
 from ..evaluate import checked_laws, checked_span, outputs_of
 from ..instants.backends import begun, compiled, provenance
 from ..instants.cost import seconds
-from ..instants.determinacy import determinate, undetermined
-from ..instants.laws import made_of
-from ..instants.refusal import WITH_SERIES, Status
+from ..instants.determinacy import undetermined
+from ..instants.refusal import Status
 from ..instants.rung import Rung
 from ..instants.solution import Provenance
 from ..quantities import Output, compared
@@ -40,11 +37,11 @@ from ..sensitivity.peaks import PeakSlopes
 from ..sensitivity.slopes import Slopes
 from ..summits.sharpness import bent, with_watched
 from ..system.room import cores, require
-from ..tables import table_of
 from .gradients import MeanSlopes, curvature, gradient, mean_slopes, tied
 from .interpreted import columns_of, outcome
 from .reduction import KeptOutputs, stages_of
 from .times import DesignTimes
+from .watch import Watch
 from .witness import failures
 
 _PIECE = 1 << 22
@@ -80,8 +77,7 @@ class DesignEngine:
     """A scene compiled for many designs.
 
     ``parameters`` are the columns of what :meth:`evaluate` takes; ``quantities``, with ``units``, and ``efforts`` those of what it
-    gives; ``columns`` those of histories. ``left_open`` are the outputs that equilibrium leaves open for the parameters'
-    defaults, which are left out; what it leaves open for some design is NaN there.
+    gives; ``columns`` those of histories. What equilibrium leaves open for a design is NaN there.
     """
 
     scene: Scene
@@ -91,7 +87,6 @@ class DesignEngine:
     graph: SceneGraph
     stages: Stages
     library: codegen.DesignsLibrary | None
-    left_open: tuple[Output, ...]
     provenance: Provenance
 
     @classmethod
@@ -113,8 +108,7 @@ class DesignEngine:
         checked_laws(scene, checked_span(scene, times.timing, values), tuple(values.values()))
         instants, even = times.default
         p = np.array(list(values.values()))
-        _, left_open = determinate(graph, instants, p)
-        kept = KeptOutputs.of(graph, rung, left_open)
+        kept = KeptOutputs.of(graph, rung)
         require("the instants of a design", (kept.reduction.rows, instants.size))
         watched = with_watched(graph, kept.sharpness)
         stages = stages_of(watched, rung, even, alike=times.common)
@@ -128,11 +122,11 @@ class DesignEngine:
 
         found = compiled(rung, build)
         if found is None:
-            return cls(scene, rung, times, kept, graph, stages, None, left_open, provenance("vm", "", "", rung))
+            return cls(scene, rung, times, kept, graph, stages, None, provenance("vm", "", "", rung))
         compiler, library = found
         backend = "lanes" if compiler.language == "c++" else "c"
         made = provenance(backend, compiler.version, " ".join(library.flags), rung)
-        return cls(scene, rung, times, kept, graph, stages, library, left_open, made)
+        return cls(scene, rung, times, kept, graph, stages, library, made)
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -142,12 +136,12 @@ class DesignEngine:
     @cached_property
     def quantities(self) -> tuple[str, ...]:
         """The names of the quantities that have peaks."""
-        return tuple(str(self.kept.quantities[k]) for k in self.shown)
+        return tuple(map(str, self.kept.quantities))
 
     @property
     def units(self) -> tuple[str, ...]:
         """Their units."""
-        return tuple(self.kept.units[k] for k in self.shown)
+        return self.kept.units
 
     @cached_property
     def _unit_numbers(self) -> npt.NDArray[np.intp]:
@@ -160,15 +154,13 @@ class DesignEngine:
         return tuple(map(str, self.kept.efforts))
 
     @property
-    def undetermined(self) -> tuple[str, ...]:
-        """The names of the outputs that are left open for the parameters' defaults."""
-        return tuple(map(str, self.left_open))
-
-    @property
     def doubtful(self) -> tuple[str, ...]:
-        """The names of the quantities, and the outputs in histories, that equilibrium may leave open for some designs."""
-        numbers = sorted({quantity for _, quantity in self.kept.reduction.doubts})
-        return tuple(dict.fromkeys(map(str, [*(self.kept.quantities[k] for k in numbers), *self.graph.doubtful])))
+        """The names of quantities, and outputs in histories, that equilibrium or friction at rest may leave open for designs."""
+        doubts = {quantity for _, quantity in self.kept.reduction.doubts}
+        quantities, outputs = tuple(self.kept.quantities[k] for k in sorted(doubts)), [*self.graph.doubtful]
+        if self.graph.checks("rest"):
+            quantities, outputs = self.kept.quantities, [*self.graph.outputs]
+        return tuple(dict.fromkeys(map(str, [*quantities, *outputs])))
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -178,8 +170,7 @@ class DesignEngine:
     @cached_property
     def outputs(self) -> tuple[Output, ...]:
         """The outputs that histories have."""
-        found = self.graph.outputs
-        return tuple(o for o in found if (o.part in self.kept.links if o.along else o not in self.left_open))
+        return tuple(self.graph.outputs)
 
     @property
     def t(self) -> Array:
@@ -219,11 +210,10 @@ class DesignEngine:
         peaks, means = (np.empty((3, n, q)), np.empty((2, n, e)))
         found = Outcome(np.zeros(n, np.int8), peaks[0], peaks[1], peaks[2], means[0], means[1], columns, times=times)
         # What all have in common is not cut: it is made once.
-        size = n if self.times.common else max(1, _PIECE // self.count)
+        many = len(self.graph.columns) if self.watch.columns else 1
+        size = n if self.times.common and many == 1 else max(1, _PIECE // (many * self.count))
         for start in range(0, n, max(size, 1)):
             self._fill(p[start : start + size], _rows(found, slice(start, start + size)), threads or cores())
-        if len(self.shown) < q:
-            found = replace(found, **{name: getattr(found, name)[:, self.shown] for name in ("value", "t", "xi")})
         if self.times.law is not None:
             found = replace(found, over=self.times.at_drive(found.t, p))
         if columns is None:
@@ -240,7 +230,7 @@ class DesignEngine:
         series = np.empty((len(p), len(self.graph.columns), self.count))
         found = Outcome(np.zeros(len(p), np.int8), nothing, nothing, nothing, nothing, nothing, series)
         self._series(p, asked, found.status, series, 1)
-        self._refuse_motions(p, asked, found)
+        self._refuse_motions(p, asked, found, series)
         return found
 
     def told(self, out: Array, p: Array) -> dict[Output, Array]:
@@ -259,10 +249,10 @@ class DesignEngine:
         """Whether :meth:`told` changes nothing of the columns."""
         return not self.graph.loop_angles and not self.graph.doubtful
 
-    @property
-    def watches_ends(self) -> bool:
-        """Whether motions put something into curves, whose ends are to be watched."""
-        return ends_function(self.scene.laws, self.scene.mechanism.symbols) is not None
+    @cached_property
+    def watch(self) -> Watch:
+        """What designs must hold to between their instants, if there is anything."""
+        return Watch(self.scene, self.graph)
 
     @property
     def shared(self) -> bool:
@@ -276,16 +266,16 @@ class DesignEngine:
             found.times[:] = asked
         together = found.series is not None and asked is even
         self._evaluate(p, even, found if together else replace(found, series=None), threads)
-        self._refuse_motions(p, even, found)
+        self._refuse_motions(p, even, found, found.series if together else None)
         if found.series is None or together:
             return
         others = np.zeros(len(p), np.int8)
         self._series(p, asked, others, found.series, threads)
-        failed = np.isin(found.status, WITH_SERIES) & (others != Status.OK)
+        failed = (found.status == Status.OK) & (others != Status.OK)
         found.status[failed] = others[failed]
         for array in (found.value, found.t, found.xi, found.mean, found.rms):
             array[failed] = np.nan
-        found.series[~np.isin(found.status, WITH_SERIES)] = np.nan
+        found.series[found.status != Status.OK] = np.nan
 
     def _evaluate(self, p: Array, t: Array, found: Outcome, threads: int) -> None:
         if self.library is None:
@@ -313,29 +303,27 @@ class DesignEngine:
         known = [bent(self.graph, self.kept.sharpness, times, row) for times, row in zip(t, p, strict=True)]
         return np.array(known) if known else np.zeros((1, 0), bool)
 
-    def _refuse_motions(self, p: Array, t: Array, found: Outcome) -> None:
-        """Take the result from designs whose motion puts into a curve what is beyond its ends at any of their instants."""
-        ends = ends_function(self.scene.laws, self.scene.mechanism.symbols)
-        if ends is None:
+    def _refuse_motions(self, p: Array, t: Array, found: Outcome, columns: Array | None) -> None:
+        """Take the result from designs whose motion cannot be; ``columns`` are those at the instants, if they are known."""
+        if not self.watch:
             return
-        times = (t[min(k, len(t) - 1)] for k in range(len(p)))
-        farthest = [float(ends(at[None], row).full().max(initial=0.0)) for row, at in zip(p, times, strict=True)]
-        far = [k for k, share in enumerate(farthest) if not share <= BEYOND["double"] and np.isfinite(p[k]).all()]
-        found.status[far] = Status.BEYOND_ENDS
+        status = self.watch.statuses(p, t, found.status, lambda: self._columns(p, t) if columns is None else columns)
+        some = status != found.status
+        found.status[some] = status[some]
         for array in (found.value, found.t, found.xi, found.mean, found.rms, found.series):
             if array is not None:
-                array[far] = np.nan
+                array[some] = np.nan
 
-    @cached_property
-    def shown(self) -> list[int]:
-        """The quantities that are given: of a link that has some forces determined, all are made, and these are shown."""
-        found, table = enumerate(self.kept.quantities), table_of(self.scene.mechanism.space)
-        return [k for k, q in found if q.group != "section" or not made_of(self.left_open, q.part, q.member, table)]
+    def _columns(self, p: Array, t: Array) -> Array:
+        """The columns (n, columns, t) of designs at any instants."""
+        columns = np.empty((len(p), len(self.graph.columns), self.count))
+        self._series(p, t, np.zeros(len(p), np.int8), columns, 1)
+        return columns
 
     @cached_property
     def slopes(self) -> Slopes:
         """The derivatives of :attr:`quantities` at points; they are derived and compiled when they are first asked for."""
-        return Slopes.of(self.graph, [self.kept.quantities[k] for k in self.shown], self.kept.sharpness, self.rung)
+        return Slopes.of(self.graph, self.kept.quantities, self.kept.sharpness, self.rung)
 
     def gradient(self, p: Array, value: Array, t: Array, xi: Array) -> PeakSlopes:
         """How the peaks (q,) of a design (parameters,), which are at times ``t`` and ratios ``xi``, change with all parameters."""

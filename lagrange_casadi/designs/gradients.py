@@ -11,7 +11,7 @@ import numpy.typing as npt
 from ..declare.density import Array
 from ..instants.signals import section_forces
 from ..instants.sizes import size_of
-from ..instants.statistics import shares
+from ..instants.statistics import counted, shares
 from ..quantities import Output
 from ..sensitivity.curvatures import Curvatures
 from ..sensitivity.ends import end_bends, end_slopes
@@ -49,14 +49,16 @@ def mean_slopes(slopes: Slopes, times: DesignTimes, p: Array, chosen: Numbers) -
     first, last = _ends(slopes, times, instants, p)
     share = np.linspace(0.0, 1.0, instants.size)[:, None]
     moved = (1.0 - share) * first + share * last
-    z, weights, nowhere = slopes.iterated(instants, p, instants), shares(instants), np.full(instants.size, np.nan)
+    z, nowhere = slopes.iterated(instants, p, instants), np.full(instants.size, np.nan)
     mean, rms = np.empty((2, chosen.size, p.size))
     for k, number in enumerate(chosen):
         found = slopes.at(instants, z, p, np.full(instants.size, number, np.intc), nowhere)
-        whole = found.slopes + found.rate[:, None] * moved
+        counts = counted(found.value)
+        weights, value = shares(instants, counts), np.where(counts, found.value, 0.0)
+        whole = np.where(counts[:, None], found.slopes + found.rate[:, None] * moved, 0.0)
         mean[k] = weights @ whole
         with np.errstate(all="ignore"):
-            rms[k] = (weights * found.value) @ whole / np.sqrt(weights @ found.value**2)
+            rms[k] = (weights * value) @ whole / np.sqrt(weights @ value**2)
     return MeanSlopes(mean, rms)
 
 

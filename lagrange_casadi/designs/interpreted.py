@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -11,9 +12,10 @@ from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import Evaluated, run
 from ..instants.determinacy import undetermined
-from ..instants.refusal import Status, refusal, resting
+from ..instants.refusal import Status, refusal
 from ..instants.rung import Rung
 from ..instants.signals import Quantity, Signals, section_forces
+from ..instants.statistics import counted, shares
 from .reduction import KeptOutputs
 
 
@@ -27,7 +29,7 @@ class DesignResult:
 
 
 def columns_of(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, Evaluated | None]:
-    """The columns of a design at instants, or why it has no result; at rest it has both, and no number where friction reaches."""
+    """The columns of a design at instants, or why it has no result; no number where friction at rest reaches."""
     if not np.isfinite(p).all():
         return Status.INVALID, None
     reduction = kept.reduction
@@ -41,40 +43,36 @@ def columns_of(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton:
     why = refusal(graph, evaluated, t, p, rung)
     if why is not None:
         return why.status, None
-    return Status.AT_REST if resting(graph, evaluated.out).any() else Status.OK, evaluated
+    return Status.OK, evaluated
 
 
 def outcome(graph: SceneGraph, kept: KeptOutputs, t: Array, p: Array, newton: int | None) -> tuple[Status, DesignResult | None]:
-    """What is kept of a design, or why it has no result; of one at rest, its columns."""
+    """What is kept of a design, or why it has no result."""
     status, evaluated = columns_of(graph, kept, t, p, newton)
     if evaluated is None:
         return status, None
     reduction, rung = kept.reduction, Rung("vm", newton=newton)
-    if status != Status.OK:
-        open_ = np.full((3, len(reduction.units)), np.nan), np.full((2, len(kept.efforts)), np.nan)
-        return status, DesignResult(*open_, evaluated.out)
     left_open = {graph.doubtful[output] for output in undetermined(graph, evaluated.out, p, rung)}
     doubted = {quantity for check, quantity in reduction.doubts if reduction.checks[check][0] in left_open}
     told = [k for k in range(len(reduction.units)) if k not in doubted]
-    signals = _signals(graph, kept, t, p, newton, evaluated, told)
     efforts = evaluated.out[[graph.outputs[effort] for effort in kept.efforts]]
     with np.errstate(all="ignore"):
-        found = signals.peaks([reduction.units[k] for k in told])
-        means = np.stack(_means(efforts))
-    if not found.told.all():
-        return Status.PEAK_NOT_TOLD, None
+        means = np.array([_means(t, effort) for effort in efforts]).reshape(-1, 2).T
     peaks = np.full((3, len(reduction.units)), np.nan)
-    peaks[:, told] = found.value, found.t, found.xi
+    if told:
+        found = _signals(graph, kept, t, p, newton, evaluated, told).peaks([reduction.units[k] for k in told])
+        if not found.told.all():
+            return Status.PEAK_NOT_TOLD, None
+        peaks[:, told] = found.value, found.t, found.xi
     means[:, [effort not in told for effort in reduction.efforts]] = np.nan
     return Status.OK, DesignResult(peaks, means, evaluated.out)
 
 
-def _means(rows: Array) -> tuple[Array, Array]:
-    """Mean and root of the mean square over time, by trapezia."""
-    weights = np.ones(rows.shape[1])
-    weights[[0, -1]] = 0.5 if rows.shape[1] > 1 else 1.0
-    weights /= weights.sum()
-    return rows @ weights, np.sqrt(rows**2 @ weights)
+def _means(t: Array, values: Array) -> tuple[Any, Any]:
+    """Mean and root of the mean square over the times that count, by trapezia."""
+    counts = counted(values)
+    weights, values = shares(np.arange(t.size, dtype=float), counts), np.where(counts, values, 0.0)
+    return values @ weights, np.sqrt(values**2 @ weights)
 
 
 def _signals(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -10,13 +11,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import public
 from ..arithmetic.compensated import Precision
 from ..declare.density import Array
 from ..declare.scene import Scene, without_fitted, without_life
 from ..declare.times import Over, Times
 from ..errors import AssemblyError, DeclarationError, UnknownNameError
 from ..evaluate import evaluate
-from ..instants.refusal import WITH_SERIES, Status
+from ..instants.refusal import Status
 from ..instants.rung import Backend, Rung
 from ..instants.solution import Solution
 from .engine import DesignEngine, Outcome
@@ -112,10 +114,33 @@ class Curvature:
         return {name: dict(zip(self.parameters, row, strict=True)) for name, row in zip(self.parameters, rows, strict=True)}
 
 
+class _Answers(threading.local):
+    """The arrays that evaluations write into, and what is bound to them: made anew in each thread that asks for them."""
+
+    def __init__(self, engine: DesignEngine, defaults: Array) -> None:
+        self.p, self.status = defaults[None].copy(), np.zeros(1, np.int8)
+        graph, quantities, efforts = engine.graph, len(engine.kept.quantities), len(engine.efforts)
+        self.history = np.empty((1, len(graph.columns), engine.count))
+        self.rows = {str(output): self.history[0, graph.outputs[output]] for output in engine.outputs}
+        kept = ("value", "peak_t", "xi", "mean", "rms")
+        places = {name: np.empty((1, quantities if k < 3 else efforts)) for k, name in enumerate(kept)}
+        self.seen = Peaks(*(places[name][0] for name in kept))
+        self.fill: tuple[Callable[[], None], Callable[[], None]] | None = None
+        # Where nothing but the values changes from call to call, all that remains is the call itself.
+        if engine.library is not None and engine.times.common and not engine.watch:
+            even, asked = engine.times.of(self.p)
+            bind = partial(engine.library.bound, p=self.p)
+            nowhere = np.zeros((1, 0), bool)
+            self.fill = (
+                bind(asked, nowhere, results={"status": self.status, **dict.fromkeys(kept), "history": self.history}),
+                bind(even, engine.bent(self.p, even), results={"status": self.status, **places, "history": None}),
+            )
+
+
 class Prepared:
     """A scene that answers for values of its parameters: see :func:`prepare`.
 
-    It serves one thread at a time, for its answers lie in arrays of its own; :meth:`copy` gives one for another thread.
+    Any number of threads may use one. Answers lie in arrays of the thread that asks; :meth:`copy` has others, for the same thread.
     """
 
     def __init__(self, engine: DesignEngine, explain: Callable[[Mapping[str, float]], Solution]) -> None:
@@ -123,23 +148,7 @@ class Prepared:
         self._declared = engine.scene.mechanism.parameters
         self._place = {name: k for k, name in enumerate(self._declared)}
         self._defaults = np.array(list(engine.scene.mechanism.values().values()))
-        self._p, self._status = self._defaults[None].copy(), np.zeros(1, np.int8)
-        graph, quantities, efforts = engine.graph, len(engine.kept.quantities), len(engine.efforts)
-        self._history = np.empty((1, len(graph.columns), engine.count))
-        self._rows = {str(output): self._history[0, graph.outputs[output]] for output in engine.outputs}
-        kept = ("value", "peak_t", "xi", "mean", "rms")
-        places = {name: np.empty((1, quantities if k < 3 else efforts)) for k, name in enumerate(kept)}
-        self._seen = Peaks(*(places[name][0] for name in kept))
-        self._fill: tuple[Callable[[], None], Callable[[], None]] | None = None
-        # Where nothing but the values changes from call to call, all that remains is the call itself.
-        if engine.library is not None and engine.times.common and not engine.watches_ends:
-            even, asked = engine.times.of(self._p)
-            bind = partial(engine.library.bound, p=self._p)
-            nowhere = np.zeros((1, 0), bool)
-            self._fill = (
-                bind(asked, nowhere, results={"status": self._status, **dict.fromkeys(kept), "history": self._history}),
-                bind(even, engine.bent(self._p, even), results={"status": self._status, **places, "history": None}),
-            )
+        self._answers = _Answers(engine, self._defaults)
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -168,49 +177,40 @@ class Prepared:
 
     @property
     def t(self) -> Array:
-        """The instants (t,) [s] of the last evaluation; before the first one, those of the defaults."""
-        instants: Array = self._engine.times.of(self._p)[1][0]
+        """The instants (t,) [s] of this thread's last evaluation; before the first one, those of the defaults."""
+        instants: Array = self._engine.times.of(self._answers.p)[1][0]
         return instants
 
     def copy(self) -> Prepared:
-        """Another one with arrays of its own, for another thread; nothing is derived or compiled for it."""
+        """Another one with arrays of its own, for answers that are needed side by side; nothing is derived or compiled for it."""
         return Prepared(self._engine, self._explain)
 
     def __call__(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Mapping[str, Array]:
         """The series (t,) of all outputs, by name, for values of parameters, by name or in a mapping; the defaults for others.
 
         Where a joint that rubs is at rest, what depends on its friction is NaN at these instants, as in :func:`.evaluate`.
-        The arrays are this object's own: its next evaluation overwrites them. Raises :class:`UnknownNameError` and
-        :class:`ParameterError` for what is no parameter, or out of range, and :class:`AssemblyError` where there is no result.
+        This thread's next evaluation overwrites the arrays. Raises :class:`UnknownNameError` and :class:`ParameterError` for what
+        is no parameter, or out of range, and :class:`AssemblyError` where there is no result.
         """
-        self._set(values, named)
-        engine = self._engine
-        if self._fill is None:
-            found = engine.histories(self._p)
+        engine, p = self._engine, self._set(values, named)
+        answers = self._answers
+        fill = answers.fill
+        if fill is None:
+            found = engine.histories(p)
             assert found.series is not None
-            self._refuse(found.status[0], WITH_SERIES)
-            return {str(o): row for o, row in engine.told(found.series[0], self._p[0]).items()}
-        self._fill[0]()
-        self._refuse(self._status[0], WITH_SERIES)
-        return self._rows if engine.plain else {str(o): row for o, row in engine.told(self._history[0], self._p[0]).items()}
+            self._refuse(found.status[0], p)
+            return {str(o): row for o, row in engine.told(found.series[0], p[0]).items()}
+        fill[0]()
+        self._refuse(answers.status[0], p)
+        return answers.rows if engine.plain else {str(o): row for o, row in engine.told(answers.history[0], p[0]).items()}
 
     def peaks(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Peaks:
-        """Peaks and means for values of parameters; the arrays are this object's own, as those of a call are.
+        """Peaks and means for values of parameters; this thread's next evaluation overwrites the arrays.
 
-        Raises what a call does, and :class:`AssemblyError` too where a peak cannot be told, or a joint that rubs is at rest.
+        Raises what a call does, and :class:`AssemblyError` too where a peak cannot be told. Where a joint that rubs is at rest,
+        instants do not count for what depends on its friction; what is open at all of them is NaN.
         """
-        self._set(values, named)
-        engine = self._engine
-        if self._fill is None:
-            found = engine.evaluate(self._p, threads=1)
-            self._refuse(found.status[0])
-            return Peaks(*(array[0] for array in (found.value, found.t, found.xi, found.mean, found.rms)))
-        self._fill[1]()
-        self._refuse(self._status[0])
-        if len(engine.shown) == len(engine.kept.quantities):
-            return self._seen
-        value, t, xi = (array[engine.shown] for array in (self._seen.value, self._seen.t, self._seen.xi))
-        return Peaks(value, t, xi, self._seen.mean, self._seen.rms)
+        return self._peaks(self._set(values, named))
 
     def gradient(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Gradient:
         """Peaks and their derivatives by all parameters, for values of these.
@@ -218,10 +218,8 @@ class Prepared:
         They are exact, by automatic differentiation. The first call derives and compiles them, in doubles; a later one takes a few
         times as long as :meth:`peaks` at most. Raises what that does.
         """
-        peaks = self.peaks(values, **named)
-        value, t, xi = (x.copy() for x in (peaks.value, peaks.t, peaks.xi))
-        found = self._engine.gradient(self._p[0], value, t, xi)
-        p = self._p[0].copy()
+        p, value, t, xi = self._kept_peaks(values, named)
+        found = self._engine.gradient(p, value, t, xi)
         look, add_up = partial(self._engine.tied, p, value, found), partial(self._engine.mean_slopes, p)
         return Gradient(self.quantities, self.parameters, value, t, xi, found.slopes, found.kinds, self.efforts, look, add_up)
 
@@ -232,10 +230,9 @@ class Prepared:
         them, in doubles. Raises what :meth:`gradient` does, and :class:`DeclarationError` for a motion by samples that does not
         tell its knots.
         """
-        peaks = self.peaks(values, **named)
-        value, t, xi = (x.copy() for x in (peaks.value, peaks.t, peaks.xi))
-        own = self._engine.gradient(self._p[0], value, t, xi)
-        return Curvature(self.quantities, self.parameters, self._engine.curvature(self._p[0], value, t, xi, own))
+        p, value, t, xi = self._kept_peaks(values, named)
+        own = self._engine.gradient(p, value, t, xi)
+        return Curvature(self.quantities, self.parameters, self._engine.curvature(p, value, t, xi, own))
 
     def designs(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
         """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`; ``threads`` share them.
@@ -244,8 +241,27 @@ class Prepared:
         """
         return self._engine.evaluate(p, threads=threads, histories=histories)
 
-    def _set(self, values: Mapping[str, Any] | None, named: Mapping[str, Any]) -> None:
-        row = self._p[0]
+    def _peaks(self, p: Array) -> Peaks:
+        engine, answers = self._engine, self._answers
+        fill = answers.fill
+        if fill is None:
+            found = engine.evaluate(p, threads=1)
+            self._refuse(found.status[0], p)
+            return Peaks(*(array[0] for array in (found.value, found.t, found.xi, found.mean, found.rms)))
+        fill[1]()
+        self._refuse(answers.status[0], p)
+        return answers.seen
+
+    def _kept_peaks(self, values: Mapping[str, Any] | None, named: Mapping[str, Any]) -> tuple[Array, Array, Array, Array]:
+        """The parameters (parameters,), and of the peaks there the values, times and ratios, as copies that stay."""
+        p = self._set(values, named)
+        peaks = self._peaks(p)
+        return p[0].copy(), peaks.value.copy(), peaks.t.copy(), peaks.xi.copy()
+
+    def _set(self, values: Mapping[str, Any] | None, named: Mapping[str, Any]) -> Array:
+        """Put values of parameters into this thread's row of them (1, parameters)."""
+        p: Array = self._answers.p
+        row = p[0]
         row[:] = self._defaults
         if not (values is None or hasattr(values, "items")):
             raise DeclarationError(f"parameters: expected values by name, as {{'l': 0.25}}, got {values!r}")
@@ -257,17 +273,16 @@ class Prepared:
                 if not (type(value) is float and parameter.low <= value <= parameter.high):
                     parameter.check(value)
                 row[self._place[name]] = value if type(value) is float else parameter.number(value)
+        return p
 
-    def _refuse(self, status: int, valid: Sequence[Status] = (Status.OK,)) -> None:
-        if status not in valid:
+    def _refuse(self, status: int, p: Array) -> None:
+        if status != Status.OK:
             # It says where, and why.
-            solution = self._explain(dict(zip(self.parameters, self._p[0].tolist(), strict=True)))
-            if status == Status.AT_REST:
-                told = "; ".join(solution.notes)
-                raise AssemblyError(f"there are no peaks: {told}; take instants that move, or give the friction smooth")
+            self._explain(dict(zip(self.parameters, p[0].tolist(), strict=True)))
             raise AssemblyError(f"there is no result: {Status(status).meaning}")
 
 
+@public
 def prepare(
     scene: Scene,
     *,

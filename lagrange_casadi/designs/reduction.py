@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,8 +54,8 @@ class KeptOutputs:
     which are efforts and outputs of the user's own.
 
     Quantities are the wanted outputs, without angles that loops set, and sizes of joints' reactions; the section forces of
-    ``links`` come last. What equilibrium leaves open for the parameters' defaults is left out. ``reduction`` is the same in numbers
-    of columns, as C takes it.
+    ``links`` come last. Which of them equilibrium leaves open is decided for each design. ``reduction`` is the same in numbers of
+    columns, as C takes it.
     """
 
     quantities: tuple[Output, ...]
@@ -67,22 +66,21 @@ class KeptOutputs:
     sharpness: Sharpness
 
     @classmethod
-    def of(cls, graph: SceneGraph, rung: Rung, left_open: Collection[Output] = ()) -> KeptOutputs:
-        """What is kept of a scene's designs on a rung, less what is ``left_open``."""
+    def of(cls, graph: SceneGraph, rung: Rung) -> KeptOutputs:
+        """What is kept of a scene's designs on a rung."""
         mechanism, at = graph.scene.mechanism, graph.outputs
         table = table_of(mechanism.space)
         chosen: dict[Output, tuple[int, ...]] = {}
         for output, k in at.items():
-            if output.along or output in graph.loop_angles or output in left_open:
+            if output.along or output in graph.loop_angles:
                 continue
             for member in table.reactions if output.group == "reaction" else ():
                 size = Output("reaction", output.part, member)
                 parts = [other for other in size.components(table) if other in at]
-                if parts[:1] == [output] and len(parts) > 1 and not any(other in left_open for other in parts):
+                if parts[:1] == [output] and len(parts) > 1:
                     chosen[size] = tuple(at[other] for other in parts)
             chosen[output] = (k,)
         links = [link for link in mechanism.links.values() if Output("law", link.name, "n0") in at]
-        links = [link for link in links if not all(made_of(left_open, link.name, force, table) for force in table.forces)]
         names = [*chosen, *(Output("section", link.name, force) for link in links for force in table.forces)]
         if not names:
             raise DeclarationError("designs: nothing is wanted that has a peak")

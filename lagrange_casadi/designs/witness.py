@@ -72,14 +72,13 @@ def _agreement(whole: Solution, found: Mapping[Output, Array], rounded: Mapping[
     largest: dict[str, float] = {}
     for name, values in whole.outputs.items():
         unit = whole.unit(name)
-        largest[unit] = max(largest.get(unit, 0.0), float(np.max(np.abs(values))))
+        largest[unit] = max(largest.get(unit, 0.0), float(np.fmax.reduce(np.abs(values), initial=0.0)))
     worst = 0.0
     for name, values in found.items():
-        if np.isnan(values).any():  # what equilibrium leaves open
-            continue
-        gaps, unit = values - whole.outputs[name], whole.unit(name)
+        there = ~np.isnan(values)  # no number is what equilibrium leaves open, or friction at rest does
+        gaps, unit = values[there] - whole.outputs[name][there], whole.unit(name)
         if unit == "rad":
             gaps = gaps - math.tau * np.rint(gaps / math.tau)
-        gap = max(float(np.max(np.abs(gaps))) - rounded.get(name, 0.0), 0.0)
+        gap = max(float(np.max(np.abs(gaps), initial=0.0)) - rounded.get(name, 0.0), 0.0)
         worst = max(worst, gap / (max(largest[unit], 1.0 if unit == "rad" else 0.0) or 1.0))
     return worst

@@ -19,8 +19,9 @@ from ..declare.description import parts_of
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.solution import Peak, Solution
 from ..quantities import Output
+from ..strength.parts import bending_of, fitted_in, strong_of
 from ..tables import PLANE, SPACE
-from .pictures import save
+from .pictures import one_at_a_time, save
 from .readable import scale_for
 from .views import AZIMUTH, ELEVATION
 
@@ -49,6 +50,7 @@ class TimePlot:
         """Full names of the quantities it draws."""
         return self.quantities
 
+    @one_at_a_time()
     def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         units: dict[str, list[str]] = {}
@@ -91,6 +93,7 @@ class SpanPlot:
         """Full names of the quantities it draws."""
         return (self.quantity,)
 
+    @one_at_a_time()
     def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         figure, (axes,) = _figure()
@@ -119,6 +122,7 @@ class SectionMaps:
         """Full names of the quantities it draws."""
         return tuple(str(Output("section", self.link, force)) for force in PLANE.forces)
 
+    @one_at_a_time()
     def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         from matplotlib.figure import Figure
@@ -179,6 +183,7 @@ class MechanismDrawing:
         """Full names of the quantities it draws; the poses of all bodies besides."""
         return ()
 
+    @one_at_a_time()
     def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         from .drawing import draw_mechanism
@@ -201,6 +206,7 @@ class StrengthPlot:
         """Full names of the quantities it draws."""
         return SectionMaps(self.name, self.link).needs()
 
+    @one_at_a_time()
     def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         from .strength_plot import draw_strength
@@ -222,6 +228,7 @@ class UtilisationPlot:
         reactions = [str(Output("reaction", joint, member)) for joint in self.joints for member in ("fx", "fy")]
         return (*(name for link in self.links for name in SectionMaps(self.name, link).needs()), *reactions)
 
+    @one_at_a_time()
     def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         from .strength_plot import draw_utilisation
@@ -241,6 +248,7 @@ class DeflectionPlot:
         """Full names of the quantities it draws."""
         return SectionMaps(self.name, self.link).needs()
 
+    @one_at_a_time()
     def draw(self, solution: Solution, si: bool = False) -> Figure:
         """The figure."""
         from .deflection_plot import draw_deflection
@@ -282,24 +290,9 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
     links, joints = strong_of(solution, "yield_strength", "elasticity"), fitted_in(solution)
     if links or joints:
         specs.append(UtilisationPlot("utilisation", links, joints))
-    specs += [DeflectionPlot(f"deflection_{link}", link) for link in strong_of(solution, "elasticity")]
+    specs += [DeflectionPlot(f"deflection_{link}", link) for link in bending_of(solution)]
     overlay = () if solution.table is SPACE else (MechanismDrawing("postures", count=8, overlay=True),)
     return (*specs, *overlay, MechanismDrawing())
-
-
-def fitted_in(solution: Solution) -> tuple[str, ...]:
-    """The joints that have pins or bearings whose reactions are told."""
-    fitted = (name for name, joint in solution.description["joints"].items() if "fitted" in joint)
-    forces = {name: [o for o in solution.outputs if o.group == "reaction" and o.part == name] for name in fitted}
-    return tuple(name for name, own in forces.items() if own and all(map(solution.determined, own)))
-
-
-def strong_of(solution: Solution, *numbers: str) -> tuple[str, ...]:
-    """The links with a beam whose forces are told, and whose material has some numbers."""
-    bodies, forces = solution.description["bodies"], solution.table.sections
-    told = (link for link in solution.links_with_sections if "beam" in bodies[link])
-    known = (link for link in told if all(solution.determined(Output("section", link, force)) for force in forces))
-    return tuple(link for link in known if all(bodies[link]["beam"]["material"][name] is not None for name in numbers))
 
 
 def _in_ground_axes(output: Output) -> Iterator[Output]:

@@ -6,7 +6,16 @@ import html
 from collections.abc import Sequence
 from pathlib import Path
 
+from ..system.manifest import Manifest
+
 NAME = "index.html"
+MANIFEST = Manifest(
+    "figures.json",
+    "lagrange-casadi figures",
+    "draw into",
+    "an earlier drawing",
+    "move what you want to keep, or choose another folder",
+)
 
 _STYLE = """
 :root { color-scheme: light dark; }

@@ -11,12 +11,13 @@ from ..declare.scene import Scene
 from ..errors import AssemblyError, PostureError
 from ..evaluate import evaluate
 from ..instants.solution import Solution
-from .pictures import draw_into, save
+from .pictures import draw_into, one_at_a_time, save
 
 _MOST, _LARGE = 8, 40
 """How many ways are drawn, and of how many bodies a mechanism may be: each way is derived."""
 
 
+@one_at_a_time()
 def draw_postures(scene: Scene, file: BinaryIO) -> int:
     """Draw the ways in which a scene that leaves them open can be assembled at its start, up to eight, as PNG; how many there are.
 

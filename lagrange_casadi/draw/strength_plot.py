@@ -70,6 +70,7 @@ def _map(figure: Figure, axes: Any, stress: Stress, along: Array, label: str, un
 
 
 def _goodman(axes: Any, stress: Stress, unit: Scale) -> None:
+    stress = Stress(stress.member.counted)
     material = stress.member.beam.material
     endurance, ultimate = (strength / _MEGA for strength in material.needs("Goodman's diagram", "endurance", "ultimate"))
     swings: dict[str, list[Loaded]] = {"swings, every fibre": [], "in notches": []}

@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import BinaryIO
 
 from ..study.trade import Trade
-from .pictures import save
+from .pictures import one_at_a_time, save
 
 _OFFSETS = ((0, 6), (0, -14), (0, 17), (0, -25))
 _LEAST = 1e-17
 
 
+@one_at_a_time()
 def draw_trade(trade: Trade, file: BinaryIO, ending: str) -> None:
     """Write the picture into a file; its kind is told by a name's ending."""
     from matplotlib.figure import Figure

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.description import Description, density_of
 from ..declare.held import ENDS, Ends, ends_of
@@ -72,6 +73,7 @@ class Vibration:
         return f"{told}; rigid links are not enough: by {which}, bending is off by {off}"
 
 
+@public
 def vibration(solution: Solution, link: str, ends: Ends | None = None) -> Vibration:
     """The first bending frequency of a link between its joints, and whether rigid links are enough for it: see :class:`Vibration`.
 

@@ -19,10 +19,11 @@ from dataclasses import dataclass, replace
 
 import casadi as ca
 
+from ..arguments import public
 from ..declare.mechanism import Mechanism
 from ..declare.meshes import FITTING, Fit, Loss, Mesh, Transmission, Wrench
 from ..declare.parts import Body, Constraint, Expression, Point
-from ..errors import DeclarationError, check_kind
+from ..errors import DeclarationError
 from ..geometry.vectors import cross, dot, minus, times
 from .courses import Numbers, along, courses_on, fits_of, length
 from .pitch import root
@@ -37,6 +38,7 @@ class Belt:
     ratio: Expression
 
 
+@public
 def belt(
     mechanism: Mechanism,
     name: str,
@@ -66,14 +68,13 @@ def belt(
     Raises :class:`.DeclarationError` for bodies that do not turn about parallel axes through these points, radii for which the
     pulleys touch, a preload that is negative, and an efficiency that is none.
     """
-    check_kind("belt", mechanism, "a Mechanism first", Mechanism)
     what, own = f"belt '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
     ends = own.point(what, first), own.point(what, second)
     one, two = courses_on(mechanism, what, *ends, None if carrier is None else own.point(what, carrier).body, rack=False)
     if not isinstance(radii, (list, tuple)) or len(radii) != 2:
         raise DeclarationError(f"{what}: expected 2 radii, got {radii!r}")
-    r1, r2 = (own.expression(f"{what}: radii", radius) for radius in radii)
+    r1, r2 = (own.expression(f"{what}: radii", radius, "m") for radius in radii)
     fits = [fit for radius in (r1, r2) for fit in positive(what, "radii", radius)]
     tension = own.expression(f"{what}: preload", preload)
     if isinstance(tension, float) and tension < 0.0:
@@ -102,7 +103,7 @@ def belt(
     mesh = Mesh(*ends, one.carrier, one.place, away, Wrench(across, times(r1, u)), Wrench(both))
     sense = 1 if (numbers.of(dot(u, v)) > 0.0) != crossed else -1
     other = -sense * r2
-    ahead = own.expression(f"{what}: offset", offset)
+    ahead = own.expression(f"{what}: offset", offset, "m")
     loss = None
     if efficiency is not None:
         value = own.expression(f"{what}: efficiency", efficiency)

@@ -10,10 +10,11 @@ from typing import Any
 
 import casadi as ca
 
+from ..arguments import public
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression, Link, Point
 from ..declare.spatial import SpatialMechanism
-from ..errors import DeclarationError, check_kind
+from ..errors import DeclarationError
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +41,7 @@ class Bent:
         return self.corners[number]
 
 
+@public
 def bent_bar(
     mechanism: Mechanism,
     name: str,
@@ -57,13 +59,14 @@ def bent_bar(
 
     Raises :class:`.DeclarationError` for corners that are no places, or lie on each other, and as declaring links does.
     """
-    check_kind("bent_bar", mechanism, "a Mechanism first", Mechanism)
     what, size = f"bent bar '{name}'", 3 if mechanism.space else 2
     if not isinstance(corners, Sequence) or len(corners) < 3:
         raise DeclarationError(f"{what}: expected three corners or more; a straight bar is a link")
     places = [_place(mechanism, f"{what}: corner {k}", corner, size) for k, corner in enumerate(corners)]
     if (mass is None) == (per_length is None):
         raise DeclarationError(f"{what}: give its mass, or what it has per_length")
+    mass = None if mass is None else mechanism.own.expression(f"{what}: mass", mass, "kg")
+    per_length = None if per_length is None else mechanism.own.expression(f"{what}: per_length", per_length, "kg/m")
     ways = [[b - a for a, b in zip(*pair, strict=True)] for pair in itertools.pairwise(places)]
     lengths = [_length(way) for way in ways]
     for k, length in enumerate(lengths):
@@ -82,7 +85,7 @@ def bent_bar(
 def _place(mechanism: Mechanism, what: str, corner: Any, size: int) -> list[Any]:
     if not isinstance(corner, Sequence) or isinstance(corner, str) or len(corner) != size:
         raise DeclarationError(f"{what}: expected {size} numbers, got {corner!r}")
-    return [mechanism.own.expression(what, number) for number in corner]
+    return [mechanism.own.expression(what, number, "m") for number in corner]
 
 
 def _length(way: Sequence[Any]) -> Any:

@@ -14,11 +14,12 @@ from typing import Any, cast
 
 import casadi as ca
 
+from ..arguments import public
 from ..declare.expressions import sound
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Constraint, Expression, Ground, Link, Point
-from ..errors import DeclarationError, check_kind
+from ..errors import DeclarationError
 from ..geometry.rotation import direction
 from .cam_profile import CamProfile, profile_of
 from .hertz import STEEL, largest_pressure
@@ -67,6 +68,7 @@ class Cam:
         return profile_of(self.name, function, list(values.values()), count)
 
 
+@public
 def disc_cam(
     mechanism: Mechanism,
     name: str,
@@ -104,10 +106,9 @@ def disc_cam(
     width, elastic
         The width of the contact [m], for the pressure of Hertz, and Young's modulus [Pa] and Poisson's ratio of both bodies.
 
-    Raises :class:`.DeclarationError` for joints that are others, a lift that has a kink, and a profile that is undercut with the
-    default parameters.
+    Raises :class:`.DeclarationError` for joints that are others, a lift that is no function, and a profile that is
+    undercut with the default parameters.
     """
-    check_kind("disc_cam", mechanism, "a Mechanism first", Mechanism)
     what, own = f"cam '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
     layout = layout_of(what, mechanism, cam, follower, point, roller, flat, side, base_radius)
@@ -118,7 +119,7 @@ def disc_cam(
     )
     design = make(what, x, rise, layout)
     touched = follower.child if flat and follower.kind == "revolute" else layout.held
-    constraint = _contact(mechanism, name, cam, touched, design)
+    constraint = _contact(mechanism, name, cam, touched, design, rise)
     made = Cam(name, mechanism, constraint, design)
     _outputs(made, cam, width, elastic)
     profile = made.profile()
@@ -175,8 +176,10 @@ def layout_of(
     held = follower.child if point is None else own.point(what, point)
     if held.body is not follower.child.body:
         raise DeclarationError(f"{what}: its point must be on '{follower.child.body.name}', which joint '{follower.name}' leads")
-    radius = 0.0 if roller is None else _positive(f"{what}: roller", own.expression(what, roller))
-    return Layout(cam, follower, held, _positive(f"{what}: base_radius", own.expression(what, base)), radius, side)
+    radius = 0.0 if roller is None else _positive(f"{what}: roller", own.expression(f"{what}: roller", roller, "m"))
+    return Layout(
+        cam, follower, held, _positive(f"{what}: base_radius", own.expression(f"{what}: base_radius", base, "m")), radius, side
+    )
 
 
 def _positive(what: str, radius: Any) -> Any:
@@ -268,7 +271,7 @@ def _swung(layout: Layout, rise: Any, cosine: Any, distance: Any) -> tuple[tuple
     return along, (-layout.side * along[1], layout.side * along[0])
 
 
-def _contact(mechanism: Mechanism, name: str, cam: Joint, touched: Point, design: Design) -> Constraint:
+def _contact(mechanism: Mechanism, name: str, cam: Joint, touched: Point, design: Design, rise: Any) -> Constraint:
     """The equation of the contact, in places, so that its force acts where it is."""
     centre = mechanism.place(cam.child)
     place = _sum(mechanism.place(touched), centre, -1.0)
@@ -278,9 +281,8 @@ def _contact(mechanism: Mechanism, name: str, cam: Joint, touched: Point, design
     if here.turned is not None:
         lean = mechanism.direction(cast(Link, touched.body))
         gap = gap + here.moment * _cross(here.turned, (ca.cos(lean), ca.sin(lean)))
-    # Off the contact its slope may jump, as the normal turns by the lift's slope; on it, that counts for nothing.
     phi = mechanism.own.expression(f"cam '{name}'", gap, moving=True)
-    return mechanism.constraints.setdefault(name, Constraint(name, phi))
+    return mechanism.constraints.setdefault(name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn)))
 
 
 def _at(design: Design, angle: Any) -> Design:

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from ..arguments import public
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Body, Expression, Link, Point
-from ..errors import DeclarationError, check_kind
+from ..errors import DeclarationError
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +28,7 @@ class Cylinder:
     rod_area: Expression
 
 
+@public
 def cylinder(
     mechanism: Mechanism,
     name: str,
@@ -49,11 +51,10 @@ def cylinder(
 
     Raises :class:`.DeclarationError` for sizes that cannot be, and as declaring links and joints does.
     """
-    check_kind("cylinder", mechanism, "a Mechanism first", Mechanism)
     what, own = f"cylinder '{name}'", mechanism.own
     if mechanism.space:
         raise DeclarationError(f"{what}: cylinders lie in a plane; in space declare two links and a prismatic joint")
-    bore, rod = own.expression(f"{what}: bore", bore), own.expression(f"{what}: rod", rod)
+    bore, rod = own.expression(f"{what}: bore", bore, "m"), own.expression(f"{what}: rod", rod, "m")
     back = own.expression(f"{what}: back_pressure", back_pressure)
     if not isinstance(bore, ca.SX) and not isinstance(rod, ca.SX) and not 0.0 <= rod < bore:
         raise DeclarationError(f"{what}: its rod must be thinner than its bore, got {rod:g} m in {bore:g} m")

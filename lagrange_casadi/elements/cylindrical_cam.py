@@ -21,11 +21,12 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Constraint, Expression, Ground, Link, Point
-from ..errors import DeclarationError, check_kind
+from ..errors import DeclarationError
 from ..geometry.rotation import Rotation, direction
 from ..geometry.vectors import ZERO, Vector, cross, dot, minus, plus, times
 from .hertz import STEEL, largest_pressure
@@ -86,6 +87,7 @@ class CylindricalCam:
         return np.asarray(function(angles[None], list(values.values())).full().T)
 
 
+@public
 def cylindrical_cam(
     mechanism: Mechanism,
     name: str,
@@ -119,9 +121,8 @@ def cylindrical_cam(
 
     Of a follower that slides the roller turns about the line from the drum's axis to its centre; of one that swings, about an axis
     along its joint's. Raises :class:`.DeclarationError` for joints that are others, a roller on the drum's axis or too large
-    for the groove's bends, and a lift that has a kink or is not the same after a turn.
+    for the groove's bends, and a lift that is not the same after a turn.
     """
-    check_kind("cylindrical_cam", mechanism, "a Mechanism first", Mechanism)
     what, own = f"cam '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
     for joint, kinds in ((cam, ("revolute",)), (follower, ("prismatic", "revolute"))):
@@ -134,9 +135,17 @@ def cylindrical_cam(
         raise DeclarationError(f"{what}: its point must be on '{follower.child.body.name}', which joint '{follower.name}' leads")
     x = ca.SX.sym("angle")
     rise = rise_of(what, mechanism, lift, x)
-    design = _groove(what, mechanism, x, own.expression(f"{what}: start", start) + rise, cam, follower, held)
+    design = _groove(
+        what,
+        mechanism,
+        x,
+        own.expression(f"{what}: start", start, "rad" if follower.kind == "revolute" else "m") + rise,
+        cam,
+        follower,
+        held,
+    )
     _check(what, mechanism, design, rise, follower)
-    constraint = _contact(mechanism, name, cam, held, design)
+    constraint = _contact(mechanism, name, cam, held, design, rise)
     made = CylindricalCam(name, mechanism, constraint, design, cam)
     turn = mechanism.coordinate(cam)
     cosine, across = (ca.substitute(ca.SX(value), x, turn) for value in _lean(design))
@@ -145,7 +154,7 @@ def cylindrical_cam(
     if width is not None:
         if roller is None:
             raise DeclarationError(f"{what}: width needs roller, the roller's radius [m]")
-        round_ = _round(what, mechanism, design, own.expression(f"{what}: roller", roller))
+        round_ = _round(what, mechanism, design, own.expression(f"{what}: roller", roller, "m"))
         force = mechanism.results.multiplier(constraint)
         # The flank is as far beside the path as the roller's radius, on the side from which it pushes.
         bend = ca.sign(force) * ca.substitute(ca.SX(design.bend), x, turn)
@@ -223,7 +232,7 @@ def _check(what: str, mechanism: Mechanism, design: Groove, rise: Any, follower:
         raise DeclarationError(f"{what}: its lift must be the same after a turn of the cam; expected a period of 2 pi")
 
 
-def _contact(mechanism: Mechanism, name: str, cam: Joint, held: Point, design: Groove) -> Constraint:
+def _contact(mechanism: Mechanism, name: str, cam: Joint, held: Point, design: Groove, rise: Any) -> Constraint:
     """The equation of the contact, in places, so that its force acts where it is."""
     drum, turn = cam.child.body, mechanism.coordinate(cam)
     assert isinstance(drum, Link)
@@ -243,7 +252,7 @@ def _contact(mechanism: Mechanism, name: str, cam: Joint, held: Point, design: G
         off = minus((seen[0], seen[1], seen[2]), there)
         gap = gap + dot(arm, off)
     phi = mechanism.own.expression(f"cam '{name}'", ca.substitute(gap, design.angle, turn), moving=True)
-    return mechanism.constraints.setdefault(name, Constraint(name, phi))
+    return mechanism.constraints.setdefault(name, Constraint(name, phi, lift=ca.substitute(rise, design.angle, turn)))
 
 
 def _lean(design: Groove) -> tuple[Any, Any]:

@@ -14,11 +14,11 @@ from typing import Any, Literal
 
 import casadi as ca
 
-from ..declare.expressions import typed
+from ..arguments import public
 from ..declare.mechanism import Mechanism
 from ..declare.meshes import Fit, Mesh, Transmission, Wrench
 from ..declare.parts import Body, Constraint, Expression, Point
-from ..errors import DeclarationError, check_kind
+from ..errors import DeclarationError
 from ..geometry.vectors import cross, dot, minus
 from .courses import Course, Numbers, courses_on, fits_of
 from .losses import braking_of, loss_of, lost
@@ -41,6 +41,7 @@ class Gears:
     ratio: Expression
 
 
+@public
 def gears(
     mechanism: Mechanism,
     name: str,
@@ -94,7 +95,6 @@ def gears(
     Raises :class:`.DeclarationError` for bodies that do not turn about axes through these points, centres that do not fit the
     radii, numbers of teeth that are not whole, and angles out of range; values of parameters that break these are refused as well.
     """
-    check_kind("gears", mechanism, "a Mechanism first", Mechanism)
     what, own = f"gears '{name}'", mechanism.own
     own.free("constraint", name, mechanism.constraints)
     if hand not in ("right", "left"):
@@ -118,7 +118,7 @@ def gears(
         meshes.append(replace(mesh, braking=braking_of(pitch)) if rubs else mesh)
         fits += [*pitch.fits, *(fit for one in pair for fit in fits_of("its centre", one))]
     ways = [course.way(mechanism) for course in found[0]]
-    ahead = own.expression(f"{what}: offset", offset)
+    ahead = own.expression(f"{what}: offset", offset, "m")
     constraint = mechanism.constraint(name, told.radii[0] * ways[0] + pitches[0].other * ways[1] - ahead)
     loss = None
     if rubs:
@@ -147,18 +147,16 @@ def _teeth(
     own, count = mechanism.own, 1 if pair[1].slides else 2
     fits: list[Fit] = []
 
-    def each(word: str, values: Any) -> list[Expression]:
+    def each(word: str, values: Any, unit: str = "1") -> list[Expression]:
         listed = list(values) if isinstance(values, (list, tuple)) else [values]
         if len(listed) != count:
             raise DeclarationError(f"{what}: expected {count} {word}, got {len(listed)}")
-        return [own.expression(f"{what}: {word}", value) for value in listed]
+        return [own.expression(f"{what}: {word}", value, unit) for value in listed]
 
     if (module is None) == (radii is None):
         raise DeclarationError(f"{what}: give module and teeth, or radii")
     names = ("pressure_angle", "helix_angle")
-    pressure, helix = (
-        own.expression(f"{what}: {one}", typed(f"{what}: {one}", angle)) for one, angle in zip(names, angles, strict=True)
-    )
+    pressure, helix = (own.expression(f"{what}: {one}", angle, "rad") for one, angle in zip(names, angles, strict=True))
     fits += within(what, "pressure_angle", pressure, 0.0, _FLATTEST)
     fits += within(what, "helix_angle", helix, -_STEEPEST, _STEEPEST)
     if not mechanism.space and not (isinstance(helix, float) and helix == 0.0):
@@ -169,12 +167,12 @@ def _teeth(
     if module is not None:
         if z is None:
             raise DeclarationError(f"{what}: give module and teeth, or radii")
-        size = own.expression(f"{what}: module", module)
+        size = own.expression(f"{what}: module", module, "m")
         fits += positive(what, "module", size)
         cosine = ca.cos(helix) if isinstance(helix, ca.SX) else math.cos(helix)
         r = [size * value / (2 * cosine) for value in z]
     else:
-        r = each("radii", radii)
+        r = each("radii", radii, "m")
         for value in r:
             fits += positive(what, "radii", value)
     ratio = 1.0 if count == 1 else r[1] / r[0] if z is None else z[1] / z[0]

@@ -26,7 +26,7 @@ def largest_pressure(
 
     Raises :class:`.DeclarationError` for a width that is not positive, and constants of no material.
     """
-    wide = mechanism.own.expression(f"{what}: width", width)
+    wide = mechanism.own.expression(f"{what}: width", width, "m")
     if isinstance(wide, ca.SX):
         wide = wide * sound(wide > 0.0)
     elif wide <= 0.0:

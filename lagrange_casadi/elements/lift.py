@@ -9,7 +9,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..declare.kinks import refuse_kinks
+from ..declare.expressions import told
 from ..declare.mechanism import Mechanism
 from ..errors import DeclarationError
 
@@ -19,13 +19,14 @@ _LOOKED_AT = 37
 def rise_of(what: str, mechanism: Mechanism, lift: Callable[[Any], Any], angle: Any) -> Any:
     """The lift as an expression of the symbol ``angle``.
 
-    Raises :class:`.DeclarationError` for what is no function of expressions, and where its slope jumps within a turn.
+    Raises :class:`.DeclarationError` for what is no function of expressions, and where it is no finite number.
     """
     try:
         rise = ca.SX(lift(angle))
-    except (TypeError, ValueError, AttributeError, RuntimeError) as error:
-        # What Python's functions and CasADi's raise where they are given what they do not take.
-        raise DeclarationError(f"{what}: lift must be a function of the cam's angle, of CasADi's expressions: {error}") from None
+    except Exception as error:  # whatever a user's function raises
+        raise DeclarationError(
+            f"{what}: lift must be a function of the cam's angle, of CasADi's expressions: {told(error)}"
+        ) from None
     defaults = [parameter.default for parameter in mechanism.parameters.values()]
     angles = np.linspace(0.0, math.tau, _LOOKED_AT)
     values = ca.Function("lift", [angle, mechanism.symbols], [ca.densify(rise)])(angles[None], defaults).full().ravel()
@@ -35,5 +36,4 @@ def rise_of(what: str, mechanism: Mechanism, lift: Callable[[Any], Any], angle: 
             f"{what}: lift is no finite number at {first:.4g} deg of the cam; expected a function of CasADi's expressions, "
             "with casadi.sin in place of math.sin"
         )
-    refuse_kinks(f"{what}: its lift", rise, angle, mechanism.symbols, defaults, (-math.tau, math.tau))
     return rise

@@ -6,10 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ..arguments import public
 from ..declare.joints import Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Body, Expression, Link, Point
-from ..errors import DeclarationError, check_kind
+from ..errors import DeclarationError
 from .gears import Gears, gears
 from .ranges import positive
 from .wheel import wheel
@@ -30,6 +31,7 @@ class Planetary:
     centres: Expression
 
 
+@public
 def planetary(
     mechanism: Mechanism,
     name: str,
@@ -69,7 +71,6 @@ def planetary(
 
     Raises :class:`.DeclarationError` for teeth that do not fit, and as :func:`.gears` does.
     """
-    check_kind("planetary", mechanism, "a Mechanism first", Mechanism)
     what, own = f"planetary set '{name}'", mechanism.own
     if mechanism.space:
         raise DeclarationError(f"{what}: it lies in a plane; in space declare planets, pins and gears")
@@ -88,7 +89,7 @@ def planetary(
     apart = of_planet + 2
     if planets > 1 and apart > (of_sun + of_planet) * math.sin(math.pi / planets):
         raise DeclarationError(f"{what}: {planets} planets of {of_planet} teeth have no room round a sun of {of_sun}")
-    size = own.expression(f"{what}: module", module)
+    size = own.expression(f"{what}: module", module, "m")
     positive(what, "module", size)
     middle, centres = own.point(what, carrier), size * (of_sun + of_planet) / 2
     found, pins = [], []

@@ -9,10 +9,11 @@ from typing import Any
 
 import casadi as ca
 
+from ..arguments import public
 from ..declare.expressions import plain
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression, Link, Point
-from ..errors import DeclarationError, check_kind
+from ..errors import DeclarationError
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +34,7 @@ class Plate:
         return self.link.at(x, y)
 
 
+@public
 def plate(
     mechanism: Mechanism,
     name: str,
@@ -50,7 +52,6 @@ def plate(
     Raises :class:`.DeclarationError` for what is no polygon: fewer than three corners, edges that cross, no area.
     """
     what = f"plate '{name}'"
-    check_kind("plate", mechanism, "a Mechanism first", Mechanism)
     if mechanism.space:
         raise DeclarationError(f"{what}: plates lie in a plane; in space declare a link with mass, centre and inertia")
     if not isinstance(corners, Sequence) or len(corners) < 3:
@@ -59,14 +60,15 @@ def plate(
     for k, corner in enumerate(corners):
         if not isinstance(corner, Sequence) or isinstance(corner, str) or len(corner) != 2:
             raise DeclarationError(f"{what}: corner {k}: expected (x, y), got {corner!r}")
-        places.append(tuple(mechanism.own.expression(f"{what}: corner {k}", number) for number in corner))
+        places.append(tuple(mechanism.own.expression(f"{what}: corner {k}", number, "m") for number in corner))
     if (mass is None) == (per_area is None):
         raise DeclarationError(f"{what}: give its mass, or what it has per_area")
     _refuse_crossing(what, places)
     area, x, y, second = area_of(places)
     if isinstance(area, float) and area == 0.0:
         raise DeclarationError(f"{what}: its corners lie on a line")
-    whole: Any = mass if per_area is None else ca.fabs(ca.SX(area)) * per_area
+    told: Any = mechanism.own.expression(what, mass, "kg") if per_area is None else mechanism.own.expression(what, per_area)
+    whole = told if per_area is None else ca.fabs(ca.SX(area)) * told
     farthest = ca.SX(0)
     for corner in places:
         farthest = ca.fmax(farthest, ca.sqrt(ca.SX(corner[0]) ** 2 + ca.SX(corner[1]) ** 2))

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import public
 from ..declare.curves import Curve, curve
 from ..declare.density import Array
 from ..declare.joints import Joint
@@ -45,6 +46,7 @@ class ProfileLift:
         return self.curve(angle)
 
 
+@public
 def read_profile(path: str | os.PathLike[str]) -> Array:
     """The points of a profile from a CSV file, (n, 2) [m], of its columns ``x`` and ``y``, beside others.
 
@@ -54,27 +56,28 @@ def read_profile(path: str | os.PathLike[str]) -> Array:
     line that has no numbers there.
     """
     rows = read_rows(path, "the columns x and y")
-    heads = [_HEAD.fullmatch(cell) for cell in rows[0].cells]
+    first = next(rows)
+    heads = [_HEAD.fullmatch(cell) for cell in first.cells]
     names = [head.group(1) if head else "" for head in heads]
     places = []
     for column in "xy":
         if names.count(column) != 1:
-            raise DeclarationError(f"{rows[0].where}: expected one column '{column}', as in x [mm], got {', '.join(rows[0].cells)}")
+            raise DeclarationError(f"{first.where}: expected one column '{column}', as in x [mm], got {', '.join(first.cells)}")
         head = heads[names.index(column)]
         unit = (head.group(2) if head else None) or "m"
         if unit not in _UNITS:
-            raise DeclarationError(f"{rows[0].where}: column '{column}' cannot be in '{unit}'; valid: {', '.join(_UNITS)}")
+            raise DeclarationError(f"{first.where}: column '{column}' cannot be in '{unit}'; valid: {', '.join(_UNITS)}")
         places.append((names.index(column), _UNITS[unit]))
-    points = np.empty((len(rows) - 1, 2))
-    for k, row in enumerate(rows[1:]):
-        for j, (place, unit) in enumerate(places):
-            cell = row.cells[place] if place < len(row.cells) else ""
-            points[k, j] = row.number(cell, unit)
-            if math.isnan(points[k, j]):
-                raise DeclarationError(f"{row.where}: expected a finite number for {'xy'[j]}, got {cell!r}")
-    return points
+    points = []
+    for row in rows:
+        points.append([row.number(row.cells[place], unit) for place, unit in places])
+        for column, (place, _), number in zip("xy", places, points[-1], strict=True):
+            if math.isnan(number):
+                raise DeclarationError(f"{row.where}: expected a finite number for {column}, got {row.cells[place]!r}")
+    return np.array(points).reshape(-1, 2)
 
 
+@public
 def profile_lift(
     mechanism: Mechanism,
     cam: Joint,

@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from ..arguments import count, number, public
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Expression, Link
 from ..declare.spatial import SpatialMechanism
-from ..errors import DeclarationError, check_kind
+from ..errors import DeclarationError
 
 _CORNERS = 48
 
 
+@public
 def wheel(
     mechanism: Mechanism,
     name: str,
@@ -24,7 +26,7 @@ def wheel(
     density: Expression = 7850.0,
     teeth: int | None = None,
     internal: bool = False,
-    turned: float = 0.0,
+    turned: float | str = 0.0,
 ) -> Link:
     """Declare a round disc about its base, and return it as a link: a gear by its pitch radius, a pulley, a flywheel.
 
@@ -37,23 +39,23 @@ def wheel(
 
     Raises :class:`.DeclarationError` for sizes that cannot be.
     """
-    check_kind("wheel", mechanism, "a Mechanism first", Mechanism)
     what, own = f"wheel '{name}'", mechanism.own
     if (mass is None) == (width is None):
         raise DeclarationError(f"{what}: give its mass, or its width and density")
-    outer, inner = own.expression(f"{what}: radius", radius), own.expression(f"{what}: bore", bore)
+    outer, inner = own.expression(f"{what}: radius", radius, "m"), own.expression(f"{what}: bore", bore, "m")
     if isinstance(outer, float) and isinstance(inner, float) and not 0.0 <= inner < outer:
         raise DeclarationError(f"{what}: its bore must be smaller than its radius, got {inner:g} m in {outer:g} m")
-    thick = 0.0 if width is None else own.expression(f"{what}: width", width)
-    told = own.expression(f"{what}: mass", mass) if mass is not None else None
+    thick = 0.0 if width is None else own.expression(f"{what}: width", width, "m")
+    told = own.expression(f"{what}: mass", mass, "kg") if mass is not None else None
+    density = own.expression(f"{what}: density", density)
+    turned = number(turned, "rad")
     whole = density * math.pi * (outer * outer - inner * inner) * thick if told is None else told
     polar = whole * (outer * outer + inner * inner) / 2
     if isinstance(mechanism, SpatialMechanism):
         across = polar / 2 + whole * thick * thick / 12
         return mechanism.link(name, length=outer, mass=whole, centre=(0.0, 0.0, 0.0), inertia=(polar, across, across))
     link = mechanism.link(name, length=outer, mass=whole, centre=(0.0, 0.0), inertia=polar)
-    if teeth is not None and (type(teeth) is not int or teeth < 1):
-        raise DeclarationError(f"{what}: teeth must be a whole number, got {teeth!r}")
+    teeth = None if teeth is None else count(f"{what}: teeth", teeth)
     edges = [
         _edge(size, teeth if inward == internal else None, turned, inward=inward)
         for size, inward in ((outer, False), (inner, True))

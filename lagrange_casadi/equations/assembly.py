@@ -8,6 +8,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..declare.corners import smooth_constraint
 from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Constraint
@@ -56,7 +57,9 @@ def assemble(
     for constraint in mechanism.constraints.values():
         gap = resting.counted(constraint.phi)
         rate = change(gap, resting.coordinates, mechanism.time)
-        loops.append(_loop_equations(constraint.name, None, gap, rate, change(rate, resting.coordinates, mechanism.time)))
+        equations = _loop_equations(constraint.name, None, gap, rate, change(rate, resting.coordinates, mechanism.time))
+        smooth = smooth_constraint(mechanism, constraint)
+        loops.append(equations if smooth is None else replace(equations, seen=resting.counted(ca.vertcat(*smooth.symbols))))
     rows = tuple(_row(resting, row) for row in mechanism.rows.values())
     applied = tuple(part for load in mechanism.loads.values() for part in applied_by(load, resting))
     held = [part for loop in loops if loop.declared for part in _held(resting, mechanism.constraints[loop.name], loop)]

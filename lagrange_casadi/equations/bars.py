@@ -2,6 +2,9 @@
 
 A bar has no coordinates. It lies between its two ends, wherever these are, and its length is one equation: the square of their
 distance. Its points move as its ends do, in proportion. So its energy, and the work of forces on its axis, hold nothing of a spin.
+
+Its cross-section is turned as the declaration says: at every instant its y axis is the part across the bar of the direction
+``beside``, which is fixed in the ground. Without that no stress of a cross-section that is not round is told.
 """
 
 from __future__ import annotations
@@ -14,6 +17,7 @@ import casadi as ca
 
 from ..declare.density import Density
 from ..declare.joints import Joint
+from ..declare.limits import parameter_values
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Body, Friction, Link, Point, Torque, Vector
 from ..geometry.frames import Frame
@@ -25,13 +29,18 @@ from ..geometry.vectors import ZERO, cross, dot, minus, nil, plus, times
 class Bar:
     """A link that is a bar, and its joints: first that nearer its base.
 
-    Its y axis is the part across it of the direction ``aside``: symbols for that of the ground's axes that is most across the bar
-    at the start.
+    Its y axis is the part across it of the direction ``aside`` in ground axes: the link's ``beside``, or where none was declared
+    symbols for that of the ground's axes that is most across the bar at the start.
     """
 
     link: Link
     joints: tuple[Joint, Joint]
     aside: tuple[Any, Any, Any]
+
+    @property
+    def aimed(self) -> bool:
+        """Whether its y axis was declared."""
+        return self.link.beside is not None
 
     def own(self, joint: Joint) -> Point:
         """A joint's point on the bar."""
@@ -89,12 +98,21 @@ def bars_of(mechanism: Mechanism, driven: Collection[str]) -> tuple[Bar, ...]:
         if not balls or not all(_on_axis(point) for point in points) or any(body in found for body in others):
             continue
         if all(_on_axis(point) for point in _marked(mechanism, link)) and not _twisted(mechanism, link):
-            values = mechanism.values()
+            values = parameter_values(mechanism.parameters, None)
             first, second = sorted(joints, key=lambda joint: _place(mechanism, joint, link, values))
             if _place(mechanism, first, link, values) < _place(mechanism, second, link, values):
                 x, y, z = (ca.SX.sym(f"{link.name}_aside_{component}") for component in "xyz")
-                found[link] = Bar(link, (first, second), (x, y, z))
+                found[link] = Bar(link, (first, second), link.beside or (x, y, z))
     return tuple(found.values())
+
+
+def unaimed(link: str) -> str:
+    """Why no stress of a bar is told whose cross-section is not round and whose y axis was not declared."""
+    return (
+        f"link '{link}' is a bar that spins freely about its line, and its cross-section is not round, so its stresses depend on "
+        "how it is turned; declare it between= two places with beside=, the direction of its y axis, or take a universal joint "
+        "for one of its spherical ones"
+    )
 
 
 def idle_spins(mechanism: Mechanism, driven: Collection[str]) -> list[str]:
@@ -131,7 +149,7 @@ def bar_frame(bar: Bar, frames: Mapping[str, Frame], released: Mapping[str, Any]
     length, apart = bar.length, minus(places[1], places[0])
     rate, change = minus(speeds[1], speeds[0]), minus(accelerations[1], accelerations[0])
     x, course = times(1 / length, apart), (times(1 / length, rate), times(1 / length, change))
-    aside = minus(bar.aside, times(dot(bar.aside, x), x))
+    aside = across_bar(bar, x)
     rotation = Rotation(x, times(1 / ca.sqrt(dot(aside, aside)), aside), None)
     frame = BarFrame(
         places[0],
@@ -145,6 +163,11 @@ def bar_frame(bar: Bar, frames: Mapping[str, Frame], released: Mapping[str, Any]
     )
     gap = (dot(apart, apart) / length - length) / 2, dot(x, rate), dot(x, change) + dot(course[0], rate)
     return frame, gap
+
+
+def across_bar(bar: Bar, x: Vector) -> Vector:
+    """The part of a bar's direction ``aside`` that is across it, for its axis ``x``."""
+    return minus(bar.aside, times(dot(bar.aside, x), x))
 
 
 def _marked(mechanism: Mechanism, link: Link) -> Iterator[Point]:

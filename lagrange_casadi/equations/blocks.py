@@ -17,21 +17,13 @@ import numpy as np
 
 from ..declare.density import Array
 from ..errors import MobilityError
-from .balls import axes_of, turn
 from .bars import idle_spins
-from .iteration import place_roughly
+from .freed import Freed, rank_of
 from .legs import solve_leg
 from .lines import solve_line
 from .loops import ClosedForm, solve_loop
 from .multibody import Coordinate, LoopEquations, Multibody, column
 from .sampling import drawn
-from .substitution import Numbers
-
-_STEPS = 200
-_CLOSED = 1e-11
-_DEPENDENT = 1e-9
-_NO_SLOPE = 1e-14
-"""A coordinate's slopes that are smaller are rounding, though they be all that it has: a guide that is there twice."""
 
 _ABSENT = 1e-13
 """Of the largest slope of an equation: what stands in it by rounding alone, as a line that a link slides along may."""
@@ -214,7 +206,7 @@ def _peeled(part: Part, slopes: Array, row: Mapping[Equation, int], of: Mapping[
         for own in sorted(loops.values(), key=lambda own: len(frozenset().union(*(e.present for e in own)).intersection(columns))):
             told = [c for c in columns if any(c in equation.present for equation in own)]
             block = slopes[np.ix_([row[e] for e in own], [of[c] for c in told])]
-            if told and len(own) < len(rows) and _rank(block) == len(told):
+            if told and len(own) < len(rows) and rank_of(block) == len(told):
                 found.append((own, told))
                 rows, columns = [e for e in rows if e not in own], [c for c in columns if c not in told]
                 break
@@ -260,7 +252,10 @@ def _forms(multibody: Multibody, rows: Sequence[Equation], unknown: Sequence[Coo
     # An angle whose turns some constraint counts must not come back from its cosine and sine.
     if any(form.branches for form in forms) and any(ca.depends_on(counted, c.value) for c in unknown):
         return ()
-    return forms
+    # The order of solution counts on what is absent from the equations: a form must not hold it either, by its joint's places.
+    present = {c for equation in rows for c in equation.present}
+    absent = [c for c in multibody.coordinates if not c.driven and c not in present]
+    return tuple(form.without(absent) for form in forms)
 
 
 def _require_freedom(
@@ -273,8 +268,8 @@ def _require_freedom(
         freedom = len(multibody.coordinates) - equations
         how = "counted by joints; it could not be assembled to count by rank"
     else:
-        freedom = len(multibody.coordinates) - _rank(slopes)
-        undriven = _rank(slopes[:, [k for k, c in enumerate(multibody.coordinates) if not c.driven]])
+        freedom = len(multibody.coordinates) - rank_of(slopes)
+        undriven = rank_of(slopes[:, [k for k, c in enumerate(multibody.coordinates) if not c.driven]])
         if freedom == driven == len(multibody.coordinates) - undriven and all(len(rows) >= len(columns) for rows, columns in parts):
             return slopes
     movable = list(multibody.mechanism.coordinates)
@@ -294,39 +289,6 @@ def _require_freedom(
 
 
 def _slopes(multibody: Multibody, start: Mapping[str, Any]) -> Array | None:
-    """The loops' Jacobian by all coordinates, in a posture near the rough one.
-
-    Drives are free to give way in it, for there may be too many. None where no posture is found.
-    """
-    coordinates, numbers = multibody.coordinates, Numbers()
-    for symbols, values in zip(start["inputs"], start["values"], strict=True):
-        numbers.note(symbols, np.atleast_1d(values).tolist())
-    quaternions = place_roughly(multibody, start["posture"], numbers, {}) if any(c.ball for c in coordinates) else {}
-    turned = {ball: ca.SX.sym("quaternion", 4) for ball in quaternions}
-    free = ca.SX.sym("u", len(coordinates))
-    symbols = column(c.value for c in coordinates)
-    values = [c.placed(symbols, free) for c in coordinates if c.ball is None]
-    # Of balls a step is a small rotation of where they are.
-    own = {ball: ca.vertcat(*(free[k] for k, c in enumerate(coordinates) if c.ball is ball)) for ball in turned}
-    values += [axes_of(turn(turned[ball], own[ball])) for ball in turned]
-    variables = [*(c.variables for c in coordinates if c.ball is None), *(ball.axes for ball in turned)]
-    gaps = ca.substitute(column(c.gap for c in multibody.loop_equations), column(variables), column(values))
-    f = ca.Function("gaps", [free, column(turned.values()), *start["inputs"]], [gaps, ca.jacobian(gaps, free)])
-    steps = ca.Function("steps", [free, column(turned.values())], [column(turn(turned[ball], own[ball]) for ball in turned)])
-    u = np.array([0.0 if c.ball else start["posture"].get(c, 0.0) for c in coordinates])
-    resting, q = np.array([c.ball is not None for c in coordinates], bool), np.array([*quaternions.values()]).ravel()
-    for _ in range(_STEPS):
-        gap, slope = (x.full() for x in f(u, q, *start["values"]))
-        step = np.linalg.lstsq(slope, -gap.ravel(), rcond=1e-10)[0] if u.size else u
-        u = u + step * min(1.0, 0.5 / (np.max(np.abs(step), initial=0.0) + 1e-300))
-        if np.max(np.abs(gap), initial=0.0) < _CLOSED:
-            return np.asarray(slope)
-        q = steps(u, q).full().ravel()
-        u[resting] = 0.0
-    return None
-
-
-def _rank(slope: Array) -> int:
-    lengths = np.linalg.norm(slope, axis=0)
-    scaled = slope / np.where(lengths > _NO_SLOPE, lengths, 1.0)
-    return int(np.linalg.matrix_rank(scaled, tol=_DEPENDENT)) if scaled.size else 0
+    """The loops' Jacobian by all coordinates, in a posture near the rough one, drives too; None where no posture is found."""
+    # Drives are free to give way in it, for there may be too many.
+    return Freed.of(multibody, start["posture"], start["inputs"], start["values"], ()).slopes(start["values"])

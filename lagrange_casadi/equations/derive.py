@@ -9,13 +9,15 @@ from typing import Any
 
 import casadi as ca
 
+from ..arguments import public
 from ..declare.description import describe
 from ..declare.held import effective_lengths, ends_of
 from ..declare.limits import told_parameters
-from ..declare.scene import Scene, Wanted
-from ..errors import AssemblyError, MobilityError, PostureError, check_kind
+from ..declare.scene import STRENGTH, Scene, Wanted, strength_of
+from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
 from ..quantities import Output
 from ..system import cache
+from .bars import bars_of, unaimed
 from .checks import Check, Column
 from .deflections import deflections
 from .drives import closure
@@ -27,11 +29,13 @@ from .multibody import column
 from .open_forces import open_forces
 from .own import own_outputs
 from .reciprocals import share_reciprocals
+from .rounding import nearest
 from .scene_graph import SceneGraph
 from .stations import gathered
 from .strength import stresses, utilisation
 
 
+@public
 def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool = False, elastic: bool = False) -> SceneGraph:
     """Derive the graphs of a scene, for its own wanted outputs or for others: CasADi functions of an instant, and their names.
 
@@ -42,9 +46,11 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool =
 
     Raises :class:`MobilityError`, :class:`DeclarationError` or :class:`AssemblyError` where the loops cannot be solved.
     """
-    check_kind("derive", scene, "a Scene", Scene)
+    names = scene.wanted if wanted is None else wanted
+    want = Wanted.of(scene.mechanism, names)
+    _check_aimed(scene, names)
     try:
-        found = _kept(scene, Wanted.of(scene.mechanism, scene.wanted if wanted is None else wanted), iterate, elastic)
+        found = _kept(scene, want, iterate, elastic)
     except PostureError as error:
         error.scene = scene
         raise
@@ -81,6 +87,11 @@ def _at(scene: Scene, values: tuple[tuple[str, float], ...]) -> Scene:
 
 
 @functools.lru_cache(maxsize=32)
+def _nearest(scene: Scene) -> Scene | None:
+    return None if scene.mechanism.rounded else nearest(scene)
+
+
+@functools.lru_cache(maxsize=32)
 def _kept(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGraph | AssemblyError | MobilityError:
     """The graph from the cache, or derived and kept there; or why there is none."""
     key = fingerprint(scene, want)
@@ -91,9 +102,13 @@ def _kept(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGrap
         return SceneGraph.loads(text, scene, want)
     try:
         graph = _derive(scene, want, iterate, elastic)
-    except AssemblyError as error:
-        return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
-    except MobilityError as error:
+    except (AssemblyError, MobilityError) as error:
+        near = _nearest(scene)
+        found = None if near is None else _kept(near, want, iterate, elastic)
+        if isinstance(found, SceneGraph):
+            return found
+        if isinstance(error, AssemblyError):
+            return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
         return MobilityError(str(error))
     if key:
         cache.write(f"{key}.graph", graph.dumps())
@@ -163,6 +178,15 @@ def _derive(scene: Scene, asked: Wanted, iterate: bool, elastic: bool) -> SceneG
         loop_angles=loop_angles,
         open_forces=opened if elastic else None,
     )
+
+
+def _check_aimed(scene: Scene, names: Sequence[str]) -> None:
+    """Raise :class:`DeclarationError` for a bar whose strength is asked for by name, and which has no direction for it."""
+    named = [name for name in names if name != "all"]
+    asked = {link for kind in STRENGTH for link in strength_of(scene.mechanism, kind, named)} if scene.mechanism.space else ()
+    for bar in bars_of(scene.guided, scene.laws) if asked else ():
+        if bar.link.name in asked and not bar.aimed and bar.link.beam is not None and not bar.link.beam.round:
+            raise DeclarationError(unaimed(bar.link.name))
 
 
 def _strength(scene: Scene, want: Wanted, columns: Mapping[Column, Any]) -> dict[Column, Any]:

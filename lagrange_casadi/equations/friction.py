@@ -44,11 +44,12 @@ class Solved:
     lost: Mapping[str, Any]
 
 
-def solve(found: Sequence[Rubbing], open_: Any) -> Solved:
+def solve(found: Sequence[Rubbing], open_: Any, signs: Mapping[str, Any] | None = None) -> Solved:
     """The forces of frictions, along their coordinates, from what presses on them, which is linear in the symbols of all.
 
     It is linear too in the symbols ``open_`` of what equilibrium leaves open: frictions are solved where these are zero, and
-    change with them by what they can change most.
+    change with them by what they can change most. At rest frictions are at their limits, with the ``signs`` that are given by
+    name; without, they are no number.
     """
     symbols = column(one.friction.symbol for one in found)
     n = len(found)
@@ -69,11 +70,13 @@ def solve(found: Sequence[Rubbing], open_: Any) -> Solved:
                     [[_entry(slopes, row, k) for k in range(n)] for row in rows],
                 )
             )
-        laws.append(_Law.of(one, parts))
+        laws.append(_Law.of(one, parts, None if signs is None else signs.get(one.friction.name)))
     values: list[Any] = [None] * n
     checks: dict[Column, Any] = {Check("rest", law.name): law.rest for law in laws if law.rest is not None}
     for block in _blocks(laws):
         checks |= _solve_block([laws[j] for j in block], block, values)
+    if signs is not None:
+        checks |= {Check("bend", law.name): bend for law in laws if (bend := _bend(law, laws)) is not None}
     if doubts.nnz():
         values = _doubted(laws, values, ca.fabs(doubts) @ open_)
     lost = {one.friction.name: -value * one.rate for one, value in zip(found, values, strict=True)}
@@ -121,7 +124,7 @@ class _Pressed:
 
 @dataclass(frozen=True, eq=False)
 class _Law:
-    """s = -sigma mu sum arm |R(s)| - steady."""
+    """s = -sigma mu sum arm |R(s)| - steady; ``still`` says that it is open at all instants."""
 
     name: str
     pressed: list[_Pressed]
@@ -129,15 +132,16 @@ class _Law:
     sigma: Any
     steady: Any
     rest: Any
+    still: bool = False
 
     @classmethod
-    def of(cls, one: Rubbing, pressed: list[_Pressed]) -> _Law:
+    def of(cls, one: Rubbing, pressed: list[_Pressed], sign: Any = None) -> _Law:
         friction, v = one.friction, one.rate
         if isinstance(friction, Transmission):
             return cls(friction.name, pressed, 1.0, -1.0, None, None)
         if isinstance(friction, Loss):
-            sigma, rest = _way(one)
-            return cls(friction.name, pressed, 1.0, sigma, None, rest)
+            sigma, rest, still = _way(one, sign)
+            return cls(friction.name, pressed, 1.0, sigma, None, rest, still)
         steady = None if _nil(friction.viscous) else friction.viscous * v
         if not pressed:
             return cls(friction.name, [], 0.0, 0.0, steady, None)
@@ -148,8 +152,8 @@ class _Law:
             mu = mu + (friction.static - mu) * ca.exp(-squares)
         if friction.smooth is not None:
             return cls(friction.name, pressed, mu, ca.tanh(v / friction.smooth), steady, None)
-        sigma, rest = _way(one, lever)
-        return cls(friction.name, pressed, mu, sigma, steady, rest)
+        sigma, rest, still = _way(one, sign, lever)
+        return cls(friction.name, pressed, mu, sigma, steady, rest, still)
 
     def pushed(self, values: Sequence[Any]) -> Any:
         """The force for values of all frictions."""
@@ -171,12 +175,13 @@ class _Law:
 
     def depends(self, k: int) -> bool:
         """Whether it depends on a friction: never where its joint does not move at all, for then it is open."""
-        still = self.rest is not None and ca.SX(self.rest).is_one()
-        return not still and any(part.seen(k) is not None for part in self.pressed)
+        return not self.still and any(part.seen(k) is not None for part in self.pressed)
 
 
-def _way(one: Rubbing, lever: Any = 1.0) -> tuple[Any, Any]:
-    """The sign of what slides, or its share of where it slides along two coordinates, and whether it rests."""
+def _way(one: Rubbing, sign: Any, lever: Any = 1.0) -> tuple[Any, Any, bool]:
+    """The sign of what slides, or its share of where it slides along two coordinates; whether it rests; and whether it always
+    does, and has no ``sign`` given for that.
+    """
     v, acceleration = one.rate, one.acceleration
     moves, turns = ca.fabs(v) > one.slowest[0], ca.fabs(acceleration) > one.slowest[1]
     if one.beside:
@@ -192,8 +197,27 @@ def _way(one: Rubbing, lever: Any = 1.0) -> tuple[Any, Any]:
     else:
         way = ca.if_else(moves, v, ca.if_else(turns, acceleration, 0))
         sigma, rest = ca.sign(way), ca.logic_not(way)
+    if sign is not None:
+        return ca.if_else(rest, sign, sigma), rest, False
     # No number at rest: zero over zero, which of what never moves would be read as zero.
-    return (ca.sqrt(1 - 2 * rest) - 1 if ca.SX(sigma).is_zero() else sigma / (1 - rest)), rest
+    sigma = ca.sqrt(1 - 2 * rest) - 1 if ca.SX(sigma).is_zero() else sigma / (1 - rest)
+    return sigma, rest, ca.SX(rest).is_one()
+
+
+def _bend(law: _Law, laws: Sequence[_Law]) -> Any:
+    """How much a friction that slides changes at most with those at rest; None where with none.
+
+    Its force is then no straight line in theirs, and need not be largest where they are at their limits.
+    """
+    seen = [
+        other.rest * (law.mu * size)
+        for k, other in enumerate(laws)
+        if other is not law and other.rest is not None
+        for part in law.pressed
+        if (size := part.seen(k)) is not None
+    ]
+    sliding = ca.fabs(law.sigma) * (1 if law.rest is None else 1 - law.rest)
+    return sliding * sum(seen, ca.SX(0)) if seen else None
 
 
 def _solve_block(laws: Sequence[_Law], block: Sequence[int], values: list[Any]) -> dict[Column, Any]:

@@ -169,6 +169,11 @@ def _across(joint: Joint, parent: Frame) -> list[tuple[Vector, Vector]]:
     return [(u, parent.rotation.apply(u))] if slides == 2 else []
 
 
+def held_directions(joint: Joint) -> int:
+    """How many equations of directions a joint that closes a loop has, after those of places."""
+    return len(_held(joint))
+
+
 def _held(joint: Joint) -> tuple[tuple[Vector, Vector], ...]:
     """Pairs of directions that a joint holds at right angles, of its child and of its parent, where coordinates are zero."""
     if not joint.bears_moment:

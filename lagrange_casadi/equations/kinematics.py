@@ -17,6 +17,7 @@ from typing import Any
 
 import casadi as ca
 
+from ..declare.directions import most_across
 from ..errors import AssemblyError
 from ..geometry.vectors import AXES
 from .balls import Ball
@@ -306,9 +307,9 @@ class _Solver:
         body, newton, found = self.multibody, self.newton(), self.found
         if body.balls:
             found = found.with_values(self.iterated.placed)
-        for bar in body.tree.bars:
+        for bar in (bar for bar in body.tree.bars if not bar.aimed):
             along = self.numbers.of(column(body.frames[bar.link.name].rotation.x))
-            found.note(column(bar.aside), column(AXES[min(range(3), key=lambda k: abs(along[k]))]))
+            found.note(column(bar.aside), column(AXES[most_across(along)]))
         for ball in body.balls:
             found.note(ball.side, ca.SX(self._side(ball)))
             found.note(ball.axes, self.iterated.placed(ball.axes))

@@ -21,8 +21,8 @@ import casadi as ca
 
 from ..declare.joints import Joint
 from ..geometry.vectors import Vector, cross, dot, minus, times
-from .loops import ClosedForm, held, solve_in_turn, solves
-from .multibody import Coordinate, Multibody, column
+from .loops import ClosedForm, at_rest, held, solve_in_turn, solves
+from .multibody import Coordinate, Multibody
 from .sampling import vanish
 
 
@@ -70,7 +70,7 @@ def in_fewest(expression: Any, later: Sequence[Coordinate], coordinates: Sequenc
     """An expression with all coordinates at rest but as few of the ``later`` ones as change it; None where others change it too."""
     for count in range(len(later) + 1):
         for kept in combinations(later, count):
-            plain = _at_rest(expression, [c for c in coordinates if c not in kept])
+            plain = at_rest(expression, [c for c in coordinates if c not in kept])
             if vanish(expression - plain, coordinates, expression):
                 return plain
     return None
@@ -81,7 +81,7 @@ def _turned(first: Coordinate, axis: Vector, head: Vector, target: Vector, *, ac
 
     A target on the axis tells no turn: the closure is the square of the sine between the two.
     """
-    x, y, z = ca.vertsplit(_at_rest(ca.vertcat(*head), (first,)))
+    x, y, z = ca.vertsplit(at_rest(ca.vertcat(*head), (first,)))
     start, beside = (x, y, z), cross(axis, target)
     cosine = dot(start, target) - (0 if across else dot(axis, start) * dot(axis, target))
     sine = -dot(start, beside)
@@ -89,9 +89,3 @@ def _turned(first: Coordinate, axis: Vector, head: Vector, target: Vector, *, ac
     variables = ca.vertcat(cosine / length, sine / length, ca.atan2(sine, cosine))
     closure = None if across else dot(beside, beside) / dot(target, target)
     return ClosedForm((variables,), closure, unknown=(first,))
-
-
-def _at_rest(expression: Any, coordinates: Sequence[Coordinate]) -> Any:
-    """An expression with coordinates that are zero."""
-    symbols = column(c.variables for c in coordinates)
-    return ca.substitute(expression, symbols, column(ca.DM(c.resting) for c in coordinates))

@@ -42,6 +42,14 @@ class ClosedForm:
     branches: tuple[Any, ...] = ()
     unknown: tuple[Coordinate, ...] = ()
 
+    def without(self, absent: Sequence[Coordinate]) -> ClosedForm:
+        """The form with coordinates that it must not hold at rest, for they stand in it by rounding alone."""
+        absent = held((*self.variables, *(() if self.closure is None else (self.closure,))), absent)
+        if not absent:
+            return self
+        closure = None if self.closure is None else at_rest(self.closure, absent)
+        return replace(self, variables=tuple(at_rest(v, absent) for v in self.variables), closure=closure)
+
 
 def solve_loop(
     phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate], *, bar: bool = False
@@ -79,8 +87,14 @@ def solve_in_turn(
 
 def held(expressions: Sequence[Any], coordinates: Sequence[Coordinate]) -> list[Coordinate]:
     """The coordinates that expressions hold."""
-    parts = ca.vertcat(*map(ca.SX, expressions))
+    parts = ca.veccat(*map(ca.SX, expressions))
     return [c for c in coordinates if ca.depends_on(parts, c.variables)]
+
+
+def at_rest(expression: Any, coordinates: Sequence[Coordinate]) -> Any:
+    """An expression with coordinates that are zero."""
+    symbols = column(c.variables for c in coordinates)
+    return ca.substitute(expression, symbols, column(ca.DM(c.resting) for c in coordinates))
 
 
 def _spanned(phi: Any, unknown: Sequence[Coordinate], coordinates: Sequence[Coordinate]) -> ClosedForm | None:

@@ -82,11 +82,12 @@ def internal_forces(
     sections: Sequence[str],
     frictions: Sequence[str],
     weights: Mapping[str, Any] | None,
+    signs: Mapping[str, Any] | None = None,
 ) -> InternalForces:
     """Efforts of the drives, reactions of the named joints, multipliers of constraints and rows, and the laws of links.
 
     ``weights`` are those of the drives, where these are others than the joints whose motion is given; ``frictions`` those that are
-    wanted themselves.
+    wanted themselves. ``signs`` are those of frictions at rest, which are open without: see :func:`.solve`.
     """
     along, across = multibody.terms()
     along = kinematics.evaluate(along)
@@ -139,7 +140,7 @@ def internal_forces(
     every = iter(ca.vertsplit(ca.substitute(kinematics.evaluate(resting), unknowns, values)) if rows else ())
     columns = {name: next(every) for name in columns}
     rubbed = {name: one.of_rows([next(every) for _ in one.rows]) for name, one in rubbed.items()}
-    acting = solve([rubbed[name] for name in needed(column(columns.values()), rubbed, frictions)], free)
+    acting = solve([rubbed[name] for name in needed(column(columns.values()), rubbed, frictions)], free, signs)
     known = ca.substitute(column(columns.values()), acting.symbols, acting.values)
     columns = dict(zip(columns, ca.vertsplit(known) if columns else (), strict=True))
     for name in frictions:

@@ -14,11 +14,12 @@ from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
 from ..declare.scene import Scene, Wanted
 from ..declare.spatial import reference_posture
-from ..geometry.vectors import ZERO
+from ..geometry.vectors import ZERO, dot
 from ..quantities import Output, force_members
 from ..tables import ANGLE
 from . import kinematics
 from .assembly import assemble
+from .bars import across_bar
 from .checks import Check, Column
 from .drives import pushed
 from .kinematics import Start
@@ -88,7 +89,10 @@ class Moving:
         """Whether loops close, and rows and curves are kept to."""
         body, solved = self.body, self.solved
         columns = _beyond(body, _seeing(body, self.want))
+        seen = ((loop.name, ca.vertsplit(loop.seen)) for loop in body.loop_equations if loop.seen is not None)
+        columns |= {Check("seen", f"{name}:{k}"): value for name, values in seen for k, value in enumerate(values)}
         columns |= _locks(self.scene.mechanism, body, forces=self.want.forces)
+        columns |= _rolls(body, self.want)
         columns |= {Check("closure", name): closure for name, closure in solved.closures.items()}
         columns |= {Check("gap", name): gap for name, gap in solved.gaps.items()}
         columns |= {Check("misfit", name): misfit for name, misfit in solved.misfits.items()}
@@ -148,6 +152,20 @@ def _locks(mechanism: Mechanism, body: Multibody, *, forces: bool) -> dict[Colum
         own = [turn for turn in turns if turn is not None]
         if len(own) == 3 and (forces or not all(turn.driven for turn in own)):
             found[Check("gimbal", joint.name)] = ca.cos(own[1].value) ** 2
+    return found
+
+
+def _rolls(body: Multibody, want: Wanted) -> dict[Column, Any]:
+    """Of bars whose y axis was declared, the square of the sine of their angle with that direction: nil where it tells none.
+
+    Of those whose cross-section is not round, and whose sections are wanted.
+    """
+    found: dict[Column, Any] = {}
+    for bar in body.tree.bars:
+        beam = bar.link.beam
+        if bar.aimed and beam is not None and not beam.round and bar.link.name in want.sections:
+            part = across_bar(bar, body.frames[bar.link.name].rotation.x)
+            found[Check("roll", bar.link.name)] = dot(part, part)
     return found
 
 

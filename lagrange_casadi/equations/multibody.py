@@ -92,7 +92,7 @@ class LoopEquations:
     """Equations that a joint that closes a loop, or a constraint, puts on the coordinates, and the symbols of their multipliers.
 
     ``gap`` is Phi, with its total time derivatives. ``joint`` is None for a ``bar``, which has its length, and for a constraint of
-    the user's.
+    the user's. Of one that may have kinks, ``seen`` is what it sees.
     """
 
     name: str
@@ -102,6 +102,7 @@ class LoopEquations:
     gap_acceleration: Any
     multipliers: Any
     bar: Bar | None = None
+    seen: Any = None
 
     @property
     def kind(self) -> str:

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
 from ..declare.density import Array
 from ..declare.motion import Laws
@@ -55,6 +56,11 @@ class SceneGraph:
     def checks(self, kind: Kind) -> dict[str, int]:
         """The parts that have a check of a kind, and its row of ``out``."""
         return {str(c.part): k for k, c in enumerate(self.columns) if isinstance(c, Check) and c.kind == kind}
+
+    def seen(self, constraint: str, out: Array) -> Array:
+        """What a constraint that may have kinks sees, (..., symbols, t), of columns ``out`` (..., columns, t)."""
+        rows = [k for part, k in self.checks("seen").items() if part.rpartition(":")[0] == constraint]
+        return np.asarray(out[..., rows, :], float)
 
     @cached_property
     def laws(self) -> Laws:

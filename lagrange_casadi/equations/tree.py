@@ -15,7 +15,9 @@ from typing import NoReturn
 from ..declare.joints import Axis, Joint
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Body, Point
+from ..declare.spatial import SpatialMechanism
 from ..errors import DeclarationError
+from ..geometry.vectors import AXES
 from .bars import Bar, bars_of
 
 
@@ -88,6 +90,7 @@ def span(mechanism: Mechanism, driven: Collection[str]) -> Tree:
         branches.append(best)
         waiting.remove(best.joint)
     _refuse_unplaced(mechanism, depth, bars)
+    _refuse_unused(mechanism, bars)
     for joint in waiting:
         if joint.name in driven:
             _refuse_driven(mechanism, joint, branches, given)
@@ -113,6 +116,35 @@ def _refuse_unplaced(mechanism: Mechanism, placed: Collection[Body], bars: Seque
         raise DeclarationError(
             f"link '{body.name}' only slides on a point; pin it to a point mass (of mass 0 if need be) that slides in its stead"
         )
+
+
+def _refuse_unused(mechanism: Mechanism, bars: Sequence[Bar]) -> None:
+    """Raise :class:`DeclarationError` for a link whose ``between`` or ``beside`` nothing takes.
+
+    A bar takes ``beside``, and so does a joint that is told in the reference posture; ``turned`` tells in place of ``between``.
+    """
+    if not isinstance(mechanism, SpatialMechanism):
+        return
+    taken = {body for joint in mechanism.joints.values() if joint.name in mechanism.hard for body in joint.bodies}
+    taken |= {bar.link for bar in bars}
+    turned = {body for joint in mechanism.joints.values() if _is_turned(joint) for body in joint.bodies}
+    for link in mechanism.links.values():
+        if link.name not in mechanism.references or link in taken or (link.beside is None and link in turned):
+            continue
+        told = "beside tells its y axis" if link.beside is not None else "between tells how it lies"
+        way_out = "leave beside out" if link.beside is not None else "give its length"
+        raise DeclarationError(
+            f"link '{link.name}': {told} in the reference posture, and none of its joints is told there; give one of them at=, "
+            f"the place where it is, or {way_out} and tell by turned how the link is turned"
+        )
+
+
+def _is_turned(joint: Joint) -> bool:
+    """Whether the joint's child is turned against its parent where the joint's coordinates are zero."""
+    if joint.turned is None:
+        return False
+    pairs = [pair for told, own in zip(joint.turned, AXES[:2], strict=True) for pair in zip(told, own, strict=True)]
+    return any(not isinstance(one, float) or one != other for one, other in pairs)
 
 
 def _refuse_driven(mechanism: Mechanism, joint: Joint, branches: Sequence[Branch], given: Collection[str]) -> NoReturn:

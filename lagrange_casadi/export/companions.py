@@ -92,7 +92,8 @@ def _settings(c: Contract) -> str:
     if not c.settings:
         return "There are none: every number of the scene is fixed.\n"
     rows = "\n".join(f"| `{m.name}` | {markdown(m.unit)} | {m.range} |" for m in c.settings)
-    return f"`{c.prefix}_defaults` holds the defaults.\n\n| member | unit | range |\n| --- | --- | --- |\n{rows}\n"
+    corners = "Corners of motions, constraints and lifts were looked for with the defaults alone."
+    return f"`{c.prefix}_defaults` holds the defaults. {corners}\n\n| member | unit | range |\n| --- | --- | --- |\n{rows}\n"
 
 
 def _mapped(c: Contract) -> str:

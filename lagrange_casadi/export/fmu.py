@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import io
-import tempfile
 import zipfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -14,6 +13,7 @@ from ..codegen import find_compiler
 from ..codegen.compiler import Compiler, broken, compiled, complaint
 from ..declare.density import Array
 from ..errors import CompilerError, LagrangeCasadiError, StoreError
+from ..system.cache import working_folder
 from .contract import REST
 from .fmu_description import Description, page
 from .header import header
@@ -131,15 +131,15 @@ def _compiler() -> Compiler:
 def _built(sources: Mapping[str, str], units: Iterable[str], library: str, compiler: Compiler) -> bytes:
     """The library, built where no path gets into it."""
     flags = compiler.flags("".join(sources.values()))
-    with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as work:
+    with working_folder() as work:
         try:
             for file, text in sources.items():
-                (Path(work) / file).write_text(text, encoding="utf-8")
+                (work / file).write_text(text, encoding="utf-8")
             command = [*compiler.command, *flags, *units, "-o", library, "-lm"]
-            run = compiled(command, Path(work))
+            run = compiled(command, work)
             if run.returncode == 0:
-                _check_loads(Path(work) / library, compiler)
-                return (Path(work) / library).read_bytes()
+                _check_loads(work / library, compiler)
+                return (work / library).read_bytes()
         except OSError as error:
             raise CompilerError(f"cannot compile in {work}: {error.strerror}") from None
     raise CompilerError(complaint(compiler, run))
@@ -171,7 +171,7 @@ def _archive(files: Mapping[str, bytes]) -> bytes:
 
 def _findings(archive: bytes) -> list[str]:
     """What FMPy has to say against an archive."""
-    with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as work:
-        path = Path(work) / "unit.fmu"
+    with working_folder() as work:
+        path = work / "unit.fmu"
         path.write_bytes(archive)
         return list(_fmpy().validation.validate_fmu(str(path)))

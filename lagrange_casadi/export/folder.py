@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
+from ..arguments import public
 from ..arithmetic.compensated import Precision
 from ..declare.expressions import check_line
 from ..declare.scene import Scene
-from ..errors import DeclarationError, PathError, check_kind
+from ..errors import DeclarationError, PathError
 from ..instants.rung import Rung
+from ..system.manifest import Manifest, digest
 from ..system.publish import check_writable, filling
 from ..version import __version__
 from .companions import companions
@@ -32,11 +32,18 @@ from .wasm import wasm as for_pages
 LARGEST: dict[Precision, int] = {"double": 16_000_000, "single": 64_000}
 """Bytes of a table, unless more are allowed: what a large and what a small machine has room for."""
 
-MANIFEST, SCHEMA = "export.json", "lagrange-casadi export"
+MANIFEST = Manifest(
+    "export.json",
+    "lagrange-casadi export",
+    "export into",
+    "an export",
+    "choose another folder, or say force=True, which touches no other file",
+)
 _BUILD = "build"
 """Where README says to build: no obstacle to exporting once more, nor touched by it."""
 
 
+@public
 def export(
     scene: Scene,
     out: str | os.PathLike[str],
@@ -80,7 +87,6 @@ def export(
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"export: expected a Scene, got {scene!r}")
-    check_kind("export", out, "a folder's path", str, os.PathLike)
     folder = Path(out)
     check_line("name", name or scene.mechanism.name)
     rung = Rung("auto", precision, newton, table)
@@ -99,14 +105,17 @@ def export(
     if wasm:
         files |= for_pages(source)
     unit = f"{agreed.prefix}.fmu"
-    known = _check_free(folder, agreed.prefix, [*files, *([unit] if fmu else [])], force=force)
+    told = MANIFEST.known(folder)
+    known = MANIFEST.check(folder, [*files, *([unit] if fmu else [])], beside=force, changed=force, apart=_BUILD)
+    if told and f"{agreed.prefix}.h" not in told and not force:
+        raise PathError(f"cannot export into {folder}: it holds an export of another name; {MANIFEST.way_out}")
     if fmu:
         files[unit] = archive(source, np.array(list(source.values.values())))
-    files[MANIFEST] = _manifest(source, files).encode()
+    files[MANIFEST.name] = _manifest(source, files).encode()
     with filling(folder) as draft:
         for file, content in files.items():
             (draft / file).write_bytes(content)
-    for stale in known - files.keys():
+    for stale in known.keys() - files.keys():
         (folder / stale).unlink()
     return agreed
 
@@ -118,9 +127,7 @@ def _manifest(source: Source, files: Mapping[str, bytes]) -> str:
     def rows(members: Sequence[Any]) -> list[dict[str, str]]:
         return [{"name": m.name, "path": m.path, "unit": m.unit, "meaning": m.meaning} for m in members]
 
-    content = {
-        "schema": SCHEMA,
-        "schema_version": 1,
+    more = {
         "versions": {"lagrange_casadi": __version__, "casadi": ca.CasadiMeta.version()},
         "mechanism": agreed.name,
         "prefix": agreed.prefix,
@@ -135,41 +142,5 @@ def _manifest(source: Source, files: Mapping[str, bytes]) -> str:
         **({"sensitivities": [m.name for m in source.slopes.by]} if source.slopes else {}),
         "links": [{"name": link.name, "constant": link.constant} for link in agreed.links],
         "model": [{"name": name, "type": kind, "count": count} for name, kind, count in source.model],
-        "files": {file: hashlib.sha256(content).hexdigest() for file, content in sorted(files.items())},
     }
-    return json.dumps(content, indent=1) + "\n"
-
-
-def _check_free(folder: Path, prefix: str, files: Collection[str], *, force: bool) -> set[str]:
-    """The files of an earlier export there, as it left them. Raises :class:`PathError` unless the folder may be written into."""
-    if not folder.exists():
-        return set()
-    known = _known(folder / MANIFEST)
-    present = {path.name for path in folder.iterdir()} - {_BUILD} - ({MANIFEST} if known else set())
-    same = {name for name in present & known.keys() if (folder / name).is_file() and _digest(folder / name) == known[name]}
-    foreign, changed = sorted(present - known.keys()), sorted(present & known.keys() - same)
-    for name in foreign:
-        if name in files or name == MANIFEST:
-            raise PathError(f"cannot export into {folder}: '{name}' there is no file of an export; move it, or export elsewhere")
-    what = f"holds other files, '{foreign[0]}' among them" if foreign else ""
-    what = what or (f"holds an export whose '{changed[0]}' was changed since" if changed else "")
-    what = what or ("holds an export of another name" if known and f"{prefix}.h" not in known else "")
-    if what and not force:
-        raise PathError(
-            f"cannot export into {folder}: it {what}; choose another folder, or say force=True, which touches no other file"
-        )
-    return same
-
-
-def _known(manifest: Path) -> dict[str, str]:
-    """The files of an earlier export and their digests; none where there is no manifest of one."""
-    try:
-        content = json.loads(manifest.read_text())
-        files = content["files"] if content["schema"] == SCHEMA else {}
-        return {str(name): str(digest) for name, digest in files.items()}
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return {}
-
-
-def _digest(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    return MANIFEST.text({file: digest(content) for file, content in files.items()}, more)

@@ -6,14 +6,13 @@ import importlib.util
 import json
 import math
 import sys
-import tempfile
 from collections.abc import Mapping, Sequence
 from importlib import resources
-from pathlib import Path
 from typing import Any
 
 from ..codegen.compiler import Compiler, compiled, complaint
 from ..errors import CompilerError, LagrangeCasadiError
+from ..system.cache import working_folder
 from .contract import Contract, Member
 from .header import header
 from .sections import about
@@ -47,14 +46,14 @@ def module(source: Source, more: Mapping[str, str] | None = None, calls: Sequenc
     linked += ["-Wl,--strip-all", "-Wl,-z,stack-size=" + str(-(-(deepest(source.code) + _STACK) // 16) * 16)]
     files = {f"{c.prefix}.h": header(source), f"{c.prefix}.c": source.code, "layout.c": _told(source)} | dict(more or {})
     compiler = Compiler("c", (sys.executable, "-m", "ziglang", "cc"), "")
-    with tempfile.TemporaryDirectory(prefix="lagrange_casadi-") as work:
+    with working_folder() as work:
         try:
             for file, text in files.items():
-                (Path(work) / file).write_text(text, encoding="utf-8")
+                (work / file).write_text(text, encoding="utf-8")
             code = [file for file in files if file.endswith(".c")]
-            run = compiled([*compiler.command, *_FLAGS, *linked, *code, "-o", "module.wasm"], Path(work))
+            run = compiled([*compiler.command, *_FLAGS, *linked, *code, "-o", "module.wasm"], work)
             if run.returncode == 0:
-                return (Path(work) / "module.wasm").read_bytes()
+                return (work / "module.wasm").read_bytes()
         except OSError as error:
             raise CompilerError(f"cannot compile in {work}: {error.strerror}") from None
     raise CompilerError(complaint(compiler, run))

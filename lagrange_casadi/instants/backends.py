@@ -139,13 +139,13 @@ def compiled(rung: Rung, build: Callable[[codegen.Compiler], Built]) -> tuple[co
         except CompilerError as error:
             if backend != "auto" or language == "c":
                 raise
-            warnings.warn(f"{error}; scalar C serves", stacklevel=5)
+            warnings.warn(f"{error}; scalar C serves", stacklevel=6)
     if backend in _NEEDS:
         raise CompilerError(_NEEDS[backend])
     if rung.precision == "single":
         raise CompilerError(f"precision 'single' needs a compiler: none of {_TRIED} is there")
     if backend == "auto":
-        warnings.warn(f"no C or C++ compiler found ({_TRIED}): CasADi's virtual machine serves, slowly", stacklevel=5)
+        warnings.warn(f"no C or C++ compiler found ({_TRIED}): CasADi's virtual machine serves, slowly", stacklevel=6)
     return None
 
 

@@ -53,6 +53,7 @@ class Status(enum.IntEnum):
     NO_INSTANTS = 17
     JAMS = 18
     AT_REST = 19
+    CORNER = 20
 
     @property
     def meaning(self) -> str:
@@ -67,8 +68,10 @@ _MEANINGS = {
     Status.SLOW: "the iterated loops converge slowly: they are near a dead centre",
     Status.OUT_OF_REACH: "a loop cannot be closed: its links do not reach",
     Status.JUMPED: "an iterated loop has jumped to another branch: more instants may help",
-    Status.DEAD_CENTRE: "a loop is at a dead centre, a joint in gimbal lock, or drives cannot make the motion: forces are open",
-    Status.PASSES_DEAD_CENTRE: "a loop passes a dead centre between two instants, a joint gimbal lock, or drives such a place",
+    Status.DEAD_CENTRE: "a loop is at a dead centre, a joint in gimbal lock, a bar along its beside, or drives cannot make the "
+    "motion: forces are open",
+    Status.PASSES_DEAD_CENTRE: "a loop passes a dead centre between two instants, a joint gimbal lock, a bar its beside, or drives "
+    "such a place",
     Status.MISFIT: "loops are over-constrained and do not fit",
     Status.ROW_VIOLATED: "the motion violates a non-holonomic constraint",
     Status.IMPOSSIBLE: "a length is not positive, a mass or density is negative, a station is off its link, a move cannot be, "
@@ -81,12 +84,9 @@ _MEANINGS = {
     Status.BEYOND_ENDS: "what is put into a curve is beyond its ends",
     Status.JAMS: "the mechanism jams: friction has no force that holds its law, or several",
     Status.AT_REST: "a joint that rubs is at rest: its friction is open; take instants that move, or smooth friction",
+    Status.CORNER: "the slope of a motion, a constraint or a lift jumps, and forces there are without bound",
     Status.NO_INSTANTS: "its instants cannot be: the motion does not go where they are asked for, or they end before they start",
 }
-
-
-WITH_SERIES = (Status.OK, Status.AT_REST)
-"""Those of designs that have series; at rest some of the numbers are none, and there are no peaks."""
 
 
 @dataclass(frozen=True)
@@ -275,6 +275,9 @@ class _Bad:
             lock = f"passes gimbal lock {after}" if passes else f"is in gimbal lock {self.at}"
             why = "its third axis comes to lie along its first; choose axis and second so that turn_2 keeps away from 90 deg"
             return status, f"joint '{rule.part}' {lock}: {why}"
+        if rule.column in self.graph.checks("roll").values():
+            lies = f"comes to lie along its beside {after}" if passes else f"lies along its beside {self.at}"
+            return status, f"bar '{rule.part}' {lies}, which then tells no y axis; choose a direction that stays across it"
         if rule.column in self.graph.checks("hold").values():
             where_to = f"cannot make the motion {after if passes else self.at}"
             return status, f"the drives {rule.part} {where_to}: it can go on there without moving them; drive other joints"

@@ -43,13 +43,13 @@ Kind: TypeAlias = Literal[
 class Rule:
     """What a column must keep to, so that an instant has a result.
 
-    A ``CLOSURE``, of a loop, of three turns or of what drives hold, must be above its limit, and above its opposite unless links
-    do not reach; so must a ``BRANCH``, whose loop iteration follows. ``GAP`` and ``TURNED`` must be within it by size, a ``GAP``
-    times the mechanism's extent. A ``MISFIT`` and what is ``BEYOND`` the ends of a curve must not be above it, nor a ``ROW`` by
-    size, times the column ``beside``, which is the size of its terms. What is ``OPEN`` must not be above it, an ``OPEN_MOMENT``
-    times the extent: else the output ``part`` is not determined. What tells of a ``JAM`` must be above its limit, what is left of
-    frictions' laws, a ``SLIP``, must not be above it. A friction at ``REST`` is above it: what depends on it is no number there,
-    and the rest is.
+    A ``CLOSURE``, of a loop, of three turns, of a bar's roll or of what drives hold, must be above its limit, and above its
+    opposite unless links do not reach; so must a ``BRANCH``, whose loop iteration follows. ``GAP`` and ``TURNED`` must be
+    within it by size, a ``GAP`` times the mechanism's extent. A ``MISFIT`` and what is ``BEYOND`` the ends of a curve must not
+    be above it, nor a ``ROW`` by size, times the column ``beside``, which is the size of its terms. What is ``OPEN`` must not
+    be above it, an ``OPEN_MOMENT`` times the extent: else the output ``part`` is not determined. What tells of a ``JAM`` must
+    be above its limit, what is left of frictions' laws, a ``SLIP``, must not be above it. A friction at ``REST`` is above it:
+    what depends on it is no number there, and the rest is.
     """
 
     kind: Kind
@@ -63,18 +63,19 @@ class Rule:
 def rules(graph: SceneGraph, precision: Precision, newton: int | None) -> tuple[Rule, ...]:
     """The rules of a graph, in the order in which they are told; ``newton`` as in :class:`.Rung`."""
     found: list[Rule] = []
+    open_ = max(open_limit(precision, newton), graph.scene.rounding if graph.scene.mechanism.rounded else 0.0)
     for k, check in enumerate(graph.columns):
         if not isinstance(check, Check):
             continue
         part = check.part
         if isinstance(part, Output):
             moment = part.unit(graph.scene.mechanism) == MOMENT
-            found.append(Rule("OPEN_MOMENT" if moment else "OPEN", k, part, open_limit(precision, newton)))
+            found.append(Rule("OPEN_MOMENT" if moment else "OPEN", k, part, open_))
         elif check.kind == "beyond":
             found.append(Rule("BEYOND", k, part, BEYOND[precision]))
         elif check.kind == "closure":
             found.append(Rule("BRANCH" if graph.follows(part) else "CLOSURE", k, part, dead_centre(graph, precision, part)))
-        elif check.kind in ("gimbal", "hold"):
+        elif check.kind in ("gimbal", "roll", "hold"):
             found.append(Rule("CLOSURE", k, part, _DEAD * ROUNDING[precision]))
         elif check.kind == "gap":
             found.append(Rule("GAP", k, part, gap_limit(precision, newton)))

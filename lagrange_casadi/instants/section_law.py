@@ -19,6 +19,7 @@ import numpy as np
 from ..declare.density import Array, NumericDensity
 from ..declare.limits import END
 from ..quantities import Output
+from ..system.brief import Brief
 from ..system.room import cores, require
 from ..tables import PLANE, SPACE, Table
 from . import grids
@@ -36,8 +37,8 @@ _SIDES: tuple[Side, ...] = ("tip", "base")
 _BLOCK = 1 << 15
 
 
-@dataclass(frozen=True, eq=False)
-class SectionLaw:
+@dataclass(frozen=True, eq=False, repr=False)
+class SectionLaw(Brief):
     """The law of one link: ``coefficients`` by name, each (t,); length [m], density, loads at stations, and ``spreads`` along it.
 
     The coefficients are the seven of a planar mechanism or the twelve of a spatial one; :attr:`table` says which. What misses an

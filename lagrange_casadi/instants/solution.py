@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.description import Description, coordinates_of, density_of
 from ..declare.limits import no_sections
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-    from ..animation import Film
+    from ..animation import Animation, Film
     from ..elastic.deflection import Deflection
     from ..report import View
     from ..strength import Life, Safety, Stress
@@ -70,6 +71,7 @@ class Peak:
     over: float | None = None
 
 
+@public
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution:
     """The outputs of a scene over its instants.
@@ -138,7 +140,8 @@ class Solution:
     def reaction(self, joint: str) -> Reaction:
         """Reaction of a joint: what its parent does to its child, without the drive's effort."""
         fx, fy = (self._find("joint with a reaction", Output("reaction", joint, member)) for member in ("fx", "fy"))
-        return Reaction(fx, fy, *(self.outputs.get(Output("reaction", joint, member)) for member in ("mz", "fz", "mx", "my")))
+        mz, fz, mx, my = (self.outputs.get(Output("reaction", joint, member)) for member in ("mz", "fz", "mx", "my"))
+        return Reaction(fx, fy, mz, None if fz is None else (fz, mx, my))
 
     def motion(self, joint: str) -> JointMotion:
         """Motion of a joint's coordinate: its value, rate and acceleration."""
@@ -273,10 +276,10 @@ class Solution:
             self._of_section(output)
         if output.group == "output":
             return str(self.description["outputs"][output.part])
-        kinds = coordinates_of(self.description)
+        kinds, part = coordinates_of(self.description), output.part
         if output.group == "friction":
-            return output.quantity.unit_for(kinds[self.description["loads"][output.part]["friction"]["coordinate"]])
-        return output.quantity.unit_for(kinds.get(output.part, "angle") if output.group in ("motion", "effort") else "angle")
+            return output.quantity.unit_for(kinds[self.description["loads"][part]["friction"]["coordinate"]])
+        return output.quantity.unit_for(kinds.get(part, "angle") if output.group in ("motion", "effort") else "angle")
 
     def array(self, name: str | Output) -> Array:
         """A quantity by its full name: (t,), or (t, xi) for ``section:LINK:FORCE``.
@@ -325,11 +328,11 @@ class Solution:
 
         write_report(self, path)
 
-    def animate(self, path: str | os.PathLike[str], film: Film | None = None) -> None:
+    def animate(self, path: str | os.PathLike[str], film: Film | None = None) -> Animation:
         """Write one cycle in motion, as a GIF, an MP4, an animated SVG or glTF, as the path ends: see :func:`.write_animation`."""
         from ..animation import write_animation
 
-        write_animation(self, path, film)
+        return write_animation(self, path, film)
 
     def view(self, height: int = 760) -> View:
         """The same page for a notebook, which shows it in a frame of a height [points] where it is the last value of a cell.
@@ -347,10 +350,7 @@ class Solution:
         return summary(self)
 
     def to_xarray(self) -> xarray.Dataset:
-        """All quantities as an ``xarray.Dataset`` over t and xi, with units.
-
-        Raises :class:`.LagrangeCasadiError` where xarray is not installed.
-        """
+        """All quantities as an ``xarray.Dataset`` over t and xi, with units; an error of ours without xarray."""
         return dataset(self)
 
     def to_pandas(self) -> pandas.DataFrame:

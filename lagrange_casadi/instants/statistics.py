@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ..declare.density import Array
 from .sizes import largest
@@ -24,6 +25,7 @@ class Extreme:
 class Statistics:
     """A quantity over the time of a solution, in ``unit``: means by trapezia, and the smallest and largest value of the instants.
 
+    Instants at which it is no number do not count: at rest friction may leave it open (see :func:`counted`).
     ``smallest`` and ``largest`` are by sign: -5 is smaller than 3. ``peak`` is largest in size. Along a link they are exact,
     whatever the grid of xi. ``mean`` and ``rms``, the root of the mean square, are None of a section force: they differ from ratio
     to ratio.
@@ -40,10 +42,11 @@ class Statistics:
     @classmethod
     def over(cls, name: str, unit: str, t: Array, values: Array) -> Statistics:
         """Those of values (t,) at increasing times."""
-        weights = shares(t)
+        counts = counted(values)
+        weights, there = shares(t, counts), np.where(counts, values, 0.0)
         chosen = (*_ends(values, values), largest(values))
         ends = (Extreme(float(values[i]), float(t[i])) for i in map(int, chosen))
-        return cls(name, unit, float(values @ weights), float(np.sqrt(values**2 @ weights)), *ends)
+        return cls(name, unit, float(there @ weights), float(np.sqrt(there**2 @ weights)), *ends)
 
     @classmethod
     def along(cls, name: str, unit: str, t: Array, places: Array, values: Array) -> Statistics:
@@ -61,10 +64,31 @@ def _ends(low: Array, high: Array) -> tuple[Any, Any]:
     return np.argmin(np.where(np.isnan(low), np.inf, low)), np.argmax(np.where(np.isnan(high), -np.inf, high))
 
 
-def shares(t: Array) -> Array:
-    """The part of the time that each instant stands for, by trapezia, (t,)."""
-    weights = np.zeros(t.size)
-    steps = np.diff(t)
+def counted(values: Array) -> npt.NDArray[np.bool_]:
+    """At which instants values (..., t) count: not where friction at rest leaves one of them open, which is then no number."""
+    return np.asarray(~np.isnan(values).any(axis=tuple(range(values.ndim - 1))))
+
+
+def of_counted(values: Array) -> Array:
+    """Values (n, members, t) with those of an instant that counts in place of each that does not: their extremes are the same.
+
+    What counts at no instant stays as it is.
+    """
+    counts: Any = ~np.any(np.isnan(values), axis=1)
+    first, here = np.argmax(counts, axis=1)[:, None], np.arange(values.shape[2])
+    taken = np.where(counts | ~np.any(counts, axis=1)[:, None], here, first)
+    return values if counts.all() else np.take_along_axis(values, taken[:, None], axis=2)
+
+
+def shares(t: Array, counts: npt.NDArray[np.bool_] | None = None) -> Array:
+    """The part of the time that each instant stands for, by trapezia, (t,): of the steps whose two ends count.
+
+    Where there is no such step, the instants that count have equal parts; NaN where none does.
+    """
+    weights, counts = np.zeros(t.size), np.ones(t.size, bool) if counts is None else counts
+    steps = np.where(counts[:-1] & counts[1:], np.diff(t), 0.0)
     weights[:-1] += steps
     weights[1:] += steps
-    return weights / weights.sum() if t.size > 1 else np.ones(1)
+    if weights.any():
+        return np.asarray(weights / weights.sum())
+    return np.asarray(counts / np.count_nonzero(counts) if counts.any() else np.full(t.size, np.nan))

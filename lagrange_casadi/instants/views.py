@@ -6,14 +6,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ..declare.density import Array
-from ..errors import UnknownNameError
+from ..errors import NoComponentError, UnknownNameError
+from ..system.brief import Brief
 from ..system.room import require
 from .section_law import Basis, SectionLaw
 from .sizes import size_of
 
 
-@dataclass(frozen=True, eq=False)
-class JointMotion:
+@dataclass(frozen=True, eq=False, repr=False)
+class JointMotion(Brief):
     """Coordinate of a joint [rad or m] with its rate and acceleration, each (t,): child against parent.
 
     An angle is counter-clockwise, a slide along the joint's axis. Both are continuous in time.
@@ -24,35 +25,54 @@ class JointMotion:
     acceleration: Array
 
 
-@dataclass(frozen=True, eq=False)
-class Reaction:
+@dataclass(frozen=True, eq=False, repr=False)
+class Reaction(Brief):
     """Action of the joint's parent on its child, in ground axes, each (t,): ``fx``, ``fy`` [N], ``mz`` [N m] counter-clockwise.
 
-    In space there are ``fz``, ``mx`` and ``my`` too. Moments are about the joint's point on the child. What the joint does not bear
-    is None. The drive's effort is not part of it.
+    In space there are ``fz``, ``mx`` and ``my`` too, ``across`` the plane; in a plane they raise :class:`.NoComponentError`, an
+    ``AttributeError``. Moments are about the joint's point on the child. What the joint does not bear is None. The drive's effort
+    is not part of it.
     """
 
     fx: Array
     fy: Array
     mz: Array | None
-    fz: Array | None = None
-    mx: Array | None = None
-    my: Array | None = None
+    across: tuple[Array, Array | None, Array | None] | None = None
+
+    @property
+    def fz(self) -> Array:
+        """The force along the ground's z (t,) [N]."""
+        return self._in_space("fz")[0]
+
+    @property
+    def mx(self) -> Array | None:
+        """The moment about the ground's x (t,) [N m]."""
+        return self._in_space("mx")[1]
+
+    @property
+    def my(self) -> Array | None:
+        """The moment about the ground's y (t,) [N m]."""
+        return self._in_space("my")[2]
+
+    def _in_space(self, name: str) -> tuple[Array, Array | None, Array | None]:
+        if self.across is None:
+            raise NoComponentError("component of a reaction in a plane", name, ("fx", "fy", "mz"))
+        return self.across
 
     @property
     def resultant(self) -> Array:
         """The size of the force (t,) [N]."""
-        return size_of(values for values in (self.fx, self.fy, self.fz) if values is not None)
+        return size_of((self.fx, self.fy) if self.across is None else (self.fx, self.fy, self.fz))
 
     @property
     def moment(self) -> Array | None:
         """The size of the moment (t,) [N m], or None where the joint bears none."""
-        borne = [values for values in (self.mx, self.my, self.mz) if values is not None]
+        borne = [values for values in (*(self.across or ())[1:], self.mz) if values is not None]
         return size_of(borne) if borne else None
 
 
-@dataclass(frozen=True, eq=False)
-class Pose:
+@dataclass(frozen=True, eq=False, repr=False)
+class Pose(Brief):
     """Place of a body's base in ground axes [m] and direction of its axis [rad], each (t,).
 
     ``angle`` is counter-clockwise from x and continuous in time; it is None for a point mass and in space. There ``z`` is told too,

@@ -30,7 +30,7 @@ from .disturbed import Instants, effects, openness
 INSTANTS = 48
 _MANY, _FIRST, _WORST = 2000, 10, 30
 _CLOSED = 10.0
-_DEAD: tuple[Kind, ...] = ("closure", "gimbal", "hold")
+_DEAD: tuple[Kind, ...] = ("closure", "gimbal", "roll", "hold")
 _FORCES = ("effort", "reaction", "multiplier", "friction", "section", "law", "station", "spread", "output")
 _UNEXPLAINED = 100.0
 _SUMS = 64.0

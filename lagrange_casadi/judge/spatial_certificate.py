@@ -95,7 +95,7 @@ def _closure(reported: Reported, bodies: Mapping[str, Moving], equations: Sequen
     """Gaps of all joints, of the reported poses, and of the users' equations: over their slopes, times the length of all links.
 
     A joint's gap is how far its child is from where, and from how, its reported motion puts it; so too of rates and accelerations,
-    over the largest that there are.
+    over the largest that there are. A bar's y axis must be in the plane of the bar and the direction that was declared for it.
     """
     solution, turned = reported.solution, reported.turned
     worst, size = np.zeros_like(solution.t), digits.size(solution)
@@ -116,6 +116,7 @@ def _closure(reported: Reported, bodies: Mapping[str, Moving], equations: Sequen
         if told_as is not meant:
             known = digits.ROUNDINGS * digits.rounding(solution) * np.abs(told_as)
             worst = np.maximum(worst, (np.abs(np.exp(1j * (told_as - meant)) - 1.0) - known) * size)
+    aims = {name: np.array(way) for name, way in solution.description.get("beside", {}).items()}
     for name in solution.description["bodies"]:
         pose, body = solution.pose(name), bodies[name]
         place = np.stack([pose.x, pose.y, pose.z], axis=1)  # type: ignore[list-item]
@@ -125,6 +126,9 @@ def _closure(reported: Reported, bodies: Mapping[str, Moving], equations: Sequen
             crooked = np.swapaxes(axes, 1, 2) @ axes - np.eye(3), axes - body.axes
             worst = np.maximum(worst, np.abs(crooked).max(axis=(0, 2, 3)) * size)
             worst = np.maximum(worst, _size(cross(axes[:, :, 0], axes[:, :, 1]) - axes[:, :, 2]) * size)
+            if name in solution.description["bars"] and name in aims:
+                _, along, off = np.moveaxis(aims[name] @ axes, 1, 0)
+                worst = np.maximum(worst, np.where(along >= 0.0, np.abs(off), 1.0) * size)
     for equation in equations:
         entries = [measured(solution, bodies, entry) for entry in equation.entries]
         units = [1.0 if entry.kind == "coordinate" else size for entry in equation.entries]

@@ -19,6 +19,7 @@ import numpy as np
 from ..beams.material import Material
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
+from ..instants.statistics import counted
 from ..quantities import Output
 from ..strength.fatigue import factor, loaded, strengths
 from ..sweep.strength import Fatigue, bounds
@@ -59,6 +60,10 @@ class Tired:
         """
         fatigue = self.fatigue
         members = np.asarray(look.found.out, float)[[self.graph.outputs[member] for member in fatigue.members]]
+        instants = np.flatnonzero(counted(members))
+        members = members[:, instants]
+        if not instants.size:
+            return []
         if not fatigue.stands(members[None])[0]:
             raise DeclarationError(f"a load travels along link '{self.link}': its fatigue is followed by sweeps alone")
         normal, shears = fatigue.stresses(members[None], look.p[None])
@@ -71,7 +76,7 @@ class Tired:
             swings = loaded(fatigue.history(normal[0], shears[0], k))
             used = 1.0 / factor(swings.amplitude, swings.mean, self.material, "goodman")
             worst = int(np.argmax(used))
-            first, last = (look.instant(i) for i in swings.instants[worst])
+            first, last = (look.instant(int(instants[i])) for i in swings.instants[worst])
             found.append(Point(first.share, last.share, k, float(used[worst]), first.guess, second=last.guess))
             best = max(best, float(used[worst]))
         return sorted(found, key=lambda point: -point.value)

@@ -7,13 +7,14 @@ from typing import BinaryIO
 import numpy as np
 
 from ..declare.scene import Scene
-from ..draw.pictures import draw_into, save
+from ..draw.pictures import draw_into, one_at_a_time, save
 from ..evaluate import evaluate
 from .optimum import Optimum
 
 _TEXT = 40
 
 
+@one_at_a_time()
 def draw_optimum(scene: Scene, optimum: Optimum, file: BinaryIO, ending: str) -> None:
     """Write the picture into a file; its kind is told by a name's ending."""
     from matplotlib.figure import Figure

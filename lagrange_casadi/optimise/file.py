@@ -8,9 +8,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from ..store.opening import opened_file, schema_of
-from ..system.publish import replacing
-from ..system.seal import seal
+from ..store.opening import opened_file
+from ..system.publish import PatientFile, replacing
+from ..system.seal import kind_of, seal
 from .front import Front
 from .optimum import Optimum
 
@@ -23,7 +23,7 @@ def save(found: Optimum | Front, path: str | os.PathLike[str]) -> None:
     Raises :class:`.PathError` where no file can be put there, :class:`.StoreError` where it cannot be written.
     """
     with replacing(Path(path), hdf5=True) as draft:
-        with h5py.File(draft, "w", track_order=True) as file:
+        with PatientFile(draft, "x+") as bytes_, h5py.File(bytes_, "w", track_order=True) as file:
             file.attrs.update({"schema": SCHEMA, "schema_version": VERSION, "case": found.case})
             if isinstance(found, Optimum):
                 _write_optimum(file, found)
@@ -35,7 +35,7 @@ def save(found: Optimum | Front, path: str | os.PathLike[str]) -> None:
 
 def is_optimum(path: str | os.PathLike[str]) -> bool:
     """Whether a path is that of a search's file, whole or not."""
-    return schema_of(path) == SCHEMA
+    return kind_of(path) == SCHEMA
 
 
 def check_optimum(path: str | os.PathLike[str]) -> list[str]:
@@ -44,7 +44,8 @@ def check_optimum(path: str | os.PathLike[str]) -> list[str]:
     Raises :class:`.StoreError` for what is not a whole file of a search, :class:`.PathError` for none.
     """
     found = []
-    with opened_file(path, SCHEMA, VERSION, "the file of a search") as file:
+    with opened_file(path, SCHEMA, range(VERSION, VERSION + 1), "the file of a search") as file:
+        file.visititems(_read)
         if file.attrs["stopped"]:
             found.append("the search was stopped before its end")
         if not file.attrs["feasible"]:
@@ -52,6 +53,13 @@ def check_optimum(path: str | os.PathLike[str]) -> list[str]:
         if not file.attrs["converged"]:
             found.append("it is not known to be an optimum")
     return found
+
+
+def _read(_place: str, item: h5py.Group | h5py.Dataset) -> None:
+    """Read all of a part. Raises what HDF5 does for one that is damaged."""
+    dict(item.attrs)
+    if isinstance(item, h5py.Dataset):
+        item[()]
 
 
 def _write_front(file: h5py.File, front: Front) -> None:

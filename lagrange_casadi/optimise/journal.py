@@ -72,7 +72,7 @@ def kept(target: Path | None, identity: Mapping[str, Any], *, resume: bool, forc
         return
     check_writable(target, hdf5=True)
     path = journal_of(target)
-    if path.exists() and not (resume or force):
+    if path.exists() and path.stat().st_size and not (resume or force):
         raise PathError(f"{path} is of an unfinished search: go on with resume=True, or start anew with force=True")
     journal, own = Journal(target), False
     try:
@@ -83,6 +83,7 @@ def kept(target: Path | None, identity: Mapping[str, Any], *, resume: bool, forc
                 except BlockingIOError:
                     raise BusyError(f"another search is writing {target}: wait for it, or write another file") from None
             journal.file = file
+            own = force or not os.fstat(file.fileno()).st_size
             if force or not _read(journal, path, identity):
                 file.truncate(0)
                 file.write(_line({"identity": identity}))
@@ -106,10 +107,11 @@ def _read(journal: Journal, path: Path, identity: Mapping[str, Any]) -> bool:
         if content:
             raise StoreError(f"{path} holds what no search wrote, or is damaged: force=True starts anew")
         return False
-    if found := difference(lines[0]["identity"], identity):
-        raise StoreError(f"{path} is of another search: {found}; start anew with force=True, or write another file")
-    for words in lines[1:]:
-        journal.known[words["of"]] = Trail.read(words["trail"])
+    for words in lines:
+        if "trail" in words:
+            journal.known[words["of"]] = Trail.read(words["trail"])
+        elif found := difference(words["identity"], identity):
+            raise StoreError(f"{path} is of another search: {found}; start anew with force=True, or write another file")
     return True
 
 
@@ -125,8 +127,7 @@ def _words(line: bytes) -> Any:
         return None
     try:
         words = json.loads(text)
-        if "identity" not in words:
-            check_shape(words, {"of": str, "trail": WORDS}, "line")
+        check_shape(words, {"identity": {}} if "identity" in words else {"of": str, "trail": WORDS}, "line")
     except (ValueError, RecursionError, TypeError):
         return None
     return words

@@ -83,7 +83,7 @@ class Judge:
                 values[term] = float(term.of_parameters(self.engine.scene.mechanism)(p))
             elif link := tired_link(term.output):
                 forces = [k for k, name in enumerate(self.engine.quantities) if name.startswith(f"section:{link}:")]
-                values[term] = own[0][0].value if np.isfinite(found.value[row, forces]).all() else math.nan
+                values[term] = own[0][0].value if own and np.isfinite(found.value[row, forces]).all() else math.nan
             elif term.kind == "peak":
                 values[term] = abs(float(found.value[row, self.engine.quantities.index(term.name)]))
             elif term.averaged:

@@ -18,9 +18,7 @@ from ..equations.described import described
 from ..equations.fingerprint import fingerprint, sources
 from ..errors import DeclarationError, UnknownNameError, check_kind
 from ..instants.rung import Backend, Rung
-from ..strength.member import strength_open
 from ..study.peaks import wanted_for
-from ..sweep.strength import open_forces
 from .fatigue import tired_link
 from .judged import Judged
 from .strength_limits import constraints_of
@@ -176,8 +174,6 @@ class Question:
                 term.of_parameters(scene.mechanism)
             if term.kind == "peak" and (link := tired_link(term.output)):
                 Wanted.of(scene.mechanism, [f"safety:{link}"])
-                if unknown := open_forces(scene.mechanism, link, engine.quantities):
-                    raise DeclarationError(strength_open(link, unknown))
                 continue
             there = engine.efforts if term.averaged else engine.quantities
             if term.output is not None and term.name not in there:

@@ -7,13 +7,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, overload
 
+from ..arguments import public
 from ..case import Case
 from ..declare.scene import Scene
 from ..declare.times import Times
 from ..errors import DeclarationError
 from ..instants.rung import Backend
+from ..store.runs import check_target
 from ..system.publish import uninterrupted
-from .file import save
+from .file import SCHEMA, save
 from .finder import Finder
 from .front import POINTS, Front, front_of
 from .hands import Hands, Here
@@ -70,6 +72,7 @@ def optimise(
 ) -> Front: ...
 
 
+@public
 def optimise(
     scene: Scene | Case,
     *,
@@ -147,6 +150,8 @@ def optimise(
     hands = _hired(dask, scene)
     finder = Finder.of(own, question)
     target = None if out is None else Path(out)
+    if target is not None:
+        check_target(target, SCHEMA)
     told = {"starts": starts if isinstance(starts, int) else [dict(start) for start in starts], "screen": screen}
     with kept(target, {**question.words(own, finder.engine), **told}, resume=resume, force=force) as journal:
         search = Search(finder, journal, hands, progress or (lambda *_: None), starts, screen)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import DeclarationError, NoDesignError, UnknownNameError
+from ..instants.refusal import Status
 from .finder import Finder
 from .judged import Judged
 from .problem import Problem
@@ -49,7 +50,7 @@ def named(finder: Finder, starts: Sequence[Mapping[str, float]]) -> list[Judged]
                 raise DeclarationError(f"starts: {name} = {value!r} is not within its bounds")
             p[declared.index(name)] = value
         rows.append(box.all(np.clip(box.share(p), 0.0, 1.0)))
-    return _with_results([finder.judge.look(p) for p in rows])
+    return _with_results(finder, found := [finder.judge.look(p) for p in rows], found)
 
 
 def screen(finder: Finder, count: int) -> list[Judged]:
@@ -74,11 +75,16 @@ def chosen(finder: Finder, problem: Problem, screened: Sequence[Judged], count: 
             closely = finder.judge.look(one.p)
             if closely.has_result:
                 found.append(closely)
-    return _with_results(found)
+    return _with_results(finder, found, screened)
 
 
-def _with_results(judged: Sequence[Judged]) -> list[Judged]:
+def _with_results(finder: Finder, judged: Sequence[Judged], screened: Sequence[Judged]) -> list[Judged]:
     found = [one for one in judged if one.has_result]
     if not found:
-        raise NoDesignError("optimise: no design within the bounds has a result; evaluate one to see why")
+        outcome = finder.engine.evaluate(np.array([one.p for one in screened]))
+        values = outcome.value[outcome.status == Status.OK]
+        open_ = np.isnan(values).all(axis=0) & bool(len(values))
+        names = ", ".join(name for name, is_open in zip(finder.engine.quantities, open_, strict=True) if is_open)
+        why = f": {names} is open for all of them" if names else "; evaluate one to see why"
+        raise NoDesignError(f"optimise: no design within the bounds has a result{why}")
     return found

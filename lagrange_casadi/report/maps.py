@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from ..declare.density import Array
-from ..draw.figures import strong_of
-from ..errors import DeclarationError
 from ..instants.solution import Solution
-from ..strength import Stress
+from ..instants.statistics import counted
+from ..strength.parts import bending_of, strong_of
+from ..strength.stress import Stress
 from .arrays import Arrays
 from .marks import Mark, mark
 
@@ -49,24 +49,20 @@ class Map:
 def map_entries(solution: Solution, arrays: Arrays) -> Iterator[dict[str, Any]]:
     """The maps of the links that have a beam: von Mises' stress, and where the material's elasticity is known the deflection."""
     for link in strong_of(solution):
-        try:
-            stress = solution.stress(link)
-            peak = stress.peak("von_mises")
-        except DeclarationError:  # No formula has the torsion of its cross-section.
-            continue
+        stress = solution.stress(link)
+        peak = stress.peak("von_mises")
         chosen = _instants(solution, peak.t)
         grid = Stress(stress.member.during(chosen)).grid("von_mises", _ratios())
         top = mark(solution, peak.value, peak.t, peak.xi)
         yield _entry(f"stress:{link}", link, "von Mises' stress", "Pa", False, top, peak.fibre, chosen, grid, solution, arrays)
-    for link in strong_of(solution, "elasticity"):
-        try:
-            bent = solution.deflection(link)
-        except DeclarationError:
-            continue
+    for link in bending_of(solution):
+        bent = solution.deflection(link)
         sizes = bent.size(np.broadcast_to(_ratios(), (solution.t.size, RATIOS)))
         most = np.abs(sizes).max(axis=1)
+        if not counted(most).any():
+            continue
         # A smooth line has its summit no farther above such a grid, so other instants need no search along it.
-        largest = solution.during(most >= _BESIDE * most.max()).deflection(link).peak()
+        largest = solution.during(most >= _BESIDE * float(np.fmax.reduce(most))).deflection(link).peak()
         chosen = _instants(solution, largest.t)
         grid = sizes[chosen]
         top = mark(solution, largest.value, largest.t, largest.xi)

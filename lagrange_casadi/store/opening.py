@@ -10,7 +10,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ..errors import PathError, StoreError
+from ..errors import StoreError
 from ..system.seal import Seen, kind_of, verify
 from .untrusted import told_as
 
@@ -22,24 +22,11 @@ _KNOWN = {
 }
 
 
-def schema_of(path: str | os.PathLike[str]) -> str | None:
-    """The schema that a file says it is of, by its seal, or where it has none by HDF5; None where there is no telling."""
-    try:
-        found: Any = kind_of(path)
-        if found is None:
-            verify(path)
-            with told_as("damaged", path), h5py.File(path, "r") as file:
-                found = file.attrs.get("schema")
-    except (PathError, StoreError):
-        return None
-    return found if isinstance(found, str) else None
-
-
 @contextmanager
 def opened_file(
-    path: str | os.PathLike[str], schema: str, version: int, kind: str, of: str = "", seen: Seen | None = None
+    path: str | os.PathLike[str], schema: str, versions: range, kind: str, of: str = "", seen: Seen | None = None
 ) -> Iterator[h5py.File]:
-    """A whole file of a schema, which messages call ``kind``, its versions those ``of`` it.
+    """A whole file of one of the ``versions`` of a schema, which messages call ``kind``, its versions those ``of`` it.
 
     All of it is held to its seal, unless it is still the one that was ``seen``. Raises :class:`PathError` for none,
     :class:`StoreError` for another file, another version, and one that was not finished or is not as it was written; whatever
@@ -58,11 +45,10 @@ def opened_file(
                 raise StoreError(f"{path}: was changed while it was read")
             _refuse_other(path, file.attrs.get("schema"), schema, kind)
             written = file.attrs.get("schema_version")
-            if not isinstance(written, np.integer) or not 1 <= written <= version:
+            if not isinstance(written, np.integer) or written not in versions:
                 told = written if isinstance(written, np.integer) else repr(written)
-                raise StoreError(f"{path}: schema version {told}{of}, this program reads versions 1 to {version}")
-            if written > 1 and not seen.sealed:
-                raise StoreError(f"{path}: damaged: it has lost its seal, as where another program has changed it")
+                valid = f"{versions[0]} to {versions[-1]}"
+                raise StoreError(f"{path}: schema version {told}{of}, this program reads versions {valid}: run it again")
             if not file.attrs.get("complete", False):
                 raise StoreError(f"{path}: was not written to its end")
             yield file

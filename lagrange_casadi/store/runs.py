@@ -20,12 +20,13 @@ from typing import Any
 import h5py
 import numpy as np
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.description import Description, motions_of, shape_of
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
 from ..declare.wanted_slopes import SENSITIVITY
-from ..errors import DeclarationError, PathError, StoreError, one_line
+from ..errors import PathError, StoreError, one_line
 from ..instants.elasticity import Elasticity
 from ..instants.ordering import in_order
 from ..instants.solution import Provenance, Solution
@@ -40,11 +41,12 @@ from .slopes import add_slopes, check_slopes, slopes_of
 from .untrusted import check_chunks, check_dataset, check_links, parsed, shown
 
 SCHEMA_VERSION = 7
-"""Files of version 1 have no seal. Those of version 2 are not over a drive's coordinate, those of 3 of planar mechanisms alone,
+"""Files of version 1 had no seal. Those of version 2 are not over a drive's coordinate, those of 3 of planar mechanisms alone,
 those of 4 have no loads along links, those of 5 no rotary inertia of slices, those of 6 no friction, stresses or derivatives by
-parameters, and nothing that elasticity tells; all are still written."""
+parameters, and nothing that elasticity tells; all from 2 on are still written."""
 
 _WITHOUT_OVER, _PLANAR, _AT_POINTS, _LOADED, _THICK = 2, 3, 4, 5, 6
+_READ = range(_WITHOUT_OVER, SCHEMA_VERSION + 1)
 _LATEST = ("friction", "stress", "utilisation", "deflection")
 
 _CHUNK_BYTES = 1 << 20
@@ -57,16 +59,21 @@ _OVER_TOLERANCE = {"double": 1e-12, "single": 1e-6}
 """Of the largest coordinate: how far a motion's may be from that by which its instants were asked for."""
 
 _KIND = "the file of a run"
+_TABLES = (".csv", ".tsv", ".txt", ".xls", ".xlsx", ".json", ".mat", ".parquet")
+_OTHERS = {
+    SCHEMA: _KIND,
+    f"{SCHEMA}-sweep": "the file of a sweep",
+    f"{SCHEMA}-optimum": "the file of a search",
+}
 
 
+@public
 def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") -> None:
     """Write a solution, replacing the file at ``path`` whole or not at all.
 
     ``figures`` is kept for :mod:`.figures`, which reads from it how the case wants to be drawn. Raises :class:`StoreError` where
     the file cannot be written.
     """
-    if not isinstance(solution, Solution) or not isinstance(path, (str, os.PathLike)):
-        raise DeclarationError(f"save: expected a solution and a path, got {solution!r} and {path!r}")
     target = Path(path)
     check_target(target)
     _require_room(solution, target)
@@ -81,26 +88,27 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
         seal(draft, SCHEMA)
 
 
-def check_target(target: Path) -> None:
-    """Raise :class:`PathError` where no file of a run can be put: it replaces another one, and nothing else that holds anything.
+def check_target(target: Path, own: str = SCHEMA) -> None:
+    """Raise :class:`PathError` where no file of a schema can be put: it replaces another one, and nothing else that holds anything.
+
+    Nor may its name end as that of a table, which it is not.
 
     Raises :class:`BusyError` where another program writes what is there.
     """
+    if target.suffix.lower() in _TABLES:
+        name = target.with_suffix(".h5").name
+        raise PathError(
+            f"cannot write {target}: a run is kept as HDF5, under a name such as {name}; a table is "
+            "what solution.to_pandas().to_csv(...) writes"
+        )
     check_writable(target, hdf5=True)
     place = settled(target)
     if not place.exists() or not place.stat().st_size:
         return
     schema = kind_of(place)
-    if schema is None and is_hdf5(place):
-        try:
-            with h5py.File(place, "r") as file:
-                schema = str(file.attrs.get("schema", ""))
-        except Exception as error:
-            raise PathError(
-                f"cannot write {target}: what is there cannot be read ({one_line(error)}); choose another name"
-            ) from None
-    if schema != SCHEMA:
-        kind = {f"{SCHEMA}-sweep": "the file of a sweep", None: "no file of HDF5"}.get(schema, "an HDF5 file of something else")
+    if schema != own:
+        unsealed = "an HDF5 file of something else, or without its seal" if is_hdf5(place) else "no file of HDF5"
+        kind = (_OTHERS | {None: unsealed}).get(schema, "an HDF5 file of something else")
         raise PathError(f"cannot write {target}: it is {kind}; choose another name")
 
 
@@ -119,25 +127,27 @@ def _require_room(solution: Solution, target: Path) -> None:
         raise StoreError(f"cannot write {target}: it takes {size / 1e9:.4g} GB, and the disk has {free / 1e9:.3g} GB left")
 
 
+@public
 def load(path: str | os.PathLike[str]) -> Solution:
     """Read a solution. Raises :class:`StoreError` for what is not a whole file of this schema, :class:`PathError` for none."""
-    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+    with opened_file(path, SCHEMA, _READ, _KIND) as file:
         return _read(file)
 
 
 def figure_specs(path: str | os.PathLike[str]) -> str:
     """How the case wants to be drawn, as it was given to :func:`save`. Raises what :func:`load` does."""
-    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+    with opened_file(path, SCHEMA, _READ, _KIND) as file:
         return shown(file.attrs.get("figures", ""))
 
 
+@public
 def check(path: str | os.PathLike[str]) -> list[str]:
     """What is wrong with a file, one line each; nothing where it is whole and consistent.
 
     Every dataset is read, so its checksum is verified; every value must be finite, every axis have its scale, every unit and sign
     be the schema's; and the section grids must be what the laws give, to 1e-12 of their peak. Raises what :func:`load` does.
     """
-    with opened_file(path, SCHEMA, SCHEMA_VERSION, _KIND) as file:
+    with opened_file(path, SCHEMA, _READ, _KIND) as file:
         solution = _read(file)
         certificate = (Output("certificate", "", name) for name in solution.certificate)
         outputs = dict.fromkeys([*solution.quantities(), *solution.outputs, *certificate])

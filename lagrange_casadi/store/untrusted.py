@@ -31,8 +31,7 @@ def told_as(what: str, path: str | os.PathLike[str]) -> Iterator[None]:
     except (LagrangeCasadiError, MemoryError):
         raise
     except Exception as error:
-        told = one_line(error).encode(errors="backslashreplace").decode() or type(error).__name__
-        raise StoreError(f"{path}: {what}: {told}") from error
+        raise StoreError(f"{path}: {what}: {one_line(error) or type(error).__name__}") from error
 
 
 def parsed(text: Any, shape: Shape, what: str = "JSON") -> Any:

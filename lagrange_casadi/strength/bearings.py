@@ -15,10 +15,12 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.fitted import Fitted, Pin, Plain, Rolling, parts_told, positive
 from ..errors import DeclarationError
 from ..instants.solution import Solution
+from ..instants.statistics import counted
 from ..quantities import Output
 from .safety import Safety, Verdict
 
@@ -28,6 +30,7 @@ def bending_of_pin(force: Any, eye: Any, cheek: Any, gap: Any = 0.0) -> Any:
     return force * (eye + 2.0 * cheek + 4.0 * gap) / 8.0
 
 
+@public
 def equivalent_load(load: Sequence[float] | Array, turned: Sequence[float] | Array, exponent: float = 3.0) -> float:
     """The even load that wears a rolling bearing as loads (n,) do that last for turns, or anything else, ``turned`` (n,)."""
     loads, shares = np.asarray(load, float), np.asarray(turned, float)
@@ -38,6 +41,7 @@ def equivalent_load(load: Sequence[float] | Array, turned: Sequence[float] | Arr
     return float(most * mean ** (1.0 / exponent))
 
 
+@public
 def rated_hours(dynamic: float, load: float, rpm: float, exponent: float = 3.0) -> float:
     """The hours that nine of ten bearings run: (C/P)^p million turns."""
     if load == 0.0 or rpm == 0.0:
@@ -45,6 +49,7 @@ def rated_hours(dynamic: float, load: float, rpm: float, exponent: float = 3.0) 
     return float((dynamic / load) ** exponent * 1e6 / (60.0 * rpm))
 
 
+@public
 def joint_safety(solution: Solution, joint: str) -> Safety:
     """The factors of safety of what is fitted to a joint, over all instants: by how much its reaction may grow.
 
@@ -62,6 +67,10 @@ def joint_safety(solution: Solution, joint: str) -> Safety:
     if any(not solution.determined(member) for member in members):
         raise DeclarationError(f"equilibrium leaves the reaction of joint '{joint}' open, so its strength is open")
     across, along = _forces(solution, joint)
+    if not (counts := counted(np.stack([across, along]))).any():
+        raise DeclarationError(f"joint '{joint}': friction is at rest at all instants, so its strength is open")
+    # What does not count is no load: it is below every peak, and loads a bearing over no way.
+    across, along = (np.where(counts, force, 0.0) for force in (across, along))
     rate = solution.outputs.get(Output("motion", _coordinate(solution, joint), "rate"))
     verdicts: list[Verdict] = []
     left: list[str] = []

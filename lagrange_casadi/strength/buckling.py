@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import public
 from ..beams.beam import SLIGHT
 from ..declare.density import Array
 from .member import Member
@@ -23,6 +24,7 @@ _HALVINGS = 80
 _LOOKED_AT = 65
 
 
+@public
 def critical_stress(slenderness: Any, elasticity: float, strength: float) -> Any:
     """The stress at which a column of a slenderness, effective length over radius of gyration, fails: Euler's or Johnson's [Pa]."""
     s = np.asarray(slenderness, float)

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import public
 from ..beams.material import Material
 from ..declare.density import Array
 from .fatigue import Place, sought
@@ -49,6 +50,7 @@ class Plane:
         return self.amplitude + share * self.normal
 
 
+@public
 def critical_plane(values: Array, share: float = DUCTILE) -> Plane:
     """The critical plane of a history of stresses (3, t) in a beam: normal, and shear along y and along z [Pa].
 
@@ -62,6 +64,7 @@ def critical_plane(values: Array, share: float = DUCTILE) -> Plane:
     return _best(values, share, _around, [math.pi / 2, 2 * math.pi, math.pi], _SPACE)
 
 
+@public
 def plane_factor(plane: Plane, material: Material, share: float = DUCTILE) -> float:
     """By how much all loads may grow until a part no longer lasts for ever.
 

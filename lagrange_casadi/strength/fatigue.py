@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..arguments import public
 from ..beams.beam import Notch
 from ..beams.material import Material
 from ..declare.density import Array
@@ -72,6 +73,7 @@ def strengths(material: Material, criterion: str) -> tuple[float, float]:
     return endurance, material.needs(what, name)[0]
 
 
+@public
 def factor(amplitude: Any, mean: Any, material: Material, criterion: str = "goodman") -> Any:
     """By how much amplitude and mean may grow together until the part no longer lasts for ever; of numbers or arrays.
 
@@ -85,6 +87,7 @@ def factor(amplitude: Any, mean: Any, material: Material, criterion: str = "good
         return 1.0 / share
 
 
+@public
 def reversed_amplitude(amplitude: Any, mean: Any, material: Material, criterion: str = "goodman") -> Any:
     """The amplitude without a mean that does the same damage; infinite where the mean alone is too much."""
     _, strength = strengths(material, criterion)
@@ -103,6 +106,7 @@ def line(material: Material) -> tuple[float, float, float]:
     return endurance, start, math.log10(material.endurance_cycles / _LEAST) / math.log10(endurance / start)
 
 
+@public
 def cycles(amplitude: Any, material: Material) -> Any:
     """How often a fully reversed amplitude is borne: on the material's S-N line, and endlessly below its endurance limit.
 

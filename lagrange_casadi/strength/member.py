@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -16,9 +16,11 @@ from ..beams.shape import between
 from ..beams.told import beam_told
 from ..declare.density import Array
 from ..declare.description import in_space
+from ..equations.bars import unaimed
 from ..errors import DeclarationError, check_kind
 from ..instants.section_law import SectionLaw, Side
 from ..instants.solution import Solution
+from ..instants.statistics import counted
 from ..summits.polynomials import interpolation
 
 FORCES = {False: ("axial", "shear", "bending"), True: ("axial", "shear_y", "shear_z", "torsion", "bending_y", "bending_z")}
@@ -28,11 +30,6 @@ _EXACT, _DEGREES, _NARROW = 1e-13, (0, 4, 8, 12), 2.0**-12
 """How closely a polynomial must give what forces are multiplied by, its degrees, and a part of a link too short to cut."""
 
 _TWIST = 1e-9
-
-
-def strength_open(link: str, forces: Sequence[str]) -> str:
-    """Why nothing is told of how strong a link is of which some forces are open."""
-    return f"link '{link}': equilibrium does not determine {' and '.join(forces)}, so its strength is open"
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,11 +67,12 @@ class Member:
     space: bool
 
     @classmethod
-    def of(cls, solution: Solution, link: str) -> Member:
-        """A link of a solution.
+    def of(cls, solution: Solution, link: str, *, spun: bool = False) -> Member:
+        """A link of a solution; ``spun`` if what is asked of it is the same however a bar is turned about its line.
 
         Raises :class:`.DeclarationError` where the link has no beam, its sections were not wanted, equilibrium leaves its forces
-        open, or its cross-section bears torsion of which its stiffness is not known.
+        open, its cross-section bears torsion of which its stiffness is not known, or it is a bar whose cross-section is not round
+        and has no declared direction.
         """
         check_kind("strength", solution, "a Solution", Solution)
         law, body = solution.section(link).law, solution.description["bodies"][link]
@@ -83,10 +81,24 @@ class Member:
             raise DeclarationError(f"link '{link}' has no beam, which says what it is made of; links with one: {having or 'none'}")
         space = in_space(solution.description)
         if open_ := [force for force in FORCES[space] if not solution.determined(f"section:{link}:{force}")]:
-            raise DeclarationError(strength_open(link, open_))
+            names = " and ".join(open_)
+            raise DeclarationError(f"link '{link}': equilibrium does not determine {names}, so its strength is open")
         member = cls(link, beam_told(body["beam"]), law, solution.t, solution.xi, space)
         member._check_torsion()
+        bars, aimed = solution.description.get("bars", ()), solution.description.get("beside", ())
+        if link in bars and link not in aimed and not (spun or member.beam.round):
+            raise DeclarationError(unaimed(link))
         return member
+
+    @cached_property
+    def counted(self) -> Member:
+        """The same at the instants that count: see :func:`.counted`. Raises :class:`.DeclarationError` where none does."""
+        counts = counted(np.moveaxis(self.at(np.tile([0.0, 1.0], (self.t.size, 1))), 1, 2))
+        if counts.all():
+            return self
+        if not counts.any():
+            raise DeclarationError(f"link '{self.link}': friction is at rest at all instants, so its strength is open")
+        return self.during(np.flatnonzero(counts))
 
     @property
     def forces(self) -> tuple[str, ...]:
@@ -164,7 +176,7 @@ class Member:
         if not self.space or self.properties(0, 0.0).torsion is not None:
             return
         ends = np.zeros((self.t.size, 1)) + np.linspace(0.0, 1.0, 9)
-        twist, bending = (np.abs(self.law.at(force, ends)).max() for force in ("torsion", "bending"))
+        twist, bending = (float(np.fmax.reduce(np.abs(self.law.at(force, ends)), axis=None)) for force in ("torsion", "bending"))
         if twist > _TWIST * (twist + bending):
             kind = self.beam.course.cells[0][0].kind
             how = "give its properties by beams.given, with its torsion, or by beams.analysed"

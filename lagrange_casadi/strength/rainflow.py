@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arguments import public
 from ..declare.density import Array
 from ..errors import DeclarationError
 
@@ -33,6 +34,7 @@ def reversals(history: Array) -> Array:
     return np.concatenate([kept[:1], kept[turns], kept[-1:]])
 
 
+@public
 def rainflow(history: Sequence[float] | Array, *, repeating: bool = False) -> list[Swing]:
     """The swings of a history (section 5.4.4), or of one that repeats for ever (5.4.5), of which each counts whole.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import public
 from ..beams.material import Material
 from ..declare.description import Description
 from ..declare.held import effective_lengths
@@ -72,11 +73,13 @@ class Life:
     fibre: str
 
 
+@public
 def stress(solution: Solution, link: str) -> Stress:
     """The stresses in a link. Raises :class:`.DeclarationError` where it has no beam, or no sections."""
     return Stress(Member.of(solution, link))
 
 
+@public
 def safety(solution: Solution, link: str, *, criterion: str = "goodman", yielding: str = "von_mises") -> Safety:
     """The factors of safety of a link against yielding, buckling and fatigue, over all instants.
 
@@ -94,7 +97,8 @@ def judged(member: Member, of: Column, *, criterion: str = "goodman", yielding: 
     """The same of a link in numbers; what comes after a factor that is not ``enough`` is left out."""
     if criterion not in (known := (*CRITERIA, FINDLEY)):
         raise UnknownNameError("fatigue criterion", criterion, known)
-    found, link = Stress(member), member.link
+    member, link = member.counted, member.link
+    found = Stress(member)
     material = member.beam.material
     verdicts = [yielded(member, found.peak(yielding))]
     if verdicts[0].factor < enough:
@@ -156,12 +160,13 @@ def buckling(member: Member, of: Column) -> Verdict:
     )
 
 
+@public
 def life(solution: Solution, link: str, *, criterion: str = "goodman") -> Life:
     """How long a link lasts, its span of time repeated for ever: rainflow counting, the mean by a criterion, Miner's sum.
 
     Raises what :func:`safety` does, and :class:`.DeclarationError` where the material has no endurance limit.
     """
-    member = Member.of(solution, link)
+    member = Member.of(solution, link).counted
     material = member.beam.material
     material.needs("a life", "endurance", "ultimate")
     (most, *_), place, fibre, _ = worst(Stress(member), damage_score(material, criterion))

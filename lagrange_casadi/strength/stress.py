@@ -106,16 +106,24 @@ class Stress:
         return self.member.cell_at(xi, side).names
 
     def largest(self, kind: str) -> Largest:
-        """A stress largest in size at every instant, exactly along the link, whatever the grid of xi."""
-        values, places, fibres = zip(*(stress._largest(kind) for stress in self._blocks()), strict=True)
-        return Largest(np.concatenate(values), np.concatenate(places), tuple(itertools.chain.from_iterable(fibres)))
+        """A stress largest in size at every instant, exactly along the link, whatever the grid; NaN where none counts."""
+        moving = self.member.counted
+        values, places, fibres = zip(*(stress._largest(kind) for stress in Stress(moving)._blocks()), strict=True)
+        value, place, names = np.concatenate(values), np.concatenate(places), list(itertools.chain.from_iterable(fibres))
+        if moving is self.member:
+            return Largest(value, place, tuple(names))
+        found, told = np.full((2, self.member.t.size), np.nan), [""] * self.member.t.size
+        for k, at in enumerate(np.searchsorted(self.member.t, moving.t).tolist()):
+            found[:, at], told[at] = (value[k], place[k]), names[k]
+        return Largest(found[0], found[1], tuple(told))
 
     def peak(self, kind: str, *, notches: bool = False) -> StressPeak:
-        """The largest over all instants too; where ``notches`` are asked for, their stresses and theirs alone."""
+        """The largest over all instants that count; where ``notches`` are asked for, their stresses and theirs alone."""
+        moving = Stress(self.member.counted)
         if notches:
-            return max((self._at_notch(kind, notch) for notch in self.member.beam.notches), key=lambda peak: abs(peak.value))
+            return max((moving._at_notch(kind, notch) for notch in self.member.beam.notches), key=lambda peak: abs(peak.value))
         best: StressPeak | None = None
-        for stress in self._blocks():
+        for stress in moving._blocks():
             found = stress._highest(kind, 0.0 if best is None else abs(best.value))
             if best is None or (found is not None and abs(found.value) > abs(best.value)):
                 best = found

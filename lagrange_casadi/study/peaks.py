@@ -15,6 +15,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..arguments import public
 from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array
 from ..declare.even_points import are_even
@@ -24,7 +25,7 @@ from ..declare.times import Over, Times, span_of
 from ..equations.derive import assembled, derive
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
-from ..errors import DeclarationError, check_kind
+from ..errors import DeclarationError
 from ..evaluate import evaluate
 from ..instants.backends import follow
 from ..instants.section_law import SectionLaw, Side
@@ -48,6 +49,7 @@ _NEAR, _LESS = 1e-4, 1e-13
 _TRIALS = 5
 
 
+@public
 def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None) -> list[Peak]:
     """The peaks of quantities of a solution, by full name, or of all: as :meth:`.Solution.peak`, but over all times of its span.
 
@@ -61,8 +63,6 @@ def refine(scene: Scene, solution: Solution, names: Iterable[str] | None = None)
 
     Raises :class:`DeclarationError` where the solution is not of this scene, :class:`UnknownNameError` for a name that is none.
     """
-    check_kind("refine", scene, "a Scene", Scene)
-    check_kind("refine", solution, "a Solution", Solution)
     sampled = [solution.peak(name) for name in (solution.names() if names is None else names)]
     found = ContinuousSolution.of(scene, solution.by_equilibrium)
     peaks = (found if are_even(solution.t) else found.in_equal_steps()).peaks(sampled)
@@ -232,13 +232,6 @@ class ContinuousSolution:
     def peaks(self, sampled: Sequence[Peak]) -> list[Peak]:
         """The peaks over all times, of quantities whose peaks over some instants are known."""
         solution = self.solution
-        if solution.resting.any():
-            # What has no value at some instants hides what is beside it, and is sought by itself.
-            whole = [bool(np.isfinite(solution.extremes(peak.name)[0]).all()) for peak in sampled]
-            if any(whole) and not all(whole):
-                parts = {k: [peak for peak, own in zip(sampled, whole, strict=True) if own is k] for k in (True, False)}
-                refined = {peak.name: peak for part in parts.values() for peak in self.peaks(part)}
-                return [refined[peak.name] for peak in sampled]
         found = {Output.of(peak.name): peak for peak in sampled}
         sought = [output for output in found if solution.determined(output)]
         if not sought or solution.t.size == 1:
@@ -280,7 +273,7 @@ class ContinuousSolution:
         scales = [0.0] * (max(units[: len(names)]) + 1)
         for output, k in zip(others, units[len(names) :], strict=True):
             if k < len(scales):
-                scales[k] = max(scales[k], float(np.abs(solution.outputs[output]).max()))
+                scales[k] = max(scales[k], float(np.fmax.reduce(np.abs(solution.outputs[output]), initial=0.0)))
         return units[: len(names)], scales
 
     def timed(self, signals: Signals, names: Sequence[Output], peaks: Peaks) -> tuple[Array, Array, Array]:

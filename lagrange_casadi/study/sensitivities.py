@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.scene import Scene
 from ..equations.derive import assembled, derive
@@ -187,6 +188,7 @@ class Sensitivities:
         return self.parameters.index(parameter)
 
 
+@public
 def sensitivities(scene: Scene, solution: Solution, *, backend: Backend = "auto") -> Sensitivities:
     """How a solution of a scene changes with its parameters.
 

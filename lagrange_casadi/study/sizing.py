@@ -17,6 +17,7 @@ from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..elastic.compliance import Compliance
 from ..elastic.deflection import Against, Deflection
+from ..equations.bars import bars_of, unaimed
 from ..errors import DeclarationError, LagrangeCasadiError, NoDesignError, UnknownNameError
 from ..evaluate import evaluate
 from ..instants.solution import Solution
@@ -166,10 +167,13 @@ class _Search:
             raise UnknownNameError("link with a beam", unknown, having)
         slots: dict[str, _Slot] = {}
         left: dict[str, str] = {}
+        spinning = [bar.link.name for bar in bars_of(scene.guided, scene.laws) if not bar.aimed]
         for name, link in having.items():
             if links is not None and name not in links:
                 continue
             try:
+                if name in spinning and link.beam and not link.beam.round:
+                    raise _UnfitError(unaimed(name).replace(f"link '{name}'", "it", 1))
                 slots[name] = _slot(scene, link, profiles, parameters)
             except _UnfitError as error:
                 if links is not None:

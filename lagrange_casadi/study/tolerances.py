@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Scene
@@ -98,6 +99,7 @@ def _number(value: float | str, unit: str, nominal: float) -> float:
     return found
 
 
+@public
 def tolerances(
     scene: Scene,
     within: Mapping[str, float | str],

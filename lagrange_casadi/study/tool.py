@@ -16,13 +16,14 @@ from typing import Any, cast
 import casadi as ca
 import numpy as np
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.mechanism import Mechanism
 from ..declare.parts import Body, Force, Link, Parameter, Point, PointMass
 from ..declare.scene import Scene
 from ..declare.times import Over, Times
 from ..elastic.compliance import Compliance, nodes
-from ..errors import DeclarationError, check_kind
+from ..errors import DeclarationError
 from ..evaluate import evaluate
 from ..instants.solution import Solution
 from ..strength.member import Member
@@ -57,6 +58,7 @@ class ToolDeflection:
         return float(self.size.max())
 
 
+@public
 def tool_deflection(
     scene: Scene,
     point: Body | Point,
@@ -73,7 +75,6 @@ def tool_deflection(
     Raises :class:`.DeclarationError` where no link has a beam, a material has no elasticity, forces of a link that gives way stay
     open, or the point is on the ground or of another mechanism; and what :func:`.evaluate` does.
     """
-    check_kind("tool_deflection", scene, "a Scene", Scene)
     mechanism = scene.mechanism
     if not isinstance(point, (Point, Link, PointMass)):
         raise DeclarationError(f"tool_deflection: expected a point of the mechanism, got {point!r}")
@@ -93,12 +94,14 @@ def tool_deflection(
         return evaluate(pushed, parameters={**(parameters or {}), **forces}, certificate=False, **asked)
 
     plain = sections({})
-    members = {link: Compliance.of(Member.of(plain, link), f"tool_deflection: link '{link}'") for link in links}
+    # A force elsewhere pulls a bar, and bends none.
+    members = {link: Member.of(plain, link, spun=link != place.body.name) for link in links}
+    beams = {link: Compliance.of(member, f"tool_deflection: link '{link}'") for link, member in members.items()}
     push, ways = _size(plain, links), _PUSHES[: 3 if mechanism.space else 2]
     by_link = {link: np.zeros((plain.t.size, len(ways))) for link in links}
     for k, way in enumerate(ways):
         unit = sections({way: push})
-        for link, beam in members.items():
+        for link, beam in beams.items():
             at = nodes(beam.member)
             own = beam.member.at(at.u)
             more = np.stack([unit.section(link).law.at(force, at.u) for force in beam.member.forces]) - own

@@ -33,6 +33,9 @@ DEEPEST = 14
 FINEST = 10
 """Panels within each other: in steps of this one, 3e-10 of those between the instants, nothing hides but beside a pole."""
 
+BESIDE_REST = 3
+"""Panels within each other beside an instant at which friction at rest leaves a curve open."""
+
 PANELS = 2048
 """Panels of a search, and four more for each instant."""
 
@@ -104,18 +107,25 @@ def peaks(source: CurveSource, curves: Curves, t: Array, samples: Samples, hidin
     """The peaks of quantities over the span of equally spaced instants ``t``, of which ``samples`` are.
 
     ``hiding`` (n - 1,) tells in which of their steps something is known to hide. No peak is below the largest sample. Of several
-    that are as large but for rounding the first is told, for else rounding would choose their sign.
+    that are as large but for rounding the first is told, for else rounding would choose their sign. A curve that is no number at an
+    instant, as friction at rest leaves it, is not sought in the steps beside it; a quantity that is none at all has no peak.
     """
-    search = _Search(source, curves, t, samples)
+    lacks = np.isnan(samples.values)
+    samples = samples._replace(values=np.where(lacks, 0.0, samples.values))
+    search = _Search(source, curves, t, samples, lacks[:, :-1] | lacks[:, 1:])
     if t.size > 1:
         search.panel(Panel(t, samples), 0, hiding)
-    return search.found(t, samples)
+    found = search.found(t, samples)
+    none = np.full(found.value.size, np.nan)
+    none[search.quantity[~lacks.all(axis=1)]] = 0.0
+    return Peaks(found.value + none, found.t + none, found.xi + none, found.told)
 
 
 class _Search:
     """What is known so far of each quantity: its largest size, and where one as large was found first."""
 
-    def __init__(self, source: CurveSource, curves: Curves, t: Array, samples: Samples) -> None:
+    def __init__(self, source: CurveSource, curves: Curves, t: Array, samples: Samples, lacking: Flags) -> None:
+        self.lacking, self.begin = lacking, float(t[0])
         self.source, self.curves = source, curves
         self.quantity, self.knots = np.array(curves.quantities, dtype=int), np.array(curves.knots)
         self.best = np.zeros(len(curves.units))
@@ -145,7 +155,7 @@ class _Search:
         """Take in what a curve is at a time."""
         q, size = self.quantity[curve], abs(value)
         rounding = float(self.rounding[q])
-        if not math.isfinite(size):
+        if not math.isfinite(size) or self.lacking[curve, self.step_of(t)]:
             return
         if size > self.best[q]:
             self.best[q] = size
@@ -154,6 +164,10 @@ class _Search:
             taken = size >= self.best[q] - rounding and t < self.t[q] - self.step / 2
         if taken:
             self.size[q], self.t[q], self.xi[q], self.sign[q] = size, t, xi, math.copysign(1.0, value)
+
+    def step_of(self, t: float) -> int:
+        """The step between instants in which a time is."""
+        return int(min(max((t - self.begin) // self.step, 0), self.lacking.shape[1] - 1))
 
     def found(self, t: Array, samples: Samples) -> Peaks:
         """The peaks; of those at instants, only now the first is sought."""
@@ -218,12 +232,16 @@ class _Search:
             self.part(t[1], stop, samples.some(slice(1, 2)), last, depth)
 
     def part(self, a: float, b: float, first: Samples, last: Samples, depth: int) -> None:
-        """Search what is between two times as a panel."""
+        """Search what is between two times as a panel; beside rest, where what switches is no number, only so deep."""
+        lacks = self.lacking[:, self.step_of((a + b) / 2)]
+        if depth >= BESIDE_REST and lacks.any():
+            return
         t = np.append(a + np.arange(INNER + 1) * ((b - a) / (INNER + 1)), b)
         samples = self.source.at(t[1:-1])
         joined = (np.concatenate(rows, axis=1) for rows in zip(first, samples, last, strict=True))
         # What has no value is nothing, and hides what is beside it.
         values, places, watched = joined
+        values[lacks] = 0.0
         broken = np.asarray(~np.isfinite(values).all(axis=0))
         values = np.where(np.isfinite(values), values, 0.0)
         for curve in range(values.shape[0]):

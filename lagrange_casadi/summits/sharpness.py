@@ -17,7 +17,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from ..arithmetic.interpret import followable, steps
+from ..arithmetic.interpret import followable, operations
 from ..arithmetic.lookups import is_entry
 from ..declare.density import Array
 from ..equations.checks import Check
@@ -137,7 +137,7 @@ class _Found:
 
     def look(self, function: Any, inputs: Sequence[Any]) -> None:
         """Go through the operations of a function of ``inputs``."""
-        for operation, operands in _operations(function, inputs):
+        for operation, operands in operations(function, inputs):
             self.held += operands  # so that no other node takes the place of one that is known by its number
             for kind, argument, at in _watched(operation, operands):
                 self.add(kind, argument, at)
@@ -181,28 +181,6 @@ class _Found:
 
 
 _ALIKE = {ca.OP_NEG, ca.OP_INV, ca.OP_SQ, ca.OP_SQRT, ca.OP_TWICE, ca.OP_FABS, ca.OP_COPYSIGN, ca.OP_CONSTPOW}
-
-
-def _operations(function: Any, inputs: Sequence[Any]) -> Iterator[tuple[int, list[Any]]]:
-    """Every operation of an SX function, with what it is applied to."""
-    work: dict[int, Any] = {}
-    for step in steps(function):
-        if step.operation == ca.OP_OUTPUT:
-            continue
-        if step.operation == ca.OP_CONST:
-            found = ca.SX(step.constant)
-        elif step.operation == ca.OP_INPUT:
-            found = inputs[step.arguments[0]].nz[step.arguments[1]]
-        elif step.looked_up is not None:
-            operands = [work[place] for place in step.arguments]
-            if step.looked_up.kind == "cell":
-                yield ca.OP_CALL, [*operands, ca.SX(step.looked_up.numbers[1:-1])]
-            found = step.looked_up.function(*operands)
-        else:
-            operands = [work[place] for place in step.arguments]
-            yield step.operation, operands
-            found = ca.SX.unary(step.operation, *operands) if len(operands) == 1 else ca.SX.binary(step.operation, *operands)
-        work[step.results[0]] = found
 
 
 def _watched(operation: int, operands: Sequence[Any]) -> Iterator[tuple[Kind, Any, tuple[float, ...]]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
@@ -14,12 +14,12 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.angles import typed
+from ..arguments import number, typed
 from ..declare.density import Array
 from ..declare.even_points import points
 from ..declare.limits import parameter_faults
 from ..declare.mechanism import Mechanism
-from ..errors import DeclarationError, ParameterError, UnknownNameError, check_kind
+from ..errors import DeclarationError, NumberError, ParameterError, UnknownNameError, check_kind, shown
 
 Numbers = npt.NDArray[np.int64]
 
@@ -36,7 +36,7 @@ _SHOWN = 20
 class Range:
     """``count`` values from ``start`` to ``stop``, both included: evenly spaced, or with ``log`` in equal ratios.
 
-    Ends may be texts of angles, as ``"30 deg"``; the axis is then one of angles [rad].
+    Ends may be texts, as ``"30 deg"`` or ``"100 mm"``; ``unit`` is then what they are in.
 
     Raises :class:`DeclarationError` for a range that is empty, reversed or not finite, or a log range that does not begin above 0.
     """
@@ -45,19 +45,25 @@ class Range:
     stop: float
     count: int
     log: bool = False
-    angles: bool = field(default=False, init=False, compare=False)
+    unit: str = field(default="", init=False, compare=False)
 
     def __post_init__(self) -> None:
         (start, one), (stop, other) = typed(self.start), typed(self.stop)
         if one or other:
-            for name, value in (("start", start), ("stop", stop), ("angles", True)):
+            for name, value in (("start", start), ("stop", stop), ("unit", _one_unit(one, other))):
                 object.__setattr__(self, name, value)
-        if not all(type(x) in (int, float, np.float64) for x in (self.start, self.stop)) or type(self.count) is not int:
-            raise DeclarationError(
-                f"expected numbers for START and STOP and a whole COUNT, got {self.start}:{self.stop}:{self.count}"
-            )
+        try:
+            for end in (self.start, self.stop):
+                number(end, finite=False)
+            if type(self.count) is not int:
+                raise TypeError
+        except (TypeError, NumberError):
+            told = ":".join(shown(part) if not isinstance(part, str) else part for part in (self.start, self.stop, self.count))
+            raise DeclarationError(f"expected numbers for START and STOP and a whole COUNT, got {told}") from None
         if type(self.log) is not bool:
-            raise DeclarationError(f"expected True or False after (start, stop, count), for equal ratios or not, got {self.log!r}")
+            raise DeclarationError(
+                f"expected True or False after (start, stop, count), for equal ratios or not, got {shown(self.log)}"
+            )
         if not (math.isfinite(self.start) and math.isfinite(self.stop)):
             raise DeclarationError(f"START and STOP must be finite, got {self}")
         if self.count < 1:
@@ -86,22 +92,22 @@ class Range:
 
 @dataclass(frozen=True)
 class Values:
-    """Values one by one; some may be texts of angles, as ``"30 deg"``, and then they are angles [rad].
+    """Values one by one; some may be texts, as ``"30 deg"`` or ``"100 mm"``, and ``unit`` is then what they are in.
 
     Raises :class:`DeclarationError` for none, for what is no finite number, and for one given twice.
     """
 
     values: tuple[float, ...]
-    angles: bool = field(default=False, init=False, compare=False)
+    unit: str = field(default="", init=False, compare=False)
 
     def __post_init__(self) -> None:
         try:
             told = [typed(value) for value in self.values]
-            numbers = tuple(float(value) for value, _ in told)
+            numbers = tuple(number(value, finite=False) for value, _ in told)
         except (TypeError, ValueError):
-            raise DeclarationError(f"expected numbers, got {self.values!r}") from None
+            raise DeclarationError(f"expected numbers, got {shown(self.values)}") from None
         object.__setattr__(self, "values", numbers)
-        object.__setattr__(self, "angles", any(is_angle for _, is_angle in told))
+        object.__setattr__(self, "unit", _one_unit(*(unit for _, unit in told)))
         if not numbers:
             raise DeclarationError("expected at least one value, got none")
         for value in numbers:
@@ -151,7 +157,7 @@ class Grid:
 
     def __post_init__(self) -> None:
         if not isinstance(self.axes, Mapping) or not self.axes:
-            raise DeclarationError(f"grid: expected at least one axis, as in l=0.1:0.2:11, got {self.axes!r}")
+            raise DeclarationError(f"grid: expected at least one axis, as in l=0.1:0.2:11, got {shown(self.axes)}")
         object.__setattr__(self, "axes", MappingProxyType({name: _axis(name, axis) for name, axis in self.axes.items()}))
 
     @property
@@ -191,16 +197,16 @@ class Grid:
         return self.axes[name].outside(low, high)
 
     @property
-    def angles(self) -> tuple[str, ...]:
-        """The parameters whose values are told as angles."""
-        return tuple(name for name, axis in self.axes.items() if axis.angles)
+    def units(self) -> dict[str, str]:
+        """The units in which values are told, of parameters that have some told so."""
+        return {name: axis.unit for name, axis in self.axes.items() if axis.unit}
 
 
 @dataclass(frozen=True, eq=False)
 class Listed:
     """A list of designs: ``rows`` (designs, names) of values; ``lines`` tell where each row stood in a file ``source``.
 
-    Some values of the parameters in ``angles`` were told as angles.
+    ``units`` are those of parameters that have some values told in one, as 30 deg in rad.
 
     Raises :class:`DeclarationError` for no designs, no or repeated names, or values that are not finite.
     """
@@ -209,7 +215,7 @@ class Listed:
     rows: Array
     lines: Numbers | None = None
     source: str = ""
-    angles: tuple[str, ...] = ()
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         rows = np.ascontiguousarray(self.rows, dtype=np.float64)
@@ -268,15 +274,15 @@ def check_designs(designs: Designs, mechanism: Mechanism, fixed: Mapping[str, fl
     parameters = mechanism.parameters
     check_kind("parameters", fixed, "values by name, as {'l': 0.25}", Mapping)
     if designs.source:
-        check_known(designs.names, parameters, designs.source)
+        check_known(designs.names, parameters, f"{designs.source}, head")
     check_known([*designs.names, *fixed], parameters)
     for name in designs.names:
         if name in fixed:
             raise DeclarationError(f"parameter '{name}' is swept and set to {fixed[name]} as well")
-    for name in designs.angles:
-        if (unit := parameters[name].unit) != "rad":
+    for name, told in designs.units.items():
+        if (unit := parameters[name].unit) != told:
             where = f"{designs.source}, column '{name}'" if designs.source else f"grid of {name}"
-            raise DeclarationError(f"{where}: expected numbers [{unit}], not angles")
+            raise DeclarationError(f"{where}: expected numbers [{unit}], not {'angles' if told == 'rad' else f'numbers [{told}]'}")
     wrong = []
     for name in designs.names:
         parameter = parameters[name]
@@ -297,7 +303,7 @@ def check_known(names: Sequence[str], parameters: Collection[str], head_of: str 
     unknown = {column: name for column, name in enumerate(names, 1) if name not in parameters}
 
     def place(columns: Collection[int]) -> str:
-        return f"{head_of}, line 1, column{'s' if len(columns) > 1 else ''} {', '.join(map(str, columns))}" if head_of else ""
+        return f"{head_of}, column{'s' if len(columns) > 1 else ''} {', '.join(map(str, columns))}" if head_of else ""
 
     for column, name in unknown.items():
         if _is_result(name):
@@ -341,6 +347,14 @@ def _named(words: Sequence[str]) -> str:
     return ", ".join(words[:_SHOWN]) + more
 
 
+def _one_unit(*units: str) -> str:
+    """The unit that texts tell. Raises :class:`DeclarationError` for several."""
+    found = dict.fromkeys(unit for unit in units if unit)
+    if len(found) > 1:
+        raise DeclarationError(f"expected values of one unit, got some in {' and some in '.join(found)}")
+    return next(iter(found), "")
+
+
 def _axis(name: str, given: Any) -> Axis:
     """An axis, a tuple (start, stop, count) whose count is whole, or any other sequence of values; errors name the parameter."""
     try:
@@ -348,12 +362,12 @@ def _axis(name: str, given: Any) -> Axis:
             return given
         if isinstance(given, tuple) and len(given) in (3, 4) and type(given[2]) is int:
             return Range(*given)
-        if isinstance(given, str):
-            raise TypeError
-        if isinstance(given, (tuple, list)) and any(typed(value)[1] for value in given):
-            return Values(tuple(given))
-        return Values(tuple(np.atleast_1d(np.asarray(given, dtype=float)).tolist()))
+        if isinstance(given, (tuple, list)):
+            return Values(tuple(value if typed(value)[1] else number(value, finite=False) for value in given))
+        if isinstance(given, np.ndarray) and given.dtype.kind in "iuf":
+            return Values(tuple(np.atleast_1d(given).astype(float).tolist()))
+        return Values((number(given),) if not isinstance(given, Iterable) or isinstance(given, str) else tuple(given))
+    except (TypeError, NumberError):
+        raise DeclarationError(f"grid of {name}: expected (start, stop, count) or numbers, got {shown(given)}") from None
     except DeclarationError as error:
         raise DeclarationError(f"grid of {name}: {error}") from None
-    except (TypeError, ValueError):
-        raise DeclarationError(f"grid of {name}: expected (start, stop, count) or numbers, got {given!r}") from None

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.angles import angle
+from ..arguments import public, typed
 from ..declare.density import Array
 from ..errors import DeclarationError, check_kind
 from ..system.numerals import real
@@ -36,17 +36,17 @@ _CONDITION = re.compile(r"\s*([^<>=!]+?)\s*(<=|>=|!=|==|<|>|=)\s*([^<>=!]+?)\s*"
 class Condition:
     """A parameter or a column against a number; peaks by their size, whatever their sign.
 
-    What differs from the number by a billionth of it is equal to it, for what is computed is rounded. An ``angle`` is in rad.
+    What differs from the number by a billionth of it is equal to it, for what is computed is rounded. ``unit`` is that of a text.
     """
 
     name: str
     relation: str
     value: float
-    angle: bool = False
+    unit: str = ""
 
     @classmethod
     def parse(cls, text: str) -> Condition:
-        """Read ``NAME<NUMBER``, or with ``<=``, ``>``, ``>=``, ``==`` or ``!=``; an angle may be told as ``30deg``.
+        """Read ``NAME<NUMBER``, or with ``<=``, ``>``, ``>=``, ``==`` or ``!=``; a number may have a unit, as ``30deg``.
 
         Raises :class:`DeclarationError`.
         """
@@ -57,7 +57,10 @@ class Condition:
             with suppress(ValueError):
                 if not math.isnan(value := real(found[3])):
                     return cls(found[1], found[2], value)
-            return cls(found[1], found[2], angle(found[3]), angle=True)
+            value, unit = typed(found[3])
+            if not unit:
+                raise ValueError
+            return cls(found[1], found[2], value, unit)
         except ValueError:
             raise DeclarationError(f"expected a condition like l<0.3 or peak:effort:O<=12, got '{text}'") from None
 
@@ -80,6 +83,7 @@ def size(name: str, values: Array) -> Array:
     return np.abs(values) if name.startswith(("peak:", "peak_at:")) else np.asarray(values, float)
 
 
+@public
 def best(
     sweep: Sweep,
     *,
@@ -97,7 +101,6 @@ def best(
 
     Raises :class:`UnknownNameError` for a column that is not there, :class:`DeclarationError` for no objective or more than two.
     """
-    check_kind("best", sweep, "a Sweep", Sweep)
     objectives = [*((name, 1.0) for name in names_in(minimise)), *((name, -1.0) for name in names_in(maximise))]
     if len(objectives) not in (1, 2):
         raise DeclarationError(f"expected one column to minimise or maximise, or two for their front, got {len(objectives)}")
@@ -124,7 +127,7 @@ def chosen(
     names, conditions = names_in(names), conditions_in(where)
     asked = list(dict.fromkeys([*names, *(condition.name for condition in conditions)]))
     for condition in conditions:
-        if condition.angle and (unit := sweep.unit(condition.name)) != "rad":
+        if condition.unit and (unit := sweep.unit(condition.name)) != condition.unit:
             raise DeclarationError(f"condition on {condition.name}: it is in {unit}, got an angle")
 
     def met(numbers: npt.NDArray[np.int64], values: dict[str, Any]) -> tuple[npt.NDArray[np.int64], dict[str, Any]]:

@@ -9,8 +9,7 @@ import h5py
 import numpy as np
 
 from ..errors import one_line
-from ..instants.refusal import WITH_SERIES, Status
-from ..quantities import Output
+from ..instants.refusal import Status
 from ..store.untrusted import check_chunks, told_as
 from .axes import counted, grouped, size_of
 from .blocks import slabs
@@ -72,21 +71,12 @@ def _check_column(file: h5py.File, sweep: Sweep, kept: KeptColumn) -> Iterator[s
             continue
         there = ~np.isnan(values).any(axis=tuple(range(states.ndim, values.ndim)))
         missing += int(np.sum(~there & (states == 0)))
-        # At rest a design has no peaks, and series where friction does not reach.
-        valid = WITH_SERIES if "t" in kept.axes else (Status.OK,)
-        surplus += int(np.sum(there & ~np.isin(states, valid)))
+        surplus += int(np.sum(there & (states != Status.OK)))
     if unknown:
         yield f"{kept.name}: {unknown} of the designs have a status that is none"
     if wrong:
         yield f"{counted(wrong)}, of those that were checked in full, without a certificate: others may be wrong as well"
-    if missing and "missing" not in dataset.attrs and not _open(sweep, kept.name):
+    if missing and "missing" not in dataset.attrs:
         yield f"{kept.name}: {missing} of the designs that have a result lack it"
     if surplus:
         yield f"{kept.name}: {surplus} of the designs that have no result have a number"
-
-
-def _open(sweep: Sweep, name: str) -> bool:
-    """Whether equilibrium leaves a column open."""
-    output = Output.of(name.partition(":")[2])
-    left_open = map(Output.of, sweep.undetermined)
-    return any(other.part == output.part and (other.along or other.group == output.group) for other in left_open)

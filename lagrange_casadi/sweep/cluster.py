@@ -8,7 +8,6 @@ import importlib
 import logging
 import pickle
 import re
-import tempfile
 import threading
 import time
 import warnings
@@ -23,6 +22,7 @@ from ..case import Case, load_case
 from ..declare.density import Array
 from ..declare.scene import Scene
 from ..errors import ClusterError, DeclarationError, LagrangeCasadiError, one_line
+from ..system.cache import working_folder
 from .blocks import Queue
 from .columns import Harvest
 from .crew import Crew
@@ -64,8 +64,8 @@ class SentCase:
         with suppress(OSError, UnicodeDecodeError):
             if path.read_text() == self.content:
                 return load_case(path).scene
-        with tempfile.TemporaryDirectory() as folder:
-            copy = Path(folder) / path.name
+        with working_folder() as folder:
+            copy = folder / path.name
             copy.write_text(self.content)
             return load_case(copy).scene
 

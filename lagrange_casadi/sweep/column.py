@@ -8,6 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+MISSING = "NaN for designs of which it is open: equilibrium does not determine it, or friction at rest does not"
+"""What a file says, as ``missing``, of a column that may lack a number where there is a result."""
+
 
 @dataclass(frozen=True)
 class Column:

@@ -19,11 +19,12 @@ from ..declare.mechanism import Mechanism
 from ..declare.wanted_slopes import SENSITIVITY
 from ..designs.engine import Outcome
 from ..errors import DeclarationError, UnknownNameError
-from ..instants.refusal import WITH_SERIES, Status
+from ..instants.refusal import Status
+from ..instants.statistics import of_counted
 from ..quantities import Output, quotient
 from ..tables import Table, table_of
 from .chunks import encoded
-from .column import Column
+from .column import MISSING, Column
 from .engine import STATUSES, Engine
 from .instant_axis import InstantAxis
 from .matter import Matter
@@ -41,8 +42,6 @@ TIMES = "history:t"
 KINDS = (STATUS, "peak", "peak_t", "peak_over", "peak_xi", "mean", "rms", SENSITIVITY, "peak_at", "history", LEAST, LIFE, MASS)
 """What columns are of, in the order in which they are listed."""
 
-MISSING = "NaN for designs of which equilibrium leaves it open"
-"""What a file says, as ``missing``, of a column that may lack a number where there is a result."""
 
 NO_SLOPE = "NaN for designs of which it has no derivative"
 
@@ -178,7 +177,7 @@ class Harvest:
             found += [outcome.series[:, rows[name]] for name in self._series]
         if self._own_times:
             assert outcome.times is not None
-            found.append(np.where(np.isin(outcome.status, WITH_SERIES)[:, None], outcome.times, np.nan))
+            found.append(np.where((outcome.status == Status.OK)[:, None], outcome.times, np.nan))
         if self.strength.columns:
             times = outcome.times if outcome.times is not None else self.axis.values[None]
             found_there = (outcome.status, outcome.value, outcome.series, times, p)
@@ -194,7 +193,9 @@ class Harvest:
     def strength(self) -> Kept:
         """What is kept of the strength of links."""
         engine = self.engine
-        return Kept(self.mechanism, self.safety, self.life, engine.quantities, engine.columns, engine.provenance.precision)
+        doubtful = {output.part for output in map(Output.of, engine.doubtful) if output.group == "section"}
+        made = (engine.quantities, engine.columns, engine.provenance.precision)
+        return Kept(self.mechanism, self.safety, self.life, *made, doubtful)
 
     @property
     def _histories(self) -> bool:
@@ -282,13 +283,14 @@ class Harvest:
             every = enumerate(map(Output.of, self.engine.columns))
             rows = {output: k for k, output in every if output.along and output.part == link}
             with np.errstate(all="ignore"):  # of designs that have no result
-                laws = matter.law({output: series[:, k] for output, k in rows.items()}, p)
+                moving = of_counted(series[:, list(rows.values())])
+                laws = matter.law({output: moving[:, k] for k, output in enumerate(rows)}, p)
                 basis = laws.basis(self.xi)
                 found = (laws.largest(force, basis) for force in self._table.forces)
                 largest += [np.where((outcome.status == Status.OK)[:, None], one, np.nan) for one in found]
             if self.keep == "histories":
                 grids = np.full((len(self._table.forces), len(p), self.axis.values.size, self.xi.size), np.nan)
-                for i in np.flatnonzero(np.isin(outcome.status, WITH_SERIES)):
+                for i in np.flatnonzero(outcome.status == Status.OK):
                     law = matter.law({output: series[i, k] for output, k in rows.items()}, p[i])
                     basis = law.basis(self.xi)
                     for force, grid in zip(self._table.forces, grids, strict=True):

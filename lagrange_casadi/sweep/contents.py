@@ -9,7 +9,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ..store.untrusted import check_chunks, check_dataset, check_links, check_shape, parsed, shown
+from ..store.untrusted import check_dataset, check_links, check_shape, parsed, shown
 from .axes import DESIGN
 from .columns import KINDS, STATUS
 from .file import WORDS
@@ -28,8 +28,8 @@ class KeptColumn:
     axes: tuple[str, ...]
 
 
-def contents(file: h5py.File, *, sealed: bool) -> dict[str, Any]:
-    """The fields of a :class:`.Sweep` that its file tells. Of a file that is not ``sealed`` chunks are counted too.
+def contents(file: h5py.File) -> dict[str, Any]:
+    """The fields of a :class:`.Sweep` that its file tells.
 
     Raises ``ValueError``, ``KeyError`` and others where it is not what a sweep writes.
     """
@@ -55,8 +55,6 @@ def contents(file: h5py.File, *, sealed: bool) -> dict[str, Any]:
                 check_dataset(item, [*status.shape, *map(length, axes)])
                 name = place.replace("/", ":")
                 columns[name] = KeptColumn(name, shown(item.attrs["units"]), shown(item.attrs["long_name"]), axes)
-            if not sealed:
-                check_chunks(item)
 
     file.visititems(visit)
     if list(dimensions) not in ([DESIGN], list(file["grid"])):
@@ -71,7 +69,6 @@ def contents(file: h5py.File, *, sealed: bool) -> dict[str, Any]:
         "parameters": {name: shown(file["grid"][name].attrs["units"]) for name in file["grid"]},
         "columns": {name: columns[name] for name in sorted(columns, key=lambda name: (KINDS.index(name.partition(":")[0]), name))},
         "statuses": {int(number): (word, sentence) for (number, sentence), word in words},
-        "undetermined": tuple(parsed(attributes["undetermined"], [str], "undetermined")),
     }
 
 

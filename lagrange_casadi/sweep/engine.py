@@ -26,10 +26,6 @@ class Engine(Protocol):
         """Full names of the efforts."""
 
     @property
-    def undetermined(self) -> tuple[str, ...]:
-        """Full names of what is left out, for equilibrium does not determine it."""
-
-    @property
     def doubtful(self) -> tuple[str, ...]:
         """Full names of quantities, and of what histories hold, that equilibrium may leave open for some designs: NaN there."""
 

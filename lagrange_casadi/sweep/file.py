@@ -117,7 +117,6 @@ def _begin(file: h5py.File, plan: Plan, scales: Scales, breathe: Callable[[], No
         file.attrs[key] = json.dumps(value) if key in WORDS else value
     file.attrs["Conventions"], file.attrs["conventions"] = CF, table_of(plan.scene.mechanism.space).conventions
     file.attrs["parameters"] = json.dumps(dict(plan.values))
-    file.attrs["undetermined"] = json.dumps(plan.harvest.engine.undetermined)
     file.attrs["columns"] = len(plan.columns)
 
 

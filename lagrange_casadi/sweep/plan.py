@@ -36,10 +36,11 @@ from .instant_axis import InstantAxis
 
 SCHEMA = "lagrange-casadi-sweep"
 SCHEMA_VERSION = 5
-"""Files of version 1 have no seal. Those of version 2 have one axis of time for all designs, those of 3 are of planar mechanisms
+"""Files of version 1 had no seal. Those of version 2 have one axis of time for all designs, those of 3 are of planar mechanisms
 alone, and those of 4 have no sensitivities; all three are still written."""
 
 _WITH_COMMON_TIMES, _PLANAR, _WITHOUT_SLOPES = 2, 3, 4
+READ = range(_WITH_COMMON_TIMES, SCHEMA_VERSION + 1)
 
 _BOUND = (float, str)
 """Where instants start and stop: a number, or an expression of parameters in words."""

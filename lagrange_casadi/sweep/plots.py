@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..declare.density import Array
-from ..draw.pictures import save
+from ..draw.pictures import one_at_a_time, save
 from ..errors import NoDesignError
 from ..instants.ordering import table_of_described
 from .best import best, chosen, size
@@ -228,12 +228,10 @@ Spec = Peaks | Scatter | Along | Front
 
 def draw_sweep(sweep: Sweep, specs: Sequence[Spec], folder: Path) -> Iterator[tuple[Path, str]]:
     """Draw into an existing folder as PNG, one by one: the file, and where it is not drawn, why."""
-    from matplotlib import rc_context
-
     for spec in specs:
         path = folder / f"{spec.name}.png"
         why = ""
-        with rc_context(STYLE):
+        with one_at_a_time(STYLE):
             try:
                 save(spec.draw(sweep), path, dpi=200)
             except NoDesignError as error:

@@ -15,11 +15,12 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.description import coordinates_of
 from ..errors import DeclarationError, LagrangeCasadiError, PathError, StoreError, UnknownNameError, check_kind, one_line
-from ..store.opening import opened_file, schema_of
-from ..system.seal import Seen, verify
+from ..store.opening import opened_file
+from ..system.seal import Seen, kind_of, verify
 from ..tables import ANGLE, LENGTH
 from .axes import DESIGN, counted
 from .blocks import chunk_of, slabs
@@ -27,7 +28,7 @@ from .columns import STATUS
 from .contents import KeptColumn, contents
 from .instant_axis import CYCLE, OVER
 from .parts import Folder
-from .plan import SCHEMA, SCHEMA_VERSION
+from .plan import READ, SCHEMA
 from .selection import matches
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ _BLOCK = 1 << 15
 Values = npt.NDArray[Any]
 
 
+@public
 @dataclass(frozen=True, eq=False, repr=False)
 class Sweep:
     """A finished sweep; arrays are read when they are asked for.
@@ -56,7 +58,6 @@ class Sweep:
     parameters: Mapping[str, str]
     columns: Mapping[str, KeptColumn]
     statuses: Mapping[int, tuple[str, str]]
-    undetermined: tuple[str, ...] = ()
     chosen: Mapping[str, npt.NDArray[np.int64]] = field(default_factory=dict)
     keeper: Any = None
     seen: Seen | None = None
@@ -70,7 +71,7 @@ class Sweep:
         _refuse_unfinished(path)
         seen = seen if seen and seen.is_at(path) else verify(path)
         with _opened(path, seen) as file:
-            return cls(Path(path), **contents(file, sealed=seen.sealed), keeper=keeper, seen=seen)
+            return cls(Path(path), **contents(file), keeper=keeper, seen=seen)
 
     def __repr__(self) -> str:
         return f"<Sweep of {self.case}: {counted(self.size)} over {', '.join(self.parameters)}; {', '.join(self.columns)}>"
@@ -335,7 +336,7 @@ class Sweep:
 
 def is_sweep(path: str | Path) -> bool:
     """Whether a path is that of a sweep's file, whole or not."""
-    return schema_of(path) == SCHEMA
+    return kind_of(path) == SCHEMA
 
 
 def identity_of(path: Path) -> dict[str, Any]:
@@ -379,7 +380,7 @@ def _along(dataset: Any, name: str, axes: list[str], dims: tuple[int, ...], wher
 
 
 def _opened(path: str | Path, seen: Seen | None) -> AbstractContextManager[h5py.File]:
-    return opened_file(path, SCHEMA, SCHEMA_VERSION, "the file of a sweep", " of sweeps", seen)
+    return opened_file(path, SCHEMA, READ, "the file of a sweep", " of sweeps", seen)
 
 
 def _refuse_unfinished(path: str | Path) -> None:

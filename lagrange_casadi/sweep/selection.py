@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..declare.angles import typed
+from ..arguments import number as read_number
+from ..arguments import typed
 from ..declare.density import Array
-from ..errors import DeclarationError
+from ..errors import DeclarationError, NumberError, shown
 
 _NEAR = 1e-9
 
@@ -24,25 +25,26 @@ def near(values: Array, number: float) -> npt.NDArray[np.bool_]:
 
 
 def matches(name: str, there: Array, wanted: Any, unit: str) -> npt.NDArray[np.bool_]:
-    """Where values are wanted, in their ``unit``; in rad they may be texts of angles, as ``"30 deg"``.
+    """Where values are wanted, in their ``unit``; they may be texts, as ``"30 deg"``.
 
     Raises :class:`DeclarationError` for what cannot be, and for what no value is.
     """
     told = [typed(number) for number in (wanted if isinstance(wanted, Iterable) and not isinstance(wanted, str) else [wanted])]
-    if unit != "rad" and any(is_angle for _, is_angle in told):
-        raise DeclarationError(f"select: {name}: expected numbers [{unit}], not angles, got {wanted!r}")
+    for in_unit in (told_unit for _, told_unit in told if told_unit not in ("", unit)):
+        other = "angles" if in_unit == "rad" else f"numbers [{in_unit}]"
+        raise DeclarationError(f"select: {name}: expected numbers [{unit}], not {other}, got {shown(wanted)}")
     try:
-        numbers = np.array([math.nan if isinstance(number, str) else float(number) for number, _ in told])
-    except (TypeError, ValueError):
+        numbers = np.array([read_number(value, finite=False) for value, _ in told])
+    except NumberError:
         numbers = np.array([np.nan])
     pair = isinstance(wanted, tuple)
     if not numbers.size or np.isnan(numbers).any() or (pair and numbers.size != 2):
-        raise DeclarationError(f"select: {name}: expected a number, a list of numbers, or a tuple (low, high), got {wanted!r}")
+        raise DeclarationError(f"select: {name}: expected a number, a list of numbers, or a tuple (low, high), got {shown(wanted)}")
     if not pair:
         return np.asarray(np.any([_found(name, there, near(there, number), number, "=") for number in numbers], axis=0))
     low, high = numbers
     if high < low:
-        raise DeclarationError(f"select: {name}: expected (low, high), got {wanted!r}: the range is reversed")
+        raise DeclarationError(f"select: {name}: expected (low, high), got {shown(wanted)}: the range is reversed")
     within = ((there > low) | near(there, low)) & ((there < high) | near(there, high))
     return _found(name, there, within, low, f"up to {high:.10g} and from")
 

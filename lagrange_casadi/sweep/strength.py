@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -27,11 +27,13 @@ from ..declare.mechanism import Mechanism
 from ..declare.parts import Link
 from ..equations.checks import Column
 from ..equations.strength import FORCES, Loaded
+from ..instants.statistics import counted
 from ..quantities import Output
 from ..strength.fatigue import FEW, damage_score, factor, factor_score, felt, loaded, strengths
 from ..strength.fatigue import worst as search
 from ..strength.member import Member
 from ..strength.stress import Stress
+from .column import MISSING
 from .column import Column as Dataset
 from .matter import Matter
 
@@ -137,7 +139,7 @@ class Fatigue:
 class Kept:
     """What is kept of the strength of links: those whose ``safety`` is wanted, and those whose ``life`` is.
 
-    ``series`` names what is evaluated over time, in a ``precision``.
+    ``series`` names what is evaluated over time, in a ``precision``; ``doubtful`` the links that lack it for some designs.
     """
 
     mechanism: Mechanism
@@ -146,6 +148,7 @@ class Kept:
     quantities: tuple[str, ...]
     series: tuple[str, ...]
     precision: str
+    doubtful: Collection[str] = ()
 
     @property
     def histories(self) -> bool:
@@ -163,12 +166,11 @@ class Kept:
         found = []
         for link in self._judged:
             ways = self._ways(link)
-            words = {"long_name": f"least factor of safety, the smallest of those {', '.join(_MEANT[way] for way in ways)}"}
-            found.append(Dataset(f"{LEAST}:safety:{link}", "1", words))
-            for way in ways:
-                found.append(Dataset(f"{LEAST}:{way}:{link}", "1", {"long_name": f"least factor of safety {_MEANT[way]}"}))
+            words = f"least factor of safety, the smallest of those {', '.join(_MEANT[way] for way in ways)}"
+            found.append(self._column(LEAST, "safety", link, words))
+            found += [self._column(LEAST, way, link, f"least factor of safety {_MEANT[way]}") for way in ways]
         for link in self._lives:
-            found.append(Dataset(f"{LIFE}:{link}", "1", {"long_name": "life in cycles, each the whole span"}))
+            found.append(self._column(LIFE, "", link, "life in cycles, each the whole span"))
         for link in self.links:
             found.append(Dataset(f"{MASS}:{link}", "kg", {"long_name": "mass of the link"}))
         if self.links:
@@ -191,6 +193,10 @@ class Kept:
         masses = np.atleast_2d(self._masses(p.T).full())
         return found + [np.where(status == 0, row, np.nan) for row in masses]
 
+    def _column(self, kind: str, way: str, link: str, words: str) -> Dataset:
+        missing = {"missing": MISSING} if link in self.doubtful else {}
+        return Dataset(":".join(filter(None, (kind, way, link))), "1", {"long_name": words, **missing})
+
     def _ways(self, link: str) -> list[str]:
         known = [way for way in WAYS[:2] if f"utilisation:{link}:{way}" in self.quantities]
         return known + (["fatigue"] if self._tires(link) else [])
@@ -206,7 +212,7 @@ class Kept:
 
     def _tires(self, link: str) -> bool:
         beam = self.mechanism.links[link].beam
-        return beam is not None and tires(beam.material) and not open_forces(self.mechanism, link, self.quantities)
+        return beam is not None and tires(beam.material)
 
     def _tired(self, link: str, there: Any, series: Array | None, times: Array, p: Array) -> tuple[Array, Array]:
         """Utilisation against fatigue, and the life in cycles, of every design."""
@@ -214,13 +220,23 @@ class Kept:
         assert series is not None
         if not there.size:
             return share, lives
-        fatigue, beam = self._fatigue[link], self.mechanism.links[link].beam
-        assert beam is not None
+        fatigue = self._fatigue[link]
         names = {name: k for k, name in enumerate(self.series)}
         chosen = [names[str(member)] for member in fatigue.members]
         members = series[there][:, chosen]
-        whole = np.isfinite(members).all(axis=(1, 2))
-        there, members = there[whole], members[whole]
+        counts = np.array([counted(own) for own in members])
+        for moving in np.unique(counts, axis=0):
+            if moving.any():
+                alike = (counts == moving).all(axis=1)
+                self._count(link, there[alike], members[alike][..., moving], (series, times, moving, p), names, share, lives)
+        return share, lives
+
+    def _count(
+        self, link: str, there: Any, members: Array, whole: tuple[Any, ...], names: Mapping[str, int], share: Array, lives: Array
+    ) -> None:
+        """Fill in utilisations and lives of designs that are ``there``, of which the same instants count."""
+        (series, times, moving, p), fatigue, beam = whole, self._fatigue[link], self.mechanism.links[link].beam
+        assert beam is not None
         stands = fatigue.stands(members)
         some, standing = there[stands], members[stands]
         many = max(1, _NUMBERS // (fatigue.rows.nnz_out(0) // len(fatigue.members) * members.shape[2]))
@@ -230,12 +246,11 @@ class Kept:
         for i in there.tolist():
             endless = share[i] <= 1.0 and beam.material.endless
             if np.isnan(share[i]) or (link in self.life and not endless):
-                found, cycles = self._slowly(link, series[i], times[min(i, len(times) - 1)], p[i], names)
+                found, cycles = self._slowly(link, series[i][:, moving], times[min(i, len(times) - 1)][moving], p[i], names)
                 share[i] = found if np.isnan(share[i]) else share[i]
                 lives[i] = cycles
             else:
                 lives[i] = math.inf
-        return share, lives
 
     def _slowly(self, link: str, series: Array, t: Array, p: Array, names: Mapping[str, int]) -> tuple[float, float]:
         """The same of one design, as of a solution."""
@@ -266,11 +281,6 @@ class Kept:
         mechanism = self.mechanism
         found = [mass_of(mechanism, part) for part in (*self.links, ALL)]
         return ca.Function("masses", [mechanism.symbols], [ca.densify(ca.vertcat(*found))])
-
-
-def open_forces(mechanism: Mechanism, link: str, quantities: Sequence[str]) -> list[str]:
-    """The forces inside a link that equilibrium leaves open: those that are not among the ``quantities`` of an engine."""
-    return [force for force in FORCES[mechanism.space] if f"section:{link}:{force}" not in quantities]
 
 
 def tires(material: Material) -> bool:

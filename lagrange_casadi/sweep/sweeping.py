@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..arguments import public
 from ..arithmetic.compensated import Precision
 from ..case import Case
 from ..declare.even_points import EvenPoints
@@ -26,6 +27,7 @@ from .reading import Sweep
 from .workers import Threads, Workers
 
 
+@public
 def sweep(
     scene: Scene | Case,
     grid: Any,

@@ -2,26 +2,30 @@
 
 All files of one thing begin with the same hash. What was used longest ago goes first. Any number of processes may read, keep and
 remove at once: a thing of which a file is gone is not there, and is made again; one that is open, or loaded, stays so.
+
+Code is loaded from it, so nobody else may be able to write it: where somebody may, a temporary folder serves this process.
 """
 
 from __future__ import annotations
 
+import atexit
 import functools
 import hashlib
 import os
 import re
 import shutil
+import stat
 import tempfile
 import time
 import warnings
-from collections.abc import Iterable, Sequence
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 import platformdirs
 
-from ..errors import DeclarationError, lacking
+from ..errors import DeclarationError, PathError, lacking
 from .numerals import real
 
 VARIABLE = "LAGRANGE_CASADI_CACHE_SIZE"
@@ -32,8 +36,9 @@ LIMIT = 500_000_000
 
 _UNITS = {"": 1, "k": 10**3, "M": 10**6, "G": 10**9, "T": 10**12}
 _OURS = re.compile(r"([0-9a-f]{32}(?:-iterated)?)\.(?:graph|c|cpp|so|sha256|log)")
-_DRAFT, _FORGOTTEN = "build-", 86_400.0
-"""How folders of files that are being put here begin; and seconds after which whoever made one is gone."""
+_WORK, _DRAFT, _FORGOTTEN = "lagrange_casadi-", "build-", 86_400.0
+"""How names of temporary folders begin, and those of files that are being put here; and seconds after which whoever made one of
+these is gone."""
 
 
 @dataclass(frozen=True)
@@ -63,28 +68,86 @@ def place() -> Path:
 
 
 def folder() -> Path | None:
-    """Where things are kept, or None: nothing is to be kept, or, with a warning once, that cannot be written."""
+    """Where things are kept, or None: nothing is to be kept, or, with a warning once, that cannot be written.
+
+    It is a temporary folder of this process, with a warning once, if others may write into the user's.
+    """
     if limit() == 0:
         return None
     try:
-        return place() if _writable(place()) else None
+        return _usable(place())
     except OSError as error:
         warnings.warn(f"cannot use the cache folder {place()} now: {error.strerror}", stacklevel=3)
         return None
 
 
 @functools.lru_cache
-def _writable(place: Path) -> bool:
-    """Whether the folder can be written. Raises ``OSError`` where that may be otherwise soon."""
+def _usable(place: Path) -> Path | None:
+    """The folder, or one in its place; None if it cannot be written. Raises ``OSError`` where that may be otherwise soon."""
     try:
-        place.mkdir(parents=True, exist_ok=True)
+        place.mkdir(0o700, parents=True, exist_ok=True)
+        if why := distrusted(place):
+            warnings.warn(f"the cache folder {place} is not used, for {why}; a temporary one is", stacklevel=3)
+            place = Path(tempfile.mkdtemp(prefix=_WORK, dir=_private()))
+            atexit.register(shutil.rmtree, place, ignore_errors=True)
         with tempfile.TemporaryFile(dir=place):
-            return True
+            return place
     except OSError as error:
         if lacking(error):
             raise
         warnings.warn(f"cannot write into the cache folder {place}: {error.strerror}; nothing is kept", stacklevel=3)
+        return None
+
+
+@contextmanager
+def working_folder() -> Iterator[Path]:
+    """A temporary folder into which nobody else can write. Raises :class:`PathError` where none can be made, ``OSError``."""
+    with tempfile.TemporaryDirectory(prefix=_WORK, dir=_private()) as work:
+        yield Path(work)
+
+
+def _private() -> str:
+    """Where temporary folders are made. Raises :class:`PathError` if others may put something else in their place."""
+    there = tempfile.gettempdir()
+    if why := distrusted(Path(there), shared=True):
+        raise PathError(f"nothing can be built in the temporary folder {there}, for {why}; set $TMPDIR to a folder of your own")
+    return there
+
+
+def distrusted(path: Path, *, shared: bool = False) -> str:
+    """Why somebody else may have put there what is at a path, in words; nothing if only this user and root can have.
+
+    As for ssh, the file or folder and all folders that lead to it must belong to them, and nobody else may write into them, but for
+    a group that is this user's alone. Folders that lead to it, and ``path`` itself if it is ``shared``, may be as ``/tmp`` is: in
+    these everybody removes and renames only what is his own. Raises ``OSError`` if nothing is there.
+    """
+    if not hasattr(os, "geteuid"):
+        return ""
+    # Where root's files look like nobody's, as in a container, those of "/" do.
+    trusted = {0, os.geteuid(), os.stat("/").st_uid}
+    given, real = Path(os.path.abspath(path)), Path(os.path.realpath(path))
+    for part in dict.fromkeys([real, *real.parents, given, *given.parents]):
+        status = os.lstat(part)
+        if status.st_uid not in trusted:
+            return f"{part} belongs to another user"
+        writers = status.st_mode & (stat.S_IWOTH | (0 if _is_own_group(status.st_gid) else stat.S_IWGRP))
+        sticky = status.st_mode & stat.S_ISVTX and (shared or part != real)
+        if writers and not sticky and not stat.S_ISLNK(status.st_mode):
+            return f"others may write into {part}"
+    return ""
+
+
+@functools.lru_cache
+def _is_own_group(number: int) -> bool:
+    """Whether a group is the one that bears this user's name, and has no other member."""
+    try:
+        import grp
+        import pwd
+
+        own, group = pwd.getpwuid(os.geteuid()).pw_name, grp.getgrgid(number)
+    except (ImportError, KeyError):
         return False
+    return group.gr_name == own and set(group.gr_mem) <= {own}
 
 
 def read(name: str) -> str | None:
@@ -92,16 +155,20 @@ def read(name: str) -> str | None:
     place = folder()
     if place is None:
         return None
+    file, seal, text, why = place / name, "", "", "was damaged"
     try:
-        seal, _, text = (place / name).read_text(encoding="utf-8").partition("\n")
+        if found := distrusted(file):
+            why = f"is not trusted ({found})"
+        else:
+            seal, _, text = file.read_text(encoding="utf-8").partition("\n")
     except FileNotFoundError:
         return None
     except (OSError, UnicodeDecodeError):
-        seal, text = "", ""
+        pass
     if seal == digest(text.encode()):
-        use(place / name)
+        use(file)
         return text
-    warnings.warn(f"the cached {place / name} was damaged and is made again", stacklevel=2)
+    warnings.warn(f"the cached {file} {why} and is made again", stacklevel=2)
     return None
 
 
@@ -110,20 +177,26 @@ def write(name: str, text: str) -> None:
     place = folder()
     if place is None:
         return
-    with suppress(OSError), tempfile.TemporaryDirectory() as work:
-        draft = Path(work) / name
-        draft.write_text(f"{digest(text.encode())}\n{text}", encoding="utf-8")
-        keep([draft], place)
+    with suppress(OSError), _arriving(place) as near:
+        (near / name).write_text(f"{digest(text.encode())}\n{text}", encoding="utf-8")
 
 
 def keep(files: Sequence[Path], place: Path) -> None:
     """Copy files into the cache, each whole or not at all, and make room for them. Raises ``OSError``."""
+    with _arriving(place) as near:
+        for file in files:
+            shutil.copyfile(file, near / file.name)
+
+
+@contextmanager
+def _arriving(place: Path) -> Iterator[Path]:
+    """A folder whose files are put into the cache, seals before libraries, and room is made for them. Raises ``OSError``."""
     with tempfile.TemporaryDirectory(dir=place, prefix=_DRAFT) as near:
-        for file in files:
-            shutil.copyfile(file, Path(near) / file.name)
-        for file in files:
-            os.replace(Path(near) / file.name, place / file.name)
-    _make_room(place, {file.name.partition(".")[0] for file in files})
+        yield Path(near)
+        names = sorted(os.listdir(near))
+        for name in names:
+            os.replace(Path(near) / name, place / name)
+    _make_room(place, {name.partition(".")[0] for name in names})
 
 
 def use(file: Path) -> None:

@@ -1,69 +1,111 @@
-"""Rows of CSV files as people and programs write them, each with the line on which it stands."""
+"""Rows of tables as people and programs write them, CSV of one kind or another, each with the line on which it stands."""
 
 from __future__ import annotations
 
 import csv
 import math
 import os
-from dataclasses import dataclass
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from decimal import Decimal
-from pathlib import Path
 
 from ..errors import DeclarationError, PathError, check_kind, one_line
+from .numerals import plain
+from .streams import check_regular
 
 _DELIMITERS = (";", "\t", ",")
+_QUOTED = re.compile(r'"[^"]*"')
+_DECIMAL = re.compile(r"[-+]?(?=[.,]?[0-9])[0-9]*([.,])[0-9]*(?:[eE][-+]?[0-9]+)?(?: *[a-z]+)?")
+_TWO_NUMBERS = re.compile("[0-9],[0-9]")
+_MARKS = {".": "decimal points", ",": "decimal commas"}
 
 
 @dataclass(frozen=True)
 class Row:
-    """The cells of a line, without spaces round them. ``where`` names the file and the line, as errors do.
+    """The cells of a ``line`` by its number, without spaces round them. ``where`` names the file and the line, as errors do.
 
-    ``comma`` tells whether the decimal point may be a comma.
+    ``marks`` are the decimal marks that numbers of the table have had so far, each with where; None if cells are parted by commas,
+    for then only a point can be one.
     """
 
     where: str
+    line: int
     cells: tuple[str, ...]
-    comma: bool = False
+    marks: dict[str, str] | None = field(default=None, compare=False)
+
+    def pointed(self, cell: str) -> str:
+        """A cell; a number with a decimal comma gets a point.
+
+        Raises :class:`.DeclarationError` if the table has numbers of the other kind too: in one of them the mark parts thousands.
+        """
+        found = _DECIMAL.fullmatch(cell)
+        if self.marks is None or not found:
+            return cell
+        self.marks.setdefault(found[1], self.where)
+        for mark, where in self.marks.items():
+            if mark != found[1]:
+                other = f"numbers with {_MARKS[mark]}, as in {where}"
+                raise DeclarationError(f"{self.where}: '{cell}' among {other}; expected one kind")
+        return cell.replace(",", ".")
 
     def number(self, cell: str, per: int = 1) -> float:
-        """A cell's number over ``per``, rounded once, so that 35 over 1000 is 0.035; NaN for what is no finite number."""
+        """A cell's number over ``per``, rounded once, so that 35 over 1000 is 0.035; NaN for what is no finite number.
+
+        Raises :class:`.DeclarationError` as :meth:`pointed` does.
+        """
         try:
-            found = float(Decimal("x" if "_" in cell else cell.replace(",", ".") if self.comma else cell) / per)
+            found = float(Decimal(plain(self.pointed(cell))) / per)
         except (ArithmeticError, ValueError):
             return math.nan
         return found if math.isfinite(found) else math.nan
 
 
-def read_rows(path: str | os.PathLike[str], expected: str) -> list[Row]:
-    """The rows of a CSV file in UTF-8, the head first where it has one; empty lines and those that begin with ``#`` are left out.
+def read_rows(path: str | os.PathLike[str], expected: str) -> Iterator[Row]:
+    """The rows of a table in UTF-8, the head first where it has one; lines that are empty or begin with ``#`` are passed over.
 
     Cells are parted by semicolons, tabs or commas: the first of these that the first row has. Where they are not parted by commas,
-    the decimal point may be one. Cells may be quoted; a row is one line.
+    the decimal mark may be one, in all numbers or in none. Cells may be quoted; a row is one line, and all rows have as many cells.
 
-    Raises :class:`.PathError` for a file that cannot be read as text, and :class:`.DeclarationError` for a quote that does not end
-    on its line, and for a file without rows, of which ``expected`` says what was.
+    Raises :class:`.PathError` for what is no regular file, or cannot be read as text, and :class:`.DeclarationError` for a row that
+    is longer or shorter than the first, for a quote that does not end on its line, and for a file without rows, of which
+    ``expected`` says what was.
     """
     check_kind("file", path, "a path", str, os.PathLike)
-    path = Path(path)
+    check_regular(path)
+    first, delimiter, length = "", "", 0
+    marks: dict[str, str] | None = None
     try:
-        lines = path.read_text(encoding="utf-8-sig").split("\n")
-    except FileNotFoundError:
-        raise PathError(f"{path}: no such file") from None
-    except IsADirectoryError:
-        raise PathError(f"{path}: is a folder, not a file") from None
+        with open(path, encoding="utf-8-sig") as file:
+            for number, line in enumerate(file, 1):
+                if line.lstrip().startswith("#") or not line.strip():
+                    continue
+                if not first:
+                    unquoted = _QUOTED.sub("", line)
+                    delimiter = next((mark for mark in _DELIMITERS if mark in unquoted), ",")
+                    marks = None if delimiter == "," else {}
+                where = f"{path}, line {number}"
+                cells = _cells(where, line, delimiter)
+                if not any(cells):
+                    continue
+                if not first:
+                    first, length = line, len(cells)
+                if len(cells) != length:
+                    longer = line if len(cells) > length else first
+                    comma = delimiter == "," and _TWO_NUMBERS.search(longer)
+                    why = ": decimal commas? expected points, or ';' between cells" if comma else ", as in the first row"
+                    raise DeclarationError(f"{where}: {len(cells)} cells, expected {length}{why}")
+                yield Row(where, number, cells, marks)
     except (OSError, UnicodeDecodeError) as error:
         raise PathError(f"{path}: cannot be read as text: {one_line(error)}") from None
-    kept = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
-    if not kept:
-        raise DeclarationError(f"{path.name}: it has no rows; expected {expected}")
-    delimiter = next((mark for mark in _DELIMITERS if mark in kept[0][1]), ",")
-    return [_row(f"{path.name}, line {number}", line, delimiter) for number, line in kept]
+    if not first:
+        raise DeclarationError(f"{path}: it has no rows; expected {expected}")
 
 
-def _row(where: str, line: str, delimiter: str) -> Row:
+def _cells(where: str, line: str, delimiter: str) -> tuple[str, ...]:
     try:
         (cells,) = csv.reader([line], delimiter=delimiter, strict=True)
     except csv.Error as error:
         why = "a quote is opened and never closed" if str(error) == "unexpected end of data" else one_line(error)
         raise DeclarationError(f"{where}: no cells with {delimiter!r} between them: {why}") from None
-    return Row(where, tuple(cell.strip() for cell in cells), delimiter != ",")
+    return tuple(cell.strip() for cell in cells)

@@ -1,16 +1,16 @@
-"""Numbers as people write and read them: Python's own readers also take 1_0 for 10."""
+"""Numbers as people write and read them: Python's own readers also take 1_0 for 10, and digits of any script."""
 
 from __future__ import annotations
 
 
 def real(text: str) -> float:
     """Read a number, ``nan`` and ``inf`` too. Raises ``ValueError`` for what is none."""
-    return float(_plain(text))
+    return float(plain(text))
 
 
 def whole(text: str) -> int:
     """Read a whole number. Raises ``ValueError`` for what is none."""
-    return int(_plain(text))
+    return int(plain(text))
 
 
 def readable(value: float, *others: float) -> str:
@@ -22,7 +22,8 @@ def readable(value: float, *others: float) -> str:
     return f"{value:.17g}"
 
 
-def _plain(text: str) -> str:
-    if "_" in text:
+def plain(text: str) -> str:
+    """A text that may be a number: without underscores and digits of other scripts. Raises ``ValueError`` for any other."""
+    if "_" in text or not text.isascii():
         raise ValueError(f"expected a number, got {text!r}")
     return text

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import io
 import os
+import platform
+import re
+import shutil
 import signal
 import stat
 import tempfile
 import threading
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -17,6 +21,11 @@ from ..errors import BusyError, PathError, StoreError, one_line
 from .interrupts import interrupts
 from .seal import SIGNATURE, is_held
 from .streams import SOCKET, open_stream, stream_word
+
+try:
+    import fcntl
+except ImportError:  # where there is none, drafts that a kill has left stay
+    fcntl = None  # type: ignore[assignment]
 
 
 def check_writable(target: Path, *, folder: bool = False, hdf5: bool = False) -> None:
@@ -210,8 +219,33 @@ def _refuse_other(target: Path) -> None:
 
 @contextmanager
 def _beside(target: Path) -> Iterator[Path]:
-    with tempfile.TemporaryDirectory(dir=target.parent, prefix=f".{target.name}.") as work:
-        yield Path(work)
+    """A folder for drafts of ``target``, locked as long as its process lives; those that a kill has left are removed first."""
+    # Locks may not reach another host that shares the disk, so drafts of its own have another ending.
+    prefix, suffix = f".{target.name}.", f".{zlib.crc32(platform.node().encode()):08x}"
+    drafts = re.compile(rf"{re.escape(prefix)}[a-z0-9_]{{8}}{re.escape(suffix)}")
+    for name in filter(drafts.fullmatch, os.listdir(target.parent)):
+        with ExitStack() as locks:
+            if _lock(target.parent / name, locks, wait=False):
+                shutil.rmtree(target.parent / name, ignore_errors=True)
+    while True:
+        with ExitStack() as locks, tempfile.TemporaryDirectory(dir=target.parent, prefix=prefix, suffix=suffix) as work:
+            _lock(Path(work), locks, wait=True)
+            if os.path.isdir(work):  # else another process took it for one that was left, before it was locked
+                yield Path(work)
+                return
+
+
+def _lock(folder: Path, locks: ExitStack, *, wait: bool) -> bool:
+    """Lock a folder until ``locks`` are closed; whether that was done. It is not where another process holds it, or nothing can."""
+    if fcntl is None:
+        return False
+    try:
+        number = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+        locks.callback(os.close, number)
+        fcntl.flock(number, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+        return os.path.samestat(os.fstat(number), os.stat(folder))
+    except OSError:
+        return False
 
 
 @contextmanager

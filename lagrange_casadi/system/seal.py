@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import stat
 import threading
 from collections import deque
 from collections.abc import Iterator
@@ -21,6 +20,7 @@ from pathlib import Path
 
 from ..errors import PathError, StoreError, check_kind, one_line
 from .room import cores
+from .streams import check_regular
 
 try:
     import fcntl
@@ -37,9 +37,6 @@ _MAGIC = b"lagrange-casadi seal 1\n"
 _PIECE = 1 << 20
 _FEW, _MOST = 4, 8
 """Pieces from which on another thread pays, and threads that outrun any memory."""
-
-_PLAIN = SIGNATURE + bytes([0, 0, 0, 0, 0, 8, 8, 0])
-"""The first bytes of files of schema version 1: HDF5's oldest layout, an address takes 8 bytes."""
 
 
 @dataclass(frozen=True)
@@ -77,23 +74,22 @@ class Seal:
 
 @dataclass(frozen=True)
 class Seen:
-    """A file that was verified: which, and when it was last changed; what is not ``sealed`` has no seal to be held to."""
+    """A file that was verified: which, and when it was last changed."""
 
-    sealed: bool
     device: int
     inode: int
     size: int
     changed: int
 
     @classmethod
-    def of(cls, status: os.stat_result, *, sealed: bool) -> Seen:
+    def of(cls, status: os.stat_result) -> Seen:
         """From what the system says of it."""
-        return cls(sealed, status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns)
+        return cls(status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns)
 
     def is_at(self, path: str | os.PathLike[str]) -> bool:
         """Whether it is still there, unchanged."""
         try:
-            return self == Seen.of(os.stat(path), sealed=self.sealed)
+            return self == Seen.of(os.stat(path))
         except OSError:
             return False
 
@@ -105,7 +101,7 @@ def seal(path: Path, kind: str) -> Seen:
         found = Seal.of(file, kind, file.seek(0, os.SEEK_END))
         written.result()
         file.write(found.text)
-        return Seen.of(os.fstat(file.fileno()), sealed=True)
+        return Seen.of(os.fstat(file.fileno()))
 
 
 def kind_of(path: str | os.PathLike[str]) -> str | None:
@@ -121,21 +117,19 @@ def kind_of(path: str | os.PathLike[str]) -> str | None:
 def verify(path: str | os.PathLike[str]) -> Seen:
     """Read all of a file, and hold it to its seal.
 
-    Files of schema version 1 have none; of them no more is known than that they are as long as HDF5 tells.
-
-    Raises :class:`PathError` for no file, :class:`StoreError` for one that is damaged, or that was never of this package.
+    Raises :class:`PathError` for no file, :class:`StoreError` for one that is damaged, has no seal, or was never of this package.
     """
     with _opened(path) as file:
         if is_held(path):
             raise StoreError(f"{path}: another program has it open to write")
         there, found = os.fstat(file.fileno()), _at_the_end(path, file)
         if found is None:
-            _check_unsealed(path, file, there.st_size)
-        elif there.st_size != found.length + SIZE:
+            raise StoreError(f"{path}: {_unsealed(file)}")
+        if there.st_size != found.length + SIZE:
             raise StoreError(f"{path}: damaged: it has {there.st_size} bytes, and had {found.length + SIZE}")
-        elif Seal.of(file, found.kind, found.length) != found:
+        if Seal.of(file, found.kind, found.length) != found:
             raise StoreError(f"{path}: damaged: its bytes are not those that were written")
-    return Seen.of(there, sealed=found is not None)
+    return Seen.of(there)
 
 
 def is_held(path: str | os.PathLike[str]) -> bool:
@@ -156,12 +150,7 @@ def is_held(path: str | os.PathLike[str]) -> bool:
 def _opened(path: str | os.PathLike[str]) -> Iterator[FileIO]:
     """A regular file to read; pipes and devices are not even opened."""
     check_kind("file", path, "a path", str, os.PathLike)
-    try:
-        mode = os.stat(path).st_mode
-    except (OSError, ValueError):
-        raise PathError(f"{path}: no such file") from None
-    if not stat.S_ISREG(mode):
-        raise PathError(f"{path}: is {'a folder' if stat.S_ISDIR(mode) else 'a device or a pipe'}, not a file")
+    check_regular(path)
     try:
         with open(path, "rb", buffering=0) as file:
             yield file
@@ -178,15 +167,12 @@ def _at_the_end(path: str | os.PathLike[str], file: FileIO) -> Seal | None:
         raise StoreError(f"{path}: damaged: its seal cannot be read") from None
 
 
-def _check_unsealed(path: str | os.PathLike[str], file: FileIO, size: int) -> None:
-    """Raise :class:`StoreError` where a file without a seal cannot be one of schema version 1."""
+def _unsealed(file: FileIO) -> str:
+    """What is wrong with a file that has no seal."""
     file.seek(0)
-    head = file.read(48)
-    if not head.startswith(SIGNATURE):
-        raise StoreError(f"{path}: not a whole HDF5 file of this package: it begins otherwise")
-    base, end = (int.from_bytes(head[place : place + 8], "little") for place in (24, 40))
-    if not head.startswith(_PLAIN) or base or end != size:
-        raise StoreError(f"{path}: not a whole HDF5 file of this package: it has {size} bytes and no seal at their end")
+    if file.read(len(SIGNATURE)) != SIGNATURE:
+        return "not a file of this program: it begins otherwise than HDF5"
+    return "it has no seal: cut short, changed by another program, or from before there were seals; run it again"
 
 
 def _digests(file: FileIO, length: int) -> list[bytes]:

@@ -1,4 +1,5 @@
-"""Devices, pipes, and what standard output goes to: they are written straight to, for no file may be put in their place."""
+"""Devices, pipes, and what standard output goes to: they are written straight to, for no file may be put in their place, and are
+never read."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ import time
 from pathlib import Path
 from typing import BinaryIO
 
-from ..errors import StoreError
+from ..errors import PathError, StoreError
 
 SOCKET = "a socket"
 """What cannot be written to by its path."""
@@ -31,6 +32,16 @@ def stream_word(path: Path) -> str:
     if stat.S_ISREG(mode) or stat.S_ISDIR(mode):
         return ""
     return "a pipe" if stat.S_ISFIFO(mode) else SOCKET if stat.S_ISSOCK(mode) else "a device"
+
+
+def check_regular(path: str | os.PathLike[str]) -> None:
+    """Raise :class:`PathError` for what is no file to read: to open a pipe may take for ever, to open a device may do something."""
+    try:
+        mode = os.stat(path).st_mode
+    except (OSError, ValueError):
+        raise PathError(f"{path}: no such file") from None
+    if not stat.S_ISREG(mode):
+        raise PathError(f"{path}: is {'a folder' if stat.S_ISDIR(mode) else 'a device or a pipe'}, not a file")
 
 
 def open_stream(path: Path) -> BinaryIO:

@@ -499,7 +499,7 @@ const char* press_message(press_status status) {
   case PRESS_NOT_ASSEMBLED:
     return "a loop cannot be closed: its links do not reach";
   case PRESS_DEAD_CENTRE:
-    return "a loop is at a dead centre, a joint in gimbal lock, or drives cannot make the motion: forces are open";
+    return "a loop is at a dead centre, a joint in gimbal lock, a bar along its beside, or drives cannot make the motion: forces are open";
   case PRESS_NOT_CONVERGED:
     return "the iterated loops did not converge";
   case PRESS_JUMPED:

@@ -51,7 +51,7 @@ typedef enum {
   PRESS_BAD_RATIO = 5 /* a ratio xi/l is outside 0 to 1 */,
   PRESS_NO_LINK = 6 /* there is no such link */,
   PRESS_NOT_ASSEMBLED = 7 /* a loop cannot be closed: its links do not reach */,
-  PRESS_DEAD_CENTRE = 8 /* a loop is at a dead centre, a joint in gimbal lock, or drives cannot make the motion: forces are open */,
+  PRESS_DEAD_CENTRE = 8 /* a loop is at a dead centre, a joint in gimbal lock, a bar along its beside, or drives cannot make the motion: forces are open */,
   PRESS_NOT_CONVERGED = 9 /* the iterated loops did not converge */,
   PRESS_JUMPED = 10 /* an iterated loop has jumped to another branch: more instants may help */,
   PRESS_SLOW = 11 /* the iterated loops converge slowly: they are near a dead centre */,

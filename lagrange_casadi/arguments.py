@@ -1,0 +1,250 @@
+"""Arguments of public functions, looked at in one place: numbers, texts with a unit, counts, and the kinds that signatures name."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import math
+import os
+import re
+import sys
+import types
+import typing
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from decimal import Decimal, DecimalException
+from numbers import Integral
+from pathlib import Path
+from typing import Any, Literal, NamedTuple, TypeAlias, TypeVar
+
+import numpy as np
+
+from .errors import DeclarationError, NumberError, shown
+from .system.numerals import real
+
+UNITS: dict[str, dict[str, float]] = {
+    "rad": {"rad": 1.0, "deg": math.radians(1.0), "turn": math.tau},
+    "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
+    "kg": {"kg": 1.0, "g": 1e-3},
+    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6},
+}
+"""Of each unit the words that a text may tell a number in, and how many of the unit each is."""
+
+_EXAMPLES = {"rad": "'350 deg' or '1.2 rad'", "m": "'100 mm'", "kg": "'500 g'", "s": "'20 ms'"}
+_WRITTEN = re.compile(r"\s*(\S*[\d.])\s*([A-Za-z]+)(/\S+)?\s*")
+_BASE = {word: unit for unit, words in UNITS.items() for word in words}
+
+_OWN = ("Body", "Point", "Joint", "Link", "Density", "Beam")
+"""Parts of mechanisms: declarations look at these themselves, for they list what is valid."""
+
+Number: TypeAlias = float | str
+"""A number, or a text of one with its unit."""
+
+Thing = TypeVar("Thing", bound=Callable[..., Any])
+
+
+def typed(value: object) -> tuple[Any, str]:
+    """A text with a unit as a number, and the unit that it is then in, as rad, m or m/s; anything else as it is, and no unit."""
+    if not isinstance(value, str) or not (found := _WRITTEN.fullmatch(value)) or found[2] not in _BASE:
+        return value, ""
+    digits, word, per = found[1], found[2], found[3] or ""
+    with suppress(ValueError, OverflowError, DecimalException):
+        number = real(digits)
+        if word == "deg":  # whole and half turns are the same doubles as multiples of math.pi
+            number = number / 180.0 * math.pi
+        elif word == "turn":
+            number *= math.tau
+        elif word != _BASE[word]:  # as its decimals say, rounded once
+            number = float(Decimal(digits) * Decimal(repr(UNITS[_BASE[word]][word])))
+        if math.isfinite(number):
+            return number, _BASE[word] + per
+    return value, ""
+
+
+def number(value: object, unit: str = "1", *, finite: bool = True) -> float:
+    """A number in a unit: a number is one, a text is one that tells a unit, as ``"350 deg"``, ``"100 mm"`` or ``"500 g"``.
+
+    Raises :class:`.NumberError`, a ``ValueError``, for anything else, and if it must be ``finite`` for what is not.
+    """
+    read, told = typed(value)
+    found = _double(read) if told in ("", unit) else None
+    if found is None or not (math.isfinite(found) or not finite):
+        raise NumberError(f"expected {'a finite ' if finite else 'a '}{in_words(unit)}, got {shown(value)}")
+    return found
+
+
+def angle(value: object) -> float:
+    """An angle in rad; see :func:`number`."""
+    return number(value, "rad")
+
+
+def in_words(unit: str) -> str:
+    """How a number in a unit is told: that it may be a text, where it may."""
+    base, per, rest = unit.partition("/")
+    example = _EXAMPLES.get(base, "")
+    if per and example:
+        example = f"'{example.split(chr(39))[1]}/{rest}'"
+    return f"number{'' if unit == '1' else f' [{unit}]'}{f', or a text such as {example}' if example else ''}"
+
+
+def count(what: str, value: object, least: int = 1) -> int:
+    """A whole number that is large enough. Raises :class:`DeclarationError`, naming ``what``, for anything else."""
+    if not _is_whole(value) or value < least:  # type: ignore[operator]
+        raise DeclarationError(f"{what}: expected a whole number of at least {least}, got {shown(value)}")
+    return int(value)  # type: ignore[call-overload, no-any-return]
+
+
+def within(what: str, value: object, low: float, high: float) -> float:
+    """A number from ``low`` to ``high``. Raises :class:`DeclarationError`, naming ``what``, for anything else."""
+    found = _double(value)
+    if found is None or not low <= found <= high:
+        raise DeclarationError(f"{what}: expected a number from {low:g} to {high:g}, got {shown(value)}")
+    return found
+
+
+def public(thing: Thing) -> Thing:
+    """A function for users, or a class: it raises :class:`DeclarationError` for arguments of other kinds than its signature names.
+
+    So it does for arguments that it does not take, and for those that it lacks. Of a class, methods are meant whose names have no
+    underscore, and what makes an instance of a dataclass.
+    """
+    if not isinstance(thing, type):
+        return typing.cast(Thing, _looking(thing))
+    for name, method in list(vars(thing).items()):
+        if isinstance(method, classmethod | staticmethod) and not name.startswith("_"):
+            setattr(thing, name, type(method)(_looking(method.__func__)))
+        elif inspect.isfunction(method) and (not name.startswith("_") or name == "__init__"):
+            setattr(thing, name, _looking(method))
+    return thing
+
+
+class _Kind(NamedTuple):
+    """A kind of values, in words."""
+
+    words: str
+    admits: Callable[[Any], bool]
+
+
+def _looking(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function that looks at its arguments before it runs."""
+    signature = inspect.signature(function)
+    known: dict[str, _Kind] = {}
+    looked: list[bool] = []
+
+    @functools.wraps(function)
+    def called(*given: Any, **named: Any) -> Any:
+        if not looked:  # a module's names are not all there when it is read
+            known.update(_kinds(function, signature))
+            looked.append(True)
+        try:
+            bound = signature.bind(*given, **named).arguments
+        except TypeError as wrong:
+            raise DeclarationError(_not_taken(function, signature, given, str(wrong))) from None
+        for name, kind in known.items():
+            if name in bound and not kind.admits(bound[name]):
+                what = f"{_called(function)}{_part(signature, given)}: {name}"
+                raise DeclarationError(f"{what}: expected {kind.words}, got {shown(bound[name])}")
+        return function(*given, **named)
+
+    return called
+
+
+def _called(function: Callable[..., Any]) -> str:
+    """A function as users call it; of a class what makes an instance."""
+    owner, _, name = function.__qualname__.rpartition(".")
+    return owner if name == "__init__" else name
+
+
+def _part(signature: inspect.Signature, given: tuple[Any, ...]) -> str:
+    """The name of the part that is declared, if that is what the first argument says."""
+    named = (
+        list(signature.parameters)[:2] in (["self", "name"], ["mechanism", "name"]) and len(given) > 1 and isinstance(given[1], str)
+    )
+    return f" {shown(given[1])}" if named else ""
+
+
+def _not_taken(function: Callable[..., Any], signature: inspect.Signature, given: tuple[Any, ...], wrong: str) -> str:
+    """What a call lacks, or has too much."""
+    each = list(signature.parameters.values())
+    own = [one.name for one in each if one.name not in ("self", "cls")]
+    named = [one.name for one in each if one.kind is inspect.Parameter.KEYWORD_ONLY]
+    beyond = len(given) - (len(each) - len(named))
+    if named and beyond > 0 and "too many positional" in wrong:
+        wrong = f"name them: {', '.join(f'{name}=' for name in named[:beyond])}"
+    space = getattr(given[0], "space", None) if given and len(own) < len(each) else None
+    where = "" if not isinstance(space, bool) else "in space " if space else "in a plane "
+    return f"{_called(function)}{_part(signature, given)}: {wrong}; {where}it takes {', '.join(own) or 'nothing'}"
+
+
+def _kinds(function: Callable[..., Any], signature: inspect.Signature) -> dict[str, _Kind]:
+    """The kinds of a function's arguments, of those whose annotation says one."""
+    scope = vars(sys.modules[function.__module__])
+    found: dict[str, _Kind] = {}
+    for name, parameter in signature.parameters.items():
+        hint = parameter.annotation
+        with suppress(NameError, TypeError, AttributeError):  # names that only type checkers see
+            hint = eval(hint, scope) if isinstance(hint, str) else hint
+            several = parameter.kind in (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+            if not several and hint is not inspect.Parameter.empty and (kind := _kind(hint)):
+                found[name] = kind
+    return found
+
+
+def _kind(hint: Any) -> _Kind | None:
+    """The kind that an annotation says; None for one that its function looks at itself."""
+    origin = typing.get_origin(hint) or hint
+    if origin in (typing.Union, types.UnionType):
+        return _one_of(typing.get_args(hint))
+    if origin is Literal:
+        return _SIMPLE[str] if all(isinstance(one, str) for one in typing.get_args(hint)) else None
+    if hint in (None, type(None)):
+        return _Kind("None", lambda value: value is None)
+    if isinstance(origin, type) and origin in _SIMPLE:
+        return _SIMPLE[origin]
+    if origin is Mapping:
+        by_name = typing.get_args(hint) == (str, float)
+        words = "values by name, as {'l': 0.25}" if by_name else "a mapping by name"
+        return _Kind(words, lambda value: isinstance(value, Mapping))
+    if origin is Callable:
+        return _Kind("a function", callable)
+    ours = isinstance(origin, type) and origin.__module__.startswith("lagrange_casadi")
+    if not ours or origin.__name__ in _OWN or getattr(origin, "_is_protocol", False):
+        return None
+    name = origin.__name__
+    return _Kind(f"a{'n' if name[0] in 'AEIO' else ''} {name}", lambda value: isinstance(value, origin))
+
+
+def _one_of(hints: tuple[Any, ...]) -> _Kind | None:
+    """One of several kinds; None where one of them is looked at by the function."""
+    found = [kind for hint in hints if (kind := _kind(hint))]
+    if len(found) < len(hints):
+        return None
+    words = list(dict.fromkeys(kind.words for kind in found if kind.words != "None")) or ["None"]
+    if "a path" in words:
+        words = ["a path", *(word for word in words if word not in ("a path", "a text"))]
+    listed = f"{', '.join(words[:-1])} or {words[-1]}" if len(words) > 1 else words[0]
+    return _Kind(listed, lambda value: any(kind.admits(value) for kind in found))
+
+
+def _is_whole(value: object) -> bool:
+    return isinstance(value, Integral) and not isinstance(value, bool) and abs(int(value)) < 2**63
+
+
+def _double(value: Any) -> float | None:
+    """What Python has as a number; None of anything else, as truth values, texts, arrays, dates and symbols."""
+    value = value.item() if isinstance(value, np.ndarray) and not value.shape else value
+    strange = isinstance(value, bool | complex | np.ndarray) or not hasattr(type(value), "__float__")
+    if not strange and not (isinstance(value, np.generic) and value.dtype.kind not in "iuf"):
+        with suppress(TypeError, ValueError, OverflowError, NotImplementedError, RuntimeError):
+            return float(value)
+    return None
+
+
+_SIMPLE: dict[type, _Kind] = {
+    str: _Kind("a text", lambda value: isinstance(value, str)),
+    bool: _Kind("True or False", lambda value: isinstance(value, bool | np.bool_)),
+    int: _Kind("a whole number", lambda value: isinstance(value, Integral) and not isinstance(value, bool)),
+    float: _Kind("a number", lambda value: _double(value) is not None),
+    Path: _Kind("a path", lambda value: isinstance(value, os.PathLike)),
+    os.PathLike: _Kind("a path", lambda value: isinstance(value, os.PathLike)),
+}

@@ -1,0 +1,86 @@
+"""Kinks of what is differentiated twice: of motions over time, and of constraints over what they see.
+
+They are looked for where a mechanism goes, with the parameters that it has there.
+"""
+
+from __future__ import annotations
+
+import functools
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from .density import Array
+from .kinks import Smooth
+from .mechanism import Mechanism
+from .motion import smooth_laws
+from .parts import Constraint
+from .scene import Scene
+
+_LOOKED_AT = 4001
+_ONE_AT_A_TIME = threading.Lock()
+
+
+def smooth_constraint(mechanism: Mechanism, constraint: Constraint) -> Smooth | None:
+    """That a constraint must have no kink over the symbols of what it sees; None where it can have none."""
+    curve = constraint.phi if constraint.lift is None else constraint.lift
+    return Smooth.of(curve, ca.vertcat(mechanism.measures.places, mechanism.time), mechanism.symbols)
+
+
+@dataclass(frozen=True, eq=False)
+class Corners:
+    """What of a scene may have a kink, by its joint or its name: ``laws`` of motion, and ``constraints``."""
+
+    scene: Scene
+    laws: Mapping[str, Smooth]
+    constraints: Mapping[str, Smooth]
+
+    @classmethod
+    def of(cls, scene: Scene) -> Corners:
+        """Return the corners of a scene. Threads wait for each other, for CasADi's expressions are no thread's own."""
+        with _ONE_AT_A_TIME:
+            return cls._of(scene)
+
+    @classmethod
+    @functools.lru_cache(maxsize=64)
+    def _of(cls, scene: Scene) -> Corners:
+        m = scene.mechanism
+        found = {name: smooth_constraint(m, constraint) for name, constraint in m.constraints.items()}
+        laws = smooth_laws(scene.laws, m.symbols)
+        return cls(scene, laws, {name: smooth for name, smooth in found.items() if smooth is not None})
+
+    def refuse_laws(self, span: tuple[float, float], p: Sequence[float]) -> None:
+        """Raise :class:`.DeclarationError` for a motion with a kink within a span of time, for parameters ``p``."""
+        for joint, smooth in self.laws.items():
+            found = smooth.kink(np.linspace(*span, _LOOKED_AT)[None], p)
+            if found is not None:
+                raise found.refused(f"the motion of joint '{joint}'")
+
+    def refuse_constraints(self, seen: Callable[[str], Array], p: Sequence[float]) -> None:
+        """Raise :class:`.DeclarationError` for a constraint with a kink, for parameters ``p``.
+
+        ``seen`` gives what a constraint sees over the instants, (symbols, t).
+        """
+        for name, smooth in self.constraints.items():
+            found = smooth.kink(seen(name), p)
+            if found is not None:
+                cam = self.scene.mechanism.constraints[name].lift is not None
+                raise found.refused(f"cam '{name}': its lift" if cam else f"constraint '{name}'")
+
+    def broken_laws(self, start: Array, stop: Array, p: Array) -> npt.NDArray[np.bool_]:
+        """Of which designs ``p`` (d, parameters) a motion has a kink between times ``start`` and ``stop`` (d,)."""
+        found = np.zeros(len(p), bool)
+        for smooth in self.laws.values():
+            found |= smooth.broken(np.linspace(start, stop, _LOOKED_AT, axis=-1)[:, None], p)
+        return found
+
+    def broken_constraints(self, seen: Callable[[str], Array], p: Array) -> npt.NDArray[np.bool_]:
+        """Of which designs a constraint has a kink; ``seen`` as above, (d, symbols, t)."""
+        found = np.zeros(len(p), bool)
+        for name, smooth in self.constraints.items():
+            found |= smooth.broken(seen(name), p)
+        return found

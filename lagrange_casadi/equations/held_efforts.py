@@ -1,0 +1,59 @@
+"""Efforts of a scene whose frictions at rest are at their limits, with given signs."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from ..declare.scene import Scene, Wanted
+from ..quantities import Output
+from .checks import Check, Column
+from .meshes import transmissions_of
+from .mobility import internal_forces
+from .moving import Moving
+from .multibody import column
+from .pressing import frictions_of
+
+
+@dataclass(frozen=True, eq=False)
+class HeldEfforts:
+    """``instant(t, d, d_rate, d_acceleration, z, p, signs) -> out``, a row for each of ``columns``.
+
+    ``signs`` are those of ``frictions``.
+    """
+
+    instant: Any
+    columns: tuple[Column, ...]
+    frictions: tuple[str, ...]
+
+
+@functools.lru_cache(maxsize=8)
+def held_efforts(scene: Scene) -> HeldEfforts:
+    """The efforts of a scene that can be assembled, with checks of its frictions, and of efforts that are ``open`` besides."""
+    mechanism = scene.mechanism
+    want = Wanted.of(mechanism, ["effort"])
+    moving = Moving.of(scene, want, False)
+    losses = (t.loss.name for t in transmissions_of(mechanism).values() if t.loss is not None)
+    signs = {name: ca.SX.sym(f"sign_{name}") for name in (*frictions_of(mechanism), *losses)}
+    forces = internal_forces(
+        moving.body,
+        moving.solved,
+        effort=True,
+        reactions=(),
+        multipliers=(),
+        sections=(),
+        frictions=(),
+        weights=scene.weights,
+        signs=signs,
+    )
+    efforts = {key: value for key, value in forces.columns.items() if isinstance(key, Output)}
+    slopes = ca.jacobian(column(efforts.values()), forces.free)
+    found: dict[Column, Any] = dict(forces.columns)
+    found |= {Check("open", key): ca.sum2(ca.fabs(slopes[k, :])) for k, key in enumerate(efforts) if slopes[k, :].nnz()}
+    out = ca.substitute(column(found.values()), forces.free, ca.SX.zeros(forces.free.numel()))
+    names = ["t", "d", "d_rate", "d_acceleration", "z", "p", "signs"]
+    instant = ca.Function("held", [*moving.inputs, column(signs.values())], [ca.densify(out)], names, ["out"], {"cse": True})
+    return HeldEfforts(instant, tuple(found), tuple(signs))

@@ -1,0 +1,260 @@
+"""Axes and places that are off by rounding: the nearest ones with which the loops of an over-constrained mechanism close.
+
+A loop that closes because axes are parallel, or meet, closes no more where a CAD program has rounded them: it has more equations
+than its mobility leaves room for, and these miss by that rounding. In any posture the misses are seen along the left null space N
+of the loops' Jacobian, whose rank is told within the tolerance: N'(Phi + Phi_x x) = 0 is linear in small corrections x of axes and
+places. The least x is taken for which it holds in many postures, and for other parameters too where it can, by the method of Gauss
+and Newton.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..declare.density import Array, Density
+from ..declare.joints import Joint
+from ..declare.measures import Measures
+from ..declare.mechanism import Mechanism
+from ..declare.motion import motion_function
+from ..declare.parts import Friction, Link, Point
+from ..declare.scene import Scene
+from ..declare.spatial import reference_posture
+from ..geometry.vectors import Vector, cross, dot, nil, plus, times
+from .assembly import assemble
+from .freed import Freed, Posture
+from .gaps import extent
+from .joints import held_directions
+from .multibody import LoopEquations, Multibody
+from .tree import span
+
+_POSTURES = 24
+_STRIDE = 0.25
+"""How far it is from one posture to the next: in radians, or of the mechanism's extent."""
+
+_OTHER = 0.05
+"""By what part of itself a parameter is changed, to see whether loops close for others too."""
+
+_ROUNDS = 8
+_CLOSING_STEPS = 30
+_APART = 100.0
+"""Between a rank that is told and what rounding within the tolerance leaves: so much lies between singular values."""
+
+_SEEN = 1e-4
+"""Of the largest singular value: what corrections it tells of; what is less is made of rounding."""
+
+_LEFT = 1e-14
+_FAINT = 1e-18
+
+
+def nearest(scene: Scene) -> Scene | None:
+    """The scene with axes and places of joints moved within its ``rounding``, so that loops close; None if that is not enough."""
+    mechanism = scene.mechanism
+    if not mechanism.space or not scene.rounding:
+        return None
+    symbols = ca.SX.sym("correction", 12 * len(mechanism.joints))
+    size = mechanism.number(extent(mechanism), mechanism.values(scene.assembly))
+    found = _Search.of(scene, _with(mechanism, _shares(mechanism, symbols, size)), symbols, size).corrections()
+    if found is None:
+        return None
+    found[np.abs(found) < _FAINT] = 0.0
+    shares = {name: share for name, share in _shares(mechanism, found, size).items() if share.angle or share.distance}
+    if not shares or max(max(share.angle, share.distance / size) for share in shares.values()) > scene.rounding:
+        return None
+    corrected = _with(mechanism, shares)
+    corrected.rounded = {name: (share.angle, share.distance) for name, share in shares.items()}
+    return replace(scene, mechanism=corrected)
+
+
+@dataclass(frozen=True)
+class Share:
+    """A joint's share of corrections: turns of its axes on the parent and on the child [rad], shifts of its points [m]."""
+
+    turns: tuple[Any, Any]
+    shifts: tuple[Any, Any]
+
+    @property
+    def angle(self) -> float:
+        """By how much its axes turn, on one body or the other [rad]."""
+        return float(max(np.linalg.norm(turn) for turn in self.turns))
+
+    @property
+    def distance(self) -> float:
+        """By how much its points move, on one body or the other [m]."""
+        return float(max(np.linalg.norm(shift) for shift in self.shifts))
+
+    def of(self, joint: Joint) -> Joint:
+        """The joint with its share."""
+        directions, turned = joint.directions, joint.turned
+        assert directions is not None
+        assert turned is not None
+        on_parent, on_child = self.turns
+        u, v, w = (_turned(on_parent, one) for one in directions)
+        x, y = (_turned(on_parent, _turned(on_child, one)) for one in turned)
+        parent, child = (_shifted(point, shift) for point, shift in zip((joint.parent, joint.child), self.shifts, strict=True))
+        return replace(joint, parent=parent, child=child, directions=(u, v, w), turned=(x, y))
+
+
+def _turned(turn: Any, vector: Vector) -> Vector:
+    """A vector after a small turn (Cayley): its length is kept to the last digit."""
+    half = times(0.5, (turn[0], turn[1], turn[2]))
+    across = cross(half, vector)
+    return plus(vector, times(2 / (1 + dot(half, half)), plus(across, cross(half, across))))
+
+
+def _shifted(point: Point, shift: Any) -> Point:
+    if not _free(point):
+        return point
+    x, y, z = plus(point.place, (shift[0], shift[1], shift[2]))
+    return replace(point, x=x, y=y, z=z, end=None)
+
+
+def _free(point: Point) -> bool:
+    """Whether a point may be moved on its body: not off the axis of a link that has sections."""
+    sections = isinstance(point.body, Link) and isinstance(point.body.mass, Density)
+    return point.body.oriented and not (sections and nil(point.y) and nil(point.z))
+
+
+def _shares(mechanism: Mechanism, corrections: Any, size: float) -> dict[str, Share]:
+    """Corrections joint by joint: twelve each, in radians and of the mechanism's size."""
+    found = {}
+    for k, name in enumerate(mechanism.joints):
+        each = [corrections[12 * k + 3 * i : 12 * k + 3 * i + 3] for i in range(4)]
+        found[name] = Share((each[0], each[1]), (size * each[2], size * each[3]))
+    return found
+
+
+def _with(mechanism: Mechanism, shares: Mapping[str, Share]) -> Mechanism:
+    """The mechanism with corrected joints, and with the same symbols."""
+    found = copy.copy(mechanism)
+    found.asked = list(mechanism.asked)  # what corrected parts ask of parameters is not asked of the declared ones
+    joints = {joint: shares[name].of(joint) for name, joint in mechanism.joints.items() if name in shares}
+    found.joints = {name: joints.get(joint, joint) for name, joint in mechanism.joints.items()}
+    asked = [
+        replace(m, of=joints[m.of], axis=m.axis and found.coordinates[m.axis.coordinate][1]) if m.of in joints else m
+        for m in mechanism.measures.asked
+    ]
+    found.measures = Measures(asked, mechanism.measures.components)
+    found.loads = dict(mechanism.loads)
+    for name, load in mechanism.loads.items():
+        if isinstance(load, Friction) and load.joint in joints:
+            way, beside = load.axis, load.beside
+            found.loads[name] = replace(
+                load,
+                joint=joints[load.joint],
+                axis=found.coordinates[way.coordinate][1],
+                beside=beside and found.coordinates[beside.coordinate][1],
+            )
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """Looks for corrections of a mechanism whose joints have symbols of them."""
+
+    body: Multibody
+    freed: Freed
+    values: Sequence[Any]
+    others: Sequence[Sequence[Any]]
+    rows: Array
+    columns: Array
+    rounding: float
+
+    @classmethod
+    def of(cls, scene: Scene, mechanism: Mechanism, symbols: Any, size: float) -> _Search:
+        """Of a scene; ``mechanism`` is its own with symbols of corrections."""
+        body = assemble(mechanism, span(mechanism, scene.laws), scene.laws, ())
+        values, t = list(scene.mechanism.values(scene.assembly).values()), scene.span[0]
+        driven = [c for c in body.coordinates if c.driven]
+        motion = motion_function({c.name: scene.laws[c.name] for c in driven}, mechanism.symbols)
+        posture = reference_posture(scene.mechanism) | dict(scene.posture)
+        told = {c: posture[c.told_as] for c in body.coordinates if c.told_as in posture}
+        told |= dict(zip(driven, ca.DM(motion(t, values)[0]).full().ravel(), strict=True))
+        inputs = [mechanism.time, mechanism.symbols, symbols]
+        freed = Freed.of(body, told, inputs, [t, values, np.zeros(symbols.numel())], [symbols])
+        generator = np.random.default_rng(0)
+        others = []
+        for _ in range(2 if values else 0):
+            other = np.array(values) * (1 + _OTHER * generator.uniform(-1, 1, len(values)))
+            each = zip(mechanism.parameters.values(), other, strict=True)
+            others.append([t, [min(max(float(x), p.low), p.high) for p, x in each]])
+        rows = np.concatenate([_units(loop, size) for loop in body.loop_equations] or [np.zeros(0)])
+        columns = np.array([size if c.axis.move == "slide" else 1.0 for c in body.coordinates])
+        return cls(body, freed, [t, values], others, rows, columns, scene.rounding)
+
+    def corrections(self) -> Array | None:
+        """The least ones with which loops close, for other parameters too if these can; None where there are none."""
+        for others in (self.others, ()) if self.others else ((),):
+            found = self._corrections([self.values, *others])
+            if found is not None:
+                return found
+        return None
+
+    def _corrections(self, cases: Sequence[Sequence[Any]]) -> Array | None:
+        x = np.zeros(self.freed.gaps.size1_in(4))
+        seen = [(case, posture) for case in cases for posture in self._walk(case, x)]
+        for _ in range(_ROUNDS):
+            parts = [part for case, posture in seen if (part := self._along_null(case, posture, x)) is not None]
+            if not parts:
+                return None
+            misses, slopes = (np.concatenate(each) for each in zip(*parts, strict=True))
+            if np.max(np.abs(misses), initial=0.0) < _LEFT:
+                return x
+            x = x - np.linalg.lstsq(slopes, misses, rcond=_SEEN)[0]
+        return None
+
+    def _walk(self, case: Sequence[Any], x: Array) -> Iterator[Posture]:
+        """Postures of the mechanism with all its freedoms, at random."""
+        generator, posture = np.random.default_rng(0), self._closed(self.freed.first, case, x)
+        for _ in range(_POSTURES):
+            if posture is None:
+                return
+            yield posture
+            _, slope, _ = self._scaled(posture, case, x)
+            ways = np.linalg.svd(slope)[2][self._rank(slope) :]
+            step = generator.normal(size=len(ways)) @ ways
+            step *= _STRIDE * self.columns / max(float(np.max(np.abs(step), initial=0.0)), 1e-300)
+            posture = self._closed(self.freed.moved(posture, step), case, x) or self._closed(self.freed.first, case, x)
+
+    def _closed(self, posture: Posture, case: Sequence[Any], x: Array) -> Posture | None:
+        """Where loops close but for rounding."""
+        for _ in range(_CLOSING_STEPS):
+            gap, slope, _ = self._scaled(posture, case, x)
+            step = -self.columns * (np.linalg.pinv(slope, rcond=self._singular) @ gap)
+            posture = self.freed.moved(posture, step)
+            if np.max(np.abs(step / self.columns), initial=0.0) < 1e-13:
+                return posture if np.max(np.abs(gap), initial=0.0) < _APART * self.rounding else None
+        return None
+
+    def _along_null(self, case: Sequence[Any], posture: Posture, x: Array) -> tuple[Array, Array] | None:
+        """What loops miss in a posture that is closed anew, and the derivatives by corrections; None where its rank is not told."""
+        closed = self._closed(posture, case, x)
+        if closed is None:
+            return None
+        gap, slope, by = self._scaled(closed, case, x)
+        left = np.linalg.svd(slope)[0][:, self._rank(slope) :].T
+        return left @ gap, left @ by
+
+    @property
+    def _singular(self) -> float:
+        return _APART * self.rounding
+
+    def _rank(self, slope: Array) -> int:
+        return int(np.linalg.matrix_rank(slope, tol=self._singular * np.linalg.norm(slope, 2)))
+
+    def _scaled(self, posture: Posture, case: Sequence[Any], x: Array) -> tuple[Array, Array, Array]:
+        """Gaps and their derivatives, in radians and beside the mechanism's size."""
+        gap, slope, by = self.freed.at(posture, [*case, x])
+        return gap / self.rows, slope * self.columns / self.rows[:, None], by / self.rows[:, None]
+
+
+def _units(loop: LoopEquations, size: float) -> Array:
+    """What gaps of a loop are large beside: the mechanism's size [m], or 1 of directions."""
+    many = loop.gap.numel()
+    held = held_directions(loop.joint) if loop.joint is not None else 0
+    return np.array([size] * (many - held) + [1.0] * held)

@@ -1,0 +1,139 @@
+"""The efforts that hold a mechanism where joints that rub are at rest: from the least that may be needed to the largest.
+
+At rest a friction s is anything with |s| <= mu P(s), and P, the sum of sizes of what presses, follows from
+all frictions: it is a norm of what is linear in them. Efforts are linear in them too. An effort is largest
+where each friction at rest is at a limit: let it be largest at s*, and put in place of each P that is reached
+its tangent at s*, which is nowhere above it. Of that linear programme s* is a solution too, for near s* it asks
+for more. If the effort changes with a limit that is reached, that limit is reached at all solutions; with the
+other frictions the effort then does not change at all, and these may go to limits as well. They can: I - B is
+an M-matrix (see :mod:`.equations.friction`), so for every choice of signs there are such frictions, and only
+one. So all choices of signs are tried.
+
+This is not so where a friction that slides changes with one at rest, for it is bound to one side of its law; nor
+where a joint at rest may slide along two coordinates, or turn any way, for its friction is then bound by a circle
+or a ball.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from ..declare.density import Array
+from ..declare.scene import Scene
+from ..equations.checks import Check
+from ..equations.derive import assembled, derive
+from ..equations.held_efforts import HeldEfforts, held_efforts
+from ..equations.pressing import frictions_of
+from ..equations.scene_graph import SceneGraph
+from ..errors import check_kind
+from ..instants.backends import run
+from ..instants.rules import OPEN, SLIP
+from ..instants.rung import Rung
+from ..instants.solution import Solution
+from ..quantities import Output
+
+_MOST = 10
+"""Frictions at rest of which all choices of signs are tried."""
+
+_BENDS, _JAMS = 1e-9, 1e-14
+
+
+@dataclass(frozen=True, eq=False)
+class Holding:
+    """The ``least`` and the ``largest`` effort [N, N m] that a drive may need at each instant, by sign, (t,).
+
+    Both are the effort where that is told. Where joints at rest leave it open, frictions that are there may make it anything
+    between. Where that range is not told either both are NaN, and ``untold`` says why, else it is empty.
+    """
+
+    least: Array
+    largest: Array
+    untold: str = ""
+
+    @property
+    def worst(self) -> Array:
+        """The one of both that is larger in size, (t,)."""
+        return np.where(np.abs(self.least) > np.abs(self.largest), self.least, self.largest)
+
+
+def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
+    """The range of each drive's effort, by joint, at the instants of a solution of the scene that has efforts.
+
+    Raises :class:`.DeclarationError` for what is no scene or no solution.
+    """
+    check_kind("holding", scene, "a Scene", Scene)
+    check_kind("holding", solution, "a Solution", Solution)
+    efforts = {output.part: values for output, values in solution.outputs.items() if output.group == "effort"}
+    open_ = {name: solution.resting & np.isnan(values) for name, values in efforts.items()}
+    at = np.flatnonzero(np.any([*open_.values()], axis=0)) if efforts else np.zeros(0, int)
+    if not at.size:
+        return {name: Holding(values, values) for name, values in efforts.items()}
+    values = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
+    graph = derive(assembled(scene, values, ["effort"]), ["effort"])
+    held = held_efforts(graph.scene)
+    tried, why = _tried(held, graph, _inputs(graph, solution.t, np.array([*values.values()]), at))
+    ranges = {}
+    for name, effort in efforts.items():
+        output, reasons = Output("effort", name), list(why)
+        found = tried[:, held.columns.index(output)]
+        if (doubt := Check("open", output)) in held.columns:
+            reasons.append(((tried[:, held.columns.index(doubt)] > OPEN["double"]).any(axis=0), "equilibrium leaves it open"))
+        reasons.append((~np.isfinite(found).all(axis=0), "it is not finite"))
+        told = ~np.any([wrong for wrong, _ in reasons], axis=0)
+        there = open_[name][at]
+        ends = []
+        for end in (found.min(axis=0), found.max(axis=0)):
+            ends.append(effort.copy())
+            ends[-1][at[there]] = np.where(told, end, np.nan)[there]
+        ranges[name] = Holding(ends[0], ends[1], next((words for wrong, words in reasons if wrong[there].any()), ""))
+    return ranges
+
+
+_Reasons = list[tuple[Any, str]]
+"""At which instants (t,) a range is not told, and why."""
+
+
+def _inputs(graph: SceneGraph, t: Array, p: Array, at: npt.NDArray[np.intp]) -> list[Any]:
+    """What the columns of a scene are functions of, some of the instants ``t`` beside each other."""
+    followed = run(graph, t, p, Rung("vm"))[0].iterated
+    moved = graph.motion(ca.DM(t[at]).T, ca.DM(p))
+    return [ca.DM(t[at]).T, *moved, ca.DM(followed[:, at]), ca.DM(p)]
+
+
+def _tried(held: HeldEfforts, graph: SceneGraph, inputs: list[Any]) -> tuple[Array, _Reasons]:
+    """The columns for all choices of signs of the frictions that rest, (choices, columns, t); and where these are not enough."""
+
+    def columns(signs: Array) -> Array:
+        return np.asarray(held.instant(*inputs, ca.DM(signs)).full())
+
+    signs = np.ones(len(held.frictions))
+    first = columns(signs)
+    checks = {(c.kind, str(c.part)): k for k, c in enumerate(held.columns) if isinstance(c, Check)}
+    rests = {name: first[k] > 0.5 for (kind, name), k in checks.items() if kind == "rest"}
+    why: _Reasons = []
+    loads = frictions_of(graph.scene.mechanism)
+    for name, rest in rests.items():
+        if name in loads and (loads[name].every_way or loads[name].beside is not None):
+            why.append((rest, f"friction '{name}' may hold its joint in more than one direction"))
+    resting = [held.frictions.index(name) for name, rest in rests.items() if rest.any()]
+    if len(resting) > _MOST:
+        return first[None], [*why, (np.ones(first.shape[1], bool), f"{len(resting)} frictions rest, of at most {_MOST}")]
+    found = []
+    for chosen in itertools.product((1.0, -1.0), repeat=len(resting)):
+        signs[resting] = chosen
+        found.append(columns(signs))
+    tried = np.array(found)
+    for (kind, name), k in checks.items():
+        if kind == "bend":
+            why.append(((tried[:, k] > _BENDS).any(axis=0), f"friction '{name}' slides, and changes with those at rest"))
+        elif kind == "jam":
+            why.append((~(tried[:, k] > _JAMS).all(axis=0), f"friction '{name}' may jam"))
+        elif kind == "slip":
+            why.append((~(tried[:, k] <= SLIP["double"]).all(axis=0), f"friction '{name}' may jam"))
+    return tried, why

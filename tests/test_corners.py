@@ -1,0 +1,132 @@
+"""Corners and jumps that appear for other parameters than the defaults: no effort is told for them, by whatever way."""
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, export, optimise, prepare, sweep
+from lagrange_casadi.declare.motion import expression, polynomial
+from lagrange_casadi.designs.engine import DesignEngine
+from lagrange_casadi.elements.cam import disc_cam
+from lagrange_casadi.elements.cylindrical_cam import cylindrical_cam
+from lagrange_casadi.errors import AssemblyError, DeclarationError
+from lagrange_casadi.instants.refusal import Status
+
+pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
+
+
+def bend(x, k):
+    """Smooth for k = 0; else with a corner of that size at x = 0.5."""
+    return 0.02 * (ca.sin(x) + k * ca.fabs(ca.sin(x - 0.5)))
+
+
+def slide(law):
+    """A slide that follows a law of the time and of a parameter k."""
+    m = Mechanism("slide")
+    body, k = m.point_mass("body", 2.0), m.parameter("k", 0.0)
+    m.prismatic("way", m.ground, body, axis=(1, 0))
+    return Scene(m, {"way": expression(lambda t: law(t, k))}, t=(0.0, 1.0, 101))
+
+
+def jump(t, k):
+    """The angle of 7 t, which atan2 takes back by a turn, where k is not 0."""
+    return ca.atan2(k * ca.sin(7 * t), 1 - k + k * ca.cos(7 * t))
+
+
+def motion():
+    return slide(lambda t, k: bend(t, k))
+
+
+def cut():
+    return slide(jump)
+
+
+def constraint():
+    """A slide whose place is a function of a crank's angle."""
+    m = Mechanism("constraint")
+    crank, body, k = m.link("crank", length=0.1, mass=1.0), m.point_mass("body", 2.0), m.parameter("k", 0.0)
+    turn = m.revolute("turn", m.ground, crank)
+    way = m.prismatic("way", m.ground.at(0.0, 0.2), body, axis=(0, 1))
+    m.constraint("profile", m.coordinate(way) - bend(m.coordinate(turn), k))
+    return Scene(m, {"turn": polynomial(0.1, 1.0)}, t=(0.0, 1.0, 101))
+
+
+def disc():
+    m = Mechanism("disc")
+    wheel, rod, k = m.link("wheel", length=0.1, mass=1.0), m.link("rod", length=0.1, mass=1.0), m.parameter("k", 0.0)
+    main = m.revolute("turn", m.ground, wheel)
+    lead = m.prismatic("lead", m.ground, rod, axis=(0, 1), angle="90 deg")
+    disc_cam(m, "profile", main, lead, lambda x: 0.1 * bend(x, k), base_radius=0.1, roller=0.01)
+    return Scene(m, {"turn": polynomial(0.1, 1.0)}, t=(0.0, 1.0, 101))
+
+
+def drum():
+    m = SpatialMechanism("drum")
+    wheel, cart, k = m.link("wheel", length=0.1, mass=1.0), m.point_mass("cart", 1.0), m.parameter("k", 0.0)
+    main = m.revolute("turn", m.ground, wheel, axis=(1, 0, 0))
+    lead = m.prismatic("lead", m.ground.at(0.0, 0.0, 0.05), cart, axis=(1, 0, 0))
+    cylindrical_cam(m, "profile", main, lead, lambda x: 0.1 * bend(x, k))
+    return Scene(m, {"turn": polynomial(0.1, 1.0)}, t=(0.0, 1.0, 101))
+
+
+PLACES = {
+    motion: "the motion of joint 'way': its slope jumps",
+    cut: "the motion of joint 'way': its value jumps",
+    constraint: "constraint 'profile': its slope jumps",
+    disc: "cam 'profile': its lift: its slope jumps",
+    drum: "cam 'profile': its lift: its slope jumps",
+}
+SCENES = pytest.mark.parametrize("scene", PLACES, ids=[one.__name__ for one in PLACES])
+
+
+@SCENES
+def test_a_scene_is_evaluated_where_it_is_smooth_and_refused_where_it_is_not(scene):
+    made = scene()
+    assert evaluate(made).certified
+    with pytest.raises(DeclarationError, match=PLACES[scene]):
+        evaluate(made, parameters={"k": 1.0})
+
+
+@SCENES
+def test_a_prepared_scene_refuses_the_values_that_it_is_called_with(scene):
+    f = prepare(scene(), wanted=["effort"])
+    f(k=0.0)
+    for asked in (f, f.peaks, f.gradient):
+        with pytest.raises((DeclarationError, AssemblyError), match=PLACES[scene]):
+            asked(k=1.0)
+    f.peaks(k=0.0)
+
+
+@SCENES
+def test_designs_without_a_corner_keep_their_results_beside_those_with_one(scene):
+    made = scene()
+    p = np.array([[0.0], [1.0], [0.0], [0.7]])
+    if scene is cut:
+        p[3] = 1.0
+    engine = DesignEngine.of(made, ["effort"])
+    found, whole = engine.evaluate(p), engine.evaluate(p, histories=True)
+    for one in (found, whole):
+        assert one.status.tolist() == [Status.OK, Status.CORNER, Status.OK, Status.CORNER]
+        assert np.isnan(one.value[1::2]).all()
+        assert np.isfinite(one.value[::2]).all()
+    assert np.isnan(whole.series[1::2]).all()
+    np.testing.assert_array_equal(found.value[0], engine.evaluate(p[:1]).value[0])
+
+
+@SCENES
+def test_a_sweep_tells_a_corner_by_its_status(scene):
+    swept = sweep(scene(), {"k": [0.0, 1.0]}, wanted=["effort"])
+    assert swept["status"].tolist() == [Status.OK, Status.CORNER]
+
+
+@SCENES
+def test_an_export_refuses_a_corner_at_the_parameters_that_it_is_given(scene, tmp_path):
+    with pytest.raises(DeclarationError, match=PLACES[scene]):
+        export(scene(), tmp_path / "c", parameters={"k": 1.0}, wanted=["effort"])
+    assert not (tmp_path / "c").exists()
+
+
+def test_a_search_does_not_take_a_jump_for_the_best_design():
+    """Beyond k = 0.5 the law jumps; at k = 1 it is straight elsewhere, and its effort would be zero."""
+    found = optimise(cut(), minimise="peak:effort:way", over={"k": (0.2, 1.0)}, starts=3)
+    assert abs(found.values["k"] - 0.2) < 1e-6

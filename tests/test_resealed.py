@@ -1,0 +1,64 @@
+"""Damage that a new seal hides is seen by HDF5: no crash or hang passes unnoticed, and no reader raises what is not ours."""
+
+import os
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+import pytest
+import sweeps
+
+from lagrange_casadi import Mechanism, Scene, evaluate, optimise, save
+from lagrange_casadi.motion import polynomial
+from lagrange_casadi.sweep import sweep
+
+FEW, MANY = 12, 800
+ENDINGS = {"refused", "found", "accepted", "accepted unchanged"}
+
+
+def searched(out, **keywords):
+    """A search of few designs."""
+    m = Mechanism("turning")
+    duration = m.parameter("T", 1.0, "s", low=0.01)
+    m.revolute("O", m.ground, m.link("rod", length=0.3, mass=1.0))
+    scene = Scene(m, {"O": polynomial(0.0, 1.0, duration)}, t=(0, duration, 11), wanted=["effort"])
+    return optimise(scene, minimise="peak:effort:O", over={"T": (0.5, 2.0)}, starts=3, screen=8, backend="vm", out=out, **keywords)
+
+
+def source(kind, folder, slider_crank, monkeypatch):
+    """A file that is whole."""
+    path = folder / "x.h5"
+    if kind == "run":
+        save(evaluate(slider_crank.scene, t=(0, 0.08, 5), xi=(0, 1, 3), wanted=("effort", "section:rod"), backend="vm"), path)
+    elif kind == "sweep":
+        sweeps.use(monkeypatch)
+        sweep(sweeps.scene(), {"l": [0.2, 0.3], "r": [0.05, 0.1, 0.07]}, out=path, xi=(0, 1, 3), keep="histories")
+    elif kind == "search":
+        searched(path)
+    else:
+
+        def stop(start, _objective, _excess):
+            if start == 2:
+                raise KeyboardInterrupt
+
+        searched(path, progress=stop)
+        return path.with_name("x.h5.journal")
+    return path
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="each file is read in a fork")
+@pytest.mark.parametrize("kind", ["run", "sweep", "search", "journal"])
+@pytest.mark.parametrize("count", [FEW, pytest.param(MANY, marks=pytest.mark.long)])
+def test_damage_that_is_sealed_anew_is_noticed(tmp_path, slider_crank, monkeypatch, kind, count):
+    file = source(kind, tmp_path, slider_crank, monkeypatch)
+    program, folder = Path(__file__).with_name("resealing.py"), tmp_path / "damaged"
+    folder.mkdir()
+    command = [sys.executable, str(program), str(file), "3", str(count)]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=600 + count, check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+    found = [line.partition(" ")[2] for line in done.stdout.splitlines()]
+    assert len(found) == count
+    print(kind, Counter(found))
+    assert not [word for word in found if word not in ENDINGS and not word.endswith(" told")]
