@@ -25,7 +25,6 @@ from .elastic.completing import told_errors, wanted_alone
 from .elastic.least_energy import Completed, complete
 from .equations.checks import Check
 from .equations.derive import assembled, derive
-from .equations.described import described
 from .equations.scene_graph import SceneGraph
 from .errors import CertificateWarning, DeclarationError
 from .instants.backends import Evaluated
@@ -136,7 +135,7 @@ def evaluate(
     out = np.asarray(found.out, float)
     Corners.of(scene).refuse_constraints(lambda name: graph.seen(name, out), p.tolist())
     left_open += undetermined(graph, out, p, rung)
-    description = described(graph.scene, values)
+    description = graph.data.description(values)
     done = complete(graph, out, np.asarray(found.iterated, float), times, p, description, left_open, gives) if gives else None
     if done is not None:
         out, left_open = done.out, done.left_open

@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
 
 from .errors import check_kind
 from .tables import PLANE, SPACE, Quantity, Table, table_of
@@ -62,20 +61,17 @@ _ENDINGS = {"rate": "_rate", "acceleration": "_acceleration"}
 _COORDINATE = ".coordinate"
 
 
-class Declared(Protocol):
-    """What the units of outputs depend on: coordinates, frictions and the user's outputs of a mechanism, by name."""
+@dataclass(frozen=True)
+class Kinds:
+    """What units of outputs depend on, by name.
 
-    @property
-    def coordinates(self) -> Mapping[str, tuple[Any, Any]]:
-        """The joint and the axis of each coordinate."""
+    ``coordinates`` and ``frictions`` are kinds, "angle" or "slide", of coordinates and of those along which joints rub; ``outputs``
+    are the units of the user's outputs.
+    """
 
-    @property
-    def outputs(self) -> Mapping[str, Any]:
-        """The user's outputs."""
-
-    @property
-    def loads(self) -> Mapping[str, Any]:
-        """The loads, frictions among them."""
+    coordinates: Mapping[str, str]
+    frictions: Mapping[str, str]
+    outputs: Mapping[str, str]
 
 
 @dataclass(frozen=True)
@@ -151,14 +147,14 @@ class Output:
         """Whether it goes into the section forces of a link."""
         return self.group in ("law", "station", "spread")
 
-    def unit(self, mechanism: Declared) -> str:
-        """The unit in a mechanism."""
+    def unit(self, kinds: Kinds) -> str:
+        """The unit in a mechanism of such kinds."""
         if self.group == "output":
-            return str(mechanism.outputs[self.part].unit)
+            return kinds.outputs[self.part]
         if self.group == "friction":
-            return self.quantity.unit_for(mechanism.loads[self.part].axis.kind)
-        found = mechanism.coordinates.get(self.part) if self.group in ("motion", "effort") else None
-        return self.quantity.unit_for("angle" if found is None else found[1].kind)
+            return self.quantity.unit_for(kinds.frictions[self.part])
+        found = kinds.coordinates.get(self.part) if self.group in ("motion", "effort") else None
+        return self.quantity.unit_for(found or "angle")
 
 
 def quotient(unit: str, by: str) -> str:

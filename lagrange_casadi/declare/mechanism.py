@@ -16,6 +16,7 @@ import casadi as ca
 from ..arguments import Number, public
 from ..beams.beam import Beam
 from ..errors import DeclarationError
+from ..quantities import Kinds
 from .constraints import constraint, row
 from .density import Density
 from .expressions import bound, check_line, check_name
@@ -111,6 +112,13 @@ class Mechanism:
     def coordinates(self) -> dict[str, tuple[Joint, Axis]]:
         """The coordinates by name, as the joint and its axis: ``JOINT``, or ``JOINT:NAME`` where a joint has several."""
         return {axis.coordinate: (joint, axis) for joint in self.joints.values() for axis in joint.axes}
+
+    @property
+    def kinds(self) -> Kinds:
+        """What the units of its outputs depend on."""
+        coordinates = {name: axis.kind for name, (_, axis) in self.coordinates.items()}
+        frictions = {name: load.axis.kind for name, load in self.loads.items() if isinstance(load, Friction)}
+        return Kinds(coordinates, frictions, {name: own.unit for name, own in self.outputs.items()})
 
     @property
     def space(self) -> bool:

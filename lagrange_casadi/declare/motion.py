@@ -212,6 +212,17 @@ class Laws:
         order = tuple([*smooth, *sampled].index(name) for name in laws)
         return cls(motion_function(smooth, parameters), motion_function(sampled, parameters) if sampled else None, order)
 
+    def words(self) -> list[Any]:
+        """The functions as CasADi writes them, and the order, for JSON."""
+        return [self.smooth.serialize(), None if self.sampled is None else self.sampled.serialize(), self.order]
+
+    @classmethod
+    def loads(cls, words: Sequence[Any]) -> Laws:
+        """The functions that :meth:`words` made."""
+        smooth, sampled, order = words
+        read = ca.Function.deserialize
+        return cls(read(smooth), None if sampled is None else read(sampled), tuple(order))
+
 
 def _scalar(joint: str, law: Motion, t: Any, parameters: Any) -> Any:
     try:

@@ -84,7 +84,7 @@ class KeptOutputs:
         names = [*chosen, *(Output("section", link.name, force) for link in links for force in table.forces)]
         if not names:
             raise DeclarationError("designs: nothing is wanted that has a peak")
-        units = tuple(output.unit(mechanism) for output in names)
+        units = tuple(output.unit(graph.data.kinds) for output in names)
         efforts = tuple(name for name in names if name.group in AVERAGED)
         along = tuple(_along(mechanism, link, at, table) for link in links)
         matter, positive, margins = _matter(graph.scene, links, along, rung.precision)

@@ -24,6 +24,7 @@ from .drives import closure
 from .fingerprint import fingerprint
 from .least_work import feeling, least_work
 from .mobility import internal_forces
+from .model_data import ModelData
 from .moving import Moving
 from .multibody import column
 from .open_forces import open_forces
@@ -169,6 +170,7 @@ def _derive(scene: Scene, asked: Wanted, iterate: bool, elastic: bool) -> SceneG
     instant = share_reciprocals(ca.Function("instant", inputs, [out], names, ["out"], {"cse": True}), "p")
     return SceneGraph(
         scene=scene,
+        data=ModelData.of(scene, moving.driven),
         wanted=asked,
         driven=moving.driven,
         motion=moving.motion,

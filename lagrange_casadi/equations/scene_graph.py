@@ -16,9 +16,9 @@ from ..declare.motion import Laws
 from ..declare.scene import Scene, Wanted
 from ..quantities import Output, law_members, station_members
 from .checks import Check, Column, Kind, column_of
-from .gaps import extent
 from .iteration import NewtonLoop
 from .mobility import stations_of
+from .model_data import ModelData
 from .open_forces import OpenForces
 
 
@@ -34,6 +34,7 @@ class SceneGraph:
     """
 
     scene: Scene
+    data: ModelData
     wanted: Wanted
     driven: tuple[str, ...]
     motion: Any
@@ -62,22 +63,19 @@ class SceneGraph:
         rows = [k for part, k in self.checks("seen").items() if part.rpartition(":")[0] == constraint]
         return np.asarray(out[..., rows, :], float)
 
-    @cached_property
+    @property
     def laws(self) -> Laws:
         """The motion once more, what samples give apart from what can be followed in any arithmetic."""
-        if self.motion.is_a("SXFunction"):
-            return Laws(self.motion, None, tuple(range(len(self.driven))))
-        return Laws.of({name: self.scene.laws[name] for name in self.driven}, self.scene.mechanism.symbols)
+        return self.data.parted or Laws(self.motion, None, tuple(range(len(self.driven))))
 
     def extent(self, p: Array) -> float:
         """The size of the mechanism [m], beside which a gap is large or small, for parameters ``p``."""
-        mechanism = self.scene.mechanism
-        return mechanism.number(extent(mechanism), dict(zip(mechanism.parameters, map(float, p), strict=True)))
+        return float(self.data.extent(p))
 
     @cached_property
     def links(self) -> tuple[str, ...]:
         """The links of which a whole section law was wanted, and is there."""
-        space = self.scene.mechanism.space
+        space = self.data.space
         needed = {
             link: [Output("law", link, member) for member in law_members(space)]
             + [
@@ -122,7 +120,7 @@ class SceneGraph:
                 "joints": loop.joints,
             }
         loop_angles = {str(angle): {str(part): sign for part, sign in parts.items()} for angle, parts in self.loop_angles.items()}
-        kept = {"driven": self.driven, "columns": self.names, "loop_angles": loop_angles}
+        kept = {"data": self.data.words(), "driven": self.driven, "columns": self.names, "loop_angles": loop_angles}
         if self.open_forces is not None:
             kept["open_forces"] = self.open_forces.dumps()
         return json.dumps(kept | {"motion": self.motion.serialize(), "instant": self.instant.serialize(), "newton": newton})
@@ -140,4 +138,5 @@ class SceneGraph:
         columns = tuple(map(column_of, kept["columns"]))
         loop_angles = {Output.of(k): {column_of(part): sign for part, sign in v.items()} for k, v in kept["loop_angles"].items()}
         free = OpenForces.loads(kept["open_forces"]) if "open_forces" in kept else None
-        return cls(scene, wanted, tuple(kept["driven"]), motion, instant, newton, columns, loop_angles, free)
+        data = ModelData.loads(kept["data"])
+        return cls(scene, data, wanted, tuple(kept["driven"]), motion, instant, newton, columns, loop_angles, free)

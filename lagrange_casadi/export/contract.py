@@ -151,7 +151,7 @@ def contract(
     called = members({str(output): _short(str(output)) for output in given})
     largest: dict[str, float] = {}
     for output in given:
-        unit = output.unit(mechanism)
+        unit = output.unit(graph.data.kinds)
         largest[unit] = max(largest.get(unit, 0.0), float(np.abs(solution.outputs[output]).max()))
     numbered = constants(f"{prefix(name)}_link", graph.links)
     links = [LinkContract(link, constant, stations_of(given, link), spreads_of(given, link)) for link, constant in numbered.items()]
@@ -216,7 +216,7 @@ def _inputs(graph: SceneGraph, precision: Precision, timed: bool) -> dict[str, M
     for joint in graph.driven:
         for member in ("", "rate", "acceleration"):
             output = Output("motion", joint, member)
-            key, unit = str(output), output.unit(graph.scene.guided)
+            key, unit = str(output), output.unit(graph.data.kinds)
             add(key, unit, f"{_where(output)}: {_brief(output.quantity.long_name)}", _sign(graph, output))
             if rests and not member:
                 add(f"{REST}{key}", unit, rest.format("it"))
@@ -231,7 +231,7 @@ def _sign(graph: SceneGraph, output: Output) -> str:
 
 
 def _output(graph: SceneGraph, output: Output, member: str, solution: Solution, largest: Mapping[str, float]) -> Member:
-    unit, wrapped = output.unit(graph.scene.mechanism), output in graph.loop_angles
+    unit, wrapped = output.unit(graph.data.kinds), output in graph.loop_angles
     within = "in (-pi, pi]" if wrapped else _range(solution, output, largest[unit])
     meaning = f"{_where(output)}: {_brief(output.meant(solution.table).long_name)}"
     return Member(member, str(output), unit, meaning, _sign(graph, output), within, wrapped)

@@ -63,13 +63,13 @@ class Rule:
 def rules(graph: SceneGraph, precision: Precision, newton: int | None) -> tuple[Rule, ...]:
     """The rules of a graph, in the order in which they are told; ``newton`` as in :class:`.Rung`."""
     found: list[Rule] = []
-    open_ = max(open_limit(precision, newton), graph.scene.rounding if graph.scene.mechanism.rounded else 0.0)
+    open_ = max(open_limit(precision, newton), graph.data.rounding)
     for k, check in enumerate(graph.columns):
         if not isinstance(check, Check):
             continue
         part = check.part
         if isinstance(part, Output):
-            moment = part.unit(graph.scene.mechanism) == MOMENT
+            moment = part.unit(graph.data.kinds) == MOMENT
             found.append(Rule("OPEN_MOMENT" if moment else "OPEN", k, part, open_))
         elif check.kind == "beyond":
             found.append(Rule("BEYOND", k, part, BEYOND[precision]))

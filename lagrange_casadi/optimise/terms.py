@@ -90,7 +90,7 @@ class Term:
             return "kg"
         if tired_link(self.output):
             return "1"
-        return mechanism.parameters[self.name].unit if self.output is None else self.output.unit(mechanism)
+        return mechanism.parameters[self.name].unit if self.output is None else self.output.unit(mechanism.kinds)
 
     def __str__(self) -> str:
         return self.name if self.kind == "parameter" else f"{self.kind}:{self.name}"
