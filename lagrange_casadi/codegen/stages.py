@@ -24,7 +24,7 @@ from ..arithmetic.compensated import Pair, Pairs, Precision
 from ..arithmetic.interpret import REMAINDERS, Arithmetic, followable, interpret, numpy_arithmetic
 from ..arithmetic.lookups import Lookup
 from ..declare.density import Array
-from ..declare.motion import Laws
+from ..declare.laws import Laws
 from ..equations.scene_graph import SceneGraph
 
 FEW_TURNS = 128.0

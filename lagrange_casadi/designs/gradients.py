@@ -73,7 +73,7 @@ def curvature(
     """The second derivatives (q, parameters, parameters) of the peaks (value, t, xi) of a design, whose gradient is ``own``."""
     instants = times.of(p[None], asked=False)[0][0]
     chosen = np.arange(own.kinds.size, dtype=np.intc)
-    ends = end_bends(curvatures.slopes.graph.scene, times.timing, float(instants[0]), float(instants[-1]), p)
+    ends = end_bends(curvatures.slopes.graph.laws, times.timing, float(instants[0]), float(instants[-1]), p)
     return peak_bends(curvatures, instants, p, chosen, peaks, own, ends, _nothing(units, peaks[0]))
 
 
@@ -89,7 +89,7 @@ def tied(
 ) -> npt.NDArray[np.bool_]:
     """Which of them (q,) tie with another peak; ``series`` are those of ``outputs`` at the design's instants: see :func:`.ties`."""
     instants, graph = times.of(p[None])[1][0], slopes.graph
-    mechanism, table = graph.scene.mechanism, table_of(graph.scene.mechanism.space)
+    mechanism, table = graph.scene.mechanism, table_of(graph.data.space)
     rows = {output: k for k, output in enumerate(outputs)}
     values = dict(zip(mechanism.parameters, p.tolist(), strict=True))
     nowhere = np.full(instants.size, np.nan)
@@ -107,7 +107,7 @@ def tied(
 
 
 def _ends(slopes: Slopes, times: DesignTimes, instants: Array, p: Array) -> Array:
-    return end_slopes(slopes.graph.scene, times.timing, float(instants[0]), float(instants[-1]), p)
+    return end_slopes(slopes.graph.laws, times.timing, float(instants[0]), float(instants[-1]), p)
 
 
 def _nothing(units: npt.NDArray[np.intp], value: Array) -> npt.NDArray[np.bool_]:

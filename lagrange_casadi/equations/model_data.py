@@ -12,8 +12,8 @@ import numpy as np
 
 from ..declare.density import Array
 from ..declare.description import Description, Template
+from ..declare.laws import Laws
 from ..declare.mechanism import Mechanism
-from ..declare.motion import Laws
 from ..declare.scene import Scene
 from ..quantities import Kinds
 from .described import template
@@ -30,24 +30,14 @@ class ParameterData:
     high: float
 
 
-@dataclass(frozen=True)
-class Course:
-    """A prescribed motion: the time ``span`` that it covers [s], the ``knots`` of its samples [s], and whether it has samples."""
-
-    span: tuple[float, float]
-    knots: tuple[float, ...]
-    sampled: bool
-
-
 @dataclass(frozen=True, eq=False)
 class ModelData:
     """A mechanism and its motion as plain data, beside the functions of a :class:`.SceneGraph`.
 
     ``kinds`` are the kinds of its coordinates, those of guides too, of its frictions and outputs. ``closings`` are the words for
-    what closes loops: "joint", "path", "bar"; any other is a constraint. ``courses`` are the motions of the driven coordinates.
-    If some have samples, ``parted`` are their functions, those with samples apart from the others. ``span`` [s] and ``count`` are
-    those of the scene's own instants. ``rounding`` is how far axes were corrected for loops to close, or zero. ``extent(p)`` is its
-    size [m], and ``template`` its description but for the numbers.
+    what closes loops: "joint", "path", "bar"; any other is a constraint. ``laws`` are the motions of the driven coordinates.
+    ``span`` [s] and ``count`` are those of the scene's own instants. ``rounding`` is how far axes were corrected for loops to
+    close, or zero. ``extent(p)`` is its size [m], and ``template`` its description but for the numbers.
     """
 
     name: str
@@ -56,8 +46,7 @@ class ModelData:
     parameters: Mapping[str, ParameterData]
     kinds: Kinds
     closings: Mapping[str, str]
-    courses: Mapping[str, Course]
-    parted: Laws | None
+    laws: Laws
     span: tuple[float, float]
     count: int
     extent: Any
@@ -66,7 +55,6 @@ class ModelData:
     @classmethod
     def of(cls, scene: Scene, driven: Sequence[str]) -> ModelData:
         """The data of a scene, its motions in the order in which they are ``driven``."""
-        laws = {name: scene.laws[name] for name in driven}
         mechanism, symbols = scene.mechanism, scene.mechanism.symbols
         known = {name: ParameterData(p.default, p.unit, p.low, p.high) for name, p in mechanism.parameters.items()}
         return cls(
@@ -76,8 +64,7 @@ class ModelData:
             parameters=known,
             kinds=scene.guided.kinds,
             closings=_closings(mechanism),
-            courses={name: Course(law.span, law.knots, law.spline) for name, law in laws.items()},
-            parted=Laws.of(laws, symbols) if any(law.spline for law in laws.values()) else None,
+            laws=Laws.of({name: scene.laws[name] for name in driven}, symbols),
             span=scene.span,
             count=scene.timing().count,
             extent=ca.Function("extent", [symbols], [ca.densify(ca.SX(extent(mechanism)))], ["p"], ["extent"], {"cse": True}),
@@ -103,7 +90,6 @@ class ModelData:
 
     def words(self) -> dict[str, Any]:
         """The data for JSON; functions as the text in which CasADi writes them."""
-        parted = None if self.parted is None else self.parted.words()
         return {
             "name": self.name,
             "space": self.space,
@@ -111,8 +97,7 @@ class ModelData:
             "parameters": {name: asdict(parameter) for name, parameter in self.parameters.items()},
             "kinds": asdict(self.kinds),
             "closings": self.closings,
-            "courses": {name: asdict(course) for name, course in self.courses.items()},
-            "parted": parted,
+            "laws": self.laws.words(),
             "span": self.span,
             "count": self.count,
             "extent": self.extent.serialize(),
@@ -122,7 +107,6 @@ class ModelData:
     @classmethod
     def loads(cls, words: Mapping[str, Any]) -> ModelData:
         """The data that :meth:`words` made."""
-        courses = {name: Course(tuple(c["span"]), tuple(c["knots"]), c["sampled"]) for name, c in words["courses"].items()}
         return cls(
             name=words["name"],
             space=words["space"],
@@ -130,8 +114,7 @@ class ModelData:
             parameters={name: ParameterData(**parameter) for name, parameter in words["parameters"].items()},
             kinds=Kinds(**words["kinds"]),
             closings=words["closings"],
-            courses=courses,
-            parted=None if words["parted"] is None else Laws.loads(words["parted"]),
+            laws=Laws.loads(words["laws"]),
             span=tuple(words["span"]),
             count=words["count"],
             extent=ca.Function.deserialize(words["extent"]),

@@ -12,7 +12,7 @@ import casadi as ca
 import numpy as np
 
 from ..declare.density import Array
-from ..declare.motion import Laws
+from ..declare.laws import Laws
 from ..declare.scene import Scene, Wanted
 from ..quantities import Output, law_members, station_members
 from .checks import Check, Column, Kind, column_of
@@ -66,7 +66,7 @@ class SceneGraph:
     @property
     def laws(self) -> Laws:
         """The motion once more, what samples give apart from what can be followed in any arithmetic."""
-        return self.data.parted or Laws(self.motion, None, tuple(range(len(self.driven))))
+        return self.data.laws
 
     def extent(self, p: Array) -> float:
         """The size of the mechanism [m], beside which a gap is large or small, for parameters ``p``."""

@@ -224,9 +224,9 @@ def _inputs(graph: SceneGraph, precision: Precision, timed: bool) -> dict[str, M
 
 
 def _sign(graph: SceneGraph, output: Output) -> str:
-    table = table_of(graph.scene.mechanism.space)
+    table = table_of(graph.data.space)
     if output == Output("motion", output.part) and table is PLANE:
-        return "counter-clockwise" if graph.scene.guided.coordinates[output.part][1].kind == "angle" else "along the axis"
+        return "counter-clockwise" if graph.data.kinds.coordinates[output.part] == "angle" else "along the axis"
     return output.meant(table).sign
 
 

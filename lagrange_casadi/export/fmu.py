@@ -71,7 +71,7 @@ def wrapper(description: Description) -> str:
         timed=int(c.timed),
         start=",\n".join(f"  {wide(value)} /* {name} */" for name, value in values),
         turning=",\n".join(f"  {int(m.wrapped)} /* {m.path} */" for m in c.outputs),
-        start_time=wide(source.program.graph.scene.span[0]),
+        start_time=wide(source.program.graph.data.span[0]),
         limits=_limits(description),
         given=f"  {c.prefix}_parameters parameters;\n" if c.settings else "",
         set="".join(f"  parameters.{m.name} = ({c.prefix}_real) state->values[{k}];\n" for k, m in enumerate(c.settings)),

@@ -54,7 +54,7 @@ class Description:
     def start(self) -> dict[str, float]:
         """What inputs start with: the scene's motion at its first instant."""
         graph = self.source.program.graph
-        rows = [np.atleast_1d(row.full().ravel()) for row in graph.motion(graph.scene.span[0], self.p)]
+        rows = [np.atleast_1d(row.full().ravel()) for row in graph.motion(graph.data.span[0], self.p)]
         names = [str(Output("motion", joint, member)) for member in ("", "rate", "acceleration") for joint in graph.driven]
         return dict(zip(names, np.concatenate(rows).tolist(), strict=True))
 
@@ -101,7 +101,7 @@ class Description:
         logged = _add(root, "LogCategories")
         for name, meaning in LOGGED.items():
             _add(logged, "Category", name=name, description=meaning)
-        (start, stop), count = self.source.program.graph.scene.span, self.source.program.graph.scene.timing().count
+        (start, stop), count = self.source.program.graph.data.span, self.source.program.graph.data.count
         span = {"startTime": _number(start)}
         if stop > start:
             span |= {"stopTime": _number(stop), "stepSize": _number((stop - start) / max(1, count - 1))}
@@ -153,7 +153,7 @@ def reached(graph: SceneGraph) -> dict[str, frozenset[str]]:
     named = [
         ["time"],
         *([str(Output("motion", joint, member)) for joint in graph.driven] for member in ("", "rate", "acceleration")),
-        [f"parameter:{name}" for name in graph.scene.mechanism.parameters],
+        [f"parameter:{name}" for name in graph.data.parameters],
     ]
     _, coordinate, rate, acceleration, z, p = range(6)
     loops: set[str] = set()

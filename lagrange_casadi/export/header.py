@@ -63,7 +63,7 @@ _ZERO = (
 
 def _begin(source: Source) -> str:
     """What the header's example does before it asks."""
-    c, start = source.contract, source.program.graph.scene.span[0]
+    c, start = source.contract, source.program.graph.data.span[0]
     if source.iterated:
         return f"status = {c.prefix}_motion(&model, {start:g}{', 0' if c.rests else ''}, &inputs);"
     drive = next(m for m in c.inputs if m.source.startswith("motion:"))
@@ -73,7 +73,7 @@ def _begin(source: Source) -> str:
 def _follows(source: Source) -> str:
     if not source.iterated:
         return ""
-    (start, stop), count = source.program.graph.scene.span, source.program.graph.scene.timing().count
+    (start, stop), count = source.program.graph.data.span, source.program.graph.data.count
     near = f", as instants {(stop - start) / (count - 1):.2g} s apart are in the scene's motion" if count > 1 else ""
     return (
         f" Iterated loops are followed from the instant before, which must be near{near};\n"

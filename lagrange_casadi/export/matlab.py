@@ -22,7 +22,7 @@ def matlab(source: Source, coordinate: Member, output: Member) -> dict[str, str]
     words = source.words | {"coordinate": coordinate.name, "coordinate_unit": octave(coordinate.unit)}
     words |= {"output": output.name, "output_unit": octave(output.unit)}
     words |= {"coordinate_field": _field(coordinate), "output_field": _field(output)}
-    start, stop = source.program.graph.scene.span
+    start, stop = source.program.graph.data.span
     number = literal("double")
     return {
         f"{c.prefix}_mex.c": template(

@@ -45,7 +45,7 @@ class ExportedSlopes:
 def exported_slopes(graph: SceneGraph, contract: Contract, by: Sequence[str], p: Array, t: Array, chosen: Array) -> ExportedSlopes:
     """Those of a graph by parameters of these names; the self-test's instants are ``chosen`` among those of the cycle ``t``."""
     rows = [Output.of(member.source) for member in contract.outputs]
-    numbers = [list(graph.scene.mechanism.parameters).index(name) for name in by]
+    numbers = [list(graph.data.parameters).index(name) for name in by]
     function = total(graph, [graph.outputs[output] for output in rows], numbers)
     both = at_instants(graph, rows, t, p, numbers, Rung("vm"))
     found, largest = both[:, :, 1:], np.abs(both).max(axis=0)

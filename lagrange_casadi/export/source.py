@@ -117,8 +117,7 @@ class Source:
     @property
     def span(self) -> tuple[float, float]:
         """The times [s] that all motions cover."""
-        spans = [law.span for law in self.program.graph.scene.laws.values()]
-        return max(low for low, _ in spans), min(high for _, high in spans)
+        return self.program.graph.laws.span
 
     def _value(self, source: str) -> str:
         output = Output.of(source)

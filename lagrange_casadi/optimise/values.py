@@ -14,7 +14,6 @@ from typing import Any
 
 import casadi as ca
 
-from ..declare.motion import motion_function
 from ..designs.times import DesignTimes
 from ..equations.checks import Column
 from ..equations.reciprocals import differentiable
@@ -22,7 +21,6 @@ from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
 from ..quantities import Output
 from ..sensitivity.along import Along, Place
-from ..sensitivity.in_scalars import in_scalars
 from ..sensitivity.points import resultant
 from ..tables import table_of
 from .fatigue import Tired, tired_link
@@ -98,7 +96,7 @@ class PointValues:
             tired = self.tired(name)
             value = tired.swing(self._at_time([*inputs, xi, ca.SX.sym("place")], tired.stresses(out, p)))
             return Followed.of(value, value.numel_in(4))
-        mechanism, table = self.graph.scene.mechanism, table_of(self.graph.scene.mechanism.space)
+        mechanism, table = self.graph.scene.mechanism, table_of(self.graph.data.space)
         columns: dict[Column, Any] = {output: out[k] for output, k in self.graph.outputs.items()}
         if quantity.group == "section":
             link = Along(mechanism, mechanism.links[quantity.part], columns)
@@ -178,8 +176,7 @@ class PointValues:
     @cached_property
     def _motion(self) -> Any:
         """The motion in scalars, that by samples too: CasADi's own splines cannot be differentiated so often."""
-        graph, symbols = self.graph, self.graph.scene.mechanism.symbols
-        return motion_function(in_scalars({name: graph.scene.laws[name] for name in graph.driven}, symbols), symbols)
+        return self.graph.laws.in_scalars().motion
 
     @cached_property
     def _loops(self) -> Any:

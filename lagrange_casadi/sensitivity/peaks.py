@@ -106,8 +106,7 @@ def _switching(slopes: Slopes, t: Array, z: Array, p: Array, near: float) -> tup
     the number of the switch, -1 where a motion's knot or nothing does."""
     switches, first = slopes.points.switches, len(slopes.points.quantities)
     times, at, back = np.unique(t, return_index=True, return_inverse=True)
-    laws = slopes.graph.scene.laws
-    knots = np.array([knot for name in slopes.graph.driven for knot in laws[name].knots])
+    knots = np.array([knot for knots in slopes.graph.laws.knots for knot in knots])
     found, which = np.full((times.size, p.size), np.nan), np.full(times.size, -1, np.intc)
     if switches:
         many = len(switches)

@@ -18,7 +18,6 @@ from typing import Any
 import casadi as ca
 
 from ..declare.mechanism import Mechanism
-from ..declare.motion import jerk_function
 from ..equations.checks import Column
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
@@ -59,8 +58,7 @@ class PointFunction:
         inner = _at_drives(graph, quantities, sharpness.watched, sharp)
         given = {inner.name_in(k): inner.sx_in(k) for k in range(inner.n_in())}
         t, p = (given[name] for name in ("t", "p"))
-        laws = graph.scene.laws
-        jerk = jerk_function({joint: laws[joint] for joint in graph.driven}, graph.scene.mechanism.symbols)
+        jerk = graph.laws.jerk()
         lead = None
         if graph.motion.is_a("SXFunction"):
             given["drives"] = ca.SX(0, 1)

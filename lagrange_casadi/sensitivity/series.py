@@ -39,7 +39,7 @@ def series_slopes(graph: SceneGraph, solution: Solution, p: Array, by: Sequence[
     rows = [o for o in solution.outputs if (o in series or o.along) and o in graph.outputs]
     sections = len(solution.table.forces) * len(solution.links_with_sections)
     require("the sensitivities", (len(by), solution.t.size, len(rows) + sections * solution.xi.size))
-    numbers = [list(graph.scene.mechanism.parameters).index(name) for name in by]
+    numbers = [list(graph.data.parameters).index(name) for name in by]
     found: dict[Output, Array] = {}
     for output, column in zip(rows, np.moveaxis(at_instants(graph, rows, solution.t, p, numbers, rung), 1, 0), strict=True):
         found[output] = np.where(np.isnan(solution.outputs[output])[:, None], np.nan, column)

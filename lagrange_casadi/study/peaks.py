@@ -19,7 +19,6 @@ from ..arguments import public
 from ..codegen.stages import Stages, compensated, plain, turns_many
 from ..declare.density import Array
 from ..declare.even_points import are_even
-from ..declare.motion import jerk_function, motion_function
 from ..declare.scene import Scene
 from ..declare.times import Over, Times, span_of
 from ..equations.derive import assembled, derive
@@ -145,12 +144,12 @@ def rates(graph: SceneGraph) -> ca.Function:
 
     ``rates(tz, p) -> (out, out_rate)``, where ``tz`` is the time above the iterated coordinates.
     """
-    instant, newton, laws = differentiable(graph.instant), graph.newton, graph.scene.laws
+    instant, newton = differentiable(graph.instant), graph.newton
     tz, p = ca.MX.sym("tz", 1 + instant.size1_in("z")), ca.MX.sym("p", instant.size1_in("p"))
     t, z = tz[0], tz[1:]
     still = ca.DM.zeros(p.numel())
     d, d_rate, d_acceleration = graph.motion(t, p)
-    d_jerk = jerk_function({joint: laws[joint] for joint in graph.driven}, graph.scene.mechanism.symbols)(t, p)
+    d_jerk = graph.laws.jerk()(t, p)
     z_rate = ca.MX(0, 1)
     if newton is not None:
         # The correction is -Phi_z^-1 Phi, and where Phi = 0 its time derivative at fixed z is z'.
@@ -160,7 +159,7 @@ def rates(graph: SceneGraph) -> ca.Function:
     out = instant(*place)
     out_rate = instant.forward(1)(*place, out, 1, d_rate, d_acceleration, d_jerk, z_rate, still)
     both = ca.Function("rates", [tz, p], [out, ca.densify(out_rate)], ["tz", "p"], ["out", "out_rate"])
-    return both if any(laws[joint].spline for joint in graph.driven) else both.expand("rates", {"cse": True})
+    return both if graph.laws.sampled is not None else both.expand("rates", {"cse": True})
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,9 +224,8 @@ class ContinuousSolution:
 
     def at_the_drive(self, peak: Peak, joint: str) -> Peak:
         """A peak with the coordinate of a drive at its time."""
-        scene = self.graph.scene
-        d = motion_function({joint: scene.laws[joint]}, scene.mechanism.symbols)(peak.t, self.p)[0]
-        return replace(peak, over=float(d))
+        d = self.graph.motion(peak.t, self.p)[0]
+        return replace(peak, over=float(d[self.graph.driven.index(joint)]))
 
     def peaks(self, sampled: Sequence[Peak]) -> list[Peak]:
         """The peaks over all times, of quantities whose peaks over some instants are known."""
@@ -281,7 +279,7 @@ class ContinuousSolution:
         value, t, xi, instants = peaks.value.copy(), peaks.t.copy(), peaks.xi.copy(), self.solution.t
         reach = _NEAR * (instants[-1] - instants[0]) / (instants.size - 1)
         some = np.flatnonzero(np.isfinite(value) & ~np.isin(t, instants)).tolist()
-        if not some or any(law.spline and not law.knots for law in self.graph.scene.laws.values()):
+        if not some or not self.graph.laws.known:
             return value, t, xi
         chosen, first = [names[k] for k in some], t[some]
         before, now = first, np.clip(first + reach / 2, instants[0], instants[-1])

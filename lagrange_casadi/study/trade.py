@@ -199,7 +199,7 @@ class _Truth:
 def _motions(graph: SceneGraph, t: Array, p: Array) -> dict[str, float]:
     """What motions of each unit are beside: those of a point as far away as the mechanism is large, turned by the fastest drive."""
     extent, (_, rates, _) = graph.extent(p), (np.atleast_2d(part.full()) for part in graph.motion(t[None], p))
-    kinds = [graph.scene.guided.coordinates[name][1].kind for name in graph.driven]
+    kinds = [graph.data.kinds.coordinates[name] for name in graph.driven]
     turning = [np.abs(row).max() / (1.0 if kind == "angle" else extent or 1.0) for row, kind in zip(rates, kinds, strict=True)]
     rate = float(max(turning, default=0.0))
     units = ((ANGLE, 1.0), (LENGTH, extent), ("1", 1.0))

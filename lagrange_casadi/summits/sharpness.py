@@ -86,7 +86,7 @@ class Sharpness:
         if followable(graph.laws.smooth):
             found.look(graph.laws.smooth, [inputs[0], inputs[-1]])
         rows = ca.densify(ca.vertcat(ca.SX(0, 1), *(row for row, _ in found.kept.values())))
-        knots = sorted({t for name in graph.driven for t in graph.data.courses[name].knots})
+        knots = sorted({t for knots in graph.laws.knots for t in knots})
         watched = ca.Function("watched", inputs, [rows], names, ["out"], {"cse": True})
         return cls(watched, tuple(watch for _, watch in found.kept.values()), tuple(knots))
 
