@@ -72,10 +72,15 @@ class Laws:
         return ca.Function("motion", [t, p], [ca.vertcat(*pair)[list(self.order)] for pair in both], *_NAMES)
 
     @property
+    def with_samples(self) -> tuple[str, ...]:
+        """The drives whose laws are by samples."""
+        many = self.smooth.size1_out(0)
+        return tuple(joint for joint, place in zip(self.joints, self.order, strict=True) if place >= many)
+
+    @property
     def known(self) -> bool:
         """Whether all samples tell their knots."""
-        many = self.smooth.size1_out(0)
-        return all(knots for place, knots in zip(self.order, self.knots, strict=True) if place >= many)
+        return all(self.knots[self.joints.index(joint)] for joint in self.with_samples)
 
     def jerk(self) -> Any:
         """The CasADi function ``jerk(t, p) -> d_jerk``, the third derivatives; at a spline's knot, that of one side.

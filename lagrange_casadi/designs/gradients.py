@@ -89,9 +89,8 @@ def tied(
 ) -> npt.NDArray[np.bool_]:
     """Which of them (q,) tie with another peak; ``series`` are those of ``outputs`` at the design's instants: see :func:`.ties`."""
     instants, graph = times.of(p[None])[1][0], slopes.graph
-    mechanism, table = graph.scene.mechanism, table_of(graph.data.space)
+    description, table = graph.data.description(graph.data.values(p)), table_of(graph.data.space)
     rows = {output: k for k, output in enumerate(outputs)}
-    values = dict(zip(mechanism.parameters, p.tolist(), strict=True))
     nowhere = np.full(instants.size, np.nan)
 
     def curves(k: int) -> Sequence[Curve]:
@@ -99,7 +98,7 @@ def tied(
         if quantity.group != "section":
             parts = [series[rows[part]] for part in quantity.components(table) if part in rows]
             return [(nowhere, parts[0] if len(parts) == 1 else size_of(parts))]
-        force = section_forces(mechanism, quantity.part, rows, values)[quantity.member]
+        force = section_forces(description, quantity.part, rows)[quantity.member]
         return list(zip(*force.curves(series), strict=True))
 
     chosen, ends = np.arange(value.size, dtype=np.intc), _ends(slopes, times, instants, p)

@@ -10,6 +10,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..beams.material import Material
 from ..declare.density import Array
 from ..declare.description import Description, Template
 from ..declare.laws import Laws
@@ -83,6 +84,17 @@ class ModelData:
     def description(self, values: Mapping[str, float]) -> Description:
         """The mechanism as plain numbers, for values of all parameters."""
         return self.template.filled(values)
+
+    @cached_property
+    def materials(self) -> dict[str, Material]:
+        """What links with a beam are made of."""
+        bodies = self.template.content["bodies"].items()
+        return {name: Material(**body["beam"]["material"]) for name, body in bodies if "beam" in body}
+
+    def matter(self, link: str, p: Any) -> tuple[Any, list[list[Any]]]:
+        """The length of a link [m] and its density per unit of xi/l, as expressions of parameters ``p``: coefficients, cell by cell."""
+        body, numbers = self.template.content["bodies"][link], self.template.numbers(p)
+        return numbers[body["length"]], [[numbers[place] for place in cell] for cell in body["density"]["cells"]]
 
     def closing(self, part: str) -> str:
         """What closes a loop, in words."""

@@ -141,9 +141,9 @@ def contract(
     graph: SceneGraph, name: str, precision: Precision, solution: Solution, left_open: tuple[Output, ...], *, fixed: bool
 ) -> Contract:
     """The contract of a graph whose evaluation over its cycle is ``solution``; ``fixed`` leaves no parameter open."""
-    mechanism, values = graph.scene.mechanism, solution.description["parameters"]
+    values = solution.description["parameters"]
     timed = _timed(graph)
-    settings = [] if fixed else [_setting(key, values[key]) for key in mechanism.parameters]
+    settings = [] if fixed else [_setting(key, values[key]) for key in graph.data.parameters]
     names = members({setting.source: setting.source for setting in settings})
     inputs = _inputs(graph, precision, timed)
     shown = members({key: _short(key, "input") for key in inputs})

@@ -15,12 +15,12 @@ from .text import template
 def counting(source: Source) -> dict[str, str]:
     """The header by its name; nothing where no link is wanted whose material has an endurance limit and an ultimate strength."""
     graph = source.program.graph
-    links = graph.scene.mechanism.links
+    materials = graph.data.materials
     found = {}
     for name in dict.fromkeys((*graph.wanted.stressed, *graph.wanted.used)):
-        beam = links[name].beam
-        if beam is not None and beam.material.endurance is not None and beam.material.ultimate is not None:
-            found[name] = beam.material
+        material = materials.get(name)
+        if material is not None and material.endurance is not None and material.ultimate is not None:
+            found[name] = material
     prefix = source.contract.prefix
     return {f"{prefix}_fatigue.h": counter(prefix, found)} if found else {}
 

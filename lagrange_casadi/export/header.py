@@ -82,10 +82,7 @@ def _follows(source: Source) -> str:
 
 
 def _gravity(source: Source) -> str:
-    mechanism = source.program.graph.scene.mechanism
-    return ", ".join(
-        f"{mechanism.number(component, source.values):g}" for component in mechanism.gravity[: 3 if mechanism.space else 2]
-    )
+    return ", ".join(f"{component:g}" for component in source.program.graph.data.description(source.values)["gravity"])
 
 
 def _parameters(c: Contract) -> str:

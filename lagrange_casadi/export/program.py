@@ -14,10 +14,9 @@ from ..arithmetic.compensated import Precision
 from ..codegen.emit import hoisted, newton_rule
 from ..codegen.plain import plain
 from ..codegen.stages import controlled
-from ..declare.density import Array, Density
+from ..declare.density import Array
 from ..declare.motion import ends_function
 from ..equations.checks import Check, Column
-from ..equations.gaps import extent
 from ..equations.scene_graph import SceneGraph
 from ..errors import DeclarationError
 from ..instants.cycle_table import CycleTable
@@ -115,7 +114,7 @@ def program(
         "sound": 0 if fixed else functions["sound"].size1_out(0),
         "positive": 0 if fixed else positive,
     }
-    samples = tuple(_samples(graph, joint, p) for joint in graph.driven if graph.scene.laws[joint].spline)
+    samples = tuple(_samples(graph, joint, p) for joint in graph.laws.with_samples)
     filled, cycle = {name: f for name, f in functions.items() if f.size1_out(0)}, None if read is None else read[1]
     places = {} if read is None else still(graph, tuple(p.tolist()))
     return Program(graph, precision, filled, columns, sizes, graph.laws.order, samples, newton, cycle, places)
@@ -132,12 +131,10 @@ def _matter(graph: SceneGraph, symbols: Any, *, extent_first: bool) -> Any:
 
     With ``extent_first`` the mechanism's extent comes before all of them, for the gaps of loops to be compared with.
     """
-    found: list[Any] = [extent(graph.scene.mechanism)] if extent_first else []
+    found: list[Any] = [graph.data.extent(symbols)] if extent_first else []
     for name in graph.links:
-        link = graph.scene.mechanism.links[name]
-        assert isinstance(link.mass, Density)
-        density = link.mass.at(lambda e: e, link.length)
-        found += [link.length, *(c for cell in density.cells for c in cell)]
+        length, cells = graph.data.matter(name, symbols)
+        found += [length, *(c for cell in cells for c in cell)]
     return ca.Function("matter", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *found))])
 
 
@@ -157,10 +154,10 @@ def _changes(value: Any) -> bool:
 
 
 def _samples(graph: SceneGraph, joint: str, p: Array) -> Samples:
-    law = graph.scene.laws[joint]
-    if not law.knots:
+    number = graph.driven.index(joint)
+    knots = np.array(graph.laws.knots[number])
+    if not knots.size:
         raise DeclarationError(f"the motion of joint '{joint}' does not tell its knots, which exported C needs")
-    number, knots = graph.driven.index(joint), np.array(law.knots)
     rows = [np.atleast_2d(row.full())[number] for row in graph.motion(ca.DM(knots).T, ca.DM(p))]
     jerk = np.diff(rows[2]) / np.diff(knots)
     return Samples(joint, knots, np.stack([*(row[:-1] for row in rows), jerk], axis=1))

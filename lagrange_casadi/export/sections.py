@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from ..declare.density import Density
 from ..declare.limits import END
 from ..quantities import Output
 from ..tables import ON_INBOARD, PLANE, Table
@@ -41,7 +40,7 @@ def law_in_words(c: Contract) -> str:
 
 def functions(c: Contract, program: Program, number: Callable[[float], str], root: str) -> str:
     """The C functions that give the forces inside links."""
-    links = program.graph.scene.mechanism.links
+    bodies = program.graph.data.template.content["bodies"]
     shapes: list[str] = []
     laws: list[str] = []
     breaks: list[float] = []
@@ -49,11 +48,10 @@ def functions(c: Contract, program: Program, number: Callable[[float], str], roo
     place = program.sizes["gapped"]
     names = {Output.of(m.source): m.name for m in c.outputs}
     for link in c.links:
-        density = links[link.name].mass
-        assert isinstance(density, Density)
-        lengths = [len(cell) for cell in density.cells]
+        density = bodies[link.name]["density"]
+        lengths = [len(cell) for cell in density["cells"]]
         shapes.append(f"  {{{len(lengths)}, {len(breaks)}, {len(sizes)}}}")
-        breaks += density.breaks
+        breaks += density["breaks"]
         sizes += lengths
         rows = [f"  case {link.constant}:", f"    matter_of = model->matter + {place};"]
         rows.append(f"    stations = {len(link.stations)};")

@@ -42,9 +42,7 @@ class Tired:
     @property
     def material(self) -> Material:
         """What the link is made of."""
-        beam = self.graph.scene.mechanism.links[self.link].beam
-        assert beam is not None
-        return beam.material
+        return self.graph.data.materials[self.link]
 
     @cached_property
     def fatigue(self) -> Fatigue:

@@ -114,15 +114,13 @@ class Look:
 
     def _curves(self, output: Output) -> tuple[Sequence[Array], Sequence[Array]]:
         """Ratios and values of a quantity's curves, (t,) each."""
-        out, mechanism = np.asarray(self.found.out, float), self.graph.scene.mechanism
+        out, data = np.asarray(self.found.out, float), self.graph.data
         if output.group != "section":
-            rows = out[
-                [self.graph.outputs[part] for part in output.components(table_of(mechanism.space)) if part in self.graph.outputs]
-            ]
+            rows = out[[self.graph.outputs[part] for part in output.components(table_of(data.space)) if part in self.graph.outputs]]
             return [np.zeros(self.t.size)], [rows[0] if len(rows) == 1 else size_of(rows)]
-        values = dict(zip(mechanism.parameters, self.p.tolist(), strict=True))
+        description = data.description(data.values(self.p))
         with np.errstate(all="ignore"):
-            force = section_forces(mechanism, output.part, self.graph.outputs, values)[output.member]
+            force = section_forces(description, output.part, self.graph.outputs)[output.member]
             places, curves = force.curves(out)
         return list(places), list(curves)
 
