@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
 from ..arithmetic.compensated import Precision
 from ..codegen.designs import Reduction
@@ -44,7 +43,7 @@ def stages_of(graph: SceneGraph, rung: Rung, t: Array, *, alike: bool = True) ->
             return compensated(graph, "double")
         except DeclarationError:
             return plain(graph)
-    many = turns_many(graph, t, np.array(list(graph.scene.mechanism.values().values())))
+    many = turns_many(graph, t, graph.data.defaults)
     return compensated(graph, "double") if many else plain(graph)
 
 

@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 
 from ..beams.material import Material
-from ..declare.density import Array
+from ..declare.density import Array, Density
 from ..declare.description import Description, Template
 from ..declare.laws import Laws
 from ..declare.mechanism import Mechanism
@@ -91,10 +91,11 @@ class ModelData:
         bodies = self.template.content["bodies"].items()
         return {name: Material(**body["beam"]["material"]) for name, body in bodies if "beam" in body}
 
-    def matter(self, link: str, p: Any) -> tuple[Any, list[list[Any]]]:
-        """The length of a link [m] and its density per unit of xi/l, as expressions of parameters ``p``: coefficients, cell by cell."""
+    def matter(self, link: str, p: Any) -> tuple[Any, Density]:
+        """The length of a link [m] and its density, per unit of xi/l, as expressions of parameters ``p``."""
         body, numbers = self.template.content["bodies"][link], self.template.numbers(p)
-        return numbers[body["length"]], [[numbers[place] for place in cell] for cell in body["density"]["cells"]]
+        cells = tuple(tuple(numbers[int(place)] for place in cell) for cell in body["density"]["cells"])
+        return numbers[int(body["length"])], Density(tuple(body["density"]["breaks"]), cells, per_length=False)
 
     def closing(self, part: str) -> str:
         """What closes a loop, in words."""

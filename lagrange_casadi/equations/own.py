@@ -77,4 +77,4 @@ def section_force(link: Link, force: str, ratio: Any, found: Mapping[Column, Any
         # One graph serves both precisions.
         seen = sight(at, "single") < place
         total += ca.SX(load) if seen.is_one() else ca.SX(0) if seen.is_zero() else ca.if_else(seen, load, 0)
-    return sum(felt_along(found, link, terms, ratio), total)
+    return sum(felt_along(found, link.name, link.length, terms, ratio), total)

@@ -133,8 +133,8 @@ def _matter(graph: SceneGraph, symbols: Any, *, extent_first: bool) -> Any:
     """
     found: list[Any] = [graph.data.extent(symbols)] if extent_first else []
     for name in graph.links:
-        length, cells = graph.data.matter(name, symbols)
-        found += [length, *(c for cell in cells for c in cell)]
+        length, density = graph.data.matter(name, symbols)
+        found += [length, *(c for cell in density.cells for c in cell)]
     return ca.Function("matter", [symbols], [ca.densify(ca.vertcat(ca.SX(0, 1), *found))])
 
 

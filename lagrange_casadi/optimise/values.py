@@ -96,10 +96,10 @@ class PointValues:
             tired = self.tired(name)
             value = tired.swing(self._at_time([*inputs, xi, ca.SX.sym("place")], tired.stresses(out, p)))
             return Followed.of(value, value.numel_in(4))
-        mechanism, table = self.graph.scene.mechanism, table_of(self.graph.data.space)
+        table = table_of(self.graph.data.space)
         columns: dict[Column, Any] = {output: out[k] for output, k in self.graph.outputs.items()}
         if quantity.group == "section":
-            link = Along(mechanism, mechanism.links[quantity.part], columns)
+            link = Along(self.graph.data, quantity.part, columns, p)
             places = [Place(xi), *(mark for mark in link.marks if mark.station)]
             names = table.parts("section", quantity.member)
             sizes = [resultant([link.force(name, place) for name in names]) for place in places]
@@ -108,8 +108,7 @@ class PointValues:
         place = ca.SX.sym("place", len(sizes))
         # What is not meant may have no value, as a size at zero has no slope.
         value = sum((ca.if_else(place[k] > 0, size, 0) for k, size in enumerate(sizes)), ca.SX(0))
-        value = ca.substitute(ca.SX(value), mechanism.symbols, p)
-        return Followed.of(self._at_time([t, d, rate, acceleration, z, p, xi, place], value), len(sizes))
+        return Followed.of(self._at_time([t, d, rate, acceleration, z, p, xi, place], ca.SX(value)), len(sizes))
 
     def tired(self, link: str) -> Tired:
         """A link whose utilisation against fatigue is a term; it is made once."""
@@ -158,7 +157,7 @@ class PointValues:
 
         Raises :class:`.DeclarationError` where a drive says when they are, and its motion can be inverted for numbers alone.
         """
-        times, symbols = self.times, self.graph.scene.mechanism.symbols
+        times, symbols = self.times, ca.SX.sym("p", len(self.graph.data.parameters))
         if times.common:
             even = times.default[1]
             return ca.Function("span", [symbols], [ca.DM(float(even[0])), ca.DM(float(even[-1]))])

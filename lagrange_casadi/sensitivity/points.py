@@ -17,8 +17,8 @@ from typing import Any
 
 import casadi as ca
 
-from ..declare.mechanism import Mechanism
 from ..equations.checks import Column
+from ..equations.model_data import ModelData
 from ..equations.reciprocals import differentiable
 from ..equations.scene_graph import SceneGraph
 from ..quantities import Output
@@ -85,12 +85,11 @@ def _at_drives(graph: SceneGraph, quantities: Sequence[Output], watched: Any, sh
     )
     chosen = ca.SX.sym("chosen", len(quantities) + len(sharp))
     out = instant(*inputs)
-    mechanism = graph.scene.mechanism
     columns: dict[Column, Any] = {output: out[k] for output, k in graph.outputs.items()}
-    rows, weights = _rows(mechanism, columns, quantities, xi, value, moving, chosen)
+    rows, weights = _rows(graph.data, p, columns, quantities, xi, value, moving, chosen)
     rows += ca.vertsplit(differentiable(watched)(*inputs)[list(sharp)]) if sharp else []
     weights += ca.vertsplit(chosen[len(quantities) :]) if sharp else []
-    rows, weights = ca.substitute([ca.vertcat(*rows), ca.vertcat(*weights)], [mechanism.symbols], [p])
+    rows, weights = ca.vertcat(*rows), ca.vertcat(*weights)
     # The weights choose, and are not differentiated.
     held = ca.SX.sym("held", weights.numel())
     adjoint = ca.jtimes(rows, ca.vertcat(*inputs), held, True)
@@ -124,10 +123,10 @@ def _ends(parts: Sequence[Any]) -> list[int]:
 
 
 def _rows(
-    mechanism: Mechanism, columns: dict[Column, Any], quantities: Sequence[Output], xi: Any, value: Any, moving: Any, chosen: Any
+    data: ModelData, p: Any, columns: dict[Column, Any], quantities: Sequence[Output], xi: Any, value: Any, moving: Any, chosen: Any
 ) -> tuple[list[Any], list[Any]]:
     """Rows of which a sum is the quantity that is meant, and their weights in it."""
-    table = table_of(mechanism.space)
+    table = table_of(data.space)
     rows: list[Any] = []
     weights: list[Any] = []
     links: dict[str, Along] = {}
@@ -142,7 +141,7 @@ def _rows(
         if quantity.group != "section":
             add([columns[part] for part in quantity.components(table) if part in columns], chosen[k])
             continue
-        link = links.setdefault(quantity.part, Along(mechanism, mechanism.links[quantity.part], columns))
+        link = links.setdefault(quantity.part, Along(data, quantity.part, columns, p))
         names, left = table.parts("section", quantity.member), ca.SX(1.0)
         marks = link.marks
         here = {id(place): [link.force(name, place) for name in names] for place in marks}

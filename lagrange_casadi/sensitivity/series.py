@@ -81,7 +81,7 @@ def _along(
     """Those of the section forces of a link that are determined, each (t, xi, parameters)."""
     table, left_open = solution.table, solution.left_open
     columns = [output for output in solution.outputs if output.along and output.part == link]
-    function = section_slopes(graph.scene.mechanism, link, columns, by)
+    function = section_slopes(graph.data, link, columns, by)
     made = compiled(rung, lambda compiler: codegen.load_batch(function, compiler, tuple(shlex.split(rung.flags))))
     library, xi, forces = None if made is None else made[1], solution.xi, table.forces
     grids = np.empty((solution.t.size, xi.size, len(forces), len(by)))
