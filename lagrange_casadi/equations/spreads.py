@@ -107,7 +107,7 @@ def spreads_of(outputs: Iterable[Output], link: str) -> dict[str, int]:
 
 
 def felt_along(outputs: Mapping[Column, Any], link: str, length: Any, terms: Terms, ratio: Any) -> Iterator[Any]:
-    """A section force at a ratio, part by part, of what acts along a link of a length [m]: loads by their arms, couples of slices."""
+    """The parts of a section force at a ratio by what acts along a link of a length [m]: loads by their arms, couples of slices."""
     for load, powers in spreads_of((key for key in outputs if isinstance(key, Output)), link).items():
         for direction, sign, arm in ((terms.spread, terms.arm or 1, bool(terms.arm)), (terms.couple, 1, False)):
             if Output("spread", link, direction, load, 0) in outputs:

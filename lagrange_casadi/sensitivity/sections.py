@@ -36,5 +36,5 @@ def section_slopes(data: ModelData, link: str, columns: Sequence[Output], by: Se
             rows.append(changes[force])
         else:
             rows.append(sum(own[part] * changes[part] for part in parts) / ca.if_else(size > 0.0, size, 1.0))
-    found, names = [ca.densify(ca.vertcat(*rows).T)], ["columns", "slopes", "xi", "p"]
-    return ca.Function("at_once", [values, slopes, xi, p], found, names, ["changes"], {"cse": True})
+    given, names = [values, slopes, xi, p], ["columns", "slopes", "xi", "p"]
+    return ca.Function("at_once", given, [ca.densify(ca.vertcat(*rows).T)], names, ["changes"], {"cse": True})
