@@ -21,6 +21,7 @@ from ..system.publish import check_writable, filling
 from .drawing import draw_with_progress
 from .echo import echo
 from .options import place
+from .strength_lines import untold_lines
 
 _UNDRAWN = "cannot be drawn"
 
@@ -64,6 +65,9 @@ def plot(
         with told_as(_UNDRAWN, file), filling(out) as draft:
             draw_with_progress(solution, drawn, draft, si)
             MANIFEST.add(draft, out)
+        if not drawn:
+            for line in untold_lines(solution):
+                echo(line, err=True)
     echo(f"wrote the figures in {out}/; {out}/{NAME} shows all of them")
 
 
