@@ -28,7 +28,7 @@ from ..judge.certificate import failure, summary
 from ..store.runs import check_target, save
 from ..study.holding import holding
 from ..study.peaks import forces, refine, resultants
-from ..system.publish import check_writable, filling
+from ..system.publish import check_writable
 from ..system.room import MOST_THREADS
 from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
@@ -111,10 +111,9 @@ def run(
     replaced, before, drawn = out.exists(), figures_in(place), set[str]()
     heads = columns(solution) if csv else {}
     told = csv_written([TIME, *heads], rows_of([solution.t, *heads.values()]), csv) if csv else nullcontext()
-    with told, filling(folder) if folder else nullcontext() as draft:
+    with told, MANIFEST.filling(folder) if folder else nullcontext() as draft:
         if folder and draft:
             draw_with_progress(solution, loaded.figures, draft)
-            MANIFEST.add(draft, folder)
             drawn = figures_in(draft)
         save(solution, out, dump_specs(loaded.figures))
     say = partial(echo, err=csv is not None and is_standard_output(csv))
