@@ -78,6 +78,14 @@ def shape_of(value: Any) -> dict[str, Any]:
     return shape | {name: kind for name, kind in optional.items() if isinstance(value, dict) and name in value}
 
 
+def check_places(description: Description) -> None:
+    """Raise ``ValueError`` where a joint or a load is at a place on a body that there is not."""
+    ends = ((name, joint[end]) for name, joint in description["joints"].items() for end in ("parent", "child"))
+    for name, place in (*ends, *((name, point) for name, load in description["loads"].items() for point in load["points"])):
+        if place["body"] != "ground" and place["body"] not in description["bodies"]:
+            raise ValueError(f"'{name}' is at a place on '{place['body']}', which is no body")
+
+
 def density_of(body: Description) -> NumericDensity:
     """The density of a described link that has sections."""
     return _density(body["density"])
