@@ -106,7 +106,7 @@ def export(
         files |= for_pages(source)
     unit = f"{agreed.prefix}.fmu"
     told = MANIFEST.known(folder)
-    allowed = {"beside": force, "changed": force, "apart": _BUILD}
+    allowed: dict[str, Any] = {"beside": force, "changed": force, "apart": _BUILD}
     MANIFEST.check(folder, [*files, *([unit] if fmu else [])], **allowed)
     if told and f"{agreed.prefix}.h" not in told and not force:
         raise PathError(f"cannot export into {folder}: it holds an export of another name; {MANIFEST.way_out}")

@@ -49,7 +49,7 @@ def check_optimum(path: str | os.PathLike[str]) -> list[str]:
 
     Raises :class:`.StoreError` for what is not a whole file of a search, :class:`.PathError` for none.
     """
-    found = []
+    found: list[str] = []
     with opened_file(path, SCHEMA, range(VERSION, VERSION + 1), "the file of a search") as file:
         check_links(file)
         file.visititems(_read)
@@ -86,13 +86,13 @@ def _contradictions(group: h5py.Group) -> Iterator[str]:
         rows = history[()][history[:, 0] == int(number)]
         for end in ("start", "end"):
             check_dataset(start[end], (len(names),))
-        end = np.array([start.attrs["objective"], start.attrs["excess"], *start["end"]])
+        came = np.array([start.attrs["objective"], start.attrs["excess"], *start["end"]])
         begins = len(rows) == 0 or _alike(rows[0, len(_COLUMNS) :], start["start"])
-        if not begins or (len(rows) and not any(_alike(np.delete(row, [0, 3]), end) for row in rows)):
+        if not begins or (len(rows) and not any(_alike(np.delete(row, [0, 3]), came) for row in rows)):
             yield f"{start.name}: is not the way that the history tells"
         shown(start.attrs["ending"])
         if start.attrs["ending"] == CONVERGED:
-            ends.append(np.delete(end, 1))
+            ends.append(np.delete(came, 1))
     check_dataset(optima["designs"], (len(optima["objective"]), len(names)))
     check_dataset(optima["starts"], (len(optima["objective"]),))
     best = np.column_stack([optima["objective"], optima["designs"]])
