@@ -25,7 +25,7 @@ from ..study.holding import Holding, holding
 from ..system.numerals import real
 from .echo import echo
 from .holding_lines import holding_lines
-from .options import instants, parameters, separated, settings_by
+from .options import instants, length, parameters, separated, settings_by
 from .options import over as by_drive
 
 _BAR = 40
@@ -58,7 +58,7 @@ def _ratios(context: click.Context, option: click.Parameter, words: Sequence[str
     metavar="NUMBER,...",
     help="Turns of the motor for one of the drive; of several the best is taken. Default: 1.",
 )
-@click.option("--lead", type=float, metavar="LENGTH", help="Of a drive that slides by a screw or belt: its way in a turn [m].")
+@click.option("--lead", type=length, metavar="LENGTH", help="Of a drive that slides by a screw or belt: its way in a turn [m].")
 @click.option("--efficiency", type=float, default=1.0, show_default=True, metavar="SHARE", help="That of the gearbox.")
 @click.option("--inertia", type=float, default=0.0, metavar="NUMBER", help="What turns with the motor's shaft [kg m^2].")
 @settings_by()

@@ -181,12 +181,12 @@ class Mechanism:
         child: Body | Point,
         *,
         axis: tuple[Expression, Expression],
-        angle: Expression = 0.0,
+        angle: Expression | None = None,
     ) -> Joint:
         """Let a point of ``child`` slide along ``axis`` (in the parent's axes) through a point of ``parent``.
 
-        ``angle`` [rad] is the child's direction against the parent's. The parent carries the line, and is loaded where the point
-        is at the moment. The coordinate is the place on the line [m].
+        ``angle`` [rad] is the child's direction against the parent's, 0 if it is not given: a note says so where a link lies across
+        ``axis``. The parent carries the line, loaded where the point is at the moment. The coordinate is the place on it [m].
         """
         return self._joint(name, "prismatic", parent, child, axis, angle)
 
@@ -387,7 +387,7 @@ class Mechanism:
         parent: Body | Point,
         child: Body | Point,
         axis: tuple[Expression, Expression] | None = None,
-        angle: Expression = 0.0,
+        angle: Expression | None = None,
     ) -> Joint:
         self.own.free("joint", name, self.joints)
         return self.joints.setdefault(name, in_plane(self.own, name, kind, parent, child, axis, angle))

@@ -21,7 +21,7 @@ from ..instants.statistics import Extreme
 from ..instants.told import error_of, told
 from ..judge.certificate import failure, summary
 from ..quantities import Output
-from ..strength import safeties
+from ..strength.parts import looked
 from .arrays import Arrays, finite
 from .instants import shown_instants
 from .live import Live
@@ -189,12 +189,18 @@ def _rows(solution: Solution) -> Iterator[Row]:
 
 
 def _strength(solution: Solution) -> Iterator[dict[str, Any]]:
-    """How far links and joints are used against each way to fail, and whether that governs; factors beyond all numbers are none."""
-    for found in safeties(solution):
+    """How far links and joints are used against each way to fail, and whether that governs; factors beyond all numbers are none.
+
+    What is ``open`` has its reason.
+    """
+    for found in looked(solution):
         for verdict in found.verdicts:
-            told_of = {"part": found.link, "against": verdict.against, "where": verdict.where}
+            told_of = {"part": found.link, "against": verdict.against, "where": verdict.where, "open": False}
             used = 1.0 / verdict.factor if verdict.factor else None
             yield told_of | {"factor": finite(verdict.factor), "used": used, "governs": verdict is found.governs}
+        for why in found.is_open:
+            told_of = {"part": found.link, "against": "", "where": why, "open": True}
+            yield told_of | {"factor": None, "used": None, "governs": False}
 
 
 def _parameters(description: Description) -> Iterator[dict[str, Any]]:

@@ -22,7 +22,7 @@ import numpy as np
 
 from ..arguments import public
 from ..declare.density import Array
-from ..declare.description import Description, motions_of, shape_of
+from ..declare.description import Description, check_places, motions_of, shape_of
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
 from ..declare.wanted_slopes import SENSITIVITY
@@ -53,6 +53,8 @@ _CHUNK_BYTES = 1 << 20
 _BLOCK_BYTES = 1 << 23
 _AXES = {"t": ("s", "time"), "xi": ("1", "place along a link, ratio xi/l")}
 _OVER = "over"
+_BESIDE = ("units", "error_estimate", "DIMENSION_LIST")
+"""Attributes that a dataset may have beside those of what it holds."""
 _PROVENANCE = ("backend", "precision", "compiler", "flags", "rung")
 _GRID_TOLERANCE = 1e-12
 _OVER_TOLERANCE = {"double": 1e-12, "single": 1e-6}
@@ -154,6 +156,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
         told = map(Output.of, parsed(file.attrs["outputs"], [str]))
         found = [f"{_place(output)}: missing" for output in told if output not in outputs]
         if not found:
+            found += _check_axes(file, solution)
             found += _check_drive_axis(solution)
             found += [finding for output in outputs for finding in _check_dataset(file, solution, output)]
             found += check_slopes(file, solution)
@@ -187,9 +190,23 @@ def _check_dataset(file: h5py.File, solution: Solution, output: Output) -> Itera
     for key, value in quantity.attributes.items():
         if dataset.attrs.get(key) != value:
             yield f"{place}: {key} is not the schema's"
+    if strange := dataset.attrs.keys() - {*quantity.attributes, *_BESIDE}:
+        yield f"{place}: {min(strange)} is not the schema's"
     for axis, scale in enumerate(quantity.axes):
         if file[scale] not in dataset.dims[axis].values():
             yield f"{place}: axis {axis} has no scale /{scale}"
+
+
+def _check_axes(file: h5py.File, solution: Solution) -> Iterator[str]:
+    """Times and ratios: finite, and said to be these; and the parameters, which are told twice."""
+    for axis, values in (("t", solution.t), ("xi", solution.xi)):
+        if not np.isfinite(values).all():
+            yield f"{axis}: holds values that are not finite"
+        if (file[axis].attrs.get("units"), file[axis].attrs.get("long_name")) != _AXES[axis]:
+            yield f"{axis}: its unit or meaning is not the schema's"
+    told = {name: parameter["value"] for name, parameter in solution.description["parameters"].items()}
+    if parsed(file.attrs["parameters"], {str: float}, "parameters") != told:
+        yield "parameters: differ from those of the mechanism"
 
 
 def _check_drive_axis(solution: Solution) -> Iterator[str]:
@@ -326,6 +343,7 @@ def _create(file: h5py.File, scales: Scales, solution: Solution, output: Output,
 def _read(file: h5py.File) -> Solution:
     check_links(file)
     description = parsed(file.attrs["mechanism"], shape_of, "mechanism")
+    check_places(description)
     t, xi = (_numbers(file[axis]) for axis in _AXES)
     if t.ndim != 1 or xi.ndim != 1 or not t.size or not xi.size:
         raise ValueError(f"t and xi have the shapes {t.shape} and {xi.shape}")
