@@ -26,6 +26,7 @@ from .study.sensitivities import Sensitivities, sensitivities
 from .study.tolerances import tolerances
 from .study.tool import tool_deflection
 from .sweep import Sweep, best, read_designs, sweep
+from .system.symbolic import symbolic
 from .version import __version__
 
 __all__ = [
@@ -67,6 +68,7 @@ __all__ = [
     "shaking",
     "strength",
     "sweep",
+    "symbolic",
     "table",
     "tolerances",
     "tool_deflection",
