@@ -17,10 +17,10 @@ from .equations.lagrange import LagrangeSystem
 from .errors import LagrangeCasadiError
 from .evaluate import evaluate
 from .export import export
+from .instants.holding import holding
 from .instants.solution import Peak, Solution
 from .optimise import Front, Optimum, optimise
 from .store.runs import check, load, save
-from .study.holding import holding
 from .study.peaks import refine
 from .study.sensitivities import Sensitivities, sensitivities
 from .study.tolerances import tolerances
