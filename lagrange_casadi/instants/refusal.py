@@ -140,7 +140,7 @@ def resting(graph: SceneGraph, out: Array) -> npt.NDArray[np.bool_]:
 
 def unfinished(graph: SceneGraph, evaluated: Evaluated) -> npt.NDArray[np.bool_]:
     """At which instants (t,) there is no result; at rest there is one, beside what friction reaches."""
-    return (evaluated.status != OK) & ~((evaluated.status == NOT_FINITE) & resting(graph, evaluated.out))
+    return np.asarray((evaluated.status != OK) & ~((evaluated.status == NOT_FINITE) & resting(graph, evaluated.out)))
 
 
 def broken(rule: Rule, out: Array, extent: float) -> npt.NDArray[np.bool_]:
