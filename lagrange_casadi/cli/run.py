@@ -26,7 +26,6 @@ from ..instants.rung import Backend
 from ..instants.solution import Solution
 from ..judge.certificate import failure, summary
 from ..store.runs import check_target, save
-from ..study.holding import holding
 from ..study.peaks import forces, refine, resultants
 from ..system.publish import check_writable
 from ..system.room import MOST_THREADS
@@ -34,7 +33,6 @@ from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
 from .echo import echo
 from .elastic_lines import elastic_lines
-from .holding_lines import holding_lines
 from .options import EVEN_POINTS, even_points, instants, parameters, rung, settings_by, wanted
 from .options import over as by_drive
 from .replaced import figures_in, replaced_lines
@@ -156,7 +154,6 @@ def _report(
     yield f"{solution.case}: {solution.t.size} instants, {solution.xi.size} ratios xi/l, backend {used}; {what}:"
     names = [*forces(solution), *resultants(solution)]
     yield from report_lines(solution, refine(scene, solution, names) if refined else ())
-    yield from holding_lines(solution, holding(scene, solution))
     yield from slope_lines(solution, scene, backend)
     yield from strength_lines(solution, scene.mechanism, want, scene if refined else None)
     yield from elastic_lines(solution, scene.mechanism, want)

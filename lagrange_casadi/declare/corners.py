@@ -6,7 +6,6 @@ They are looked for where a mechanism goes, with the parameters that it has ther
 from __future__ import annotations
 
 import functools
-import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -14,6 +13,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from ..system.symbolic import Graphs, symbolic
 from .density import Array
 from .kinks import Smooth
 from .mechanism import Mechanism
@@ -22,7 +22,6 @@ from .parts import Constraint
 from .scene import Scene
 
 _LOOKED_AT = 4001
-_ONE_AT_A_TIME = threading.Lock()
 
 
 def smooth_constraint(mechanism: Mechanism, constraint: Constraint) -> Smooth | None:
@@ -32,7 +31,7 @@ def smooth_constraint(mechanism: Mechanism, constraint: Constraint) -> Smooth | 
 
 
 @dataclass(frozen=True, eq=False)
-class Corners:
+class Corners(Graphs):
     """What of a scene may have a kink, by its joint or its name: ``laws`` of motion, and ``constraints``."""
 
     scene: Scene
@@ -40,14 +39,10 @@ class Corners:
     constraints: Mapping[str, Smooth]
 
     @classmethod
-    def of(cls, scene: Scene) -> Corners:
-        """Return the corners of a scene. Threads wait for each other, for CasADi's expressions are no thread's own."""
-        with _ONE_AT_A_TIME:
-            return cls._of(scene)
-
-    @classmethod
+    @symbolic
     @functools.lru_cache(maxsize=64)
-    def _of(cls, scene: Scene) -> Corners:
+    def of(cls, scene: Scene) -> Corners:
+        """Return the corners of a scene."""
         m = scene.mechanism
         found = {name: smooth_constraint(m, constraint) for name, constraint in m.constraints.items()}
         laws = smooth_laws(scene.laws, m.symbols)

@@ -12,6 +12,7 @@ from ..beams.beam import Beam
 from ..errors import DeclarationError, check_kind
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import times
+from ..system.symbolic import symbolic
 from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
@@ -30,6 +31,7 @@ Or the directions of the child's x and y axes, in the parent's axes.
 
 
 @public
+@symbolic
 @dataclass(eq=False)
 class SpatialMechanism(Mechanism):
     """A mechanism under declaration whose links lie in space. What is common with :class:`.Mechanism` reads the same.

@@ -17,6 +17,7 @@ from ..declare.scene import STRENGTH, Scene, Wanted, strength_of
 from ..errors import AssemblyError, DeclarationError, MobilityError, PostureError
 from ..quantities import Output
 from ..system import cache
+from ..system.symbolic import symbolic
 from .bars import bars_of, unaimed
 from .checks import Check, Column
 from .deflections import deflections
@@ -36,6 +37,7 @@ from .strength import stresses, utilisation
 
 
 @public
+@symbolic
 def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool = False, elastic: bool = False) -> SceneGraph:
     """Derive the graphs of a scene, for its own wanted outputs or for others: CasADi functions of an instant, and their names.
 
@@ -59,6 +61,7 @@ def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool =
     raise type(found)(str(found))
 
 
+@symbolic
 def assembled(
     scene: Scene,
     values: Mapping[str, float],

@@ -16,6 +16,7 @@ from ..equations.scene_graph import SceneGraph
 from ..equations.spreads import spreads_of
 from ..instants.solution import Solution
 from ..quantities import Output
+from ..system.symbolic import symbolic
 from ..tables import PLANE, Table, table_of
 from .naming import constants, members, prefix
 
@@ -170,6 +171,7 @@ def contract(
     )
 
 
+@symbolic
 def _timed(graph: SceneGraph) -> bool:
     """Whether anything but the motion depends on the time."""
     functions = [(graph.instant, 0), *([(graph.newton.step, 1)] if graph.newton else [])]

@@ -16,6 +16,7 @@ from ..draw.solid import COLOURS
 from ..draw.views import upright
 from ..errors import DeclarationError
 from ..instants.derivatives import derivatives
+from ..instants.held import held_outputs
 from ..instants.solution import Solution
 from ..instants.statistics import Extreme
 from ..instants.told import error_of, told
@@ -169,6 +170,9 @@ def _series(solution: Solution, chosen: npt.NDArray[np.intp], arrays: Arrays) ->
         if slope.values.ndim == 1 and slope.output.group in _CHARTED:
             words = f"{what(slope.output, solution.table) or slope.output.part}, by {slope.name.split(':')[1]}"
             yield Series(slope.name, "sensitivity", slope.output.part, words, slope.unit, arrays.add(slope.values[chosen]))
+    for output, values in held_outputs(solution.held).items():
+        words, unit = what(output, solution.table), solution.unit(output)
+        yield Series(str(output), "holding", output.part, words, unit, arrays.add(values[chosen]))
     for output, values in _residuals(solution):
         yield Series(str(output), output.group, "", what(output, solution.table), "1", arrays.add(values[chosen]))
 

@@ -28,6 +28,7 @@ from ..declare.times import DriveAxis
 from ..declare.wanted_slopes import SENSITIVITY
 from ..errors import PathError, StoreError, one_line
 from ..instants.elasticity import Elasticity
+from ..instants.held import ENDS, Holding, held_outputs
 from ..instants.ordering import in_order
 from ..instants.solution import Provenance, Solution
 from ..judge.certificate import LOOSE, blur, certify
@@ -42,8 +43,8 @@ from .untrusted import check_chunks, check_dataset, check_links, parsed, shown
 
 SCHEMA_VERSION = 7
 """Files of version 1 had no seal. Those of version 2 are not over a drive's coordinate, those of 3 of planar mechanisms alone,
-those of 4 have no loads along links, those of 5 no rotary inertia of slices, those of 6 no friction, stresses or derivatives by
-parameters, and nothing that elasticity tells; all from 2 on are still written."""
+those of 4 have no loads along links, those of 5 no rotary inertia of slices, those of 6 no friction, stresses, derivatives by
+parameters or ranges of holding efforts, and nothing that elasticity tells; all from 2 on are still written."""
 
 _WITHOUT_OVER, _PLANAR, _AT_POINTS, _LOADED, _THICK = 2, 3, 4, 5, 6
 _READ = range(_WITHOUT_OVER, SCHEMA_VERSION + 1)
@@ -152,7 +153,7 @@ def check(path: str | os.PathLike[str]) -> list[str]:
     with opened_file(path, SCHEMA, _READ, _KIND) as file:
         solution = _read(file)
         certificate = (Output("certificate", "", name) for name in solution.certificate)
-        outputs = dict.fromkeys([*solution.quantities(), *solution.outputs, *certificate])
+        outputs = dict.fromkeys([*solution.quantities(), *solution.outputs, *held_outputs(solution.held), *certificate])
         told = map(Output.of, parsed(file.attrs["outputs"], [str]))
         found = [f"{_place(output)}: missing" for output in told if output not in outputs]
         if not found:
@@ -257,6 +258,8 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     for output, values in solution.outputs.items():
         breathe()
         _add(file, scales, solution, output, values)
+    for output, values in held_outputs(solution.held).items():
+        _add(file, scales, solution, output, values)
     for name, values in solution.certificate.items():
         _add(file, scales, solution, Output("certificate", "", name), values)
     for link in solution.links_with_sections:
@@ -279,6 +282,8 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
     if solution.elasticity != Elasticity():
         file.attrs["by_elasticity"] = json.dumps([str(output) for output in solution.elasticity.told])
         file.attrs["open_because"] = json.dumps(solution.elasticity.reasons)
+    if solution.held:
+        file.attrs["holding"] = json.dumps({name: held.untold for name, held in solution.held.items()})
     file.attrs["versions"] = json.dumps(dict(provenance.versions))
     for key in _PROVENANCE:
         file.attrs[key] = getattr(provenance, key)
@@ -287,7 +292,7 @@ def _write(file: h5py.File, solution: Solution, figures: str, breathe: Callable[
 
 def _version(solution: Solution) -> int:
     """The first version of the schema that has all of a solution."""
-    latest = solution.sensitivities.by or solution.elasticity != Elasticity()
+    latest = solution.sensitivities.by or solution.elasticity != Elasticity() or solution.held
     if latest or any(output.group in _LATEST for output in solution.outputs):
         return SCHEMA_VERSION
     along = {output.member for output in solution.outputs if output.group == "spread"}
@@ -355,7 +360,7 @@ def _read(file: h5py.File) -> Solution:
             output = Output.of(place.replace("/", ":"))
             if "error_estimate" in item.attrs:
                 errors[str(output)] = float(item.attrs["error_estimate"])
-            if output.quantity.axes == ("t",) and output.group != "certificate":
+            if output.quantity.axes == ("t",) and output.group not in ("certificate", "holding"):
                 outputs[output] = _numbers(item, t.shape)
 
     file.visititems(visit)
@@ -374,7 +379,18 @@ def _read(file: h5py.File) -> Solution:
         whole = set(law.coefficients) == set(solution.table.law) and all(spread.sound for spread in law.spreads)
         if not whole or len(law.density.breaks) != len(law.density.cells) + 1:
             raise ValueError(f"the law or the density of '{link}' is not whole")
-    return replace(solution, sensitivities=slopes_of(file, solution, _numbers))
+    return replace(solution, sensitivities=slopes_of(file, solution, _numbers), held=_held(file, solution))
+
+
+def _held(file: h5py.File, solution: Solution) -> dict[str, Holding]:
+    """The ranges of the efforts that joints at rest leave open. Raises ``ValueError`` for those of what is no drive."""
+    found = {}
+    for name, untold in parsed(file.attrs.get("holding", "{}"), {str: str}, "holding").items():
+        if Output("effort", name) not in solution.outputs:
+            raise ValueError(f"there is a range of efforts of '{name}', which is no drive")
+        least, largest = (_numbers(file[_place(Output("holding", name, end))], solution.t.shape) for end in ENDS)
+        found[name] = Holding(least, largest, solution.unit(Output("effort", name)), untold)
+    return found
 
 
 def _drive_axis(dataset: Any, shape: tuple[int, ...], description: Description) -> DriveAxis:
