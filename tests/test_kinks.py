@@ -79,7 +79,7 @@ def test_broken(name):
     graph, what = BROKEN[name]
     kinked = found(graph)
     assert kinked.what == what
-    assert 0.0 < kinked.jump
+    assert kinked.jump > 0.0
 
 
 def test_it_says_by_how_much_and_where():

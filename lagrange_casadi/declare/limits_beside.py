@@ -81,9 +81,9 @@ def vanishes(rows: Side, sizes: Array, least: Array) -> tuple[Flags, Array]:
         share[~(there & np.isfinite(off))] = 0.0
         # The largest of all that are nearer.
         share = np.maximum.accumulate(share[:, ::-1], axis=1)[:, ::-1]
-        share[:, :-1][~(clear[:, :-1] & clear[:, 1:])] = np.inf
-        found |= (share[:, :-1] <= 1.0).any(axis=1) | ~clear.any(axis=1)
-        here = share[:, :-1].argmin(axis=1)[:, None]
+        share[~clear] = np.inf
+        found |= (share <= 1.0).any(axis=1) | ~clear.any(axis=1)
+        here = share.argmin(axis=1)[:, None]
         nearest, left = (np.take_along_axis(of, here, 1)[:, 0] for of in (share, gaps / sizes))
         lowest, rest = np.minimum(lowest, nearest), np.where(nearest < lowest, left, rest)
     return found, rest
