@@ -11,6 +11,8 @@ from lagrange_casadi.elements.cam import disc_cam
 from lagrange_casadi.elements.cylindrical_cam import cylindrical_cam
 from lagrange_casadi.errors import AssemblyError, DeclarationError
 from lagrange_casadi.instants.refusal import Status
+from lagrange_casadi.report.contents import contents
+from lagrange_casadi.report.live import Live
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("interpreted")]
 
@@ -150,3 +152,14 @@ def test_what_is_exported_says_that_corners_were_looked_for_with_the_defaults(tm
     export(motion(), tmp_path / "c", wanted=["effort"])
     for name in ("README.md", "slide.h"):
         assert "looked for with the defaults alone" in (tmp_path / "c" / name).read_text()
+
+
+def test_a_live_page_says_that_sliders_go_by_corners(monkeypatch):
+    monkeypatch.setattr("lagrange_casadi.report.live.check_zig", lambda what: None)
+    monkeypatch.setattr(Live, "entry", lambda *_: {})
+    m = Mechanism("plain")
+    m.prismatic("way", m.ground, m.point_mass("body", m.parameter("mass", 2.0)), axis=(1, 0))
+    plain = Scene(m, {"way": polynomial(0.0, 1.0)}, t=(0.0, 1.0, 11))
+    for made, many in ((constraint(), 1), (plain, 0)):
+        found = contents(evaluate(made), Live(made, made.timing(), None, "run"))["notes"]
+        assert sum("Corners" in note for note in found) == many

@@ -38,7 +38,8 @@ def _constant(value: float) -> _Pair:
 
 
 def _rule(code: int) -> Callable[..., _Pair]:
-    known, part = _KNOWN[code], ROUNDINGS.get(code, 0.0) / 2
+    known: Callable[..., Any] = _KNOWN[code]
+    part = ROUNDINGS.get(code, 0.0) / 2
 
     def rule(*given: Any) -> _Pair:
         if code == ca.OP_CALL:
@@ -52,8 +53,8 @@ def _rule(code: int) -> Callable[..., _Pair]:
             if not np.any(error):
                 continue
             # Less than a unit in the last place would change nothing.
-            move = np.where(error > 0.0, np.maximum(error, np.spacing(np.abs(value))), error)
-            beside = [np.abs(known(*values[:k], value + way * move, *values[k + 1 :]) - result) for way in (-1.0, 1.0)]
+            move: Any = np.where(error > 0.0, np.maximum(error, np.spacing(np.abs(value))), error)
+            beside = [np.abs(known(*values[:k], value + way * move, *values[k + 1 :]) - result) for way in (-1, 1)]
             # Beyond the end of where a function is defined there is nothing to hand on.
             off = off + np.fmax(*beside)
         return result, off
