@@ -77,7 +77,7 @@ class Smooth:
     operations that may make a kink where they pass zero, or a whole number if ``whole``; what is
     ``open`` there may be without bound, or have a slope that is, and may make a kink where it only
     touches zero too. ``turns(x, p, way)`` are the marks' derivatives along a way, ``slopes(x, p)`` the
-    value and its derivatives by the symbols.
+    value and its derivatives by the symbols. ``uses`` (fixed,) says on which fixed symbols it depends.
     """
 
     symbols: tuple[Any, ...]
@@ -86,6 +86,7 @@ class Smooth:
     slopes: Any
     whole: Flags
     open: Flags
+    uses: Flags
 
     @classmethod
     def of(cls, expression: Any, moving: Any, fixed: Any) -> Smooth | None:
@@ -114,6 +115,7 @@ class Smooth:
             ca.Function("slopes", [x, fixed], [ca.densify(slopes)], {"cse": True}),
             np.array(whole),
             np.array(open_),
+            np.array([ca.depends_on(expression, symbol) for symbol in ca.vertsplit(fixed)] if fixed.numel() else [], bool),
         )
 
     def kink(self, path: Array, values: Sequence[float]) -> Kink | None:
