@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from lagrange_casadi import Mechanism, Scene, SpatialMechanism, evaluate, export, optimise, prepare, sweep
+from lagrange_casadi.declare.kinks import Smooth
 from lagrange_casadi.declare.motion import expression, polynomial
 from lagrange_casadi.designs.engine import DesignEngine
 from lagrange_casadi.elements.cam import disc_cam
@@ -163,3 +164,18 @@ def test_a_live_page_says_that_sliders_go_by_corners(monkeypatch):
     for made, many in ((constraint(), 1), (plain, 0)):
         found = contents(evaluate(made), Live(made, made.timing(), None, "run"))["notes"]
         assert sum("Corners" in note for note in found) == many
+
+
+def test_kinks_of_a_motion_are_looked_for_once_for_what_designs_share(monkeypatch):
+    m = Mechanism("shared")
+    body, k = m.point_mass("body", m.parameter("mass", 2.0)), m.parameter("k", 0.0)
+    m.prismatic("way", m.ground, body, axis=(1, 0))
+    made = Scene(m, {"way": expression(lambda t: bend(t, k))}, t=(0.0, 1.0, 11))
+    seen, look = [], Smooth.broken
+    monkeypatch.setattr(Smooth, "broken", lambda self, paths, p: seen.append(len(paths)) or look(self, paths, p))
+    f = prepare(made, wanted=["effort"])
+    for mass in (1.0, 2.0, 3.0):
+        f(mass=mass)
+    found = f.designs([[mass, k] for mass in (1.0, 2.0, 3.0) for k in (0.0, 1.0)])
+    assert found.status.tolist() == [Status.OK, Status.CORNER] * 3
+    assert seen == [1, 2]
