@@ -70,7 +70,10 @@ class Corners(Graphs):
         """Of which designs ``p`` (d, parameters) a motion has a kink between times ``start`` and ``stop`` (d,)."""
         found = np.zeros(len(p), bool)
         for smooth in self.laws.values():
-            found |= smooth.broken(np.linspace(start, stop, _LOOKED_AT, axis=-1)[:, None], p)
+            # Most designs share what their motions depend on.
+            rows = np.column_stack([start, stop, np.where(smooth.uses, p, 0.0)])
+            each, number = np.unique(rows, axis=0, return_inverse=True)
+            found |= _broken_law(smooth, each.tobytes())[number.ravel()]
         return found
 
     def broken_constraints(self, seen: Callable[[str], Array], p: Array) -> npt.NDArray[np.bool_]:
@@ -79,3 +82,10 @@ class Corners(Graphs):
         for name, smooth in self.constraints.items():
             found |= smooth.broken(seen(name), p)
         return found
+
+
+@functools.lru_cache(maxsize=256)
+def _broken_law(smooth: Smooth, rows: bytes) -> npt.NDArray[np.bool_]:
+    """For each row of a start, a stop and parameters whether a law has a kink."""
+    start, stop, *p = np.frombuffer(rows).reshape(-1, 2 + smooth.uses.size).T
+    return smooth.broken(np.linspace(start, stop, _LOOKED_AT, axis=-1)[:, None], np.array(p).T.reshape(start.size, -1))

@@ -23,6 +23,9 @@ from .naming import constants, members, prefix
 REST = "rest:"
 """What the full name of a rest begins with."""
 
+CORNERS = "Corners of motions, constraints and lifts were looked for with the defaults alone."
+"""What whoever changes parameters must know."""
+
 _DIGITS = 3
 FAINT = 1e-9
 """Of a kind's largest value: what is smaller is written as zero, for its digits are rounding."""

@@ -100,7 +100,7 @@ def contents(solution: Solution, live: Live | None = None) -> dict[str, Any]:
         "strength": list(_strength(solution)),
         "parameters": list(_parameters(description)),
         "certificate": _certificate(solution),
-        "notes": list(solution.notes),
+        "notes": [*solution.notes, *(live.notes if live else ())],
         "undetermined": list(solution.undetermined),
         "provenance": asdict(solution.provenance) | {"versions": dict(solution.provenance.versions)},
     }
