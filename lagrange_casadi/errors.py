@@ -9,11 +9,16 @@ from __future__ import annotations
 import difflib
 import errno
 import re
+import sys
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from pickle import PicklingError
 
 _LONG = 300
 """Characters of names that a message takes at most."""
+
+_MOST = 2000
+"""Characters of a message at most, whatever it quotes."""
 
 _SHOWN = 120
 """Characters of a value that a message takes at most."""
@@ -48,6 +53,14 @@ def shown(value: object) -> str:
     return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
 
 
+def warn(words: str, category: type[Warning] = UserWarning) -> None:
+    """Warn of something: at the line of the user's that led to it, however many functions of this package are between."""
+    frame, level = sys._getframe(1), 2
+    while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(words, category, stacklevel=level - 1)
+
+
 def lacking(error: OSError) -> bool:
     """Whether the system has no more of something for now: descriptors, processes, memory. Nothing is wrong with what was asked."""
     return error.errno in (errno.EMFILE, errno.ENFILE, errno.EAGAIN, errno.ENOMEM)
@@ -62,7 +75,8 @@ class LagrangeCasadiError(Exception):
     exit_status = 2
 
     def __str__(self) -> str:
-        return escaped(" ".join(super().__str__().split()))
+        text = escaped(" ".join(super().__str__().split()))
+        return text if len(text) <= _MOST else f"{text[: _MOST // 2]} ... {text[-_MOST // 2 :]}"
 
 
 class DeclarationError(LagrangeCasadiError):

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import functools
 import math
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from .arguments import public
+from .arguments import Outputs, public
 from .arithmetic.compensated import Precision
 from .declare.corners import Corners
 from .declare.density import Array
@@ -27,7 +26,7 @@ from .equations.checks import Check
 from .equations.derive import assembled, derive
 from .equations.described import described
 from .equations.scene_graph import SceneGraph
-from .errors import CertificateWarning, DeclarationError
+from .errors import CertificateWarning, DeclarationError, warn
 from .instants.backends import Evaluated
 from .instants.cost import seconds
 from .instants.derivatives import Derivatives
@@ -62,7 +61,7 @@ def evaluate(
     t: Times | None = None,
     over: Over | None = None,
     xi: EvenPoints | None = None,
-    wanted: Sequence[str] | None = None,
+    wanted: Outputs | None = None,
     backend: Backend = "auto",
     precision: Precision = "double",
     newton: int | None = None,
@@ -152,7 +151,7 @@ def evaluate(
     if certificate:
         solution = _certified(graph, found, solution, out, p, within, done)
         if solution.failed:
-            warnings.warn(f"{failure(solution)}; the solution is not certified", CertificateWarning, stacklevel=2)
+            warn(f"{failure(solution)}; the solution is not certified", CertificateWarning)
     return wanted_alone(solution, Wanted.of(scene.mechanism, names)) if gives else solution
 
 
@@ -203,7 +202,7 @@ def _announce(graph: SceneGraph, count: int, rung: Rung, threads: int) -> None:
     takes = seconds(graph, count, rung, interpreted=rung.backend == "vm") / shared
     if takes > _LONG:
         many, each = f"{count:,}".replace(",", " "), "" if rung.newton is None else f" of {rung.newton} Newton steps each"
-        warnings.warn(f"{many} instants{each} take about {in_words(takes)}", stacklevel=3)
+        warn(f"{many} instants{each} take about {in_words(takes)}")
 
 
 def checked_span(scene: Scene, timing: Timing, values: Mapping[str, float]) -> tuple[float, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from ..arguments import public
 from .description import Description, in_space
 
 _END = 1e-9
@@ -16,6 +17,7 @@ ENDS: tuple[End, ...] = ("pinned", "clamped", "free", "guided")
 """How an end of a beam is held: its place, its place and slope, not at all, its slope alone."""
 
 
+@public
 def effective_lengths(description: Description, link: str) -> tuple[float, float]:
     """The effective lengths of a link as a column over its own, where it bends along y and along z, by the joints at its ends.
 

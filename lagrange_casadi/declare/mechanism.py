@@ -15,7 +15,7 @@ import casadi as ca
 
 from ..arguments import Number, public
 from ..beams.beam import Beam
-from ..errors import DeclarationError
+from ..errors import DeclarationError, shown
 from .constraints import constraint, row
 from .density import Density
 from .expressions import bound, check_line, check_name
@@ -376,9 +376,17 @@ class Mechanism:
     def number(self, expression: Expression, values: Mapping[str, float]) -> float:
         """The value of an expression in the parameters."""
         if not isinstance(expression, ca.SX):
-            return float(expression)
+            try:
+                return float(expression)
+            except (TypeError, ValueError, OverflowError, RuntimeError):
+                raise DeclarationError(f"number: expected an expression in parameters, got {shown(expression)}") from None
+        if missing := [name for name in self.parameters if name not in values]:
+            raise DeclarationError(f"number: expected values of all parameters, and {', '.join(missing)} have none")
         numbers = [values[name] for name in self.parameters]
-        return float(ca.evalf(ca.substitute(expression, self.symbols, ca.vertcat(ca.SX(0, 1), *numbers))))
+        try:
+            return float(ca.evalf(ca.substitute(expression, self.symbols, ca.vertcat(ca.SX(0, 1), *numbers))))
+        except (RuntimeError, NotImplementedError):
+            raise DeclarationError(f"number: expected an expression in parameters alone, got {shown(expression)}") from None
 
     def _joint(
         self,

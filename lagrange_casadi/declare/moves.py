@@ -10,7 +10,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..arguments import public
+from ..arguments import Symbolic, public
 from ..errors import DeclarationError
 from ..system.numerals import readable
 from .expressions import check_name, coordinates, plain, scalar, sound, symbols_of
@@ -74,7 +74,7 @@ def move(
 
 
 @public
-def dwell(time: Expression | None = None, *, name: str = "") -> Dwell:
+def dwell(time: Symbolic | None = None, *, name: str = "") -> Dwell:
     """A rest of a ``time`` [s] for :func:`moves`; one of them may go without, and lasts as long as the period asks for."""
     return Dwell(_named(name), time)
 

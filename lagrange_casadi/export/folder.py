@@ -10,7 +10,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arguments import public
+from ..arguments import Outputs, public
 from ..arithmetic.compensated import Precision
 from ..declare.expressions import check_line
 from ..declare.scene import Scene
@@ -50,7 +50,7 @@ def export(
     *,
     name: str | None = None,
     parameters: Mapping[str, float] | None = None,
-    wanted: Sequence[str] | None = None,
+    wanted: Outputs | None = None,
     precision: Precision = "double",
     newton: int | None = None,
     table: float | None = None,

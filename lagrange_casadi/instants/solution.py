@@ -19,7 +19,7 @@ from ..declare.description import Description, coordinates_of, density_of
 from ..declare.limits import no_sections
 from ..declare.notes import notes
 from ..declare.times import DriveAxis
-from ..errors import DeclarationError, UnknownNameError
+from ..errors import DeclarationError, UnknownNameError, shown
 from ..quantities import Output
 from ..tables import Table
 from .derivatives import Derivatives
@@ -235,6 +235,11 @@ class Solution:
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Solution:
         """The same at some of the instants."""
+        try:
+            self.t[instants]
+        except (IndexError, TypeError, ValueError):
+            told = f"expected a slice, or {self.t.size} times True or False"
+            raise DeclarationError(f"during: {told}, got {shown(instants)}") from None
         outputs = {output: values[instants] for output, values in self.outputs.items()}
         certificate = {name: values[instants] for name, values in self.certificate.items()}
         over = self.over and replace(self.over, values=self.over.values[instants])

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import DeclarationError, NoDesignError, UnknownNameError
+from .. import arguments
+from ..errors import DeclarationError, NoDesignError, UnknownNameError, shown
 from ..instants.refusal import Status
 from .finder import Finder
 from .judged import Judged
@@ -21,16 +22,17 @@ _APART = 0.15
 """Of the bounds: how far starts are from each other."""
 
 _MOST = 1 << 24
-"""Designs that are screened at most."""
+"""Designs that are screened, or started from, at most."""
 
 
 def checked(starts: Any, screen: Any) -> None:
     """Raise :class:`DeclarationError` for counts that are none."""
     told = isinstance(starts, (list, tuple)) and all(isinstance(start, Mapping) for start in starts)
-    if not told and (type(starts) is not int or starts < 1):
-        raise DeclarationError(f"starts: expected a whole number above 0, or values of parameters, got {starts!r}")
-    if type(screen) is not int or not 1 <= screen <= _MOST:
-        raise DeclarationError(f"screen: expected a whole number from 1 to {_MOST}, got {screen!r}")
+    if not told and not isinstance(starts, int):
+        raise DeclarationError(f"starts: expected a whole number above 0, or values of parameters, got {shown(starts)}")
+    if not told:
+        arguments.count("starts", starts, 1, _MOST)
+    arguments.count("screen", screen, 1, _MOST)
 
 
 def named(finder: Finder, starts: Sequence[Mapping[str, float]]) -> list[Judged]:

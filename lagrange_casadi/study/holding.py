@@ -24,6 +24,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.scene import Scene
 from ..equations.checks import Check
@@ -62,6 +63,7 @@ class Holding:
         return np.where(np.abs(self.least) > np.abs(self.largest), self.least, self.largest)
 
 
+@public
 def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
     """The range of each drive's effort, by joint, at the instants of a solution of the scene that has efforts.
 

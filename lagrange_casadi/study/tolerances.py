@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import public
+from ..arguments import Outputs, public
 from ..declare.density import Array
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Scene
@@ -105,7 +105,7 @@ def tolerances(
     within: Mapping[str, float | str],
     *,
     parameters: Mapping[str, float] | None = None,
-    wanted: Sequence[str] | None = None,
+    wanted: Outputs | None = None,
     t: Times | None = None,
     over: Over | None = None,
     samples: int = SAMPLES,

@@ -6,11 +6,11 @@ import os
 import shutil
 import tempfile
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..arguments import public
+from ..arguments import Outputs, public
 from ..arithmetic.compensated import Precision
 from ..case import Case
 from ..declare.even_points import EvenPoints
@@ -37,7 +37,7 @@ def sweep(
     t: Times | None = None,
     over: Over | None = None,
     xi: EvenPoints | None = None,
-    wanted: Sequence[str] | None = None,
+    wanted: Outputs | None = None,
     keep: Keep = "peaks",
     backend: Backend = "auto",
     precision: Precision = "double",
