@@ -22,6 +22,7 @@ import numpy as np
 
 from .errors import DeclarationError, NumberError, shown
 from .system.numerals import real
+from .system.room import MOST_THREADS
 
 UNITS: dict[str, dict[str, float]] = {
     "rad": {"rad": 1.0, "deg": math.radians(1.0), "turn": math.tau},
@@ -58,7 +59,7 @@ class Within(NamedTuple):
         """The range, to be said after what is in it."""
         if self.high < math.inf:
             return f" from {self.low:.17g} to {self.high:.17g}"
-        return f" above {self.low:g}" if self.above else f" of at least {self.low:g}" if self.low > -math.inf else ""
+        return f" above {self.low:g}" if self.above and self.low else f" of at least {self.low:g}" if self.low > -math.inf else ""
 
 
 Finite: TypeAlias = Annotated[float, Within()]
@@ -69,6 +70,8 @@ NotNegative: TypeAlias = Annotated[float, Within(0.0)]
 Share: TypeAlias = Annotated[float, Within(0.0, 1.0)]
 Count: TypeAlias = Annotated[int, Within(1)]
 Index: TypeAlias = Annotated[int, Within(0)]
+
+ThreadCount: TypeAlias = Annotated[int, Within(1, MOST_THREADS)]
 
 Numeric: TypeAlias = Annotated[Any, "numeric"]
 """A number, or an array of numbers of any shape."""
@@ -306,7 +309,8 @@ def _ranged(of: type, span: Within) -> _Kind:
         found = simple.read(value)
         return found if found is not _NONE and span.admits(found) else _NONE
 
-    return _Kind("a finite number" if of is float and span == Within() else f"{simple.words}{span.words}", read)
+    sign = "positive " if span == Within(0.0, above=True) else "finite " if span == Within() else ""
+    return _Kind(f"a {sign}{simple.words.removeprefix('a ')}{'' if sign else span.words}", read)
 
 
 def _row(of: Any) -> _Kind | None:
@@ -339,14 +343,28 @@ def _array(value: Any) -> Any:
     return _NONE
 
 
+def texts(value: Any) -> list[str] | None:
+    """Texts of a list, an array or what else is walked over; None of anything else, as a text."""
+    if isinstance(value, Iterable) and not isinstance(value, str | Mapping):
+        with suppress(Exception):  # of a class that is not ours, when it is walked over
+            found = value.tolist() if isinstance(value, np.ndarray) else list(value)
+            return found if all(isinstance(one, str) for one in found) else None
+    return None
+
+
+def _graph(value: Any) -> Any:
+    if isinstance(value, ca.SX | ca.DM):
+        return ca.SX(value)
+    return _NONE if (found := _double(value)) is None else ca.SX(found)
+
+
 def _symbolic(value: Any) -> Any:
-    """A scalar expression, a finite number, or a text of one with its unit, as it is."""
+    """A scalar expression, a number, or a text of one with its unit, as it is; its size is looked at where it is used."""
     if isinstance(value, ca.SX):
         return value if value.is_scalar() else _NONE
     if isinstance(value, str):
         return value if typed(value)[1] else _NONE
-    found = _double(value)
-    return value if found is not None and math.isfinite(found) else _NONE
+    return value if _double(value) is not None else _NONE
 
 
 def _is_path(value: Any) -> bool:
@@ -384,6 +402,6 @@ _NAMED = {
     "numeric": _Kind("a number or an array of numbers", _array),
     "symbolic": _Kind("a number, or an expression in parameters", _symbolic),
     # What is none is told by who knows which outputs there are.
-    "outputs": _Kind("a list of texts", lambda value: value.tolist() if isinstance(value, np.ndarray) and value.ndim else value),
-    "graph": _if("a casadi.SX expression", lambda value: isinstance(value, ca.SX | ca.DM) or _double(value) is not None),
+    "outputs": _Kind("a list of texts", lambda value: value if (found := texts(value)) is None else found),
+    "graph": _Kind("a casadi.SX expression", _graph),
 }

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .arguments import Outputs, public
+from .arguments import Outputs, ThreadCount, public
 from .arithmetic.compensated import Precision
 from .declare.corners import Corners
 from .declare.density import Array
@@ -36,14 +36,14 @@ from .instants.from_table import columns
 from .instants.ordering import in_order
 from .instants.phases import phases
 from .instants.refusal import refuse
-from .instants.rung import Backend, Rung
+from .instants.rung import Backend, Rung, Steps
 from .instants.solution import Solution
 from .judge.accuracy import estimate, explained
 from .judge.certificate import certify, failure, tolerance
 from .judge.written import written
 from .quantities import Output
 from .sensitivity.series import series_slopes
-from .system.room import MOST_THREADS, cores, in_words, require
+from .system.room import cores, in_words, require
 
 _BESIDE, _CHECKED = 8, 2
 """Rows beside the outputs, and how many times both are in memory while they are checked."""
@@ -64,10 +64,10 @@ def evaluate(
     wanted: Outputs | None = None,
     backend: Backend = "auto",
     precision: Precision = "double",
-    newton: int | None = None,
+    newton: Steps | None = None,
     table: float | None = None,
     flags: str = "",
-    threads: int | None = None,
+    threads: ThreadCount | None = None,
     certificate: bool = True,
     elastic: Elastic | None = None,
 ) -> Solution:
@@ -106,8 +106,6 @@ def evaluate(
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"evaluate: expected a Scene, got {scene!r}")
-    if threads is not None and (type(threads) is not int or not 1 <= threads <= MOST_THREADS):
-        raise DeclarationError(f"threads: expected a whole number from 1 to {MOST_THREADS}, got {threads!r}")
     rung = Rung(backend, precision, newton, table, flags)
     values = scene.mechanism.values(parameters)
     timing = scene.timing(t, over)

@@ -60,13 +60,13 @@ class Motor:
     def lasting(self, speed: Numeric) -> Array:
         """The torque that it bears continuously at a speed [N m], zero where there is none."""
         fall = (self.stall_torque - self.rated_torque) / self.rated_speed
-        return np.maximum(self.stall_torque - fall * np.abs(speed), 0.0)
+        return np.asarray(np.maximum(self.stall_torque - fall * np.abs(speed), 0.0))
 
     def at_most(self, speed: Numeric) -> Array:
         """The torque that it gives for a short time at a speed [N m], at speeds that it reaches."""
         if self.knee_speed is None or self.end_torque is None or self.knee_speed >= self.max_speed:
             return np.full(np.shape(speed), self.peak_torque)
-        return np.interp(np.abs(speed), [self.knee_speed, self.max_speed], [self.peak_torque, self.end_torque])
+        return np.asarray(np.interp(np.abs(speed), [self.knee_speed, self.max_speed], [self.peak_torque, self.end_torque]))
 
     @property
     def rated_power(self) -> float:

@@ -15,10 +15,10 @@ import casadi as ca
 
 from ..arguments import Number, public
 from ..beams.beam import Beam
-from ..errors import DeclarationError, shown
+from ..errors import DeclarationError
 from .constraints import constraint, row
 from .density import Density
-from .expressions import bound, check_line, check_name
+from .expressions import bound, check_line, check_name, value_of
 from .fitted import Fitted
 from .friction import friction
 from .joints import Axis, Joint, JointKind
@@ -375,18 +375,7 @@ class Mechanism:
 
     def number(self, expression: Expression, values: Mapping[str, float]) -> float:
         """The value of an expression in the parameters."""
-        if not isinstance(expression, ca.SX):
-            try:
-                return float(expression)
-            except (TypeError, ValueError, OverflowError, RuntimeError):
-                raise DeclarationError(f"number: expected an expression in parameters, got {shown(expression)}") from None
-        if missing := [name for name in self.parameters if name not in values]:
-            raise DeclarationError(f"number: expected values of all parameters, and {', '.join(missing)} have none")
-        numbers = [values[name] for name in self.parameters]
-        try:
-            return float(ca.evalf(ca.substitute(expression, self.symbols, ca.vertcat(ca.SX(0, 1), *numbers))))
-        except (RuntimeError, NotImplementedError):
-            raise DeclarationError(f"number: expected an expression in parameters alone, got {shown(expression)}") from None
+        return value_of(expression, {name: one.symbol for name, one in self.parameters.items()}, values)
 
     def _joint(
         self,

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import Count, Numeric, Outputs, public
+from ..arguments import Numeric, Outputs, ThreadCount, public
 from ..arithmetic.compensated import Precision
 from ..declare.density import Array
 from ..declare.scene import Scene, without_fitted, without_life
@@ -19,7 +19,7 @@ from ..declare.times import Over, Times
 from ..errors import AssemblyError, DeclarationError, UnknownNameError, shown
 from ..evaluate import evaluate
 from ..instants.refusal import Status
-from ..instants.rung import Backend, Rung
+from ..instants.rung import Backend, Rung, Steps
 from ..instants.solution import Solution
 from .engine import DesignEngine, Outcome
 from .gradients import MeanSlopes
@@ -235,7 +235,7 @@ class Prepared:
         return Curvature(self.quantities, self.parameters, self._engine.curvature(p, value, t, xi, own))
 
     @public
-    def designs(self, p: Numeric, *, threads: Count | None = None, histories: bool = False) -> Outcome:
+    def designs(self, p: Numeric, *, threads: ThreadCount | None = None, histories: bool = False) -> Outcome:
         """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`; ``threads`` share them.
 
         Values are not checked against the parameters' ranges. A design without a result has its status, and NaN.
@@ -292,7 +292,7 @@ def prepare(
     wanted: Outputs | None = None,
     backend: Backend = "auto",
     precision: Precision = "double",
-    newton: int | None = None,
+    newton: Steps | None = None,
     flags: str = "",
 ) -> Prepared:
     """Make a scene ready for many evaluations one after another, as an optimiser asks for them.

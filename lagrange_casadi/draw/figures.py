@@ -18,7 +18,7 @@ import numpy as np
 from ..arguments import Finite, public
 from ..declare.density import Array
 from ..declare.description import parts_of
-from ..errors import DeclarationError, UnknownNameError
+from ..errors import DeclarationError, PathError, UnknownNameError, shown
 from ..instants.solution import Peak, Solution
 from ..quantities import Output
 from ..strength.parts import bending_of, fitted_in, strong_of
@@ -326,6 +326,8 @@ def draw(
         if not _FILE.fullmatch(spec.name) or sum(other.name == spec.name for other in chosen) > 1:
             raise DeclarationError(f"figure '{spec.name}': expected letters, digits, underscores and hyphens, each name once")
         _check_parts(solution, spec)
+    if not os.path.isdir(folder):
+        raise PathError(f"draw: expected an existing folder, got {shown(folder)}")
     for spec in chosen:
         if not _has(solution, spec):
             yield spec, None

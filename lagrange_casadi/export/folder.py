@@ -15,7 +15,7 @@ from ..arithmetic.compensated import Precision
 from ..declare.expressions import check_line
 from ..declare.scene import Scene
 from ..errors import DeclarationError, PathError
-from ..instants.rung import Rung
+from ..instants.rung import Rung, Steps
 from ..system.manifest import Manifest, digest
 from ..system.publish import check_writable, filling
 from ..version import __version__
@@ -52,7 +52,7 @@ def export(
     parameters: Mapping[str, float] | None = None,
     wanted: Outputs | None = None,
     precision: Precision = "double",
-    newton: int | None = None,
+    newton: Steps | None = None,
     table: float | None = None,
     largest: int | None = None,
     force: bool = False,

@@ -235,11 +235,8 @@ class Solution:
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Solution:
         """The same at some of the instants."""
-        try:
-            self.t[instants]
-        except (IndexError, TypeError, ValueError):
-            told = f"expected a slice, or {self.t.size} times True or False"
-            raise DeclarationError(f"during: {told}, got {shown(instants)}") from None
+        if not isinstance(instants, slice) and (np.shape(instants) != self.t.shape or np.asarray(instants).dtype != bool):
+            raise DeclarationError(f"during: expected a slice, or True or False for each instant, got {shown(instants)}")
         outputs = {output: values[instants] for output, values in self.outputs.items()}
         certificate = {name: values[instants] for name, values in self.certificate.items()}
         over = self.over and replace(self.over, values=self.over.values[instants])

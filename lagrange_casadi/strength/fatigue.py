@@ -142,10 +142,10 @@ def loaded(values: Array) -> Loaded:
     first, last = _farthest(vector)
     along = vector[:, last] - vector[:, first]
     size = float(np.linalg.norm(along))
-    if size == 0.0:
+    swings = rainflow(along @ vector / size, repeating=True) if size else []
+    if not swings:  # none that is more than rounding
         pairs, counts = [(first, first)], [1.0]
     else:
-        swings = rainflow(along @ vector / size, repeating=True)
         pairs, counts = [(s.first, s.last) for s in swings], [s.times for s in swings]
     a, b = (vector[:, list(side)] for side in zip(*pairs, strict=True))
     middle = (a + b) / 2

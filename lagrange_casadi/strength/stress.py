@@ -24,7 +24,7 @@ from numpy.polynomial import chebyshev
 from ..arguments import Share, public
 from ..beams.beam import Notch
 from ..declare.density import Array
-from ..errors import DeclarationError, UnknownNameError
+from ..errors import DeclarationError, UnknownNameError, shown
 from ..instants.section_law import Side
 from ..summits.polynomials import interpolation
 from .member import Cell, Member
@@ -82,7 +82,9 @@ class Stress:
     def grid(self, kind: str, xi: Array | None = None) -> Array:
         """A stress (t, xi) over ratios, by default those of the solution: the largest in size of all fibres, on the tip's side."""
         weights = _weights(kind)
-        u = self.member.xi if xi is None else np.asarray(xi, float)
+        u = self.member.xi if xi is None else np.atleast_1d(xi)
+        if u.ndim != 1 or not ((u >= 0.0) & (u <= 1.0)).all():
+            raise DeclarationError(f"stress: expected a row of ratios xi/l from 0 to 1, got {shown(xi)}")
         found = np.empty((self.member.t.size, u.size))
         for cell in self.member.cells:
             inside = np.flatnonzero((u >= cell.low) & ((u < cell.high) | (cell.high == 1.0)))

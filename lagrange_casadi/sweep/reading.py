@@ -392,5 +392,5 @@ def _opened(path: str | Path, seen: Seen | None) -> AbstractContextManager[h5py.
 
 def _refuse_unfinished(path: str | Path) -> None:
     """Raise :class:`PathError` where there are parts, and no file yet."""
-    if not Path(path).exists() and Folder.of(Path(path)).begun:
+    if not os.path.exists(path) and Folder.of(Path(path)).begun:
         raise PathError(f"{path}: its sweep is not finished: `lagrange-casadi info` tells how far it is")
