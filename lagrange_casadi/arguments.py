@@ -364,13 +364,19 @@ def _symbolic(value: Any) -> Any:
         return value if value.is_scalar() else _NONE
     if isinstance(value, str):
         return value if typed(value)[1] else _NONE
-    return value if _double(value) is not None else _NONE
+    found = _double(value)
+    return _NONE if found is None else value if isinstance(value, int | float) else found
 
 
 def _is_path(value: Any) -> bool:
     """Whether the system could have a file of this name."""
     with suppress(UnicodeEncodeError):
-        return isinstance(value, str | os.PathLike) and isinstance(name := os.fspath(value), str) and b"\0" not in os.fsencode(name)
+        return (
+            isinstance(value, str | os.PathLike)
+            and isinstance(name := os.fspath(value), str)
+            and name != ""
+            and b"\0" not in os.fsencode(name)
+        )
     return False
 
 

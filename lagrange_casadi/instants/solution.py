@@ -235,7 +235,8 @@ class Solution:
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Solution:
         """The same at some of the instants."""
-        if not isinstance(instants, slice) and (np.shape(instants) != self.t.shape or np.asarray(instants).dtype != bool):
+        each = instants.tolist() if isinstance(instants, np.ndarray) else []
+        if not (isinstance(instants, slice) or [type(one) for one in each] == [bool] * self.t.size):
             raise DeclarationError(f"during: expected a slice, or True or False for each instant, got {shown(instants)}")
         outputs = {output: values[instants] for output, values in self.outputs.items()}
         certificate = {name: values[instants] for name, values in self.certificate.items()}
