@@ -47,14 +47,14 @@ class Dwell:
 
 @public
 def move(
-    to: Expression | str | None = None,
+    to: Symbolic | None = None,
     *,
-    by: Expression | str | None = None,
-    time: Expression | None = None,
-    law: object = None,
-    speed: Expression | None = None,
-    acceleration: Expression | None = None,
-    jerk: Expression | None = None,
+    by: Symbolic | None = None,
+    time: Symbolic | None = None,
+    law: str | RestLaw | None = None,
+    speed: Symbolic | None = None,
+    acceleration: Symbolic | None = None,
+    jerk: Symbolic | None = None,
     name: str = "",
 ) -> Move:
     """A move from rest to rest for :func:`moves`: ``to`` a place or ``by`` a way [rad or m, or text as ``"90 deg"``].
