@@ -35,7 +35,13 @@ def escaped(text: str) -> str:
 
 def one_line(error: BaseException) -> str:
     """What an error says, in one line that may be shown."""
-    return escaped(" ".join(str(error).split()))
+    return _line(str(error))
+
+
+def _line(text: str) -> str:
+    """A text in one line, the middle left out where it quotes too much."""
+    text = escaped(" ".join(text.split()))
+    return text if len(text) <= _MOST else f"{text[: _MOST // 2]} ... {text[-_MOST // 2 :]}"
 
 
 def check_kind(what: str, value: object, expected: str, *kinds: type) -> None:
@@ -75,8 +81,7 @@ class LagrangeCasadiError(Exception):
     exit_status = 2
 
     def __str__(self) -> str:
-        text = escaped(" ".join(super().__str__().split()))
-        return text if len(text) <= _MOST else f"{text[: _MOST // 2]} ... {text[-_MOST // 2 :]}"
+        return _line(super().__str__())
 
 
 class DeclarationError(LagrangeCasadiError):

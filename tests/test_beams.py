@@ -200,7 +200,7 @@ REFUSED = {
     "clockwise": (beams.polygon([(0, 0), (0, 1), (1, 0)]), "area, of corners counter-clockwise, of its polygon must be"),
     "not a number": (beams.rectangle(math.nan, 0.1), "height of its cross-section must be finite, got nan"),
     "text": (
-        beams.rectangle(None, 0.1),
+        beams.Shape("rectangle", {"height": None, "width": 0.1}),
         "height of its cross-section must be a number or an expression in parameters, got None",
     ),
 }

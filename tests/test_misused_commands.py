@@ -16,7 +16,7 @@ from lagrange_casadi import Mechanism, Scene, beams, motion
 
 def scene():
     m = Mechanism("swing")
-    l, height, width = (m.parameter(name, value, "m", low=0.001, high=2.0) for name, value in (("l", 0.5), ("h", 0.03), ("w", 0.01)))
+    l, height, width = (m.parameter(name, value, "m", low=1e-3, high=2.0) for name, value in (("l", 0.5), ("h", 0.03), ("w", 0.01)))
     bar = beams.Beam(beams.rectangle(height=height, width=width), beams.material("C45+QT"))
     m.revolute("O", m.ground, m.link("arm", length=l, beam=bar))
     return Scene(m, {"O": motion.polynomial(0.0, 6.28)}, t=(0.0, 1.0, 5), xi=(0.0, 1.0, 3))
@@ -96,7 +96,7 @@ WRONG = {
     "--maximise": TEXTS,
     "--where": ["", "l", "l<", "<3", "l<x", "nothing<3", "l<<3", "l<nan"],
     "--count": COUNTS,
-    "--rows": COUNTS[1:],
+    "--rows": COUNTS[1:-1],
     "--column": TEXTS,
     "--accuracy": POSITIVE,
     "--name": ["", "a b", "1a", "\x07", "int-"],

@@ -88,7 +88,7 @@ WRONG = {
     "a sweep's": (lambda s: sweep(s, ONE, parameters=3), "parameters: expected values by name, as {'l': 0.25}, got 3"),
     "a search's": (lambda s: optimise(s, minimise="l", over=ONE, parameters=3), "parameters: expected values by name"),
     "limits": (lambda s: optimise(s, minimise="l", over=ONE, subject_to=3), "subject_to: expected a list of texts, got 3"),
-    "starts": (lambda s: optimise(s, minimise="l", over=ONE, starts=[0.2]), "starts: expected a whole number from 1 to 16777216 or a"),
+    "starts": (lambda s: optimise(s, minimise="l", over=ONE, starts=[0.2]), "starts: expected a whole number from 1 to 16777216"),
     "sine": (lambda s: optimise(s, minimise="l", over=ONE, transmission="x"), "transmission: expected a number, got 'x'"),
     "wanted": (lambda s: derive(s, 3.0), "wanted: expected a list of output names, got 3.0; valid: all, effort"),
     "a sweep's wanted": (lambda s: sweep(s, ONE, wanted=3), "wanted: expected a list of output names, got 3; valid: all"),

@@ -20,19 +20,19 @@ from ..study.trade import RUNGS, Trade
 from ..study.trade import trade as measure
 from ..system.publish import check_writable, writing
 from .echo import echo
-from .options import instants, parameters, settings_by, wanted
+from .options import PATH, instants, parameters, settings_by, wanted
 from .options import over as by_drive
 
 
 @click.command()
-@click.argument("case", type=click.Path(path_type=Path))
+@click.argument("case", type=PATH)
 @settings_by()
 @instants()
 @by_drive
 @wanted()
 @click.option("--accuracy", type=float, metavar="ERROR", help="Recommend the fastest method within this error of the peak.")
-@click.option("--out", type=click.Path(path_type=Path), help="The numbers, as JSON; default: <case>_trade.json here.")
-@click.option("--figure", type=click.Path(path_type=Path), help="The picture; default: <case>_trade.png here.")
+@click.option("--out", type=PATH, help="The numbers, as JSON; default: <case>_trade.json here.")
+@click.option("--figure", type=PATH, help="The picture; default: <case>_trade.png here.")
 def trade(
     case: Path,
     settings: Sequence[tuple[str, float | str]],
