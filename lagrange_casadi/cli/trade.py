@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -44,8 +45,8 @@ def trade(
     figure: Path | None,
 ) -> None:
     """Measure time and error of every method on CASE, side by side: backends, precisions, Newton steps, tables, flags."""
-    if accuracy is not None and not accuracy > 0.0:
-        raise DeclarationError(f"accuracy: expected a number above 0, got {accuracy!r}")
+    if accuracy is not None and not 0.0 < accuracy < math.inf:
+        raise DeclarationError(f"accuracy: expected a finite number above 0, got {accuracy!r}")
     loaded = load_case(case)
     out, figure = out or Path(f"{loaded.name}_trade.json"), figure or Path(f"{loaded.name}_trade.png")
     for option, target, endings in (("--out", out, (".json",)), ("--figure", figure, PICTURES)):
