@@ -64,7 +64,7 @@ def warn(words: str, category: type[Warning] = UserWarning) -> None:
     frame, level = sys._getframe(1), 2
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
         frame, level = frame.f_back, level + 1
-    warnings.warn(words, category, stacklevel=level - 1)
+    warnings.warn(words, category, stacklevel=level)
 
 
 def lacking(error: OSError) -> bool:
