@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arguments import public
+from ..arguments import Finite, public
 from ..declare.density import Array
 from ..errors import DeclarationError, UnknownNameError
 from ..instants.held import Holding
@@ -26,6 +26,7 @@ class InertiaRatio(NamedTuple):
     largest: float
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Duty:
     """What a drive asks of its motor over the instants ``t`` [s]: ``speed`` [rad/s], ``torque`` [N m], each (t,).
@@ -123,9 +124,9 @@ def duty_of(
     solution: Solution,
     joint: str,
     *,
-    ratio: float = 1.0,
+    ratio: Finite = 1.0,
     efficiency: float = 1.0,
-    inertia: float = 0.0,
+    inertia: Finite = 0.0,
     linear: bool = False,
     carried: Array | None = None,
     held: Holding | None = None,

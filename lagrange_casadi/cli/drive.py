@@ -23,7 +23,7 @@ from ..instants.solution import Solution
 from ..judge.certificate import failure, summary
 from ..system.numerals import real
 from .echo import echo
-from .options import instants, length, parameters, separated, settings_by
+from .options import PATH, instants, length, parameters, separated, settings_by
 from .options import over as by_drive
 
 _BAR = 40
@@ -45,8 +45,8 @@ def _ratios(context: click.Context, option: click.Parameter, words: Sequence[str
 
 
 @click.command(name="drive")
-@click.argument("case", type=click.Path(path_type=Path))
-@click.option("--motors", type=click.Path(path_type=Path), metavar="FILE.csv", help="A catalogue; default: motors.csv of the case.")
+@click.argument("case", type=PATH)
+@click.option("--motors", type=PATH, metavar="FILE.csv", help="A catalogue; default: motors.csv of the case.")
 @click.option("--drive", "drives", multiple=True, metavar="JOINT", help="This drive; repeatable. Default: all.")
 @click.option(
     "--ratio",
@@ -62,7 +62,7 @@ def _ratios(context: click.Context, option: click.Parameter, words: Sequence[str
 @settings_by()
 @instants("Instants [s], over a whole cycle; default: the case's.")
 @by_drive
-@click.option("--plot", type=click.Path(path_type=Path), metavar="FILE.png", help="Draw torque over speed; also .pdf, .svg.")
+@click.option("--plot", type=PATH, metavar="FILE.png", help="Draw torque over speed; also .pdf, .svg.")
 def drive_command(
     case: Path,
     motors: Path | None,

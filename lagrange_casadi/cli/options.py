@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -24,6 +25,19 @@ OVER = "JOINT=START:STOP:COUNT"
 AXIS = "NAME=START:STOP:COUNT[:log]|NAME=VALUE,..."
 
 Number = TypeVar("Number")
+
+
+class _Path(click.Path):
+    """A path, which an empty text is not: that of a variable of the shell which is not set would be the folder where one is."""
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+        """The path that is told."""
+        if value == "":
+            self.fail("expected a path, got ''", parameter, context)
+        return super().convert(value, parameter, context)
+
+
+PATH = _Path(path_type=Path)
 
 
 def even_points(text: str) -> EvenPoints:

@@ -20,15 +20,15 @@ from ..sweep.plots import Spec, draw_sweep
 from ..system.publish import check_writable
 from .drawing import draw_with_progress
 from .echo import echo
-from .options import place
+from .options import PATH, place
 from .strength_lines import untold_lines
 
 _UNDRAWN = "cannot be drawn"
 
 
 @click.command()
-@click.argument("file", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), required=True, help="The figures' folder.")
+@click.argument("file", type=PATH)
+@click.option("--out", type=PATH, required=True, help="The figures' folder.")
 @click.option(
     "--over", multiple=True, metavar="NAME", help="Of a sweep: the parameter along the axis, two for maps; of a list, any."
 )

@@ -33,7 +33,7 @@ from ..system.streams import is_standard_output
 from .drawing import draw_with_progress
 from .echo import echo
 from .elastic_lines import elastic_lines
-from .options import EVEN_POINTS, even_points, instants, parameters, rung, settings_by, wanted
+from .options import EVEN_POINTS, PATH, even_points, instants, parameters, rung, settings_by, wanted
 from .options import over as by_drive
 from .replaced import figures_in, replaced_lines
 from .report import report_lines
@@ -43,7 +43,7 @@ from .strength_lines import strength_lines, untold_lines
 
 
 @click.command()
-@click.argument("case", type=click.Path(path_type=Path))
+@click.argument("case", type=PATH)
 @settings_by()
 @instants()
 @by_drive
@@ -51,10 +51,10 @@ from .strength_lines import strength_lines, untold_lines
 @wanted("effort, reaction:JOINT, section:LINK, motion, sensitivity:PARAMETER, a kind such as section, or all; repeatable.")
 @rung
 @click.option("--threads", type=click.IntRange(1, MOST_THREADS), metavar="N", help="Threads; default: one a core.")
-@click.option("--out", type=click.Path(path_type=Path), help="The file; default: <case>.h5 here.")
-@click.option("--figures", type=click.Path(path_type=Path), help="The figures' folder; default: <case>_figures here.")
+@click.option("--out", type=PATH, help="The file; default: <case>.h5 here.")
+@click.option("--figures", type=PATH, help="The figures' folder; default: <case>_figures here.")
 @click.option("--no-figures", is_flag=True, help="Draw nothing.")
-@click.option("--csv", type=click.Path(path_type=Path), metavar="FILE.csv", help="Write a row for every instant as CSV too.")
+@click.option("--csv", type=PATH, metavar="FILE.csv", help="Write a row for every instant as CSV too.")
 @click.option("--refine-peaks", is_flag=True, help="Seek the reported peaks between the instants too.")
 @click.option("--elastic", is_flag=True, help="Let the beams of links tell what equilibrium leaves open.")
 @click.option("--no-certificate", is_flag=True, help="Do not check the solution.")

@@ -19,7 +19,7 @@ from ..errors import DeclarationError
 from ..system.symbolic import Graphs, symbolic
 from .constraints import constraint, row
 from .density import Density
-from .expressions import bound, check_line, check_name
+from .expressions import bound, check_line, check_name, value_of
 from .fitted import Fitted
 from .friction import friction
 from .joints import Axis, Joint, JointKind
@@ -375,10 +375,7 @@ class Mechanism(Graphs):
 
     def number(self, expression: Expression, values: Mapping[str, float]) -> float:
         """The value of an expression in the parameters."""
-        if not isinstance(expression, ca.SX):
-            return float(expression)
-        numbers = [values[name] for name in self.parameters]
-        return float(ca.evalf(ca.substitute(expression, self.symbols, ca.vertcat(ca.SX(0, 1), *numbers))))
+        return value_of(expression, {name: one.symbol for name, one in self.parameters.items()}, values)
 
     def _joint(
         self,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any
@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import public
+from ..arguments import Numeric, Outputs, ThreadCount, public
 from ..arithmetic.compensated import Precision
 from ..declare.density import Array
 from ..declare.scene import Scene, without_fitted, without_life
 from ..declare.times import Over, Times
-from ..errors import AssemblyError, DeclarationError, UnknownNameError
+from ..errors import AssemblyError, DeclarationError, UnknownNameError, shown
 from ..evaluate import evaluate
 from ..instants.refusal import Status
-from ..instants.rung import Backend, Rung
+from ..instants.rung import Backend, Rung, Steps
 from ..instants.solution import Solution
 from .engine import DesignEngine, Outcome
 from .gradients import MeanSlopes
@@ -234,7 +234,8 @@ class Prepared:
         own = self._engine.gradient(p, value, t, xi)
         return Curvature(self.quantities, self.parameters, self._engine.curvature(p, value, t, xi, own))
 
-    def designs(self, p: Any, *, threads: int | None = None, histories: bool = False) -> Outcome:
+    @public
+    def designs(self, p: Numeric, *, threads: ThreadCount | None = None, histories: bool = False) -> Outcome:
         """The outcome of many designs at once, (n, parameters) in the order of :attr:`parameters`; ``threads`` share them.
 
         Values are not checked against the parameters' ranges. A design without a result has its status, and NaN.
@@ -263,8 +264,8 @@ class Prepared:
         p: Array = self._answers.p
         row = p[0]
         row[:] = self._defaults
-        if not (values is None or hasattr(values, "items")):
-            raise DeclarationError(f"parameters: expected values by name, as {{'l': 0.25}}, got {values!r}")
+        if not (values is None or isinstance(values, Mapping)):
+            raise DeclarationError(f"parameters: expected values by name, as {{'l': 0.25}}, got {shown(values)}")
         for given in (values, named) if values else (named,):
             for name, value in given.items():
                 parameter = self._declared.get(name)
@@ -295,10 +296,10 @@ def prepare(
     *,
     t: Times | None = None,
     over: Over | None = None,
-    wanted: Sequence[str] | None = None,
+    wanted: Outputs | None = None,
     backend: Backend = "auto",
     precision: Precision = "double",
-    newton: int | None = None,
+    newton: Steps | None = None,
     flags: str = "",
 ) -> Prepared:
     """Make a scene ready for many evaluations one after another, as an optimiser asks for them.
@@ -315,8 +316,8 @@ def prepare(
     """
     if not isinstance(scene, Scene):
         raise DeclarationError(f"prepare: expected a Scene, got {scene!r}")
-    without_life(wanted or (), "prepared scenes")
-    without_fitted(scene.mechanism, wanted or (), "prepared scenes")
+    without_life(() if wanted is None else wanted, "prepared scenes")
+    without_fitted(scene.mechanism, () if wanted is None else wanted, "prepared scenes")
     engine = DesignEngine.of(scene, wanted, rung=Rung(backend, precision, newton, None, flags), timing=scene.timing(t, over))
     asked: dict[str, Any] = {"t": t, "over": over, "wanted": wanted, "backend": backend, "precision": precision, "newton": newton}
     return Prepared(engine, lambda values: evaluate(scene, parameters=values, **asked, flags=flags, certificate=False))

@@ -9,7 +9,7 @@ from typing import Any
 
 import casadi as ca
 
-from ..arguments import public
+from ..arguments import Outputs, public
 from ..declare.description import describe
 from ..declare.held import effective_lengths, ends_of
 from ..declare.limits import told_parameters
@@ -38,7 +38,7 @@ from .strength import stresses, utilisation
 
 @public
 @symbolic
-def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool = False, elastic: bool = False) -> SceneGraph:
+def derive(scene: Scene, wanted: Outputs | None = None, *, iterate: bool = False, elastic: bool = False) -> SceneGraph:
     """Derive the graphs of a scene, for its own wanted outputs or for others: CasADi functions of an instant, and their names.
 
     With ``iterate`` every loop is left to Newton's method, and none is solved in closed form. With ``elastic`` it tells how forces

@@ -10,12 +10,12 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..arguments import public
+from ..arguments import Outputs, public
 from ..arithmetic.compensated import Precision
 from ..declare.expressions import check_line
 from ..declare.scene import Scene
 from ..errors import DeclarationError, PathError
-from ..instants.rung import Rung
+from ..instants.rung import Rung, Steps
 from ..system.manifest import Manifest
 from ..system.publish import check_writable
 from ..version import __version__
@@ -50,9 +50,9 @@ def export(
     *,
     name: str | None = None,
     parameters: Mapping[str, float] | None = None,
-    wanted: Sequence[str] | None = None,
+    wanted: Outputs | None = None,
     precision: Precision = "double",
-    newton: int | None = None,
+    newton: Steps | None = None,
     table: float | None = None,
     largest: int | None = None,
     force: bool = False,

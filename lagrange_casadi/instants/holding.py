@@ -23,6 +23,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import public
 from ..declare.density import Array
 from ..declare.scene import Scene
 from ..equations.checks import Check
@@ -44,6 +45,7 @@ _MOST = 10
 _BENDS, _JAMS = 1e-9, 1e-14
 
 
+@public
 def holding(scene: Scene, solution: Solution) -> dict[str, Holding]:
     """The range of each drive's effort, by joint, at the instants of a solution of the scene that has efforts.
 

@@ -19,7 +19,7 @@ from ..declare.description import Description, coordinates_of, density_of
 from ..declare.limits import no_sections
 from ..declare.notes import notes
 from ..declare.times import DriveAxis
-from ..errors import DeclarationError, UnknownNameError
+from ..errors import DeclarationError, UnknownNameError, shown
 from ..quantities import Output
 from ..tables import Table
 from .derivatives import Derivatives
@@ -237,6 +237,9 @@ class Solution:
 
     def during(self, instants: slice | npt.NDArray[np.bool_]) -> Solution:
         """The same at some of the instants."""
+        each = instants.tolist() if isinstance(instants, np.ndarray) else []
+        if not (isinstance(instants, slice) or [type(one) for one in each] == [bool] * self.t.size):
+            raise DeclarationError(f"during: expected a slice, or True or False for each instant, got {shown(instants)}")
         outputs = {output: values[instants] for output, values in self.outputs.items()}
         left = {name: values[instants] for name, values in self.certificate.items()}
         over = self.over and replace(self.over, values=self.over.values[instants])

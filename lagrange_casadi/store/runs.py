@@ -26,7 +26,7 @@ from ..declare.description import Description, check_places, motions_of, shape_o
 from ..declare.even_points import are_even
 from ..declare.times import DriveAxis
 from ..declare.wanted_slopes import SENSITIVITY
-from ..errors import PathError, StoreError, one_line
+from ..errors import DeclarationError, PathError, StoreError, one_line
 from ..instants.elasticity import Elasticity
 from ..instants.held import ENDS, Holding, held_outputs
 from ..instants.ordering import in_order
@@ -77,6 +77,8 @@ def save(solution: Solution, path: str | os.PathLike[str], figures: str = "") ->
     ``figures`` is kept for :mod:`.figures`, which reads from it how the case wants to be drawn. Raises :class:`StoreError` where
     the file cannot be written.
     """
+    if "\0" in figures or not figures.isascii():
+        raise DeclarationError(f"save: figures: expected JSON of letters that every file can hold, got {shown(figures)}")
     target = Path(path)
     check_target(target)
     _require_room(solution, target)

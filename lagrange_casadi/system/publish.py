@@ -63,7 +63,7 @@ def check_writable(target: Path, *, folder: bool = False, hdf5: bool = False) ->
 
 def settled(target: Path) -> Path:
     """Where a file is put: what a symbolic link leads to, so that the link stays."""
-    return Path(os.path.realpath(target)) if target.is_symlink() else target
+    return Path(os.path.realpath(target)) if os.path.islink(target) else target
 
 
 def is_hdf5(path: Path) -> bool:
