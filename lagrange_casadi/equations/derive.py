@@ -34,6 +34,9 @@ from .scene_graph import SceneGraph
 from .stations import gathered
 from .strength import stresses, utilisation
 
+_FITS = 2e-14
+"""How far equations that are too many may miss where they are exact, of the links' length."""
+
 
 @public
 def derive(scene: Scene, wanted: Sequence[str] | None = None, *, iterate: bool = False, elastic: bool = False) -> SceneGraph:
@@ -110,9 +113,23 @@ def _kept(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGrap
         if isinstance(error, AssemblyError):
             return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
         return MobilityError(str(error))
+    if _misses(graph) > _FITS and (near := _nearest(scene)) is not None:
+        found = _kept(near, want, iterate, elastic)
+        if isinstance(found, SceneGraph):
+            return found
     if key:
         cache.write(f"{key}.graph", graph.dumps())
     return graph
+
+
+def _misses(graph: SceneGraph) -> float:
+    """By how much iterated loops with too many equations miss at the start, of the links' length: by rounding, for they close."""
+    rows = [row for name, row in graph.checks("misfit").items() if graph.iterates(name)]
+    if graph.newton is None or not rows:
+        return 0.0
+    t, p = graph.scene.span[0], list(graph.scene.mechanism.values(graph.scene.assembly).values())
+    out = graph.instant(t, *graph.motion(t, p), graph.newton.guess, p)
+    return max(float(out[row]) for row in rows)
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,9 +34,8 @@ from ..geometry.rotation import Rotation
 from ..geometry.vectors import Vector, cross, dot, minus, nil, plus, times
 from .assembly import assemble
 from .freed import Freed, Posture
-from .gaps import extent
-from .joints import held_directions
-from .multibody import LoopEquations, Multibody
+from .gaps import extent, units
+from .multibody import Multibody
 from .tree import span
 
 _POSTURES = 24
@@ -275,7 +274,7 @@ class _Search:
             other = np.array(values) * (1 + _OTHER * generator.uniform(-1, 1, len(values)))
             each = zip(mechanism.parameters.values(), other, strict=True)
             others.append([t, [min(max(float(x), p.low), p.high) for p, x in each]])
-        rows = np.concatenate([_units(loop, size) for loop in body.loop_equations] or [np.zeros(0)])
+        rows = np.concatenate([units(loop, size) for loop in body.loop_equations] or [np.zeros(0)])
         columns = np.array([size if c.axis.move == "slide" else 1.0 for c in body.coordinates])
         return cls(body, freed, [t, values], others, rows, columns, scene.rounding)
 
@@ -345,10 +344,3 @@ class _Search:
         """Gaps and their derivatives, in radians and beside the mechanism's size."""
         gap, slope, by = self.freed.at(posture, [*case, x])
         return gap / self.rows, slope * self.columns / self.rows[:, None], by / self.rows[:, None]
-
-
-def _units(loop: LoopEquations, size: float) -> Array:
-    """What gaps of a loop are large beside: the mechanism's size [m], or 1 of directions."""
-    many = loop.gap.numel()
-    held = held_directions(loop.joint) if loop.joint is not None else 0
-    return np.array([size] * (many - held) + [1.0] * held)
