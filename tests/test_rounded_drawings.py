@@ -188,7 +188,28 @@ def test_what_is_made_of_a_corrected_scene(tmp_path):
     assert kept.description["rounded"] == solution.description["rounded"]
     assert kept.certified
     assert rounded(kept)
-    assert export(rough, tmp_path / "exported").is_dir()
+    # It is held to its own program, and tells by how much axes were moved.
+    export(rough, tmp_path / "exported", parameters={"length": 0.09})
+    assert (tmp_path / "exported" / "export.json").is_file()
+
+
+@pytest.mark.parametrize("raised", [1.0, 3.0, -2.0])
+def test_corrections_are_sought_for_the_parameters_in_use(raised):
+    """What a place is off goes with a parameter: one correction does not serve all."""
+
+    def offset(by):
+        m = SpatialMechanism("offset")
+        by = by * m.parameter("k", 1.0)
+        crank, rod, rocker = (m.link(n, length=l, mass=0.5) for n, l in (("crank", 0.1), ("rod", 0.35), ("rocker", 0.25)))
+        m.revolute("O", m.ground, crank)
+        m.revolute("A", crank.tip, rod)
+        m.revolute("C", m.ground.at(0.3, 0.05, by), rocker)
+        m.revolute("B", rod.tip, rocker.tip)
+        return Scene(m, {"O": polynomial(0.0, 10.0)}, t=(0.0, 0.6, 61), posture={"A": 0.7, "C": 1.5}, wanted=["effort"])
+
+    exact, found = (evaluate(offset(by), parameters={"k": raised}, backend="vm") for by in (0.0, 2e-7))
+    assert rounded(found)
+    assert_near(found, exact, 2e-7)
 
 
 @pytest.mark.parametrize("beyond", [1e-10, -3e-7])

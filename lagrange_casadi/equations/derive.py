@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -36,6 +37,8 @@ from .strength import stresses, utilisation
 
 _FITS = 2e-14
 """How far equations that are too many may miss where they are exact, of the links' length."""
+
+_STEPS = 50
 
 
 @public
@@ -72,15 +75,22 @@ def assembled(
 ) -> Scene:
     """The scene; or where its loops cannot be assembled with its own parameters, the same assembled with ``values`` of all.
 
+    So it is too where rounded axes were corrected for its own parameters, and loops close with these but do not with ``values``.
+
     Raises what :func:`derive` does, where they can be assembled with neither.
     """
+    there = _at(scene, tuple(values.items()))
     try:
-        derive(scene, wanted, iterate=iterate, elastic=elastic)
+        graph = derive(scene, wanted, iterate=iterate, elastic=elastic)
     except (AssemblyError, MobilityError):
         if values == scene.mechanism.values(scene.assembly):
             raise
-        scene = _at(scene, tuple(values.items()))
-        derive(scene, wanted, iterate=iterate, elastic=elastic)
+        derive(there, wanted, iterate=iterate, elastic=elastic)
+        return there
+    if graph.scene.mechanism.rounded and _misses(graph, values, iterated=False) > _FITS:
+        with suppress(AssemblyError, MobilityError):
+            derive(there, wanted, iterate=iterate, elastic=elastic)
+            return there
     return scene
 
 
@@ -113,7 +123,7 @@ def _kept(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGrap
         if isinstance(error, AssemblyError):
             return AssemblyError(f"{error}{told_parameters(scene.mechanism, scene.assembly)}")
         return MobilityError(str(error))
-    if _misses(graph) > _FITS and (near := _nearest(scene)) is not None:
+    if _misses(graph, scene.mechanism.values(scene.assembly), iterated=True) > _FITS and (near := _nearest(scene)) is not None:
         found = _kept(near, want, iterate, elastic)
         if isinstance(found, SceneGraph):
             return found
@@ -122,13 +132,19 @@ def _kept(scene: Scene, want: Wanted, iterate: bool, elastic: bool) -> SceneGrap
     return graph
 
 
-def _misses(graph: SceneGraph) -> float:
-    """By how much iterated loops with too many equations miss at the start, of the links' length: by rounding, for they close."""
-    rows = [row for name, row in graph.checks("misfit").items() if graph.iterates(name)]
-    if graph.newton is None or not rows:
+def _misses(graph: SceneGraph, values: Mapping[str, float], *, iterated: bool) -> float:
+    """By how much loops with too many equations miss at the start, of the links' length: all of them, or those ``iterated``."""
+    rows = [row for name, row in graph.checks("misfit").items() if graph.iterates(name) or not iterated]
+    if not rows:
         return 0.0
-    t, p = graph.scene.span[0], list(graph.scene.mechanism.values(graph.scene.assembly).values())
-    out = graph.instant(t, *graph.motion(t, p), graph.newton.guess, p)
+    t, p, newton = graph.scene.span[0], list(values.values()), graph.newton
+    motion, z = graph.motion(t, p), ca.DM(newton.guess if newton else [])
+    for _ in range(_STEPS):
+        correction, size = newton.step(z, t, motion[0], p) if newton else (0.0, 0.0)
+        z += correction
+        if float(size) < _FITS:
+            break
+    out = graph.instant(t, *motion, z, p)
     return max(float(out[row]) for row in rows)
 
 
