@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import casadi as ca
@@ -27,7 +27,7 @@ from ..declare.joints import Joint
 from ..declare.measures import Measures
 from ..declare.mechanism import Mechanism
 from ..declare.motion import motion_function
-from ..declare.parts import Expression, Friction, Link, Point
+from ..declare.parts import Body, Expression, Friction, Link, Load, Point
 from ..declare.scene import Scene
 from ..declare.spatial import reference_posture
 from ..geometry.rotation import Rotation
@@ -64,7 +64,7 @@ def nearest(scene: Scene) -> Scene | None:
         return None
     values = declared.values(scene.assembly)
     size = declared.number(extent(declared), values)
-    barred = _with(declared, _barred(declared, scene.rounding * size))
+    barred = _barred(declared, scene.rounding * size)
     least = _closed(scene, barred, size)
     if least is None:
         return None
@@ -109,25 +109,33 @@ def _where(joint: Joint) -> list[Vector]:
     return [*joint.triad, *map(there.resolve, joint.triad), joint.parent.place, joint.child.place]
 
 
-def _barred(mechanism: Mechanism, limit: float) -> dict[str, Joint]:
-    """The joints of links between two spherical ones that are off the link's axis by no more than a limit [m], on it."""
-    found: dict[str, Joint] = {}
+def _barred(mechanism: Mechanism, limit: float) -> Mechanism:
+    """The mechanism whose links between two spherical joints have these, and loads, on their axis if within a limit [m]."""
+    links: set[Body] = set()
     for link in mechanism.links.values():
         own = [joint for joint in mechanism.joints.values() if link in joint.bodies]
-        if len(own) != 2 or any(joint.kind != "spherical" for joint in own) or not isinstance(link.mass, Density):
-            continue
-        for joint in own:
-            now = found.get(joint.name, joint)
-            points = [
-                replace(point, y=_nothing(point.y, limit), z=_nothing(point.z, limit)) if point.body is link else point
-                for point in (now.parent, now.child)
-            ]
-            found[joint.name] = replace(now, parent=points[0], child=points[1])
-    return {name: joint for name, joint in found.items() if not _same(joint, mechanism.joints[name])}
+        if isinstance(link.mass, Density) and [joint.kind for joint in own] == ["spherical", "spherical"]:
+            links.add(link)
+
+    def put(point: Point) -> Point:
+        off = point.body in links and not (nil(point.y) and nil(point.z))
+        return replace(point, y=_nothing(point.y, limit), z=_nothing(point.z, limit)) if off else point
+
+    joints = {
+        name: replace(joint, parent=put(joint.parent), child=put(joint.child))
+        for name, joint in mechanism.joints.items()
+        if put(joint.parent) is not joint.parent or put(joint.child) is not joint.child
+    }
+    found = _with(mechanism, joints)
+    if links:
+        found = copy.copy(found)
+        found.loads = {name: _loaded(load, put) for name, load in found.loads.items()}
+    return found
 
 
-def _same(joint: Joint, other: Joint) -> bool:
-    return all(one.place == own.place for one, own in ((joint.parent, other.parent), (joint.child, other.child)))
+def _loaded(load: Load, put: Callable[[Point], Point]) -> Load:
+    moved: dict[str, Any] = {own.name: put(getattr(load, own.name)) for own in fields(load) if own.type == "Point"}
+    return replace(load, **moved) if moved else load
 
 
 def _plain(joint: Joint, rounding: float, size: float) -> Joint:
