@@ -38,6 +38,9 @@ from .strength import stresses, utilisation
 _FITS = 2e-14
 """How far equations that are too many may miss where they are exact, of the links' length."""
 
+_SERVES = 1e-9
+"""How far they may miss for other parameters, and a correction serves for these too."""
+
 _STEPS = 50
 
 
@@ -79,16 +82,17 @@ def assembled(
 
     Raises what :func:`derive` does, where they can be assembled with neither.
     """
-    there = _at(scene, tuple(values.items()))
     try:
         graph = derive(scene, wanted, iterate=iterate, elastic=elastic)
     except (AssemblyError, MobilityError):
         if values == scene.mechanism.values(scene.assembly):
             raise
+        there = _at(scene, tuple(values.items()))
         derive(there, wanted, iterate=iterate, elastic=elastic)
         return there
-    if graph.scene.mechanism.rounded and _misses(graph, values, iterated=False) > _FITS:
+    if graph.scene.mechanism.rounded and _misses(graph, values, iterated=False) > _SERVES:
         with suppress(AssemblyError, MobilityError):
+            there = _at(scene, tuple(values.items()))
             derive(there, wanted, iterate=iterate, elastic=elastic)
             return there
     return scene
