@@ -12,6 +12,7 @@ import casadi as ca
 
 from ..beams.told import told_beam
 from ..geometry.vectors import cross
+from ..system.symbolic import Graphs, symbolic
 from .density import Density, NumericDensity
 from .fitted import told_parts
 from .joints import Joint
@@ -79,7 +80,16 @@ def shape_of(value: Any) -> dict[str, Any]:
     gravity = value.get("gravity") if isinstance(value, dict) else None
     shape = IN_SPACE if isinstance(gravity, list) and len(gravity) > 2 else IN_PLANE
     optional = {"outlines": {str: [[float, float]]}, "losses": [str], "beside": {str: _VECTOR}, "rounded": {str: [float]}}
+    optional["unturned"] = [str]
     return shape | {name: kind for name, kind in optional.items() if isinstance(value, dict) and name in value}
+
+
+def check_places(description: Description) -> None:
+    """Raise ``ValueError`` where a joint or a load is at a place on a body that there is not."""
+    ends = ((name, joint[end]) for name, joint in description["joints"].items() for end in ("parent", "child"))
+    for name, place in (*ends, *((name, point) for name, load in description["loads"].items() for point in load["points"])):
+        if place["body"] != "ground" and place["body"] not in description["bodies"]:
+            raise ValueError(f"'{name}' is at a place on '{place['body']}', which is no body")
 
 
 def density_of(body: Description) -> NumericDensity:
@@ -143,7 +153,7 @@ class Place(int):
 
 
 @dataclass(frozen=True, eq=False)
-class Template:
+class Template(Graphs):
     """A description but for its numbers, in whose stead are :class:`Place`; ``numbers(p)`` is all of them."""
 
     content: Description
@@ -193,6 +203,7 @@ def _with(content: Any, number: Callable[[Place], Any]) -> Any:
     return number(content) if isinstance(content, Place) else content
 
 
+@symbolic
 def describe(
     mechanism: Mechanism, values: Mapping[str, float], driven: Collection[str], drives: Collection[str] | None = None
 ) -> Description:
@@ -210,6 +221,13 @@ def _template(mechanism: Mechanism, driven: tuple[str, ...], drives: tuple[str, 
     return Template.of(mechanism, driven, drives)
 
 
+def _lies_by_default(joint: Joint) -> bool:
+    """Whether a slender link slides along one line of its parent, and nothing was said of how it lies there."""
+    body = joint.child.body
+    slender = isinstance(body, Link) and isinstance(body.mass, Density)
+    return slender and joint.kind in ("prismatic", "cylindrical", "screw") and not joint.turn_given
+
+
 def _kind(mechanism: Mechanism, name: str) -> str:
     """The kind of a coordinate whose motion is given, of a joint or a guide (:mod:`.guiding`)."""
     if name in mechanism.coordinates:
@@ -224,6 +242,7 @@ def motions_of(description: Description) -> dict[str, str]:
     return driven | {str(name): str(kind) for name, kind in description.get("motions", {}).items()}
 
 
+@symbolic
 def numbered(mechanism: Mechanism, driven: Collection[str] = ()) -> tuple[Description, list[Any]]:
     """A description with places in the place of its numbers, and the expressions of the parameters that stand at these places.
 
@@ -308,7 +327,8 @@ def _described(mechanism: Mechanism, driven: Collection[str], number: Callable[[
     beside = {name: vector(link.beside) for name, link in mechanism.links.items() if link.beside is not None}
     outlines = {name: [vector(corner) for corner in link.outline] for name, link in mechanism.links.items() if link.outline}
     lossy = [c.name for c in mechanism.constraints.values() if c.transmission is not None and c.transmission.loss is not None]
-    told = ("paths", paths), ("outlines", outlines), ("losses", lossy), ("beside", beside)
+    unturned = [joint.name for joint in mechanism.joints.values() if _lies_by_default(joint)]
+    told = ("paths", paths), ("outlines", outlines), ("losses", lossy), ("beside", beside), ("unturned", unturned)
     return {
         "name": mechanism.name,
         "parameters": parameters,

@@ -10,6 +10,7 @@ from typing import Any
 import casadi as ca
 
 from ..errors import DeclarationError
+from ..system.symbolic import Graphs, symbolic
 from .curves import curve
 from .motion import Motion, motion_function
 
@@ -17,7 +18,7 @@ _NAMES = ["t", "p"], ["d", "d_rate", "d_acceleration"]
 
 
 @dataclass(frozen=True, eq=False)
-class Laws:
+class Laws(Graphs):
     """The motion of several drives, ``joints``, in two functions as :func:`.motion_function` makes them.
 
     ``smooth`` is of the laws that are written in scalars, ``sampled`` of those by samples, or None; ``order`` says of each drive
@@ -33,6 +34,7 @@ class Laws:
     knots: tuple[tuple[float, ...], ...]
 
     @classmethod
+    @symbolic
     def of(cls, laws: Mapping[str, Motion], parameters: Any) -> Laws:
         """The functions of laws by the joint's name."""
         smooth, sampled = ({name: law for name, law in laws.items() if law.spline is spline} for spline in (False, True))
@@ -47,6 +49,7 @@ class Laws:
         lows, highs = zip((-math.inf, math.inf), *self.spans, strict=True)
         return max(lows), min(highs)
 
+    @symbolic
     def only(self, joint: str) -> Laws:
         """The law of one of the drives."""
         k = self.joints.index(joint)
@@ -63,6 +66,7 @@ class Laws:
         return Laws((joint,), smooth, sampled, (0,), (self.spans[k],), (self.knots[k],))
 
     @property
+    @symbolic
     def motion(self) -> Any:
         """The CasADi function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of all drives."""
         if self.sampled is None:
@@ -82,6 +86,7 @@ class Laws:
         """Whether all samples tell their knots."""
         return all(self.knots[self.joints.index(joint)] for joint in self.with_samples)
 
+    @symbolic
     def jerk(self) -> Any:
         """The CasADi function ``jerk(t, p) -> d_jerk``, the third derivatives; at a spline's knot, that of one side.
 
@@ -100,6 +105,7 @@ class Laws:
             rows.append(ca.densify(ca.jacobian(ca.interpolant("bend", "linear", [knots], bends)(time), time)))
         return ca.Function("jerk", [time, values], [ca.vertcat(*rows)[list(self.order)]], ["t", "p"], ["d_jerk"])
 
+    @symbolic
     def in_scalars(self) -> Laws:
         """The same laws, none of them a spline of CasADi's own, so that they can be differentiated as often as one likes.
 

@@ -16,6 +16,7 @@ import casadi as ca
 
 from ..arguments import public
 from ..errors import DeclarationError
+from ..system.symbolic import symbolic
 from .curves import curve, rows
 from .ends import beyond_ends
 from .expressions import coordinates, scalar, symbols_of, told
@@ -131,6 +132,7 @@ def samples(times: Sequence[Expression], values: Sequence[Expression]) -> Motion
     return Motion(lambda time: spline(time), spline=True, span=(t[0], t[-1]), knots=tuple(t), unit=unit)
 
 
+@symbolic
 def motion_function(laws: Mapping[str, Motion], parameters: Any) -> Any:
     """The CasADi function ``motion(t, p) -> (d, d_rate, d_acceleration)`` of several laws, by the joint's name.
 
@@ -160,6 +162,7 @@ def smooth_laws(laws: Mapping[str, Motion], parameters: Any) -> dict[str, Smooth
     return {joint: smooth for joint, smooth in found.items() if smooth is not None}
 
 
+@symbolic
 def ends_function(laws: Mapping[str, Motion], parameters: Any) -> Any | None:
     """The CasADi function ``beyond(t, p)``: how far what the laws put into curves is beyond their ends, a row a joint of the laws.
 

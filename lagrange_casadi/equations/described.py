@@ -8,14 +8,17 @@ from dataclasses import replace
 
 from ..declare.description import Description, Template
 from ..declare.scene import Scene
+from ..system.symbolic import symbolic
 from .tree import span
 
 
+@symbolic
 def described(scene: Scene, values: Mapping[str, float]) -> Description:
     """The description of a scene's mechanism, for values of its parameters; see :func:`template`."""
     return template(scene).filled(values)
 
 
+@symbolic
 @functools.lru_cache(maxsize=32)
 def template(scene: Scene) -> Template:
     """The description of a scene's mechanism but for its numbers.

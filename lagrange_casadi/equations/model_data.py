@@ -17,6 +17,7 @@ from ..declare.laws import Laws
 from ..declare.mechanism import Mechanism
 from ..declare.scene import Scene
 from ..quantities import Kinds
+from ..system.symbolic import Graphs, symbolic
 from .described import template
 from .gaps import extent
 
@@ -32,7 +33,7 @@ class ParameterData:
 
 
 @dataclass(frozen=True, eq=False)
-class ModelData:
+class ModelData(Graphs):
     """A mechanism and its motion as plain data, beside the functions of a :class:`.SceneGraph`.
 
     ``kinds`` are the kinds of its coordinates, those of guides too, of its frictions and outputs. ``closings`` are the words for
@@ -91,6 +92,7 @@ class ModelData:
         bodies = self.template.content["bodies"].items()
         return {name: Material(**body["beam"]["material"]) for name, body in bodies if "beam" in body}
 
+    @symbolic
     def matter(self, link: str, p: Any) -> tuple[Any, Density]:
         """The length of a link [m] and its density, per unit of xi/l, as expressions of parameters ``p``."""
         body, numbers = self.template.content["bodies"][link], self.template.numbers(p)

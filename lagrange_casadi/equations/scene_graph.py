@@ -15,6 +15,7 @@ from ..declare.density import Array
 from ..declare.laws import Laws
 from ..declare.scene import Scene, Wanted
 from ..quantities import Output, law_members, station_members
+from ..system.symbolic import Graphs, symbolic
 from .checks import Check, Column, Kind, column_of
 from .iteration import NewtonLoop
 from .mobility import stations_of
@@ -23,7 +24,7 @@ from .open_forces import OpenForces
 
 
 @dataclass(frozen=True, eq=False)
-class SceneGraph:
+class SceneGraph(Graphs):
     """What a scene computes, as CasADi functions that hold nothing else.
 
     ``motion(t, p) -> (d, d_rate, d_acceleration)``; ``instant(t, d, d_rate, d_acceleration, z, p) -> out``, one row of ``out`` for
@@ -68,6 +69,7 @@ class SceneGraph:
         """The motion once more, what samples give apart from what can be followed in any arithmetic."""
         return self.data.laws
 
+    @symbolic
     def extent(self, p: Array) -> float:
         """The size of the mechanism [m], beside which a gap is large or small, for parameters ``p``."""
         return float(self.data.extent(p))

@@ -20,6 +20,7 @@ from ..declare.density import Array
 from ..equations.scene_graph import SceneGraph
 from ..instants.backends import compiled
 from ..instants.rung import Rung
+from ..system.symbolic import symbolic
 from .batches import at_points
 from .points import PointFunction
 from .slopes import Numbers, Slopes
@@ -74,6 +75,7 @@ class Curvatures:
         return Bends(found[:, 0, 0], found[:, :, 1])
 
 
+@symbolic
 def second_function(graph: SceneGraph, points: PointFunction) -> Any:
     """``at_once(t, z, p, xi, value, moving, chosen, way) -> found``: of what :class:`.PointFunction` has the gradient by time, xi/l
     and all parameters, and how it changes along a ``way`` of these."""
