@@ -62,7 +62,7 @@ class ModelData(Graphs):
         return cls(
             name=mechanism.name,
             space=mechanism.space,
-            rounding=scene.rounding if mechanism.rounded else 0.0,
+            rounding=_rounding(scene),
             parameters=known,
             kinds=scene.guided.kinds,
             closings=_closings(mechanism),
@@ -104,37 +104,39 @@ class ModelData(Graphs):
         return f"{self.closings.get(part, 'constraint')} '{part}'"
 
     def words(self) -> dict[str, Any]:
-        """The data for JSON; functions as the text in which CasADi writes them."""
+        """The data but for ``count`` and ``rounding`` for JSON; functions as the text in which CasADi writes them."""
         return {
             "name": self.name,
             "space": self.space,
-            "rounding": self.rounding,
             "parameters": {name: asdict(parameter) for name, parameter in self.parameters.items()},
             "kinds": asdict(self.kinds),
             "closings": self.closings,
             "laws": self.laws.words(),
             "span": self.span,
-            "count": self.count,
             "extent": self.extent.serialize(),
             "template": self.template.dumps(),
         }
 
     @classmethod
-    def loads(cls, words: Mapping[str, Any]) -> ModelData:
-        """The data that :meth:`words` made."""
+    def loads(cls, words: Mapping[str, Any], scene: Scene) -> ModelData:
+        """The data that :meth:`words` made of a scene that differs from this one in ``count`` and ``rounding`` at most."""
         return cls(
             name=words["name"],
             space=words["space"],
-            rounding=words["rounding"],
+            rounding=_rounding(scene),
             parameters={name: ParameterData(**parameter) for name, parameter in words["parameters"].items()},
             kinds=Kinds(**words["kinds"]),
             closings=words["closings"],
             laws=Laws.loads(words["laws"]),
             span=tuple(words["span"]),
-            count=words["count"],
+            count=scene.timing().count,
             extent=ca.Function.deserialize(words["extent"]),
             template=Template.loads(words["template"]),
         )
+
+
+def _rounding(scene: Scene) -> float:
+    return scene.rounding if scene.mechanism.rounded else 0.0
 
 
 def _closings(mechanism: Mechanism) -> dict[str, str]:

@@ -140,5 +140,5 @@ class SceneGraph(Graphs):
         columns = tuple(map(column_of, kept["columns"]))
         loop_angles = {Output.of(k): {column_of(part): sign for part, sign in v.items()} for k, v in kept["loop_angles"].items()}
         free = OpenForces.loads(kept["open_forces"]) if "open_forces" in kept else None
-        data = ModelData.loads(kept["data"])
+        data = ModelData.loads(kept["data"], scene)
         return cls(scene, data, wanted, tuple(kept["driven"]), motion, instant, newton, columns, loop_angles, free)
