@@ -219,7 +219,8 @@ Duty Spec
 """Classes that users are given, and make none of."""
 
 INNER = """
-direction multiplier output check_ending analysed mapped needs rows demands refined instants timetable block scale outside at_number made_of
+direction
+multiplier output check_ending analysed mapped needs rows demands refined instants timetable block scale outside at_number made_of
 at ends tails cell_at whole holds excess of_parameters unit __getitem__ __call__ largest
 grid size draw needs count index curvature copy
 """.split()
