@@ -33,6 +33,7 @@ from .instants.derivatives import Derivatives
 from .instants.determinacy import determinate, undetermined
 from .instants.elasticity import Elasticity
 from .instants.from_table import columns
+from .instants.holding import holding
 from .instants.ordering import in_order
 from .instants.phases import phases
 from .instants.refusal import refuse
@@ -146,6 +147,9 @@ def evaluate(
     solution = replace(solution, tolerance=tolerance(solution), sensitivities=slopes)
     if done is not None:
         solution = replace(solution, elasticity=Elasticity(done.told, done.reasons))
+    if solution.resting.any():
+        open_ = {name: held for name, held in holding(scene, solution).items() if np.isnan(solution.effort(name)).any()}
+        solution = replace(solution, held=open_)
     if certificate:
         solution = _certified(graph, found, solution, out, p, within, done)
         if solution.failed:

@@ -24,6 +24,7 @@ from .echo import echo
 from .options import PATH, wanted
 from .report import asked_line, peak_line
 from .scene_lines import scene_lines
+from .strength_lines import untold_lines
 
 
 @click.command()
@@ -82,6 +83,8 @@ def _describe_file(solution: Solution) -> None:
     echo(f"versions: {', '.join(f'{name} {version}' for name, version in provenance.versions.items())}")
     for note in solution.notes:
         echo(f"note: {note}")
+    for line in untold_lines(solution):
+        echo(line)
     if solution.sensitivities.by:
         by = ", ".join(solution.sensitivities.parameters)
         echo(f"sensitivities: of {len(solution.sensitivities.quantities)} quantities by {by}")

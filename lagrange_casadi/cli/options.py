@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 import click
 
-from ..arguments import typed
+from ..arguments import number, typed
 from ..arithmetic.compensated import PRECISIONS
 from ..declare.even_points import EvenPoints
 from ..declare.times import Over
@@ -78,6 +78,14 @@ def axis(text: str) -> tuple[str, Axis]:
         return name, Range(start, stop, count, len(parts) == 4)
     except DeclarationError as error:
         raise click.BadParameter(f"{name}: {error}") from None
+
+
+def length(text: str) -> float:
+    """A length, which may have a unit, as 5mm."""
+    try:
+        return number(_value(text), "m", finite=False)
+    except ValueError:
+        raise click.BadParameter(f"expected a length [m], as in 0.005 or 5mm, got '{text}'") from None
 
 
 def setting(text: str) -> tuple[str, float | str]:

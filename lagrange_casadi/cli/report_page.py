@@ -26,6 +26,7 @@ from ..system.publish import check_writable
 from .echo import echo
 from .options import PATH, instants, parameters, settings_by, wanted
 from .options import over as by_drive
+from .strength_lines import untold_lines
 
 _FILES = (".h5", ".hdf5")
 _UNSHOWN = "cannot be shown"
@@ -115,6 +116,8 @@ def _tell(solution: Solution, out: Path) -> None:
     shown, total = shown_instants(solution).size, solution.t.size
     if shown < total:
         echo(f"note: pictures and charts show {shown} of {total} instants, which is as many as fit; tables are of all", err=True)
+    for line in untold_lines(solution):
+        echo(line, err=True)
     echo(f"wrote {out}: open it in a browser")
     if solution.failed:
         raise CertificateError(f"{failure(solution)}; {out} says so")

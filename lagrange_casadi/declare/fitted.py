@@ -68,7 +68,7 @@ class Rolling:
 
 Fitted = Pin | Plain | Rolling
 KINDS: Mapping[str, type[Pin] | type[Plain] | type[Rolling]] = {"pin": Pin, "plain": Plain, "rolling": Rolling}
-_LENGTHS = ("diameter", "eye", "cheek", "gap", "bore", "width")
+_UNITS = dict.fromkeys(("diameter", "eye", "cheek", "gap", "bore", "width"), "m") | {"speed": "m/s"}
 _MAY_BE_ZERO = ("gap", "axial", "radial")
 
 
@@ -109,7 +109,7 @@ def _checked(mechanism: Mechanism, what: str, name: str, value: Any) -> Any:
         return value
     if value is None and name in ("pressure", "speed", "heating", "static"):
         return None
-    number = mechanism.own.expression(f"{what}: {name}", value, "m" if name in _LENGTHS else "1")
+    number = mechanism.own.expression(f"{what}: {name}", value, _UNITS.get(name, "1"))
     if isinstance(number, float) and not positive(name, number):
         raise DeclarationError(f"{what}: {name} must be positive, got {number:g}")
     return number

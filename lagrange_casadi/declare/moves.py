@@ -13,6 +13,7 @@ import casadi as ca
 from ..arguments import Symbolic, public
 from ..errors import DeclarationError
 from ..system.numerals import readable
+from ..system.symbolic import symbolic
 from .expressions import check_name, coordinates, plain, scalar, sound, symbols_of
 from .motion import Motion
 from .parts import Expression
@@ -80,6 +81,7 @@ def dwell(time: Symbolic | None = None, *, name: str = "") -> Dwell:
 
 
 @public
+@symbolic
 def moves(
     parts: Sequence[object],
     *,

@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 from ..arguments import Outputs, number, public, texts, within
 from ..arithmetic.compensated import Precision
 from ..errors import DeclarationError, NumberError, ParameterError, PickleError, UnknownNameError, shown
+from ..system.symbolic import Graphs, symbolic
 from ..tables import ANGLE, LENGTH
 from .density import Density
 from .drives import weighed
@@ -193,8 +194,9 @@ def _refuse_output(mechanism: Mechanism, name: str) -> None:
         raise DeclarationError(f"output '{name}': {why}")
 
 
+@symbolic
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scene(Graphs):
     """A mechanism, the motion of its driven joints, and the outputs wanted over a grid of time and of section ratios.
 
     Parameters

@@ -12,6 +12,7 @@ from ..beams.beam import Beam
 from ..errors import DeclarationError, check_kind
 from ..geometry.rotation import Rotation
 from ..geometry.vectors import times
+from ..system.symbolic import symbolic
 from .density import Density
 from .directions import Reference, rotated, tensor, triad_of, turned_by, vector
 from .directions import between as lying
@@ -30,6 +31,7 @@ Or the directions of the child's x and y axes, in the parent's axes.
 
 
 @public
+@symbolic
 @dataclass(eq=False)
 class SpatialMechanism(Mechanism):
     """A mechanism under declaration whose links lie in space. What is common with :class:`.Mechanism` reads the same.
@@ -129,7 +131,9 @@ class SpatialMechanism(Mechanism):
     def prismatic(  # type: ignore[override]
         self, name: str, parent: Body | Point, child: Body | Point, *, axis: Vector, at: Any = None, turned: Turns = ()
     ) -> Joint:
-        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, without turning."""
+        """Let a point of ``child`` slide along ``axis`` through a point of ``parent``, without turning; as in a plane ``axis`` does
+        not turn the child, ``turned`` does.
+        """
         return self._spatial(name, "prismatic", parent, child, axis, None, at, turned)
 
     def cylindrical(
@@ -327,11 +331,11 @@ class SpatialMechanism(Mechanism):
     ) -> Joint:
         self.own.free("joint", name, self.joints)
         what = f"joint '{name}'"
-        directions: Triad = triad_of(what, axis, second, self.own.expression)
+        directions: Triad = triad_of(what, axis, second, self.own.expression, self.own.at_defaults)
         placed = at is not None
         if at is None:
             start, end = self.own.point(what, parent), self.own.point(what, child)
-            zero = turned_by(what, turned, self.own.expression)
+            zero = turned_by(what, turned, self.own.expression, self.own.at_defaults)
             near, far = (self.references.get(point.body.name) for point in (start, end))
             if not turned and near and far and start.body.oriented and end.body.oriented:
                 zero, placed = near.seen(far), True
@@ -346,7 +350,7 @@ class SpatialMechanism(Mechanism):
             )
         if not start.body.oriented or not end.body.oriented:
             kind = "spherical" if kind == "revolute" else kind
-        joint = Joint(name, kind, start, end, (1.0, 0.0, 0.0), 0.0, directions, zero, pitch)
+        joint = Joint(name, kind, start, end, (1.0, 0.0, 0.0), 0.0, directions, zero, pitch, turn_given=placed or bool(turned))
         self.joints[name] = joint
         if placed:
             self.hard.add(name)
@@ -369,7 +373,7 @@ class SpatialMechanism(Mechanism):
             if isinstance(body, PointMass) and body.name not in self.references:
                 self.references[body.name] = Reference(place)
         first, second = self._reference(what, parent), self._reference(what, child)
-        start, end = first.point(parent, place), second.point(child, place)
+        start, end = (self.own.point(what, one.point(body, place)) for one, body in ((first, parent), (second, child)))
         return start, end, first.directions(directions), first.seen(second)
 
     def _reference(self, what: str, body: Body) -> Reference:

@@ -21,7 +21,7 @@ from ..declare.description import parts_of
 from ..errors import DeclarationError, PathError, UnknownNameError, shown
 from ..instants.solution import Peak, Solution
 from ..quantities import Output
-from ..strength.parts import bending_of, fitted_in, strong_of
+from ..strength.parts import NEEDED, bending_of, fitted_in, strong_of
 from ..tables import PLANE, SPACE
 from .pictures import one_at_a_time, save
 from .readable import scale_for
@@ -297,7 +297,7 @@ def default_figures(solution: Solution) -> tuple[Spec, ...]:
         if solution.determined(Output("section", link, "bending")):
             specs.append(SectionMaps(f"section_{link}", link))
     specs += [StrengthPlot(f"strength_{link}", link) for link in strong_of(solution)]
-    links, joints = strong_of(solution, "yield_strength", "elasticity"), fitted_in(solution)
+    links, joints = strong_of(solution, *NEEDED), fitted_in(solution)
     if links or joints:
         specs.append(UtilisationPlot("utilisation", links, joints))
     specs += [DeflectionPlot(f"deflection_{link}", link) for link in bending_of(solution)]

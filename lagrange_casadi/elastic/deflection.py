@@ -20,6 +20,7 @@ from ..arguments import Numeric, public
 from ..declare.density import Array
 from ..declare.held import ends_of
 from ..errors import DeclarationError, UnknownNameError
+from ..instants.sizes import largest
 from ..instants.solution import Solution
 from ..instants.turning import turns_between
 from ..strength.member import Member
@@ -131,7 +132,7 @@ class Deflection:
     def peak(self) -> DeflectionPeak:
         """The largest of these, over the instants: along the link exactly, where the cross-section is constant."""
         values, places = self.largest()
-        i = int(np.argmax(np.abs(values)))
+        i = int(largest(values))
         return DeflectionPeak(float(values[i]), float(self.member.t[i]), float(places[i]))
 
     @cached_property

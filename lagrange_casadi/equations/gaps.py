@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import casadi as ca
+import numpy as np
 
+from ..declare.density import Array
 from ..declare.mechanism import Mechanism
-from .blocks import Block, Equation
-from .joints import off
-from .multibody import Multibody
+from ..system.symbolic import symbolic
+from .joints import held_directions, off
+from .multibody import LoopEquations, Multibody
+
+if TYPE_CHECKING:
+    from .blocks import Block, Equation
 
 
 def left(multibody: Multibody, block: Block, length: Any) -> Any:
@@ -39,11 +44,18 @@ def reach(mechanism: Mechanism) -> Any:
     return sum((ca.SX(link.length) for link in mechanism.links.values()), ca.SX(0)) if mechanism.links else ca.SX(1)
 
 
+@symbolic
 def extent(mechanism: Mechanism) -> Any:
     """The links end to end, and how far from the origin they are joined to the ground [m]: a gap is small or large beside it."""
     points = (point for joint in mechanism.joints.values() for point in (joint.parent, joint.child))
     places = [ca.fabs(ca.SX(place)) for point in points if point.body is mechanism.ground for place in point.place]
     return reach(mechanism) + (ca.mmax(ca.vertcat(*places)) if places else 0)
+
+
+def units(loop: LoopEquations, size: float) -> Array:
+    """What gaps of a loop are large beside: the mechanism's size [m], or 1 of directions."""
+    held = held_directions(loop.joint) if loop.joint is not None else 0
+    return np.array([size] * (loop.gap.numel() - held) + [1.0] * held)
 
 
 def _turned(multibody: Multibody, equation: Equation) -> Any:

@@ -35,6 +35,7 @@ from ..instants.solution import Peak, Solution
 from ..quantities import Output, compared
 from ..summits.search import Peaks
 from ..summits.sharpness import Sharpness
+from ..system.symbolic import symbolic
 from ..tables import LARGEST
 
 _SAME = 1e-6
@@ -141,6 +142,7 @@ def forces(solution: Solution) -> list[str]:
     return [str(output) for output in wanted if solution.determined(output)]
 
 
+@symbolic
 @functools.lru_cache(maxsize=32)
 def rates(graph: SceneGraph) -> ca.Function:
     """The columns of a graph and, where loops are closed, their time derivatives along the motion.
