@@ -16,8 +16,9 @@ import numpy as np
 import pytest
 import threaded
 from matplotlib import rcParams
+from stepped import pinned
 
-from lagrange_casadi import Scene, evaluate, prepare, sweep
+from lagrange_casadi import Mechanism, Scene, evaluate, prepare, sweep
 from lagrange_casadi.animation import Film, write_animation
 from lagrange_casadi.declare.motion import samples
 from lagrange_casadi.draw import pictures
@@ -102,7 +103,7 @@ def hammered(asked, values, times=4):
 @pytest.mark.parametrize("asked", [{}, {"newton": 3}, {"backend": "vm"}, {"waved": True}], ids=str)
 def test_a_prepared_scene_answers_each_thread(asked, way):
     """By compiled code, with loops iterated, by the virtual machine; and with samples, and instants of each design's own."""
-    scene, slow = threaded.press(0), "backend" in asked
+    scene, slow = threaded.press(0, pinned if "newton" in asked else Mechanism.revolute), "backend" in asked
     if "waved" in asked:
         law = samples(TIMES, 0.3 + np.sin(2.0 * TIMES))
         scene = Scene(scene.mechanism, {"O": law}, t=(0.0, 1.0, 9), posture={"rod": 1.5})
@@ -124,7 +125,8 @@ def test_a_thread_finds_its_own_answer_again():
 @pytest.mark.parametrize("rung", [{}, {"backend": "vm"}, {"newton": 3}, {"precision": "single"}, {"table": 32}], ids=str)
 def test_one_scene_is_evaluated_by_many_threads(rung):
     def asked(l):
-        found = evaluate(threaded.SHARED, parameters={"l": l}, t=(0.0, 1.0, 9), **rung)
+        scene = threaded.ITERATED if "newton" in rung else threaded.SHARED
+        found = evaluate(scene, parameters={"l": l}, t=(0.0, 1.0, 9), **rung)
         laws = {f"bending:{name}": found.section(name).bending for name in found.links_with_sections}
         return told({**found.series, **laws, "errors": found.errors, "certificate": found.certificate})
 
